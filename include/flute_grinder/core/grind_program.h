@@ -1,0 +1,64 @@
+#pragma once
+
+#include "flute_grinder/core/axis_limits.h"
+#include "flute_grinder/core/conical_cutter.h"
+#include "flute_grinder/core/feed_schedule.h"
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/setpoint.h"
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// One move of a job, from where the one before ended.
+struct Move {
+  MoveKind kind = MoveKind::kLift;
+  std::uint16_t tooth = 0;
+  std::uint16_t pass = 0;
+  Axes to = Axes::Zero();  ///< [m], A [rad]
+};
+
+/// From which pass of which tooth a job starts.
+struct JobStart {
+  int tooth = 0;
+  int pass = 0;
+};
+
+/// The ordered moves of all teeth and passes of a job: up to the park position's height if the wheel stands lower,
+/// above the start, down to the clearance, infeed, stroke with overtravel, retract; last to the park position.
+class GrindProgram {
+ public:
+  /// @param job a job that validate() accepts.
+  /// @param machine what it is to run on.
+  /// @param start where the axes stand [m], A [rad].
+  /// @param first first pass to grind.
+  /// @throw std::invalid_argument if `first` is not a pass of the job, or where the feed would have to be cut below
+  ///        kMinFeed.
+  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first = {});
+
+  const GrindJob& job() const noexcept { return job_; }
+  const Machine& machine() const noexcept { return machine_; }
+  const ConicalCutter& cutter() const noexcept { return cutter_; }
+  const Axes& start() const noexcept { return start_; }
+  const std::vector<Move>& moves() const noexcept { return moves_; }
+
+  /// The stroke's way through the feed, the same for all teeth and passes.
+  const FeedSchedule& schedule() const noexcept { return schedule_; }
+  double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
+  double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
+
+ private:
+  void append(MoveKind kind, int tooth, int pass, const Axes& to);
+  void appendPass(int tooth, int pass, double depth, Axes& at);
+
+  GrindJob job_;
+  Machine machine_;
+  ConicalCutter cutter_;
+  Axes start_;
+  FeedSchedule::Stroke stroke_;
+  FeedSchedule schedule_;
+  double clearance_y_;  ///< clear of the whole stroke [m]
+  std::vector<Move> moves_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "flute_grinder/core/grind_program.h"
+#include "flute_grinder/core/limit_check.h"
+#include "flute_grinder/core/setpoint_stream.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Figures of the setpoints of a job.
+struct PlanStatistics {
+  std::uint64_t setpoints = 0;
+  double duration = 0;                                 ///< [s]
+  std::array<double, kMoveKindCount> move_duration{};  ///< per MoveKind [s]
+  double max_odd_error = 0;                            ///< |theory - commanded| of A at odd points [rad]
+  double max_even_error = 0;                           ///< the same at even points [rad]
+  double max_deviation = 0;                            ///< normal to the helix at the cutter's surface [m]
+  double min_feed = 0, max_feed = 0;                   ///< pair by pair while at feed; 0 where it never is [m/s]
+  Axes max_velocity = Axes::Zero();                    ///< [m/s], A [rad/s]
+  Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
+  Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
+  Axes ripple_acceleration = Axes::Zero();             ///< over single cycles: the odd-even steps' [m/s^2], A [rad/s^2]
+  std::string feed_limited_by;                         ///< what holds the feed below the one asked for; may be empty
+};
+
+/// Why a plan is refused.
+enum class PlanFault { kNone, kInvalidJob, kLimit, kTolerance };
+
+/// A job that was generated and checked as a whole.
+struct JobPlan {
+  PlanFault fault = PlanFault::kNone;
+  std::vector<std::string> reasons;  ///< why not, one text each
+  PlanStatistics statistics;
+  std::unique_ptr<GrindProgram> program;  ///< null where the job's figures are refused
+
+  bool good() const { return fault == PlanFault::kNone; }
+};
+
+/// Generates and checks every setpoint of a job, just as the machine would get them.
+/// @param job the job; its figures are checked too.
+/// @param machine what it is to run on.
+/// @param start where the axes stand [m], A [rad].
+/// @param first first pass to grind.
+/// @param visit called with every setpoint, if given.
+/// @param units of the texts about the job's figures.
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first = {},
+                const std::function<void(const Setpoint&)>& visit = {}, UnitSystem units = UnitSystem::kSi);
+
+}  // namespace flute_grinder

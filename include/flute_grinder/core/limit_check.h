@@ -1,0 +1,64 @@
+#pragma once
+
+#include "flute_grinder/core/axis_limits.h"
+#include "flute_grinder/core/setpoint.h"
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// What a limit bounds.
+enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFinite };
+
+/// A setpoint that an axis may not follow.
+struct LimitViolation {
+  int axis = 0;
+  LimitedQuantity quantity = LimitedQuantity::kPosition;
+  double value = 0;
+  double limit = 0;
+  std::uint64_t cycle = 0;
+  double x = 0;  ///< where along the cutter [m]
+  MoveKind move = MoveKind::kLift;
+
+  /// e.g. "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)".
+  std::string text() const;
+};
+
+/// Checks setpoints, one after another, against the axes' limits: position and velocity at every one, acceleration and
+/// jerk at the pair ends, by differences over two cycles, since within a pair they are those of the odd-even steps and
+/// not of the path. What rounding alone can make is let pass. Real-time safe.
+class LimitCheck {
+ public:
+  /// @param limits the axes' limits.
+  /// @param period control cycle [s].
+  LimitCheck(const AxisLimits& limits, double period) noexcept;
+
+  /// Forgets the past: the next setpoint is taken as preceded by rest.
+  void restart() noexcept { seen_ = 0; }
+
+  /// @return the violation, if the setpoint is one.
+  std::optional<LimitViolation> check(const Setpoint& setpoint) noexcept;
+
+  /// Of the last setpoint checked, or pair end: what it asked of the axes.
+  const Axes& velocity() const noexcept { return velocity_; }
+  const Axes& acceleration() const noexcept { return acceleration_; }
+  const Axes& jerk() const noexcept { return jerk_; }
+
+ private:
+  std::optional<LimitViolation> excess(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value,
+                                       const Axes& limit, double rounding) const noexcept;
+
+  AxisLimits limits_;
+  Axes middle_, half_range_;  ///< of the positions
+  double inverse_period_;
+  std::uint64_t seen_ = 0;
+  Axes last_ = Axes::Zero();
+  Axes largest_ = Axes::Zero();  ///< position in size
+  Axes ends_[3];                 ///< the last pair ends, newest first
+  Axes velocity_ = Axes::Zero();
+  Axes acceleration_ = Axes::Zero();
+  Axes jerk_ = Axes::Zero();
+};
+
+}  // namespace flute_grinder

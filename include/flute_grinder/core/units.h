@@ -1,0 +1,15 @@
+#pragma once
+
+/// @file
+/// The one place where the operator's units (mm, deg, mm/min, um) meet the SI units of the code: multiply to come in,
+/// divide to go out.
+namespace flute_grinder::units {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kMillimetre = 1e-3;                  ///< [m]
+constexpr double kMicrometre = 1e-6;                  ///< [m]
+constexpr double kDegree = kPi / 180;                 ///< [rad]
+constexpr double kMillimetrePerMinute = 1e-3 / 60;    ///< [m/s]
+constexpr double kMillimetrePerRadian = kMillimetre;  ///< [m/rad]
+
+}  // namespace flute_grinder::units

@@ -1,0 +1,122 @@
+#include "flute_grinder/core/job_plan.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+/// Gathers the statistics of a stream of setpoints.
+class Statistician {
+ public:
+  Statistician(const ConicalCutter& cutter, double period, PlanStatistics& statistics)
+      : cutter_(cutter), period_(period), s_(statistics) {}
+
+  void add(const Setpoint& p, const LimitCheck& check) {
+    if (s_.setpoints++ == 0) return;  // the first is where the job starts: nothing moved yet
+    ++cycles_[static_cast<std::size_t>(p.move)];
+    s_.max_velocity = s_.max_velocity.max(check.velocity().abs());
+    largest_change_ = largest_change_.max((check.velocity() - last_velocity_).abs());
+    last_velocity_ = check.velocity();
+    if (p.cycle % 2 == 0) {
+      s_.max_acceleration = s_.max_acceleration.max(check.acceleration().abs());
+      s_.max_jerk = s_.max_jerk.max(check.jerk().abs());
+    }
+    if (p.step != StepKind::kNone) addStroke(p);
+    if (p.cycle % 2 == 0) end_x_ = p.position[kX];
+  }
+
+  double deviation() const { return deviation_; }
+
+  void finish() {
+    for (std::size_t i = 0; i < cycles_.size(); ++i) s_.move_duration[i] = static_cast<double>(cycles_[i]) * period_;
+    s_.duration = static_cast<double>(s_.setpoints - 1) * period_;
+    s_.ripple_acceleration = largest_change_ / period_;
+  }
+
+ private:
+  void addStroke(const Setpoint& p) {
+    const double error = std::abs(p.path_error);
+    double& max_error = p.step == StepKind::kOdd ? s_.max_odd_error : s_.max_even_error;
+    max_error = std::max(max_error, error);
+    deviation_ = error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+    s_.max_deviation = std::max(s_.max_deviation, deviation_);
+    if (p.step == StepKind::kEven && p.at_feed) {
+      const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * cutter_.edgePerTravel();
+      s_.max_feed = std::max(s_.max_feed, feed);
+      s_.min_feed = s_.min_feed == 0 ? feed : std::min(s_.min_feed, feed);
+    }
+  }
+
+  const ConicalCutter& cutter_;
+  double period_;
+  PlanStatistics& s_;
+  std::array<std::uint64_t, kMoveKindCount> cycles_{};
+  Axes last_velocity_ = Axes::Zero();
+  Axes largest_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
+  double end_x_ = 0;
+  double deviation_ = 0;
+};
+
+std::string toleranceText(const Setpoint& p, double deviation, double tolerance) {
+  std::ostringstream text;
+  text << "interpolation.tolerance = " << tolerance << " m (" << tolerance / units::kMicrometre
+       << " um): the path deviates by " << deviation << " m (" << deviation / units::kMicrometre
+       << " um) at X = " << p.position[kX] << " m, cycle " << p.cycle
+       << "; lower process.feed, or set interpolation.even_step to exact";
+  return text.str();
+}
+
+/// Runs through the stream up to the first setpoint that is refused.
+void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(const Setpoint&)>& visit) {
+  const GrindProgram& program = stream.program();
+  const double tolerance = program.job().interpolation.tolerance;
+  LimitCheck check(program.machine().limits, program.machine().period);
+  Statistician statistician(program.cutter(), program.machine().period, plan.statistics);
+  Setpoint p;
+  while (stream.next(p)) {
+    const auto violation = check.check(p);
+    statistician.add(p, check);
+    if (visit) visit(p);
+    if (violation) {
+      plan.fault = PlanFault::kLimit;
+      plan.reasons.push_back(violation->text());
+      break;
+    }
+    if (p.step != StepKind::kNone && !(statistician.deviation() <= tolerance)) {
+      plan.fault = PlanFault::kTolerance;
+      plan.reasons.push_back(toleranceText(p, statistician.deviation(), tolerance));
+      break;
+    }
+  }
+  statistician.finish();
+}
+
+}  // namespace
+
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first,
+                const std::function<void(const Setpoint&)>& visit, UnitSystem units) {
+  JobPlan plan;
+  for (const JobError& error : validate(job, units)) plan.reasons.push_back(error.text());
+  if (!plan.reasons.empty()) {
+    plan.fault = PlanFault::kInvalidJob;
+    return plan;
+  }
+  try {
+    plan.program = std::make_unique<GrindProgram>(job, machine, start, first);
+  } catch (const std::invalid_argument& error) {
+    plan.fault = PlanFault::kInvalidJob;
+    plan.reasons.emplace_back(error.what());
+    return plan;
+  }
+  plan.statistics.feed_limited_by = plan.program->schedule().limitedBy();
+  SetpointStream stream(*plan.program);
+  runThrough(stream, plan, visit);
+  return plan;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,112 @@
+#include "flute_grinder/core/limit_check.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+/// Relative excess that the sampling of a motion at its very limit may show.
+constexpr double kRelativeRounding = 1e-9;
+
+/// Whether every |value| is within its limit; false for what is not a number. Without branches, which is what it is
+/// for.
+bool within(const Axes& value, const Axes& limit) noexcept {
+  bool good = true;
+  for (int axis = 0; axis < kAxisCount; ++axis) good &= std::abs(value[axis]) <= limit[axis];
+  return good;
+}
+
+}  // namespace
+
+LimitCheck::LimitCheck(const AxisLimits& limits, double period) noexcept
+    : limits_(limits),
+      middle_((limits.max_position + limits.min_position) / 2),
+      half_range_((limits.max_position - limits.min_position) / 2),
+      inverse_period_(1 / period),
+      ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
+
+std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexcept {
+  const Axes& p = setpoint.position;
+  if (seen_++ == 0) {
+    last_ = p;
+    largest_ = Axes::Zero();
+    for (Axes& end : ends_) end = p;
+  }
+  largest_ = largest_.max(p.abs());
+  velocity_ = (p - last_) * inverse_period_;
+  last_ = p;
+
+  if (!within(p - middle_, half_range_)) {
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      const bool low = p[axis] < limits_.min_position[axis];
+      const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];
+      if (!std::isfinite(p[axis])) {
+        return LimitViolation{axis, LimitedQuantity::kNotFinite, p[axis], limit, setpoint.cycle, p[kX], setpoint.move};
+      }
+      if (low || p[axis] > limit) {
+        return LimitViolation{axis, LimitedQuantity::kPosition, p[axis], limit, setpoint.cycle, p[kX], setpoint.move};
+      }
+    }
+  }
+  if (!within(velocity_, limits_.max_velocity)) {
+    if (auto v = excess(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_))
+      return v;
+  }
+  if (setpoint.cycle % 2 != 0) return std::nullopt;
+
+  const double inverse_pair = inverse_period_ / 2;
+  const double inverse_pair2 = inverse_pair * inverse_pair;
+  const Axes change = p - ends_[0];
+  const Axes last_change = ends_[0] - ends_[1];
+  const Axes bend = change - last_change;
+  acceleration_ = bend * inverse_pair2;
+  jerk_ = (bend - (last_change - (ends_[1] - ends_[2]))) * (inverse_pair2 * inverse_pair);
+  ends_[2] = ends_[1];
+  ends_[1] = ends_[0];
+  ends_[0] = p;
+  if (!within(acceleration_, limits_.max_acceleration)) {
+    if (auto v = excess(setpoint, LimitedQuantity::kAcceleration, acceleration_, limits_.max_acceleration,
+                        4 * inverse_pair2)) {
+      return v;
+    }
+  }
+  if (!within(jerk_, limits_.max_jerk)) {
+    return excess(setpoint, LimitedQuantity::kJerk, jerk_, limits_.max_jerk, 8 * inverse_pair2 * inverse_pair);
+  }
+  return std::nullopt;
+}
+
+std::optional<LimitViolation> LimitCheck::excess(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value,
+                                                 const Axes& limit, double rounding) const noexcept {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    // A position is the sum of some numbers no larger than the largest seen, each rounded to half an epsilon.
+    const double noise = 2 * std::numeric_limits<double>::epsilon() * largest_[axis] * rounding;
+    if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
+      return LimitViolation{axis,         quantity, value[axis], limit[axis], setpoint.cycle, setpoint.position[kX],
+                            setpoint.move};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string LimitViolation::text() const {
+  static constexpr const char* names[]{"position", "velocity", "acceleration", "jerk", "position"};
+  static constexpr const char* per_time[]{"", "/s", "/s^2", "/s^3", ""};
+  const auto q = static_cast<std::size_t>(quantity);
+  const std::string unit = std::string(" ") + axisUnit(axis) + per_time[q];
+  std::ostringstream text;
+  text << kJointNames[static_cast<std::size_t>(axis)] << ' ' << names[q] << ' ' << value << unit;
+  if (quantity == LimitedQuantity::kNotFinite) {
+    text << " is not a finite number";
+  } else {
+    const double magnitude = quantity == LimitedQuantity::kPosition ? value : std::abs(value);
+    text << " is " << std::abs(magnitude - limit) << unit << " beyond its limit " << limit << unit;
+  }
+  text << " (" << toString(move) << ", cycle " << cycle << ", X = " << x << " m)";
+  return text.str();
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,177 @@
+#pragma once
+
+#include "flute_grinder/core/limit_check.h"
+#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/drive/machine_state.h"
+#include "flute_grinder/drive/robot_hw.h"
+
+#include <boost/lockfree/policies.hpp>
+#include <boost/lockfree/spsc_queue.hpp>
+
+#include <array>
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace flute_grinder {
+
+/// What the control loop must know of the machine.
+struct LoopConfig {
+  Machine machine;
+  Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
+  double feedback_timeout = 0;          ///< longest time without fresh positions [s]
+  double enable_timeout = 0;            ///< longest time from the enable command to power [s]
+};
+
+/// Why the loop stopped the machine.
+enum class FaultKind : std::uint8_t {
+  kNone,
+  kEmergencyStop,
+  kDriveFault,       ///< the drive reports one
+  kPowerLost,        ///< the drive is no longer enabled
+  kStaleFeedback,    ///< no fresh positions
+  kInvalidFeedback,  ///< a position that is not a number
+  kFollowingError,
+  kLimit,  ///< a setpoint that an axis may not follow
+};
+
+/// A fault with its figures; plain data, put in words outside of the loop.
+struct LoopFault {
+  FaultKind kind = FaultKind::kNone;
+  int axis = 0;
+  double value = 0;          ///< of what went too far
+  double limit = 0;          ///< how far it may go
+  LimitViolation violation;  ///< of kLimit
+
+  /// e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m".
+  std::string text() const;
+};
+
+/// What happened in one cycle; what the rest of the program learns of the loop.
+struct CycleRecord {
+  double time = 0;    ///< since the epoch of ROS time, but monotonic [s]
+  double period = 0;  ///< since the cycle before [s]
+  MachineState state = MachineState::kDisabled;
+  DriveStatus drive;
+  Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
+  Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
+  Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
+  bool has_setpoint = false;
+  Setpoint setpoint;               ///< that was written, if there was one
+  bool job_ended = false;          ///< the job's stream is no longer in use
+  LoopFault fault;                 ///< while the state is kFault
+  std::uint64_t records_lost = 0;  ///< since the start, because nobody took them
+};
+
+/// Whether a request was carried out, and if not, why.
+struct RequestReply {
+  bool accepted = false;
+  std::string text;      ///< why not
+  bool answered = true;  ///< false if the loop has said nothing, and may yet take the request up
+};
+
+/// The one thread that owns the setpoint stream and the drive. Per cycle: wait, read, check, next, check, write.
+/// Requests go in and records come out through lock-free rings; in the cycle nothing is allocated, locked, logged or
+/// thrown, and nothing of ROS is called. The loop alone decides the machine's state, so that no request can cross a
+/// fault.
+class ControlLoop {
+ public:
+  /// @param hw the drive, initialised; must outlive the loop.
+  /// @param config limits and tolerances.
+  /// @throw HardwareInterfaceException if the drive lacks an interface or a joint.
+  ControlLoop(RobotHW& hw, const LoopConfig& config);
+  ~ControlLoop();
+
+  /// Starts the thread, with real-time scheduling and locked memory where the system grants them.
+  void start();
+  /// Ends the thread after its cycle; the drive is left without power.
+  void stop();
+
+  /// Asks for something and waits for the answer. Thread safe; not for the control thread.
+  /// @param stream of kStart: must stay alive until a record says job_ended, or the answer is no.
+  RequestReply request(MachineEvent event, SetpointStream* stream = nullptr);
+
+  /// Takes the oldest record; false if there is none. One consumer at a time.
+  bool pop(CycleRecord& record) { return records_.pop(record); }
+
+  /// One cycle without the wait. Real-time.
+  /// @param time of the cycle, for stamps.
+  /// @param period since the last cycle, monotonic.
+  void cycle(const ros::Time& time, const ros::Duration& period);
+
+  /// Posts a request without waiting; cycle() takes it up. False while one is pending. For one thread at a time.
+  bool post(MachineEvent event, SetpointStream* stream = nullptr);
+  /// The answer to the last post(), once there is one.
+  std::optional<RequestReply> reply();
+
+  bool realtimeScheduling() const { return realtime_scheduling_; }
+  bool memoryLocked() const { return memory_locked_; }
+  const LoopConfig& config() const { return config_; }
+
+ private:
+  enum class Refusal : std::uint8_t {
+    kNone,
+    kState,
+    kEmergencyStop,
+    kDriveFault,
+    kNotHomed,
+    kNoPower,
+    kMoved,
+    kFeedback
+  };
+  struct Command {
+    MachineEvent event;
+    SetpointStream* stream;
+  };
+  struct Answer {
+    MachineEvent event;
+    MachineState state;
+    Refusal refusal;
+  };
+
+  void run();
+  void observe();
+  void takeCommand();
+  Refusal carryOut(const Command& command);
+  Refusal obstacleToPower() const;
+  Refusal start(SetpointStream* stream);
+  void answer(Refusal refusal);
+  void awaitPower(double period);
+  void checkDrive();
+  void move();
+  void fail(const LoopFault& fault);
+  void apply(MachineEvent event);
+  bool powered() const;
+
+  RobotHW& hw_;
+  LoopConfig config_;
+  std::array<JointHandle, kAxisCount> joints_;
+  DriveHandle drive_;
+
+  // The control thread's own.
+  MachineState state_ = MachineState::kDisabled;
+  SetpointStream* stream_ = nullptr;
+  LimitCheck limit_check_;
+  Axes command_ = Axes::Zero();
+  DriveCommand drive_command_;
+  std::uint64_t last_feedback_ = 0;
+  double feedback_age_ = 0;
+  double power_wait_ = 0;
+  std::optional<Command> pending_;
+  CycleRecord record_;
+
+  boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<4>> commands_;
+  boost::lockfree::spsc_queue<Answer, boost::lockfree::capacity<4>> answers_;
+  boost::lockfree::spsc_queue<CycleRecord, boost::lockfree::capacity<8192>> records_;
+
+  std::mutex request_mutex_;
+  bool awaiting_answer_ = false;
+  std::thread thread_;
+  std::atomic<bool> running_{false};
+  std::atomic<bool> realtime_scheduling_{false};
+  std::atomic<bool> memory_locked_{false};
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <ros/duration.h>
+#include <ros/node_handle.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <typeindex>
+#include <utility>
+#include <vector>
+
+/// @file
+/// The drive interface, in the shape of ros_control's hardware_interface: the same names, argument orders and meanings,
+/// so that a ros_control driver becomes a driver for the grinder by changing its base class. Beyond it stand
+/// DriveHandle, for what a machine says and hears beside positions, and RobotHW::wait(), since the drive paces the
+/// control loop.
+namespace flute_grinder {
+
+/// A handle or an interface that is not there, or that is there twice.
+class HardwareInterfaceException : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads the state of a joint from the driver's memory. Getters are real-time safe.
+class JointStateHandle {
+ public:
+  JointStateHandle() = default;
+  /// @param name joint name, as in the URDF.
+  /// @param pos position [m or rad].
+  /// @param vel velocity [m/s or rad/s].
+  /// @param eff effort [N or Nm].
+  /// @throw HardwareInterfaceException if a pointer is null.
+  JointStateHandle(const std::string& name, const double* pos, const double* vel, const double* eff);
+
+  std::string getName() const { return name_; }
+  double getPosition() const { return *pos_; }  ///< [m or rad]
+  double getVelocity() const { return *vel_; }  ///< [m/s or rad/s]
+  double getEffort() const { return *eff_; }    ///< [N or Nm]
+
+ private:
+  std::string name_;
+  const double* pos_ = nullptr;
+  const double* vel_ = nullptr;
+  const double* eff_ = nullptr;
+};
+
+/// Reads a joint and commands it. Real-time safe but for the constructor.
+class JointHandle : public JointStateHandle {
+ public:
+  JointHandle() = default;
+  /// @param js the joint's state.
+  /// @param cmd where the driver takes the command from [m or rad].
+  /// @throw HardwareInterfaceException if the pointer is null.
+  JointHandle(const JointStateHandle& js, double* cmd);
+
+  void setCommand(double command) { *cmd_ = command; }  ///< [m or rad]
+  double getCommand() const { return *cmd_; }           ///< [m or rad]
+
+ private:
+  double* cmd_ = nullptr;
+};
+
+/// What a drive says of itself, beside positions.
+struct DriveStatus {
+  bool enabled = false;              ///< power is on, the axes follow their commands
+  bool emergency_stop = false;       ///< the emergency stop is pressed
+  bool fault = false;                ///< the drive reports a fault of its own
+  bool homed = false;                ///< positions refer to the machine's reference
+  std::uint64_t feedback_count = 0;  ///< goes up with each fresh set of positions
+};
+
+/// What a drive is told, beside positions.
+struct DriveCommand {
+  bool enable = false;  ///< switch power on, or off: the axes are then stopped by the drive at once
+  bool reset = false;   ///< clear a fault of the drive, for the one cycle in which it is set
+};
+
+/// Connects the machine's signals that belong to no joint. Real-time safe but for the constructor.
+class DriveHandle {
+ public:
+  DriveHandle() = default;
+  /// @throw HardwareInterfaceException if a pointer is null.
+  DriveHandle(const std::string& name, const DriveStatus* status, DriveCommand* command);
+
+  std::string getName() const { return name_; }
+  const DriveStatus& getStatus() const { return *status_; }
+  void setCommand(const DriveCommand& command) { *command_ = command; }
+
+ private:
+  std::string name_;
+  const DriveStatus* status_ = nullptr;
+  DriveCommand* command_ = nullptr;
+};
+
+/// Handles by name.
+template <typename Handle>
+class HardwareResourceManager {
+ public:
+  /// Adds a handle; one of the same name is replaced.
+  void registerHandle(const Handle& handle) { handles_[handle.getName()] = handle; }
+
+  /// @throw HardwareInterfaceException if there is none of that name.
+  Handle getHandle(const std::string& name) const {
+    const auto it = handles_.find(name);
+    if (it == handles_.end()) throw HardwareInterfaceException("the drive has no handle '" + name + "'");
+    return it->second;
+  }
+
+  std::vector<std::string> getNames() const {
+    std::vector<std::string> names;
+    for (const auto& item : handles_) names.push_back(item.first);
+    return names;
+  }
+
+ private:
+  std::map<std::string, Handle> handles_;
+};
+
+class JointStateInterface : public HardwareResourceManager<JointStateHandle> {};
+class PositionJointInterface : public HardwareResourceManager<JointHandle> {};
+class DriveInterface : public HardwareResourceManager<DriveHandle> {};
+
+/// Interfaces by type.
+class InterfaceManager {
+ public:
+  /// Offers an interface, which must outlive this object.
+  template <typename T>
+  void registerInterface(T* interface) {
+    interfaces_[std::type_index(typeid(T))] = interface;
+  }
+
+  /// The interface of that type, or null.
+  template <typename T>
+  T* get() const {
+    const auto it = interfaces_.find(std::type_index(typeid(T)));
+    return it == interfaces_.end() ? nullptr : static_cast<T*>(it->second);
+  }
+
+ private:
+  std::map<std::type_index, void*> interfaces_;
+};
+
+/// A drive. A plugin derives from it, registers a JointStateInterface and a PositionJointInterface with the joints
+/// axis_x, axis_y, axis_z and axis_a, and a DriveInterface with the handle "drive".
+class RobotHW : public InterfaceManager {
+ public:
+  virtual ~RobotHW() = default;
+
+  /// Sets the drive up; called once, before anything else, not in the control thread.
+  /// @param root_nh the node's own namespace.
+  /// @param robot_hw_nh the drive's namespace, ~hardware, with its parameters.
+  /// @return false if the drive is of no use; the reason belongs in the log, or in an exception.
+  virtual bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) = 0;
+
+  /// Fetches positions and status. Real-time.
+  /// @param time of the cycle, for stamps.
+  /// @param period since the last cycle, monotonic.
+  virtual void read(const ros::Time& time, const ros::Duration& period) = 0;
+
+  /// Sends the commands. Real-time; arguments as of read().
+  virtual void write(const ros::Time& time, const ros::Duration& period) = 0;
+
+  /// Blocks until the next cycle is to begin. By default cycles follow the monotonic clock, and ones that were missed
+  /// are left out, never made up for: the axes would have to run faster than planned. A drive with a clock of its own
+  /// overrides this.
+  /// @param period nominal control period.
+  virtual void wait(const ros::Duration& period);
+
+ private:
+  std::int64_t next_cycle_ns_ = 0;
+};
+
+}  // namespace flute_grinder

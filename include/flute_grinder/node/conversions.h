@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/PathStatistics.h"
+#include "flute_grinder/WrittenSetpoint.h"
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/core/setpoint.h"
+
+/// @file
+/// The one place where messages and the types of core meet. Both are in SI.
+namespace flute_grinder {
+
+/// The job of a goal, unchecked: a choice that is out of range stays so, for validate() to refuse.
+GrindJob jobFromGoal(const GrindGoal& goal);
+
+/// The goal of a job.
+GrindGoal goalFromJob(const GrindJob& job);
+
+PathStatistics toMessage(const PlanStatistics& statistics);
+PlanStatistics fromMessage(const PathStatistics& message);
+
+/// @param actual where the drive said the axes were when the setpoint was made [m], A [rad].
+WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual);
+Setpoint fromMessage(const WrittenSetpoint& message);
+
+}  // namespace flute_grinder

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "flute_grinder/GrindAction.h"
+#include "flute_grinder/Plan.h"
+#include "flute_grinder/SetpointBatch.h"
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/node/path_markers.h"
+
+#include <actionlib/server/action_server.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <pluginlib/class_loader.hpp>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// The grinder in ROS: loads the drive, runs the control loop, and connects it with the action, the services and the
+/// topics. Callbacks may come from several threads.
+class GrinderNode {
+ public:
+  /// Reads all parameters, loads and initialises the drive, and starts the control loop.
+  /// @param nh the node's namespace, for robot_description and joint_states.
+  /// @param private_nh the node's own, for all else.
+  /// @throw std::exception naming the parameter, the plugin or the joint that is at fault.
+  GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
+
+  /// Stops a running job on its path, ends its goal, and switches the drive off.
+  void shutDown();
+
+ private:
+  using Server = actionlib::ActionServer<GrindAction>;
+  using GoalHandle = Server::GoalHandle;
+
+  /// The job that moves the machine.
+  struct Job {
+    GoalHandle goal;
+    std::unique_ptr<SetpointStream> stream;
+    PlanStatistics statistics;
+    PathErrorMarkers errors;
+    Setpoint last;
+    double largest_error = 0;  ///< since the last feedback [rad]
+    bool canceled = false;
+  };
+
+  /// A plan with what is to be shown of it.
+  struct Preview {
+    JobPlan plan;
+    std::optional<PathErrorMarkers> errors;  ///< of a job whose figures are allowed
+  };
+
+  /// Timing of the control loop since it was last reported.
+  struct Timing {
+    std::uint64_t cycles = 0;
+    std::uint64_t overruns = 0;
+    double longest = 0;  ///< period [s]
+    double total = 0;    ///< [s]
+  };
+
+  void loadDrive(const ParameterReader& parameters);
+  void advertise();
+
+  void onGoal(GoalHandle goal);
+  void onCancel(const GoalHandle& goal);
+  Preview makePreview(const GrindGoal& goal, const Axes& start) const;
+  void show(const Preview& preview);
+  void startJob(GoalHandle& goal, const JobPlan& plan);
+  void cancelJob();
+  bool onRequest(MachineEvent event, std_srvs::Trigger::Response& response);
+  bool onPlan(Plan::Request& request, Plan::Response& response);
+
+  void tick();
+  void takeRecords();
+  bool refresh();
+  void follow(const CycleRecord& record);
+  void finishJob(const CycleRecord& record);
+  void publishJointStates();
+  void publishBatch();
+  void publishState();
+  void publishFeedback();
+  void reject(GoalHandle& goal, int code, const std::string& text);
+
+  void diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  ros::NodeHandle nh_, private_nh_;
+  std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;
+  pluginlib::UniquePtr<RobotHW> hw_;
+  std::unique_ptr<ControlLoop> loop_;
+
+  std::unique_ptr<Server> server_;
+  std::vector<ros::ServiceServer> services_;
+  ros::Publisher joint_states_, state_, setpoints_, tool_path_, path_error_;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
+  ros::SteadyTimer timer_;
+
+  std::mutex mutex_;    ///< guards all below
+  CycleRecord record_;  ///< the newest
+  std::uint64_t records_ = 0;
+  std::unique_ptr<Job> job_;
+  std::optional<GoalHandle> planning_;
+  bool planning_canceled_ = false;
+  SetpointBatch batch_;
+  Timing timing_;
+  std::uint64_t ticks_ = 0;
+};
+
+}  // namespace flute_grinder

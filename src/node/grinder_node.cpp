@@ -1,0 +1,422 @@
+#include "flute_grinder/node/grinder_node.h"
+
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/node/conversions.h"
+
+#include <sensor_msgs/JointState.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTickPeriod = 0.01;         ///< of joint states [s]
+constexpr std::uint64_t kTicksPerBatch = 5;  ///< setpoints, state and feedback
+constexpr double kOverrun = 1.5;             ///< periods after which a cycle counts as late
+
+int errorCode(PlanFault fault) {
+  switch (fault) {
+    case PlanFault::kNone: return GrindResult::SUCCESSFUL;
+    case PlanFault::kInvalidJob: return GrindResult::INVALID_GOAL;
+    case PlanFault::kLimit: return GrindResult::LIMIT_VIOLATED;
+    case PlanFault::kTolerance: return GrindResult::PATH_TOLERANCE_VIOLATED;
+  }
+  return GrindResult::INVALID_GOAL;
+}
+
+int errorCode(FaultKind fault) {
+  switch (fault) {
+    case FaultKind::kNone: return GrindResult::SUCCESSFUL;
+    case FaultKind::kEmergencyStop: return GrindResult::EMERGENCY_STOP;
+    case FaultKind::kStaleFeedback: return GrindResult::LINK_LOST;
+    case FaultKind::kFollowingError: return GrindResult::PATH_TOLERANCE_VIOLATED;
+    case FaultKind::kLimit: return GrindResult::LIMIT_VIOLATED;
+    case FaultKind::kDriveFault:
+    case FaultKind::kPowerLost:
+    case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
+  }
+  return GrindResult::HARDWARE_FAULT;
+}
+
+GrindResult result(int code, const std::string& text, const PlanStatistics& statistics = {}) {
+  GrindResult r;
+  r.error_code = code;
+  r.error_string = text;
+  r.statistics = toMessage(statistics);
+  return r;
+}
+
+std::string join(const std::vector<std::string>& reasons) {
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  return text;
+}
+
+std::string place(const Setpoint& p) {
+  std::ostringstream text;
+  text << " (at " << toString(p.move) << " of tooth " << p.tooth << ", pass " << p.pass << ", X = " << p.position[kX]
+       << " m)";
+  return text.str();
+}
+
+double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
+
+}  // namespace
+
+GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
+    : nh_(nh), private_nh_(private_nh) {
+  std::string urdf;
+  if (!nh_.getParam("robot_description", urdf)) {
+    throw MachineConfigError("parameter " + nh_.resolveName("robot_description") + " is missing; allowed: a URDF");
+  }
+  XmlRpc::XmlRpcValue values;
+  private_nh_.getParam("", values);
+  const ParameterReader parameters(values, private_nh_.getNamespace());
+  const LoopConfig config = readMachineConfig(urdf, parameters);
+  loadDrive(parameters);
+  loop_ = std::make_unique<ControlLoop>(*hw_, config);
+  batch_.period = config.machine.period;
+  advertise();
+  loop_->start();
+  server_->start();
+}
+
+void GrinderNode::loadDrive(const ParameterReader& parameters) {
+  const std::string type = parameters.text("hardware/type");
+  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
+  if (!loader_->isClassAvailable(type)) {
+    throw MachineConfigError("parameter " + parameters.name("hardware/type") + " = " + type +
+                             "; allowed: " + join(loader_->getDeclaredClasses()));
+  }
+  hw_ = loader_->createUniqueInstance(type);
+  ros::NodeHandle hardware_nh(private_nh_, "hardware");
+  if (!hw_->init(private_nh_, hardware_nh)) throw MachineConfigError("the drive " + type + " could not be initialised");
+}
+
+void GrinderNode::advertise() {
+  joint_states_ = nh_.advertise<sensor_msgs::JointState>("joint_states", 10);
+  state_ = private_nh_.advertise<GrinderState>("state", 10, true);
+  setpoints_ = private_nh_.advertise<SetpointBatch>("setpoints", 1000);
+  tool_path_ = private_nh_.advertise<visualization_msgs::MarkerArray>("tool_path", 1, true);
+  path_error_ = private_nh_.advertise<visualization_msgs::MarkerArray>("path_error", 1, true);
+
+  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(nh_, private_nh_);
+  diagnostics_->setHardwareID(private_nh_.param<std::string>("hardware/type", ""));
+  diagnostics_->add("Control loop", this, &GrinderNode::diagnoseLoop);
+  diagnostics_->add("Drive", this, &GrinderNode::diagnoseDrive);
+
+  const auto trigger = [this](const char* name, MachineEvent event) {
+    const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
+        [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+          return onRequest(event, response);
+        };
+    services_.push_back(private_nh_.advertiseService(name, callback));
+  };
+  trigger("enable", MachineEvent::kEnable);
+  trigger("disable", MachineEvent::kDisable);
+  trigger("reset_fault", MachineEvent::kReset);
+  services_.push_back(private_nh_.advertiseService("plan", &GrinderNode::onPlan, this));
+
+  server_ = std::make_unique<Server>(
+      private_nh_, "grind", [this](const GoalHandle& goal) { onGoal(goal); },
+      [this](const GoalHandle& goal) { onCancel(goal); }, false);
+  timer_ = nh_.createSteadyTimer(ros::WallDuration(kTickPeriod), [this](const ros::SteadyTimerEvent&) { tick(); });
+}
+
+void GrinderNode::shutDown() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (job_) cancelJob();
+  }
+  // The spinners may be gone already, so that this thread sees the job to its end.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  for (bool moving = true; moving && std::chrono::steady_clock::now() < deadline;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const std::lock_guard<std::mutex> lock(mutex_);
+    takeRecords();
+    moving = job_ != nullptr;
+  }
+  loop_->request(MachineEvent::kDisable);
+  loop_->stop();
+}
+
+void GrinderNode::reject(GoalHandle& goal, int code, const std::string& text) {
+  ROS_WARN_STREAM("goal rejected: " << text);
+  goal.setRejected(result(code, text), text);
+}
+
+void GrinderNode::onGoal(GoalHandle goal) {
+  MachineState state;
+  Axes start;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (job_ || planning_) {
+      return reject(goal, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
+    }
+    if (!refresh()) return reject(goal, GrindResult::NOT_READY, "the control loop does not answer");
+    state = record_.state;
+    start = record_.command;
+    planning_ = goal;
+    planning_canceled_ = false;
+  }
+  const auto request = goal.getGoal();
+  const bool wanted = state == MachineState::kReady || request->dry_run;
+  Preview preview;
+  if (wanted) preview = makePreview(*request, start);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    planning_.reset();
+    if (planning_canceled_) {
+      const char* text = "canceled before it moved";
+      return goal.setCanceled(result(GrindResult::CANCELED, text), text);
+    }
+    if (!wanted) {
+      return reject(goal, GrindResult::NOT_READY,
+                    std::string("the machine is in state ") + toString(state) + "; allowed: " + allowedIn(state));
+    }
+    if (!preview.plan.good()) return reject(goal, errorCode(preview.plan.fault), join(preview.plan.reasons));
+    goal.setAccepted();
+    if (!request->dry_run) startJob(goal, preview.plan);
+  }
+  show(preview);
+  if (request->dry_run) {
+    goal.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", preview.plan.statistics));
+  }
+}
+
+GrinderNode::Preview GrinderNode::makePreview(const GrindGoal& goal, const Axes& start) const {
+  const GrindJob job = jobFromGoal(goal);
+  Preview preview;
+  if (validate(job).empty()) preview.errors.emplace(ConicalCutter(job.cutter));
+  preview.plan = planJob(job, loop_->config().machine, start, {goal.first_tooth, goal.first_pass},
+                         [&](const Setpoint& p) { preview.errors->add(p); });
+  return preview;
+}
+
+void GrinderNode::show(const Preview& preview) {
+  tool_path_.publish(toolPathMarkers(*preview.plan.program));
+  path_error_.publish(preview.errors->markers());
+}
+
+void GrinderNode::startJob(GoalHandle& goal, const JobPlan& plan) {
+  job_ = std::make_unique<Job>(Job{goal, std::make_unique<SetpointStream>(*plan.program), plan.statistics,
+                                   PathErrorMarkers(plan.program->cutter()), Setpoint{}});
+  const RequestReply reply = loop_->request(MachineEvent::kStart, job_->stream.get());
+  if (reply.accepted) return;
+  // A loop that has not answered may yet begin to use the stream.
+  if (!reply.answered) static_cast<void>(job_->stream.release());
+  job_.reset();
+  ROS_WARN_STREAM(reply.text);
+  goal.setAborted(result(GrindResult::NOT_READY, reply.text), reply.text);
+}
+
+void GrinderNode::onCancel(const GoalHandle& goal) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (planning_ && *planning_ == goal) planning_canceled_ = true;
+  if (!job_ || job_->goal != goal) return;
+  cancelJob();
+}
+
+void GrinderNode::cancelJob() {
+  const RequestReply reply = loop_->request(MachineEvent::kCancel);
+  // A cancel that comes once more, after the stop, is refused.
+  if (reply.accepted) job_->canceled = true;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+}
+
+bool GrinderNode::onRequest(MachineEvent event, std_srvs::Trigger::Response& response) {
+  const RequestReply reply = loop_->request(event);
+  response.success = reply.accepted;
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+bool GrinderNode::onPlan(Plan::Request& request, Plan::Response& response) {
+  Axes start;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!refresh()) {
+      response.reasons.emplace_back("the control loop does not answer");
+      return true;
+    }
+    start = record_.command;
+  }
+  const Preview preview = makePreview(request.goal, start);
+  response.valid = preview.plan.good();
+  response.statistics = toMessage(preview.plan.statistics);
+  response.duration = preview.plan.statistics.duration;
+  response.reasons = preview.plan.reasons;
+  if (preview.plan.good()) show(preview);
+  return true;
+}
+
+void GrinderNode::tick() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    takeRecords();
+    if (records_ == 0) return;
+    publishJointStates();
+    if (++ticks_ % kTicksPerBatch == 0) {
+      publishBatch();
+      publishState();
+      publishFeedback();
+    }
+  }
+  diagnostics_->update();
+}
+
+void GrinderNode::takeRecords() {
+  while (loop_->pop(record_)) {
+    ++records_;
+    follow(record_);
+  }
+}
+
+bool GrinderNode::refresh() {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  takeRecords();
+  // The first record to come may be of a cycle that had begun before.
+  for (const std::uint64_t enough = records_ + 2; records_ < enough; takeRecords()) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return true;
+}
+
+void GrinderNode::follow(const CycleRecord& record) {
+  ++timing_.cycles;
+  timing_.total += record.period;
+  timing_.longest = std::max(timing_.longest, record.period);
+  if (record.period > kOverrun * batch_.period) ++timing_.overruns;
+  if (!job_) return;
+  if (record.has_setpoint) {
+    if (batch_.setpoints.empty()) {
+      batch_.header.stamp = ros::Time(record.time);
+      batch_.goal_id = job_->goal.getGoalID().id;
+    }
+    batch_.setpoints.push_back(toMessage(record.setpoint, record.position));
+    job_->last = record.setpoint;
+    job_->largest_error = std::max(job_->largest_error, std::abs(record.setpoint.path_error));
+    job_->errors.add(record.setpoint);
+  }
+  if (record.job_ended) finishJob(record);
+}
+
+void GrinderNode::finishJob(const CycleRecord& record) {
+  publishBatch();
+  publishFeedback();
+  path_error_.publish(job_->errors.markers());
+  const std::unique_ptr<Job> job = std::move(job_);
+  publishState();
+  if (record.state == MachineState::kFault) {
+    const std::string text = record.fault.text() + place(job->last);
+    ROS_ERROR_STREAM("goal aborted: " << text);
+    job->goal.setAborted(result(errorCode(record.fault.kind), text, job->statistics), text);
+  } else if (job->canceled) {
+    const std::string text = "canceled; stopped on the path" + place(job->last);
+    job->goal.setCanceled(result(GrindResult::CANCELED, text, job->statistics), text);
+  } else {
+    job->goal.setSucceeded(result(GrindResult::SUCCESSFUL, "", job->statistics));
+  }
+}
+
+void GrinderNode::publishJointStates() {
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time(record_.time);
+  for (int i = 0; i < kAxisCount; ++i) {
+    message.name.emplace_back(kJointNames[static_cast<std::size_t>(i)]);
+    message.position.push_back(record_.position[i]);
+    message.velocity.push_back(record_.velocity[i]);
+  }
+  joint_states_.publish(message);
+}
+
+void GrinderNode::publishBatch() {
+  if (batch_.setpoints.empty()) return;
+  setpoints_.publish(batch_);
+  batch_.setpoints.clear();
+}
+
+void GrinderNode::publishState() {
+  GrinderState message;
+  message.header.stamp = ros::Time(record_.time);
+  message.state = static_cast<std::uint8_t>(record_.state);
+  message.state_name = toString(record_.state);
+  message.enabled = record_.drive.enabled;
+  message.homed = record_.drive.homed;
+  message.emergency_stop = record_.drive.emergency_stop;
+  message.override = 1;
+  if (job_) {
+    message.feed = job_->last.feed;
+    message.tooth = job_->last.tooth;
+    message.pass = job_->last.pass;
+  }
+  if (record_.state == MachineState::kFault) message.fault = record_.fault.text();
+  state_.publish(message);
+}
+
+void GrinderNode::publishFeedback() {
+  if (!job_) return;
+  const Setpoint& p = job_->last;
+  const GrindProgram& program = job_->stream->program();
+  const auto done = static_cast<double>(p.cycle + 1);
+  const auto all = static_cast<double>(job_->statistics.setpoints);
+  GrindFeedback feedback;
+  feedback.state = toString(record_.state);
+  feedback.tooth = p.tooth;
+  feedback.pass = p.pass;
+  feedback.x = p.position[kX];
+  if (p.move == MoveKind::kStroke) {
+    feedback.stroke_fraction =
+        fraction(p.position[kX] - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
+  } else {
+    feedback.stroke_fraction = p.move > MoveKind::kStroke ? 1 : 0;
+  }
+  feedback.job_fraction = fraction(done, all);
+  feedback.remaining_time = std::max(0.0, all - done) * batch_.period;
+  feedback.feed = p.feed;
+  feedback.path_error = job_->largest_error;
+  job_->largest_error = 0;
+  job_->goal.publishFeedback(feedback);
+}
+
+void GrinderNode::diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  using diagnostic_msgs::DiagnosticStatus;
+  status.summary(DiagnosticStatus::OK, "running");
+  if (timing_.overruns > 0) status.summary(DiagnosticStatus::WARN, "cycles were late");
+  if (!loop_->realtimeScheduling()) status.mergeSummary(DiagnosticStatus::WARN, "no real-time scheduling");
+  if (record_.records_lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, "setpoints were not published");
+  if (timing_.cycles == 0) status.summary(DiagnosticStatus::ERROR, "not running");
+  status.add("State", toString(record_.state));
+  status.add("Nominal period [s]", batch_.period);
+  status.add("Mean period [s]", timing_.cycles > 0 ? timing_.total / static_cast<double>(timing_.cycles) : 0);
+  status.add("Longest period [s]", timing_.longest);
+  status.add("Late cycles", timing_.overruns);
+  status.add("Records lost", record_.records_lost);
+  status.add("Real-time scheduling", loop_->realtimeScheduling());
+  status.add("Memory locked", loop_->memoryLocked());
+  timing_ = Timing{};
+}
+
+void GrinderNode::diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  using diagnostic_msgs::DiagnosticStatus;
+  status.summary(DiagnosticStatus::OK, record_.drive.enabled ? "enabled" : "disabled");
+  if (!record_.drive.homed) status.mergeSummary(DiagnosticStatus::WARN, "not homed");
+  if (record_.drive.fault) status.summary(DiagnosticStatus::ERROR, "the drive reports a fault");
+  if (record_.drive.emergency_stop) status.summary(DiagnosticStatus::ERROR, "emergency stop");
+  if (record_.state == MachineState::kFault) status.summary(DiagnosticStatus::ERROR, record_.fault.text());
+  for (int i = 0; i < kAxisCount; ++i) {
+    status.add(std::string(kJointNames[static_cast<std::size_t>(i)]) + " following error [" + axisUnit(i) + "]",
+               record_.command[i] - record_.position[i]);
+  }
+}
+
+}  // namespace flute_grinder

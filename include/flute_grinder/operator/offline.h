@@ -1,0 +1,37 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/core/odd_even_interpolator.h"
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind table`.
+struct TableOptions {
+  std::string job;
+  double step_length_mm = 0;
+  std::optional<EvenStepRule> even_step;  ///< in place of the job's
+  std::string csv;                        ///< file, or empty
+};
+
+/// Arguments of `grind plan`.
+struct PlanOptions {
+  std::string job;
+  std::string csv;         ///< file, or empty
+  std::string parameters;  ///< YAML of the machine
+  std::string urdf;
+};
+
+/// Interpolates a job's curve with a fixed step length, as the paper's Table 1. @return the exit status.
+int runTable(const TableOptions& options);
+
+/// Plans and checks a whole job without a machine, from the park position. @return the exit status.
+int runPlan(const PlanOptions& options);
+
+/// Prints a job's figures in the operator's units.
+void printStatistics(const PlanStatistics& statistics);
+
+}  // namespace flute_grinder

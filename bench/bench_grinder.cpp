@@ -1,0 +1,136 @@
+/// @file
+/// What a step, a setpoint, a planned job and a cycle of the control loop cost. Figures per setpoint or per cycle are
+/// the item rates: 10M items/s are 100 ns each.
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/drive/simulated_drive.h"
+
+#include <benchmark/benchmark.h>
+
+#include <cstdlib>
+
+namespace {
+
+using namespace flute_grinder;
+
+Machine machine() {
+  Machine m;
+  m.period = 1e-3;
+  m.limits.min_position << -0.1, -0.02, -0.05, -125.66;
+  m.limits.max_position << 0.3, 0.15, 0.1, 125.66;
+  m.limits.max_velocity << 0.2, 0.1, 0.1, 12.566;
+  m.limits.max_acceleration << 0.5, 0.5, 0.5, 62.83;
+  m.limits.max_jerk << 10, 10, 10, 1257;
+  m.park << -0.05, 0.05, 0, 0;
+  return m;
+}
+
+GrindJob paperJob(double feed_mm_min, EvenStepRule rule = EvenStepRule::kPublished) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  job.process.feed = feed_mm_min * units::kMillimetrePerMinute;
+  job.interpolation.even_step = rule;
+  return job;
+}
+
+EvenStepRule ruleOf(const benchmark::State& state) { return static_cast<EvenStepRule>(state.range(0)); }
+
+/// One step (half of a pair) at the servo rate.
+void step(benchmark::State& state) {
+  const EvenStepRule rule = ruleOf(state);
+  state.SetLabel(toString(rule));
+  const LogCurve curve{ConicalCutter(paperJob(60).cutter)};
+  OddEvenInterpolator interpolator(curve, 1e-3, rule, 0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(interpolator.next(1e-6));
+    if (interpolator.position().x > 0.03) interpolator = OddEvenInterpolator(curve, 1e-3, rule, 0);
+  }
+  state.SetItemsProcessed(state.iterations() * 2);
+}
+BENCHMARK(step)->DenseRange(0, 2);
+
+/// SetpointStream::next() over the whole paper job.
+void next(benchmark::State& state) {
+  const EvenStepRule rule = ruleOf(state);
+  state.SetLabel(toString(rule));
+  const GrindProgram program(paperJob(60, rule), machine(), machine().park);
+  std::int64_t setpoints = 0;
+  for (auto _ : state) {
+    SetpointStream stream(program);
+    Setpoint setpoint;
+    while (stream.next(setpoint)) ++setpoints;
+    benchmark::DoNotOptimize(setpoint);
+  }
+  state.SetItemsProcessed(setpoints);
+}
+BENCHMARK(next)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+
+/// The whole paper job, every limit checked.
+void plan(benchmark::State& state) {
+  const EvenStepRule rule = ruleOf(state);
+  state.SetLabel(toString(rule));
+  const GrindJob job = paperJob(60, rule);
+  std::int64_t setpoints = 0;
+  for (auto _ : state) {
+    const JobPlan plan = planJob(job, machine(), machine().park);
+    if (!plan.good()) state.SkipWithError(plan.reasons.front().c_str());
+    setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
+  }
+  state.SetItemsProcessed(setpoints);
+}
+BENCHMARK(plan)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+
+/// One cycle of the control loop: read, checks, next, check, write and record, with the simulated drive.
+void cycle(benchmark::State& state) {
+  SimulatedDrive drive;
+  SimulatedDrive::Model model;
+  for (int i = 0; i < kAxisCount; ++i) model[static_cast<std::size_t>(i)] = {0.002, 1e7, machine().park[i]};
+  drive.init(model);
+  LoopConfig config;
+  config.machine = machine();
+  config.following_error << 1e-3, 1e-3, 1e-3, 0.05;
+  config.feedback_timeout = 0.002;
+  config.enable_timeout = 1;
+  const auto loop = std::make_unique<ControlLoop>(drive, config);
+  const ros::Time time(1000);
+  const ros::Duration period(config.machine.period);
+  const GrindProgram program(paperJob(60), config.machine, config.machine.park);
+  std::unique_ptr<SetpointStream> stream;
+  CycleRecord record;
+
+  const auto request = [&](MachineEvent event, SetpointStream* job) {
+    loop->post(event, job);
+    for (int i = 0; i < 5; ++i) {
+      loop->cycle(time, period);
+      if (const auto reply = loop->reply()) return reply->accepted;
+    }
+    return false;
+  };
+  if (!request(MachineEvent::kEnable, nullptr)) state.SkipWithError("the drive could not be enabled");
+  bool moving = false;
+  for (auto _ : state) {
+    if (!moving) {
+      state.PauseTiming();
+      stream = std::make_unique<SetpointStream>(program);
+      moving = request(MachineEvent::kStart, stream.get());
+      if (!moving) state.SkipWithError("the job could not be started");
+      state.ResumeTiming();
+    }
+    loop->cycle(time, period);
+    loop->pop(record);
+    if (record.job_ended) moving = false;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(cycle);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::Time::init();
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,395 @@
+#include "flute_grinder/core/job_file.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+constexpr double kPi = 3.141592653589793238462643383279502884;
+
+// Line numbers in the rows below are those of this text.
+const char* const kGood =
+    "cutter:\n"                          // 1
+    "  end_diameter_mm: 6\n"             // 2
+    "  cone_angle_deg: -1\n"             // 3
+    "  spiral_angle_deg: -45\n"          // 4
+    "  rake_angle_deg: 12\n"             // 5
+    "  flute_length_mm: 25\n"            // 6
+    "  teeth: 4\n"                       // 7
+    "process:\n"                         // 8
+    "  feed_mm_min: 200\n"               // 9
+    "  depth_mm: 1.5\n"                  // 10
+    "  infeed_mm: 0.5\n"                 // 11
+    "  finish_infeed_mm: 0.05\n"         // 12
+    "  spark_out: 1\n"                   // 13
+    "  clearance_mm: 5\n"                // 14
+    "  overtravel_mm: [1, 2]\n"          // 15
+    "  order: pass_major\n"              // 16
+    "  direction: to_end\n"              // 17
+    "  wheel:\n"                         // 18
+    "    diameter_mm: 100\n"             // 19
+    "    width_mm: 8\n"                  // 20
+    "    wear_mm: 0.3\n"                 // 21
+    "interpolation:\n"                   // 22
+    "  even_step: third_order\n"         // 23
+    "  tolerance_um: 2\n"                // 24
+    "  rotary_scale_mm_per_rad: 1.5\n";  // 25
+
+/// The good text with one piece of it replaced.
+std::string with(const std::string& piece, const std::string& replacement) {
+  std::string text = kGood;
+  const auto at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  return text.replace(at, piece.size(), replacement);
+}
+
+/// What is wrong with a text; empty where nothing is.
+std::string errorOf(const std::string& text) {
+  try {
+    parseJob(text, "job.yaml");
+  } catch (const JobFileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::ptrdiff_t linesOf(const std::string& text) {
+  return text.empty() ? 0 : 1 + std::count(text.begin(), text.end(), '\n');
+}
+
+/// @return whether one line of `text` has all of `parts`.
+bool hasLineWith(const std::string& text, const std::vector<std::string>& parts) {
+  std::size_t from = 0;
+  while (from <= text.size()) {
+    const std::size_t end = std::min(text.find('\n', from), text.size());
+    const std::string line = text.substr(from, end - from);
+    if (std::all_of(parts.begin(), parts.end(), [&](const auto& p) { return line.find(p) != std::string::npos; }))
+      return true;
+    from = end + 1;
+  }
+  return false;
+}
+
+TEST(JobFile, ReadsThePapersJob) {
+  const GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.01);
+  EXPECT_DOUBLE_EQ(job.cutter.cone_angle, kPi / 36);
+  EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, kPi / 6);
+  EXPECT_DOUBLE_EQ(job.cutter.rake_angle, kPi / 22.5);
+  EXPECT_DOUBLE_EQ(job.cutter.flute_length, 0.03);
+  EXPECT_EQ(job.tooth_angles, std::vector<double>{0});
+  EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.001);
+  EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kPublished);
+}
+
+TEST(JobFile, TurnsEveryFigureIntoSi) {
+  const GrindJob job = parseJob(kGood, "job.yaml");
+  EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.006);
+  EXPECT_DOUBLE_EQ(job.cutter.cone_angle, -kPi / 180);
+  EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
+  EXPECT_DOUBLE_EQ(job.cutter.rake_angle, kPi / 15);
+  EXPECT_DOUBLE_EQ(job.cutter.flute_length, 0.025);
+  EXPECT_DOUBLE_EQ(job.process.feed, 0.2 / 60);
+  EXPECT_DOUBLE_EQ(job.process.depth, 0.0015);
+  EXPECT_DOUBLE_EQ(job.process.infeed, 0.0005);
+  EXPECT_DOUBLE_EQ(job.process.finish_infeed, 0.00005);
+  EXPECT_EQ(job.process.spark_out, 1);
+  EXPECT_DOUBLE_EQ(job.process.clearance, 0.005);
+  EXPECT_DOUBLE_EQ(job.process.overtravel_end, 0.001);
+  EXPECT_DOUBLE_EQ(job.process.overtravel_shank, 0.002);
+  EXPECT_EQ(job.process.order, GrindOrder::kPassMajor);
+  EXPECT_EQ(job.process.direction, StrokeDirection::kToEnd);
+  EXPECT_DOUBLE_EQ(job.process.wheel_diameter, 0.1);
+  EXPECT_DOUBLE_EQ(job.process.wheel_width, 0.008);
+  EXPECT_DOUBLE_EQ(job.process.wheel_wear, 0.0003);
+  EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kThirdOrder);
+  EXPECT_DOUBLE_EQ(job.interpolation.tolerance, 2e-6);
+  EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.0015);
+}
+
+TEST(JobFile, SpacesCountedTeethEvenly) {
+  const GrindJob job = parseJob(kGood, "job.yaml");
+  ASSERT_EQ(job.tooth_angles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(job.tooth_angles[i], static_cast<double>(i) * kPi / 2);
+}
+
+TEST(JobFile, TakesEveryAllowedCountOfTeeth) {
+  for (int teeth = 1; teeth <= kMaxTeeth; ++teeth) {
+    const GrindJob job = parseJob(with("teeth: 4", "teeth: " + std::to_string(teeth)), "job.yaml");
+    EXPECT_EQ(job.tooth_angles.size(), static_cast<std::size_t>(teeth));
+  }
+}
+
+TEST(JobFile, ReadsUnequalTeeth) {
+  const GrindJob job = parseJob(with("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]"), "job.yaml");
+  ASSERT_EQ(job.tooth_angles.size(), 4u);
+  EXPECT_EQ(job.tooth_angles[0], 0);
+  EXPECT_DOUBLE_EQ(job.tooth_angles[1], 88 * kPi / 180);
+  EXPECT_DOUBLE_EQ(job.tooth_angles[2], kPi);
+  EXPECT_DOUBLE_EQ(job.tooth_angles[3], 268 * kPi / 180);
+}
+
+TEST(JobFile, ReadsEveryChoice) {
+  EXPECT_EQ(parseJob(with("pass_major", "tooth_major"), "f").process.order, GrindOrder::kToothMajor);
+  EXPECT_EQ(parseJob(with("to_end", "from_end"), "f").process.direction, StrokeDirection::kFromEnd);
+  EXPECT_EQ(parseJob(with("third_order", "published"), "f").interpolation.even_step, EvenStepRule::kPublished);
+  EXPECT_EQ(parseJob(with("third_order", "exact"), "f").interpolation.even_step, EvenStepRule::kExact);
+}
+
+/// A mistake in a job file and what its one message must have.
+struct Mistake {
+  const char* name;
+  const char* piece;
+  const char* replacement;
+  std::vector<std::string> message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.name; }
+
+class JobFileMistake : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(JobFileMistake, IsToldWithFileLineKeyAndWhatIsAllowed) {
+  const Mistake& mistake = GetParam();
+  const std::string error = errorOf(with(mistake.piece, mistake.replacement));
+  EXPECT_TRUE(hasLineWith(error, mistake.message)) << "got: " << error;
+}
+
+TEST_P(JobFileMistake, IsToldOnce) {
+  const std::string error = errorOf(with(GetParam().piece, GetParam().replacement));
+  EXPECT_EQ(linesOf(error), 1) << error;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, JobFileMistake,
+    ::testing::Values(
+        Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", {"job.yaml:8", "cutter.colour"}},
+        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:22", "paint"}},
+        Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", {"job.yaml:8", "cutter.colour"}},
+        Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", {"job.yaml:8", "cutter.colour"}},
+        Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", {"job.yaml:8", "cutter.colour"}},
+        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:15", "process.overtravel_mm[2]"}},
+        Mistake{"MissingKey", "  depth_mm: 1.5\n", "", {"job.yaml", "process.depth_mm", "missing", "0.001 to 50 mm"}},
+        Mistake{"MissingTeeth", "  teeth: 4\n", "", {"job.yaml", "cutter.teeth", "missing", "1 to 64"}},
+        Mistake{"MissingChoice",
+                "  order: pass_major\n",
+                "",
+                {"job.yaml", "process.order", "missing", "tooth_major, pass_major"}},
+        Mistake{"MissingSparkOut", "  spark_out: 1\n", "", {"job.yaml", "process.spark_out", "missing", "0 to 100"}},
+        Mistake{"MissingSecondOvertravel",
+                "[1, 2]",
+                "[1]",
+                {"job.yaml", "process.overtravel_mm[1]", "missing", "0 to 100 mm"}},
+        Mistake{"DuplicateKey",
+                "  depth_mm: 1.5\n",
+                "  depth_mm: 1.5\n  depth_mm: 1.6\n",
+                {"job.yaml:11", "process.depth_mm", "second time"}},
+        Mistake{"DuplicateKeySameValue",
+                "  depth_mm: 1.5\n",
+                "  depth_mm: 1.5\n  depth_mm: 1.5\n",
+                {"job.yaml:11", "process.depth_mm", "second time"}},
+        Mistake{"WrongTypeNumber",
+                "end_diameter_mm: 6",
+                "end_diameter_mm: six",
+                {"job.yaml:2", "cutter.end_diameter_mm", "six", "0.1 to 100 mm"}},
+        Mistake{"NumberWithUnit",
+                "feed_mm_min: 200",
+                "feed_mm_min: 200mm/min",
+                {"job.yaml:9", "process.feed_mm_min", "200mm/min", "0.1 to 10000 mm/min"}},
+        Mistake{"NoValue",
+                "feed_mm_min: 200",
+                "feed_mm_min:",
+                {"job.yaml:9", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
+        Mistake{"WrongTypeTeeth", "teeth: 4", "teeth: four", {"job.yaml:7", "cutter.teeth", "four", "1 to 64"}},
+        Mistake{"BrokenTeeth", "teeth: 4", "teeth: 4.5", {"job.yaml:7", "cutter.teeth", "4.5", "1 to 64"}},
+        Mistake{"BrokenSparkOut",
+                "spark_out: 1",
+                "spark_out: 1.5",
+                {"job.yaml:13", "process.spark_out", "1.5", "0 to 100"}},
+        Mistake{"NotANumber",
+                "depth_mm: 1.5",
+                "depth_mm: .nan",
+                {"job.yaml:10", "process.depth_mm", "nan", "0.001 to 50 mm"}},
+        Mistake{"Infinite",
+                "depth_mm: 1.5",
+                "depth_mm: .inf",
+                {"job.yaml:10", "process.depth_mm", "inf", "0.001 to 50 mm"}},
+        Mistake{"MinusInfinite",
+                "cone_angle_deg: -1",
+                "cone_angle_deg: -.inf",
+                {"job.yaml:3", "cutter.cone_angle_deg", "-inf", "-3 to 30 deg"}},
+        Mistake{"TooLargeForANumber",
+                "depth_mm: 1.5",
+                "depth_mm: 1e999",
+                {"job.yaml:10", "process.depth_mm", "0.001 to 50 mm"}},
+        Mistake{"OutOfRange",
+                "cone_angle_deg: -1",
+                "cone_angle_deg: 31",
+                {"job.yaml:3", "cutter.cone_angle_deg", "31 deg", "-3 to 30 deg"}},
+        Mistake{"NestedOutOfRange",
+                "width_mm: 8",
+                "width_mm: 800",
+                {"job.yaml:20", "process.wheel.width_mm", "800 mm", "0.1 to 100 mm"}},
+        Mistake{"OvertravelOutOfRange",
+                "[1, 2]",
+                "[1, 200]",
+                {"job.yaml:15", "process.overtravel_mm[1]", "200 mm", "0 to 100 mm"}},
+        Mistake{"NegativeFeed",
+                "feed_mm_min: 200",
+                "feed_mm_min: -200",
+                {"job.yaml:9", "process.feed_mm_min", "-200 mm/min", "0.1 to 10000 mm/min"}},
+        Mistake{"NoTeeth", "teeth: 4", "teeth: 0", {"job.yaml:7", "cutter.teeth", "0", "1 to 64"}},
+        Mistake{"TooManyTeeth", "teeth: 4", "teeth: 65", {"job.yaml:7", "cutter.teeth", "65", "1 to 64"}},
+        Mistake{"TooManySparkOut",
+                "spark_out: 1",
+                "spark_out: 101",
+                {"job.yaml:13", "process.spark_out", "101", "0 to 100"}},
+        Mistake{"TwoWaysOfTeeth",
+                "  teeth: 4\n",
+                "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
+                {"job.yaml:7", "cutter.teeth", "cutter.tooth_angles_deg", "one of the two"}},
+        Mistake{
+            "EmptyTeethBesideTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n", {"job.yaml:", "cutter.t"}},
+        Mistake{"FirstToothNotAtZero",
+                "teeth: 4",
+                "tooth_angles_deg: [10, 90]",
+                {"job.yaml:7", "cutter.tooth_angles_deg", "10 deg", "0 first"}},
+        Mistake{"TeethNotAscending",
+                "teeth: 4",
+                "tooth_angles_deg: [0, 180, 90]",
+                {"job.yaml:7", "cutter.tooth_angles_deg", "90 deg", "ascending"}},
+        Mistake{"ToothAtAFullTurn",
+                "teeth: 4",
+                "tooth_angles_deg: [0, 180, 360]",
+                {"job.yaml:7", "cutter.tooth_angles_deg", "360 deg", "below 360 deg"}},
+        Mistake{"ToothOfAWord",
+                "teeth: 4",
+                "tooth_angles_deg: [0, half]",
+                {"job.yaml:7", "cutter.tooth_angles_deg[1]", "half", "ascending"}},
+        Mistake{
+            "BadOrder", "pass_major", "tooth", {"job.yaml:16", "process.order", "tooth", "tooth_major, pass_major"}},
+        Mistake{
+            "BadDirection", "to_end", "From_End", {"job.yaml:17", "process.direction", "From_End", "from_end, to_end"}},
+        Mistake{"BadEvenStep",
+                "third_order",
+                "fourth_order",
+                {"job.yaml:23", "interpolation.even_step", "fourth_order", "published, third_order, exact"}},
+        Mistake{"DeeperThanTheCutter",
+                "depth_mm: 1.5",
+                "depth_mm: 2.8",
+                {"job.yaml:10", "process.depth_mm", "2.8 mm", "less than 2.56", "smallest radius"}},
+        Mistake{"FinishAboveDepth",
+                "finish_infeed_mm: 0.05",
+                "finish_infeed_mm: 2",
+                {"job.yaml:12", "process.finish_infeed_mm", "2 mm", "1.5 mm"}}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(JobFile, TellsAllOfSeveralErrors) {
+  std::string text = with("depth_mm: 1.5", "depth_mm: deep");
+  text.replace(text.find("pass_major"), 10, "any");
+  text += "extra: 1\n";
+  const std::string error = errorOf(text);
+  EXPECT_EQ(linesOf(error), 3) << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:10", "process.depth_mm", "deep"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:16", "process.order", "any"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:26", "extra"}));
+}
+
+TEST(JobFile, TellsAllFiguresOutOfRange) {
+  std::string text = with("depth_mm: 1.5", "depth_mm: 51");
+  text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
+  const std::string error = errorOf(text);
+  EXPECT_EQ(linesOf(error), 2) << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:10", "process.depth_mm", "51 mm"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:9", "process.feed_mm_min", "0 mm/min"}));
+}
+
+TEST(JobFile, RefusesASectionThatStandsTwice) {
+  const std::string error = errorOf(with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:14", "process"})) << "got: " << error;
+}
+
+TEST(JobFile, RefusesAPathAsAKey) {
+  const std::string error = errorOf(with("process:\n  feed_mm_min: 200\n", "process.feed_mm_min: 200\nprocess:\n"));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml", "process.feed_mm_min"})) << "got: " << error;
+}
+
+TEST(JobFile, RefusesWhatIsNotAMap) {
+  for (const char* text : {"3", "[1, 2]", "just words", "", "# a comment only\n", "~"}) {
+    SCOPED_TRACE(text);
+    EXPECT_TRUE(hasLineWith(errorOf(text), {"job.yaml:1", "not a map"}));
+  }
+}
+
+TEST(JobFile, RefusesASectionThatIsNotAMap) {
+  const std::string text =
+      std::string(kGood).substr(0, std::string(kGood).find("interpolation:")) + "interpolation: exact\n";
+  const std::string error = errorOf(text);
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:22", "interpolation"})) << error;
+  EXPECT_TRUE(hasLineWith(error, {"interpolation.tolerance_um", "missing"})) << error;
+}
+
+TEST(JobFile, TellsWhereYamlIsBroken) {
+  EXPECT_TRUE(hasLineWith(errorOf(with("teeth: 4", "teeth: [4")), {"job.yaml:"}));
+  EXPECT_TRUE(hasLineWith(errorOf("cutter:\n  teeth: 4\n bad: : :\n"), {"job.yaml:3"}));
+}
+
+TEST(JobFile, RefusesAKeyThatIsNotAWord) {
+  std::string error = "accepted";
+  try {
+    parseJob(std::string(kGood) + "? [1, 2]\n: 3\n", "job.yaml");
+  } catch (const JobFileError& e) {
+    error = e.what();
+  } catch (const std::exception& e) {
+    error = std::string("not a JobFileError: ") + e.what();
+  }
+  EXPECT_EQ(error.find("job.yaml:26"), 0u) << error;
+}
+
+TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
+  std::string text = "\xEF\xBB\xBF";
+  for (const char* c = kGood; *c != 0; ++c) text += *c == '\n' ? std::string("\r\n") : std::string(1, *c);
+  EXPECT_EQ(errorOf(text), "");
+}
+
+/// A message of reading a file; empty where it was read.
+std::string fileErrorOf(const std::string& path) {
+  try {
+    readJobFile(path);
+  } catch (const JobFileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(JobFile, NamesAFileThatIsMissing) {
+  const std::string path = SOURCE_DIR "/jobs/no_such_job.yaml";
+  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+}
+
+TEST(JobFile, NamesADirectory) {
+  const std::string path = SOURCE_DIR "/jobs";
+  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+}
+
+TEST(JobFile, NamesAnEmptyFile) {
+  const std::string path = ::testing::TempDir() + "flute_grinder_empty_job.yaml";
+  std::ofstream(path).close();
+  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+}
+
+TEST(JobFile, NamesTheFileAndLineOfAnErrorInIt) {
+  const std::string path = ::testing::TempDir() + "flute_grinder_bad_job.yaml";
+  std::ofstream(path) << with("depth_mm: 1.5", "depth_mm: deep");
+  EXPECT_EQ(fileErrorOf(path).find(path + ":10: process.depth_mm = deep"), 0u) << fileErrorOf(path);
+}
+
+}  // namespace
+}  // namespace flute_grinder

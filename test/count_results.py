@@ -1,0 +1,26 @@
+#!/usr/bin/env python3
+"""Counts the test cases in the JUnit files below a folder; names those that failed, and exits 1 if there are any."""
+
+import pathlib
+import sys
+import xml.etree.ElementTree as ElementTree
+
+passed, failed = 0, []
+for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
+    try:
+        cases = list(ElementTree.parse(path).getroot().iter('testcase'))
+    except ElementTree.ParseError as error:
+        cases = []
+        failed.append('%s: %s' % (path.name, error))
+    # catkin writes a file of its own for a test that left none.
+    if not cases:
+        failed.append('%s: no test case' % path.name)
+    for case in cases:
+        if case.find('failure') is None and case.find('error') is None:
+            passed += 1
+        else:
+            failed.append('%s: %s.%s' % (path.name, case.get('classname'), case.get('name')))
+for name in failed:
+    print('FAILED ' + name)
+print('%d passed, %d failed' % (passed, len(failed)))
+sys.exit(1 if failed or not passed else 0)

@@ -1,0 +1,304 @@
+#include "flute_grinder/drive/robot_hw.h"
+
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ctime>
+#include <string>
+#include <vector>
+
+// A clock that stands still unless a test moves it, in place of the C library's; so nothing here waits, and nothing
+// depends on how fast the computer is.
+namespace {
+
+bool fake_clock = false;
+std::int64_t clock_ns = 0;
+int interruptions = 0;                ///< of the next sleeps
+std::vector<std::int64_t> sleeps_ns;  ///< until when was slept
+
+}  // namespace
+
+extern "C" {
+
+int clock_gettime(clockid_t id, timespec* time) noexcept {
+  if (!fake_clock || id != CLOCK_MONOTONIC) return static_cast<int>(syscall(SYS_clock_gettime, id, time));
+  *time = {static_cast<time_t>(clock_ns / 1000000000), static_cast<long>(clock_ns % 1000000000)};
+  return 0;
+}
+
+int clock_nanosleep(clockid_t id, int flags, const timespec* until, timespec* left) {
+  if (!fake_clock || id != CLOCK_MONOTONIC || flags != TIMER_ABSTIME) {
+    return syscall(SYS_clock_nanosleep, id, flags, until, left) == 0 ? 0 : errno;
+  }
+  if (interruptions > 0) {
+    --interruptions;
+    return EINTR;
+  }
+  const std::int64_t until_ns = until->tv_sec * 1000000000LL + until->tv_nsec;
+  sleeps_ns.push_back(until_ns);
+  if (until_ns > clock_ns) clock_ns = until_ns;
+  return 0;
+}
+
+}  // extern "C"
+
+namespace flute_grinder {
+namespace {
+
+template <typename Work>
+std::string errorOf(const Work& work) {
+  try {
+    work();
+  } catch (const HardwareInterfaceException& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Handles
+
+class Handles : public ::testing::Test {
+ protected:
+  double position_ = 1, velocity_ = 2, effort_ = 3, command_ = 4;
+  JointStateHandle state_{"axis_x", &position_, &velocity_, &effort_};
+};
+
+TEST_F(Handles, StateReadsThroughItsPointers) {
+  position_ = 10;
+  velocity_ = 20;
+  effort_ = 30;
+  EXPECT_EQ(state_.getPosition(), 10);
+  EXPECT_EQ(state_.getVelocity(), 20);
+  EXPECT_EQ(state_.getEffort(), 30);
+}
+
+TEST_F(Handles, JointWritesThroughItsPointer) {
+  JointHandle joint(state_, &command_);
+  joint.setCommand(7.5);
+  EXPECT_EQ(command_, 7.5);
+  command_ = 8.5;
+  EXPECT_EQ(joint.getCommand(), 8.5);
+}
+
+TEST_F(Handles, JointReadsItsState) {
+  const JointHandle joint(state_, &command_);
+  position_ = 11;
+  velocity_ = 21;
+  effort_ = 31;
+  EXPECT_EQ(joint.getName(), "axis_x");
+  EXPECT_EQ(joint.getPosition(), 11);
+  EXPECT_EQ(joint.getVelocity(), 21);
+  EXPECT_EQ(joint.getEffort(), 31);
+}
+
+TEST_F(Handles, CopiesShareTheMemory) {
+  JointHandle joint(state_, &command_);
+  JointHandle copy = joint;
+  copy.setCommand(5);
+  EXPECT_EQ(joint.getCommand(), 5);
+}
+
+TEST_F(Handles, EveryNullPointerOfAStateIsRefusedByName) {
+  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", nullptr, &velocity_, &effort_); }), "'axis_q'"));
+  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", &position_, nullptr, &effort_); }), "'axis_q'"));
+  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", &position_, &velocity_, nullptr); }), "'axis_q'"));
+}
+
+TEST_F(Handles, ANullCommandIsRefusedByName) {
+  EXPECT_TRUE(contains(errorOf([&] { JointHandle(state_, nullptr); }), "'axis_x'"));
+}
+
+TEST(DriveHandle, ReadsAndWritesThroughItsPointers) {
+  DriveStatus status;
+  DriveCommand command;
+  DriveHandle handle("drive", &status, &command);
+  status.enabled = status.emergency_stop = status.fault = status.homed = true;
+  status.feedback_count = 42;
+  EXPECT_TRUE(handle.getStatus().enabled);
+  EXPECT_TRUE(handle.getStatus().emergency_stop);
+  EXPECT_TRUE(handle.getStatus().fault);
+  EXPECT_TRUE(handle.getStatus().homed);
+  EXPECT_EQ(handle.getStatus().feedback_count, 42u);
+  handle.setCommand({true, false});
+  EXPECT_TRUE(command.enable);
+  EXPECT_FALSE(command.reset);
+  handle.setCommand({false, true});
+  EXPECT_FALSE(command.enable);
+  EXPECT_TRUE(command.reset);
+}
+
+TEST(DriveHandle, NullPointersAreRefusedByName) {
+  DriveStatus status;
+  DriveCommand command;
+  EXPECT_TRUE(contains(errorOf([&] { DriveHandle("main_drive", nullptr, &command); }), "'main_drive'"));
+  EXPECT_TRUE(contains(errorOf([&] { DriveHandle("main_drive", &status, nullptr); }), "'main_drive'"));
+}
+
+TEST(DriveStatus, SaysNothingGoodUntilTold) {
+  const DriveStatus status;
+  EXPECT_FALSE(status.enabled);
+  EXPECT_FALSE(status.homed);
+}
+
+TEST(DriveCommand, IsWithoutPowerUntilTold) {
+  const DriveCommand command;
+  EXPECT_FALSE(command.enable);
+  EXPECT_FALSE(command.reset);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Interfaces
+
+TEST_F(Handles, AreFoundByName) {
+  double other = 9;
+  JointStateInterface interface;
+  interface.registerHandle(state_);
+  interface.registerHandle(JointStateHandle("axis_y", &other, &other, &other));
+  EXPECT_EQ(interface.getHandle("axis_x").getPosition(), 1);
+  EXPECT_EQ(interface.getHandle("axis_y").getPosition(), 9);
+}
+
+TEST_F(Handles, OfAnUnknownNameAreRefusedByName) {
+  PositionJointInterface interface;
+  interface.registerHandle(JointHandle(state_, &command_));
+  EXPECT_TRUE(contains(errorOf([&] { interface.getHandle("axis_b"); }), "'axis_b'"));
+}
+
+TEST_F(Handles, OfTheSameNameReplaceOneAnother) {
+  double other = 9;
+  JointStateInterface interface;
+  interface.registerHandle(state_);
+  interface.registerHandle(JointStateHandle("axis_x", &other, &other, &other));
+  EXPECT_EQ(interface.getHandle("axis_x").getPosition(), 9);
+  EXPECT_EQ(interface.getNames(), std::vector<std::string>{"axis_x"});
+}
+
+TEST_F(Handles, AreListedByName) {
+  JointStateInterface interface;
+  interface.registerHandle(state_);
+  interface.registerHandle(JointStateHandle("axis_a", &position_, &velocity_, &effort_));
+  EXPECT_EQ(interface.getNames(), (std::vector<std::string>{"axis_a", "axis_x"}));
+}
+
+class EmptyDrive : public RobotHW {
+ public:
+  bool init(ros::NodeHandle&, ros::NodeHandle&) override { return true; }
+  void read(const ros::Time&, const ros::Duration&) override {}
+  void write(const ros::Time&, const ros::Duration&) override {}
+};
+
+TEST(RobotHW, GivesBackTheInterfaceOfAType) {
+  EmptyDrive drive;
+  JointStateInterface states;
+  PositionJointInterface joints;
+  drive.registerInterface(&states);
+  drive.registerInterface(&joints);
+  EXPECT_EQ(drive.get<JointStateInterface>(), &states);
+  EXPECT_EQ(drive.get<PositionJointInterface>(), &joints);
+}
+
+TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
+  EmptyDrive drive;
+  EXPECT_EQ(drive.get<JointStateInterface>(), nullptr);
+  PositionJointInterface joints;
+  drive.registerInterface(&joints);
+  EXPECT_EQ(drive.get<JointStateInterface>(), nullptr);
+  EXPECT_EQ(drive.get<DriveInterface>(), nullptr);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Pacing
+
+constexpr std::int64_t kMillisecond = 1000000;
+constexpr std::int64_t kStart = 5000 * 1000 * kMillisecond + 999 * kMillisecond;  ///< just before a full second
+
+class Pacing : public ::testing::Test {
+ protected:
+  Pacing() {
+    clock_ns = kStart;
+    interruptions = 0;
+    fake_clock = true;
+    wait();  // takes the clock as it finds it
+    sleeps_ns.clear();
+  }
+  ~Pacing() override { fake_clock = false; }
+
+  /// @return whether it slept.
+  bool wait() {
+    const std::size_t before = sleeps_ns.size();
+    drive_.wait(ros::Duration(0.001));
+    return sleeps_ns.size() > before;
+  }
+
+  EmptyDrive drive_;
+};
+
+TEST_F(Pacing, SleepsUntilEveryPeriodsEndWithoutDrift) {
+  for (int i = 1; i <= 5; ++i) {
+    clock_ns += kMillisecond / 3 * (i % 3);  // what the cycle took
+    ASSERT_TRUE(wait());
+    EXPECT_EQ(sleeps_ns.back(), kStart + i * kMillisecond);
+  }
+}
+
+TEST_F(Pacing, AfterAStallOneCycleComesAtOnceAndTheRestInTime) {
+  ASSERT_TRUE(wait());
+  const std::int64_t stalled_until = clock_ns + 25 * kMillisecond + 12345;
+  clock_ns = stalled_until;
+  EXPECT_FALSE(wait());
+  for (int i = 1; i <= 10; ++i) {
+    ASSERT_TRUE(wait()) << "a missed cycle is made up for";
+    EXPECT_EQ(sleeps_ns.back(), stalled_until + i * kMillisecond);
+  }
+}
+
+TEST_F(Pacing, ACycleThatIsLateByLessThanAPeriodComesAtOnce) {
+  clock_ns += kMillisecond + 1;
+  EXPECT_FALSE(wait());
+  EXPECT_TRUE(wait());
+}
+
+TEST_F(Pacing, StartsWithoutASleepAndWithoutMakingUpForTheTimeBefore) {
+  EmptyDrive fresh;
+  const std::size_t before = sleeps_ns.size();
+  fresh.wait(ros::Duration(0.001));
+  EXPECT_EQ(sleeps_ns.size(), before);
+  fresh.wait(ros::Duration(0.001));
+  ASSERT_EQ(sleeps_ns.size(), before + 1);
+  EXPECT_EQ(sleeps_ns.back(), kStart + kMillisecond);
+}
+
+TEST_F(Pacing, ASignalDoesNotShortenTheWait) {
+  interruptions = 3;
+  ASSERT_TRUE(wait());
+  EXPECT_EQ(interruptions, 0);
+  EXPECT_EQ(sleeps_ns.back(), kStart + kMillisecond);
+}
+
+TEST_F(Pacing, FollowsAPeriodThatChanges) {
+  ASSERT_TRUE(wait());
+  drive_.wait(ros::Duration(0.004));
+  EXPECT_EQ(sleeps_ns.back(), kStart + 5 * kMillisecond);
+}
+
+// With the real clock: n waits take no less than n - 1 periods, whatever the computer is busy with, since at most one
+// of them returns at once.
+TEST(RobotHW, WaitsOnTheMonotonicClock) {
+  const auto now_ns = [] {
+    timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return now.tv_sec * 1000000000LL + now.tv_nsec;
+  };
+  EmptyDrive drive;
+  const std::int64_t start = now_ns();
+  for (int i = 0; i < 6; ++i) drive.wait(ros::Duration(0.001));
+  EXPECT_GE(now_ns() - start, 5 * kMillisecond);
+}
+
+}  // namespace
+}  // namespace flute_grinder

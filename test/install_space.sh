@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# The installed package works without the source and the build: programs, launch file, plugin, meshes.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+staging=$(mktemp -d)
+log=$staging/roslaunch.log
+launch=
+cleanup() {
+  [ -z "$launch" ] || { kill -INT "$launch" 2>/dev/null; wait "$launch"; } || true
+  rm -rf "$staging"
+}
+trap cleanup EXIT
+
+DESTDIR=$staging cmake --install "$root/build" >/dev/null
+space=$staging$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
+cd "$space"
+unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH LD_LIBRARY_PATH
+set +u
+source "$space/setup.bash"
+set -u
+[ "$(rospack find flute_grinder)" = "$space/share/flute_grinder" ]
+for file in urdf/grinder.urdf meshes/cutter.stl rviz/grinder.rviz config/grinder.yaml drive_plugins.xml; do
+  [ -f "share/flute_grinder/$file" ]
+done
+
+port=${ROS_MASTER_URI##*:}
+roslaunch -p "$port" flute_grinder grinder.launch >"$log" 2>&1 &
+launch=$!
+job=share/flute_grinder/jobs/paper.yaml
+rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
+rosrun flute_grinder grind enable || { cat "$log"; exit 1; }
+rosrun flute_grinder grind run "$job" --dry-run
+rosrun flute_grinder grind status | grep -q '^state *ready'

@@ -1,0 +1,448 @@
+"""What the tests share: a client of the grinder that records all it says, and an evaluation of the cutter's mathematics
+that is independent of the grinder's own."""
+
+import math
+import re
+import subprocess
+import threading
+import time
+import xml.etree.ElementTree as xml
+
+import actionlib
+import roslib.packages
+import rospkg
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from flute_grinder.msg import GrindAction, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
+from flute_grinder.srv import InjectFault, Plan
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+MM = 1e-3
+MM_MIN = 1e-3 / 60
+UM = 1e-6
+DEG = math.pi / 180
+
+X, Y, Z, A = range(4)
+JOINTS = ['axis_x', 'axis_y', 'axis_z', 'axis_a']
+MOVES = ['lift', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
+STEPS = ['none', 'odd', 'even']
+LIFT, POSITION, APPROACH, INFEED, STROKE, RETRACT, RETURN = range(7)
+ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
+
+EPSILON = 2.0 ** -52
+
+# Much longer than anything takes, even on a host that stalls.
+PATIENCE = 60
+
+# The paper's conical end mill, as in jobs/paper.yaml; the names are those of the goal's fields.
+PAPER = {
+    'cutter.end_diameter': 10 * MM,
+    'cutter.cone_angle': 5 * DEG,
+    'cutter.spiral_angle': 30 * DEG,
+    'cutter.rake_angle': 8 * DEG,
+    'cutter.flute_length': 30 * MM,
+    'cutter.tooth_angles': [0.0],
+    'process.feed': 600 * MM_MIN,
+    'process.depth': 0.5 * MM,
+    'process.infeed': 0.5 * MM,
+    'process.finish_infeed': 0.0,
+    'process.spark_out': 0,
+    'process.clearance': 5 * MM,
+    'process.overtravel_end': 1 * MM,
+    'process.overtravel_shank': 1 * MM,
+    'process.order': 0,
+    'process.direction': 0,
+    'process.wheel_diameter': 100 * MM,
+    'process.wheel_width': 8 * MM,
+    'process.wheel_wear': 0.0,
+    'interpolation.even_step': 0,
+    'interpolation.tolerance': 1 * UM,
+    'interpolation.rotary_scale': 1 * MM,
+}
+
+
+def paper(**changes):
+    """The paper's job with other values: paper(feed=..., flute_length=...)."""
+    job = dict(PAPER)
+    for name, value in changes.items():
+        path, = [p for p in PAPER if p.endswith('.' + name)]
+        job[path] = value
+    return job
+
+
+# Over soon.
+SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
+
+
+def goal_of(job, **fields):
+    """The action's goal of a job; `fields` are the goal's own, as dry_run=True."""
+    goal = GrindGoal(**fields)
+    for path, value in job.items():
+        part, name = path.split('.')
+        setattr(getattr(goal, part), name, value)
+    return goal
+
+
+class Helix:
+    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 X tan C / D1), kX for a cylinder."""
+
+    def __init__(self, job):
+        self.diameter = job['cutter.end_diameter']
+        self.tan_cone = math.tan(job['cutter.cone_angle'])
+        self.tan_spiral = math.tan(job['cutter.spiral_angle'])
+        self.sin_rake = math.sin(job['cutter.rake_angle'])
+        self.scale = job['interpolation.rotary_scale']
+        self.b = 2 * self.tan_cone / self.diameter
+        self.k = 2 * self.tan_spiral / self.diameter
+        # Surface feed over dX/dt, and the part of a deviation around the axis that is normal to the helix.
+        self.edge = math.sqrt(1 + self.tan_cone ** 2 + self.tan_spiral ** 2)
+        self.normal = math.cos(math.atan(self.tan_spiral * math.cos(job['cutter.cone_angle'])))
+
+    def radius(self, x):
+        return self.diameter / 2 + x * self.tan_cone
+
+    def a(self, x):
+        return self.k * x if self.b == 0 else self.k / self.b * math.log1p(self.b * x)
+
+    def y(self, x):
+        return x * self.tan_cone
+
+    def z(self, x):
+        return x * self.tan_cone * self.sin_rake
+
+    def tangent_error(self, x, dx):
+        """Theory - commanded of A at the end of a step along the tangent that starts on the curve at x."""
+        z = self.b * dx / (1 + self.b * x)
+        return self.k / self.b * (math.log1p(z) - z)
+
+    def tangent_bound(self, x, dx):
+        """The leading order of that in size, |k b| dX^2 / (2 u^2)."""
+        return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * x) ** 2)
+
+    def pair_unevenness(self, x, step_length):
+        """How much longer in X the even step of a pair is than the odd one, relatively: 2 |kappa| dl tan(theta)."""
+        u = 1 + self.b * x
+        slope = self.scale * self.k
+        curvature = abs(slope * self.b * u) / math.hypot(u, slope) ** 3
+        return 2 * curvature * step_length * abs(slope) / u
+
+
+def program(name):
+    """The path of one of the package's programs."""
+    return roslib.packages.find_node('flute_grinder', name)[0]
+
+
+def package_file(path):
+    return rospkg.RosPack().get_path('flute_grinder') + '/' + path
+
+
+def grind(*arguments, timeout=PATIENCE):
+    """Runs the command line to its end."""
+    return subprocess.run([program('grind'), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          universal_newlines=True, timeout=timeout)
+
+
+def job_file(path, **changes):
+    """Writes jobs/paper.yaml to `path` with other values: feed_mm_min=60."""
+    with open(package_file('jobs/paper.yaml')) as original:
+        text = original.read()
+    for key, value in changes.items():
+        text, count = re.subn(r'(?m)^( +%s:) *[^ #\n]+' % key, r'\g<1> %s' % value, text)
+        assert count == 1, key
+    with open(path, 'w') as changed:
+        changed.write(text)
+    return path
+
+
+def poll(condition, what, timeout=PATIENCE, interval=0.005):
+    """Waits for a condition that nothing announces, and returns its value."""
+    deadline = time.monotonic() + timeout
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            raise AssertionError('in vain waited for: ' + what)
+        time.sleep(interval)
+
+
+class Run:
+    """One goal, from sending it to its end, with all that came of it."""
+
+    def __init__(self, grinder, goal):
+        self._grinder = grinder
+        self.feedback = []
+        self.sent = time.time()
+        self._handle = grinder.client.send_goal(goal, self._on_transition, self._on_feedback)
+        self.id = self._handle.comm_state_machine.action_goal.goal_id.id
+
+    def _on_transition(self, _):
+        self._grinder.notify()
+
+    def _on_feedback(self, _, feedback):
+        self.feedback.append(feedback)
+        self._grinder.notify()
+
+    @property
+    def batches(self):
+        return [batch for batch in list(self._grinder.batches) if batch.goal_id == self.id]
+
+    @property
+    def setpoints(self):
+        return [setpoint for batch in self.batches for setpoint in batch.setpoints]
+
+    @property
+    def done(self):
+        return self._handle.get_comm_state() == actionlib.CommState.DONE
+
+    @property
+    def status(self):
+        return GoalStatus.to_string(self._handle.get_terminal_state()) if self.done else 'not done'
+
+    @property
+    def result(self):
+        return self._handle.get_result()
+
+    @property
+    def code(self):
+        return self.result.error_code
+
+    @property
+    def text(self):
+        return self.result.error_string
+
+    def cancel(self):
+        self._handle.cancel()
+
+    def wait(self, timeout=PATIENCE):
+        self._grinder.wait_for(lambda: self.done, 'the end of the goal', timeout)
+        return self
+
+    def wait_complete(self, timeout=PATIENCE):
+        """Waits for the end and for all setpoints, which come by another connection."""
+        self.wait(timeout)
+        self._grinder.wait_for(lambda: len(self.setpoints) >= self.result.statistics.setpoints, 'all setpoints')
+        return self
+
+    def wait_in_stroke(self, x):
+        """Waits until the stroke is past x."""
+
+        def past():
+            batches = self.batches
+            last = batches[-1].setpoints[-1] if batches else None
+            return self.done or last is not None and last.move == STROKE and last.position[X] > x
+
+        self._grinder.wait_for(past, 'the stroke at X = %g m' % x)
+        assert not self.done, 'the goal ended ahead of X = %g m: %s %s' % (x, self.status, self.text)
+        return self
+
+
+class Grinder:
+    """A client of the grinder's node that records all it publishes."""
+
+    def __init__(self, name='grinder'):
+        self.name = name
+        self._changed = threading.Condition()
+        self.states, self.batches, self.joints = [], [], []
+        self._subscribers = [
+            self._record('/%s/state' % name, GrinderState, self.states),
+            self._record('/%s/setpoints' % name, SetpointBatch, self.batches),
+            self._record('/joint_states', JointState, self.joints),
+        ]
+        self.client = actionlib.ActionClient('/%s/grind' % name, GrindAction)
+        assert self.client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
+        self.wait_for(lambda: self.states and self.joints, 'state and joint states')
+        poll(lambda: all(s.get_num_connections() > 0 for s in self._subscribers), 'connections')
+
+    def _record(self, topic, kind, messages):
+        def on_message(message):
+            with self._changed:
+                messages.append(message)
+                self._changed.notify_all()
+
+        return rospy.Subscriber(topic, kind, on_message, queue_size=10000, buff_size=1 << 22, tcp_nodelay=True)
+
+    def close(self):
+        """Stops listening."""
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+        self.client.stop()
+
+    def notify(self):
+        with self._changed:
+            self._changed.notify_all()
+
+    def wait_for(self, condition, what, timeout=PATIENCE):
+        deadline = time.monotonic() + timeout
+        with self._changed:
+            while not condition():
+                left = deadline - time.monotonic()
+                if left <= 0:
+                    raise AssertionError('in vain waited for: ' + what)
+                self._changed.wait(min(left, 0.1))
+
+    def _call(self, service, kind, *arguments):
+        name = '/%s/%s' % (self.name, service)
+        rospy.wait_for_service(name, PATIENCE)
+        return rospy.ServiceProxy(name, kind)(*arguments)
+
+    def enable(self):
+        return self._call('enable', Trigger)
+
+    def disable(self):
+        return self._call('disable', Trigger)
+
+    def reset(self):
+        return self._call('reset_fault', Trigger)
+
+    def plan(self, goal):
+        return self._call('plan', Plan, goal)
+
+    def inject(self, fault, joint=''):
+        return self._call('hardware/inject_fault', InjectFault, fault, joint)
+
+    def send(self, job, **fields):
+        return Run(self, goal_of(job, **fields))
+
+    def run(self, job, **fields):
+        """Sends a job and waits for its end and all of its setpoints."""
+        return self.send(job, **fields).wait_complete()
+
+    def limits(self):
+        """What the axes may do, from the robot description and the parameters; each a list in axis order."""
+        robot = xml.fromstring(rospy.get_param('/robot_description'))
+        parameters = rospy.get_param('/%s/joint_limits' % self.name)
+        limits = {'min_position': [], 'max_position': [], 'max_velocity': [], 'max_acceleration': [], 'max_jerk': []}
+        for joint in JOINTS:
+            described = robot.find("joint[@name='%s']/limit" % joint)
+            values = {'min_position': described.get('lower'), 'max_position': described.get('upper'),
+                      'max_velocity': described.get('velocity')}
+            values.update(parameters[joint])
+            for name, of_axes in limits.items():
+                of_axes.append(float(values[name]))
+        return limits
+
+    def period(self):
+        return 1 / rospy.get_param('/%s/control_rate' % self.name)
+
+    def park(self):
+        park = rospy.get_param('/%s/park_position' % self.name)
+        return [park[joint] for joint in JOINTS]
+
+    def fresh_state(self):
+        """The state as of now: what was under way when it was asked for is let pass."""
+        seen = len(self.states)
+        self.wait_for(lambda: len(self.states) >= seen + 3, 'state messages')
+        return self.states[-1]
+
+    def wait_state(self, state):
+        """Waits for a state that is told from now on."""
+        seen = len(self.states)
+        self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == state, 'state %d' % state)
+        return self.states[-1]
+
+    def positions(self):
+        """Of all axes, as told last."""
+        joint = self.joints[-1]
+        return [joint.position[joint.name.index(name)] for name in JOINTS]
+
+    def wait_rest(self):
+        """Waits until the positions told no longer change, and returns them."""
+
+        def resting():
+            last = self.joints[-10:]
+            return len(last) == 10 and len({tuple(j.position) for j in last}) == 1
+
+        seen = len(self.joints)
+        self.wait_for(lambda: len(self.joints) >= seen + 10 and resting(), 'the axes at rest')
+        return self.positions()
+
+    def positions_over(self, seconds):
+        """All positions told from now on over a time, by the messages' own stamps."""
+        first = len(self.joints)
+        self.wait_for(lambda: len(self.joints) > first + 1 and
+                      (self.joints[-1].header.stamp - self.joints[first].header.stamp).to_sec() >= seconds,
+                      'joint states')
+        return [tuple(joint.position) for joint in self.joints[first:]]
+
+    def make_ready(self):
+        """Takes the machine from any state to ready, at rest."""
+        self.client.cancel_all_goals()
+        busy = (GrinderState.RUNNING, GrinderState.CANCELING)
+        poll(lambda: self.fresh_state().state not in busy, 'the end of all goals')
+        self.inject('none')
+        poll(lambda: not self.fresh_state().emergency_stop, 'the emergency stop released')
+        if self.fresh_state().state == GrinderState.FAULT:
+            self.reset()
+        poll(lambda: self.enable().success, 'the power on')
+        self.wait_state(GrinderState.READY)
+        return self.wait_rest()
+
+    def make_ready_at_park(self):
+        """The same, where a job ends, as `grind plan` takes it to start."""
+        if any(abs(p - park) > 1e-6 for p, park in zip(self.make_ready(), self.park())):
+            assert self.run(SHORT).status == 'SUCCEEDED'
+        return self.wait_rest()
+
+
+def stroke_pairs(setpoints):
+    """The stroke's odd-even pairs as (start, odd, even) setpoints."""
+    pairs = []
+    for i, setpoint in enumerate(setpoints):
+        if setpoint.move == STROKE and setpoint.step == EVEN:
+            pairs.append(tuple(setpoints[i - 2:i + 1]))
+    return pairs
+
+
+def excesses(setpoints, limits, period, rest_after=True):
+    """What exceeds a limit by more than rounding, one text each: positions and velocities at every setpoint,
+    accelerations and jerks at the pair ends by differences over two cycles, with rest before the first and, unless
+    said otherwise, after the last."""
+    found = []
+
+    def check(name, axis, cycle, value, limit, rounding):
+        if not abs(value) <= limit * (1 + 1e-9) + rounding:
+            found.append('%s %s %.9g of %.9g at cycle %d' % (JOINTS[axis], name, value, limit, cycle))
+
+    for axis in range(4):
+        positions = [s.position[axis] for s in setpoints]
+        low, high = limits['min_position'][axis], limits['max_position'][axis]
+        found += ['%s position %.9g at cycle %d' % (JOINTS[axis], p, i) for i, p in enumerate(positions)
+                  if not low <= p <= high]
+        largest = max(abs(p) for p in positions)
+        # Each position is rounded to half an epsilon, as is each of the few numbers that it is the sum of.
+        noise = 4 * EPSILON * largest
+        for i in range(1, len(positions)):
+            check('velocity', axis, i, (positions[i] - positions[i - 1]) / period, limits['max_velocity'][axis],
+                  noise / period)
+        pair = 2 * period
+        ends = positions[::2]
+        ends = [ends[0]] * 3 + ends + ([ends[-1]] * 3 if rest_after else [])
+        for i in range(3, len(ends)):
+            p3, p2, p1, p0 = ends[i - 3:i + 1]
+            check('acceleration', axis, 2 * (i - 3), (p0 - 2 * p1 + p2) / pair ** 2, limits['max_acceleration'][axis],
+                  2 * noise / pair ** 2)
+            check('jerk', axis, 2 * (i - 3), (p0 - 3 * p1 + 3 * p2 - p3) / pair ** 3, limits['max_jerk'][axis],
+                  4 * noise / pair ** 3)
+    return found
+
+
+def off_path(setpoints, helix, tooth_angle=0.0):
+    """What leaves the theoretical path by more than the odd-even steps may, one text each."""
+    found = []
+    for start, odd, even in stroke_pairs(setpoints):
+        error = {s.cycle: helix.a(s.position[X]) - (s.position[A] - tooth_angle) for s in (start, odd, even)}
+        dx = odd.position[X] - start.position[X]
+        bound = helix.tangent_bound(start.position[X], dx) * (1 + 1e-3) + 1e-14
+        if not abs(error[odd.cycle] - error[start.cycle]) <= bound:
+            found.append('odd error %g at cycle %d, bound %g' % (error[odd.cycle], odd.cycle, bound))
+        # One pair's even error is third order: a small part of the odd error.
+        if not abs(error[even.cycle] - error[start.cycle]) <= 0.05 * bound + 1e-14:
+            found.append('even error grew by %g at cycle %d' % (error[even.cycle] - error[start.cycle], even.cycle))
+    return found
+
+
+def is_gapless(setpoints):
+    """Whether the cycles go from 0 up by one."""
+    return len(setpoints) > 0 and [s.cycle for s in setpoints] == list(range(len(setpoints)))

@@ -1,0 +1,323 @@
+#!/usr/bin/env python3
+"""Shows what `grind` prints and with which status it exits, with the grinder and without: 0 done, 1 the machine or the
+job said no, 2 wrong usage or an unreadable file."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState
+
+import grinder_client as gc
+from grinder_client import MM, STROKE, X
+
+NODE = []
+
+
+def grinder():
+    if not NODE:
+        NODE.append(gc.Grinder())
+    return NODE[0]
+
+
+PAPER_JOB = gc.package_file('jobs/paper.yaml')
+
+# The 20 printed rows of the paper's Table 1: point, X in mm, A in rad, theory in rad, error in 1e-4 rad.
+TABLE_1 = """
+0 0 0 0 0
+1 0.1987 0.0229 0.0229 -0.3979
+2 0.3974 0.0457 0.0457 -0.0001
+3 0.5961 0.0685 0.0685 -0.3926
+4 0.7948 0.0911 0.0911 -0.0002
+5 0.9935 0.1138 0.1137 -0.3874
+6 1.1922 0.1363 0.1363 -0.0003
+7 1.3910 0.1587 0.1587 -0.3823
+8 1.5897 0.1811 0.1811 -0.0004
+9 1.7885 0.2034 0.2033 -0.3773
+143 28.4736 2.6679 2.6679 -0.1829
+144 28.6730 2.6833 2.6833 -0.0034
+145 28.8724 2.6986 2.6986 -0.1813
+146 29.0718 2.7138 2.7138 -0.0035
+147 29.2713 2.7291 2.7291 -0.1797
+148 29.4707 2.7443 2.7443 -0.0035
+149 29.6701 2.7595 2.7595 -0.1781
+150 29.8695 2.7746 2.7746 -0.0035
+151 30.0689 2.7897 2.7897 -0.1765
+152 30.2684 2.8048 2.8048 -0.0035
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), 'w') as file:
+            file.write(text)
+        return self.path(name)
+
+    def grind(self, status, *arguments):
+        done = gc.grind(*arguments)
+        self.assertEqual(done.returncode, status, '%s\n%s' % (done.stdout, done.stderr))
+        if status != 0:
+            self.assertNotEqual(done.stderr.strip(), '', 'no reason is given')
+        return done
+
+
+class TestTable(CommandLine):
+    """`grind table` gives the paper's figures."""
+
+    def rows(self, text):
+        found = re.findall(r'(?m)^ *(\d+) +(\S+) +(\S+) +(\S+) +(\S+)$', text)
+        return {int(row[0]): row[1:] for row in found}
+
+    def test_printed_rows_are_the_papers(self):
+        rows = self.rows(self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2').stdout)
+        self.assertEqual(sorted(rows), list(range(153)))
+        for line in TABLE_1.split('\n')[1:-1]:
+            point, *printed = line.split()
+            # Each to its last printed digit, by text: a computed -0.0000 would be no 0.
+            self.assertEqual([float(v) for v in rows[int(point)]], [float(v) for v in printed], 'point ' + point)
+
+    def test_figures_for_the_papers_step_lengths(self):
+        for length, points, last_x, largest in (('0.2', 152, '30.2684', '3.9785e-05'),
+                                                ('0.5', 62, '30.8667', '2.4780e-04')):
+            printed = self.grind(0, 'table', PAPER_JOB, '--step-length', length).stdout
+            self.assertIn('\n%d points\n' % points, printed)
+            self.assertRegex(printed, r'largest error +%s rad' % re.escape(largest))
+            self.assertEqual(self.rows(printed)[points][0], last_x)
+
+    def test_largest_even_error_is_the_papers(self):
+        printed = self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2').stdout
+        self.assertRegex(printed, r'largest at odd points +3\.9785e-05 rad')
+        self.assertRegex(printed, r'largest at even points +3\.5000e-07 rad')
+
+    def test_csv_has_every_bit(self):
+        self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2', '--csv', self.path('table.csv'))
+        with open(self.path('table.csv')) as lines:
+            header, *rows = [line.rstrip('\n').split(',') for line in lines]
+        self.assertEqual(header, ['point', 'x_mm', 'a_rad', 'a_theory_rad', 'error_rad'])
+        self.assertEqual([int(row[0]) for row in rows], list(range(153)))
+        helix = gc.Helix(gc.PAPER)
+        for row in rows:
+            x, a, theory, error = map(float, row[1:])
+            self.assertEqual(row[1:], ['%.17g' % value for value in (x, a, theory, error)])
+            self.assertEqual(theory - a, error)
+            self.assertAlmostEqual(theory, helix.a(x * MM), delta=1e-14)
+
+    def test_even_step_rule_can_be_chosen(self):
+        # The mathematics: 1.29e-7 rad for third_order, none but rounding for exact.
+        printed = self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2', '--even-step', 'third_order').stdout
+        self.assertRegex(printed, r'largest at even points +1\.29\d*e-07 rad')
+        printed = self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2', '--even-step', 'exact').stdout
+        even = float(re.search(r'largest at even points +(\S+) rad', printed).group(1))
+        self.assertLess(even, 2e-15)
+
+
+class TestPlan(CommandLine):
+    def test_good_job(self):
+        printed = self.grind(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
+        self.assertEqual(printed.stderr, '')
+        with open(self.path('plan.csv')) as lines:
+            count = len(list(lines)) - 1
+        self.assertRegex(printed.stdout, r'setpoints +%d\n' % count)
+        self.assertRegex(printed.stdout, r'duration +%.3f s' % ((count - 1) * 1e-3))
+        low, high = map(float, re.search(r'feed held +(\S+) to (\S+) mm/min', printed.stdout).groups())
+        self.assertAlmostEqual(low, 600, delta=600e-6)
+        self.assertAlmostEqual(high, 600, delta=600e-6)
+
+    def test_path_outside_of_the_limits(self):
+        job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
+        reason = self.grind(1, 'plan', job).stderr
+        self.assertRegex(reason, r'axis_x position 0\.3\d* m is \S+ m beyond its limit 0\.3 m '
+                                 r'\(stroke, cycle \d+, X = 0\.3')
+
+    def test_missing_file(self):
+        reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
+        self.assertIn(self.path('nothing.yaml') + ': cannot be read', reason)
+
+    def test_folder_is_no_file(self):
+        self.assertIn(self.folder, self.grind(2, 'plan', self.folder).stderr)
+
+    def test_unknown_key(self):
+        with open(PAPER_JOB) as file:
+            lines = file.read().split('\n')
+        line = lines.index('process:') + 1
+        lines.insert(line, '  fead_mm_min: 600')
+        job = self.write('bad.yaml', '\n'.join(lines))
+        reason = self.grind(2, 'plan', job).stderr
+        self.assertIn('%s:%d: process.fead_mm_min is not a key' % (job, line + 1), reason)
+
+    def test_missing_key(self):
+        with open(PAPER_JOB) as file:
+            text = re.sub(r'(?m)^ +depth_mm:.*\n', '', file.read())
+        job = self.write('bad.yaml', text)
+        self.assertRegex(self.grind(2, 'plan', job).stderr,
+                         r'%s:\d+: process\.depth_mm is missing; allowed: 0\.001 to 50 mm' % re.escape(job))
+
+    def test_value_out_of_its_range(self):
+        with open(PAPER_JOB) as file:
+            line = [n for n, text in enumerate(file, 1) if 'cone_angle_deg' in text][0]
+        for value in ('31', '-3.1', '.nan', '.inf', 'steep'):
+            job = gc.job_file(self.path('bad.yaml'), cone_angle_deg=value)
+            reason = self.grind(2, 'plan', job).stderr
+            self.assertIn('%s:%d: cutter.cone_angle_deg = %s' % (job, line, value.lstrip('.')), reason)
+            self.assertIn('allowed: -3 to 30 deg', reason)
+
+    def test_text_that_is_no_yaml(self):
+        job = self.write('bad.yaml', 'cutter:\n  end_diameter_mm: [1, 2\nprocess: }\n')
+        self.assertRegex(self.grind(2, 'plan', job).stderr, re.escape(job) + r':\d+: ')
+
+    def test_csv_that_cannot_be_written(self):
+        reason = self.grind(2, 'plan', PAPER_JOB, '--csv', self.path('no/such/folder.csv')).stderr
+        self.assertIn(self.path('no/such/folder.csv'), reason)
+
+
+class TestUsage(CommandLine):
+    def test_wrong_usage(self):
+        for arguments in ([], ['polish'], ['plan'], ['run'], ['table', PAPER_JOB], ['plan', PAPER_JOB, '--speed', '9'],
+                          ['table', PAPER_JOB, '--step-length', '0'], ['table', PAPER_JOB, '--step-length', '-0.2'],
+                          ['table', PAPER_JOB, '--step-length', 'long'],
+                          ['table', PAPER_JOB, '--step-length', '0.2', '--even-step', 'newest'],
+                          ['status', 'extra']):
+            self.grind(2, *arguments)
+
+    def test_step_length_that_is_no_number(self):
+        self.grind(2, 'table', PAPER_JOB, '--step-length', 'nan')
+
+    def test_help(self):
+        self.assertIn('plan', self.grind(0, '--help').stdout)
+
+
+class TestMachine(CommandLine):
+    """The calls that need the grinder."""
+
+    def setUp(self):
+        super().setUp()
+        grinder().make_ready()
+
+    def test_status(self):
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'state +ready\n')
+        self.assertRegex(printed, r'enabled +yes\n')
+        self.assertRegex(printed, r'emergency stop +released\n')
+        self.assertNotIn('fault ', printed)
+
+    def test_disable_and_enable(self):
+        self.grind(0, 'disable')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
+        self.assertRegex(self.grind(0, 'status').stdout, r'state +disabled\nenabled +no\n')
+        self.grind(0, 'enable')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def test_reset(self):
+        self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the machine is in state ready; allowed: ')
+        grinder().inject('emergency_stop')
+        grinder().wait_state(GrinderState.FAULT)
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'state +fault\n')
+        self.assertRegex(printed, r'emergency stop +pressed\n')
+        self.assertRegex(printed, r'fault +emergency stop\n')
+        self.assertRegex(self.grind(1, 'enable').stderr,
+                         r'^enable refused: the machine is in state fault; allowed: reset')
+        self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the emergency stop is pressed')
+        grinder().inject('none')
+        gc.poll(lambda: not grinder().fresh_state().emergency_stop, 'the emergency stop released')
+        self.grind(0, 'reset')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
+
+    def test_run_streams_what_plan_lists(self):
+        grinder().make_ready_at_park()
+        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
+        self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
+        printed = self.grind(0, 'run', job, '--csv', self.path('run.csv'))
+        with open(self.path('plan.csv'), 'rb') as plan, open(self.path('run.csv'), 'rb') as run:
+            planned, streamed = plan.read(), run.read()
+        self.assertTrue(planned == streamed, 'the files differ')
+        self.assertRegex(printed.stdout, r'streamed +%d setpoints, 0 missed\n' % (planned.count(b'\n') - 1))
+        self.assertRegex(printed.stderr, r'100 %')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def test_dry_run_moves_nothing(self):
+        batches = len(grinder().batches)
+        rest = grinder().positions()
+        printed = self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout
+        self.assertRegex(printed, r'setpoints +\d{4}')
+        self.assertNotIn('streamed', printed)
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        self.assertEqual(len(grinder().batches), batches)
+        self.assertEqual(grinder().positions(), rest)
+
+    def test_run_while_disabled(self):
+        self.grind(0, 'disable')
+        self.assertRegex(self.grind(1, 'run', PAPER_JOB).stderr, r'the machine is in state disabled; allowed: .*enable')
+
+    def test_run_outside_of_the_limits(self):
+        job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
+        self.assertRegex(self.grind(1, 'run', job).stderr, r'axis_x position .* beyond its limit 0\.3 m.*\(code -6\)')
+
+    def test_run_of_a_bad_file(self):
+        self.grind(2, 'run', self.path('nothing.yaml'))
+
+    def test_fault_ends_the_run(self):
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        grinder().inject('emergency_stop')
+        _, reason = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(reason, r'emergency stop \(at stroke .*\(code -9\)')
+
+    def start_run(self):
+        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(self.kill, process)
+        return process
+
+    @staticmethod
+    def kill(process):
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+
+    @staticmethod
+    def wait_in_stroke(batches):
+        def past():
+            new = grinder().batches[batches:]
+            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
+
+        grinder().wait_for(past, 'the stroke')
+
+    def test_interrupt_cancels_the_run(self):
+        for with_signal in (signal.SIGINT, signal.SIGTERM):
+            grinder().make_ready()
+            batches = len(grinder().batches)
+            process = self.start_run()
+            self.wait_in_stroke(batches)
+            process.send_signal(with_signal)
+            printed, reason = process.communicate(timeout=gc.PATIENCE)
+            self.assertEqual(process.returncode, 1, reason)
+            self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
+            self.assertRegex(printed, r'streamed +\d+ setpoints, 0 missed')
+            self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+            setpoints = [s for batch in grinder().batches[batches:] for s in batch.setpoints]
+            self.assertTrue(gc.is_gapless(setpoints))
+            self.assertEqual(setpoints[-1].move, STROKE)
+            self.assertLess(setpoints[-1].position[X], 30 * MM)
+            self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
+            self.assertEqual(len(grinder().positions_over(0.1)) > 5 and len(set(grinder().positions_over(0.1))), 1)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_cli')
+    rostest.rosrun('flute_grinder', 'cli', '__main__')

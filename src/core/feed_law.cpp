@@ -41,12 +41,9 @@ bool FeedLaw::setTarget(double target) noexcept {
 
 void FeedLaw::advance(double dt) noexcept {
   time_ += dt;
-  if (time_ >= end_time_) {
-    position_ = end_.position;
+  if (resting()) {
     segment_ = segment_count_;
-    speed_ = 0;
-    acceleration_ = 0;
-    return;
+    return rest();
   }
   while (segment_ + 1 < segment_count_ && time_ >= segments_[segment_ + 1].start_time) ++segment_;
   const Segment& s = segments_[segment_];
@@ -101,6 +98,13 @@ void FeedLaw::plan() noexcept {
   if (cruise > 0) append(changeSpeed(cruise, 0, 0), 0, s);
   const bool to_end = target_ > 0 || left <= 0;
   end_ = {to_end ? distance_ : std::min(s.position, distance_), 0, 0};
+  if (resting()) rest();
+}
+
+void FeedLaw::rest() noexcept {
+  position_ = end_.position;
+  speed_ = 0;
+  acceleration_ = 0;
 }
 
 double FeedLaw::cruiseSpeed(double left) const noexcept {

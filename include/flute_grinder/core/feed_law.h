@@ -69,6 +69,7 @@ class FeedLaw {
   /// The highest speed, up to the target, from which the way left suffices for a stop.
   double cruiseSpeed(double left) const noexcept;
   void plan() noexcept;
+  void rest() noexcept;
   void append(const Phase& phase, State& state) noexcept;
   void append(const SpeedChange& change, double end_speed, State& state) noexcept;
 

@@ -4,15 +4,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flute_grinder {
 
 namespace {
 
-/// How much a limit of X, Y and Z leaves for X, which they all follow in proportion.
-double forX(const Axes& limit, double tan_cone, double sin_rake) {
-  return std::min({limit[kX], limit[kY] / std::abs(tan_cone), limit[kZ] / std::abs(tan_cone * sin_rake)});
+/// How much the limits of X, Y and Z leave for X, which they all follow in proportion.
+struct ForX {
+  double limit;
+  const char* axis;
+};
+
+ForX forX(const Axes& limit, double tan_cone, double sin_rake) {
+  ForX lowest{limit[kX], kJointNames[kX]};
+  const auto bound = [&](double candidate, int axis) {
+    if (candidate < lowest.limit) lowest = {candidate, kJointNames[static_cast<std::size_t>(axis)]};
+  };
+  bound(limit[kY] / std::abs(tan_cone), kY);
+  bound(limit[kZ] / std::abs(tan_cone * sin_rake), kZ);
+  return lowest;
 }
+
+/// The lowest of some bounds, and which it is.
+struct Bound {
+  double value = std::numeric_limits<double>::infinity();
+  std::string cause;
+
+  void add(double candidate, const std::string& of) {
+    if (!(candidate < value)) return;
+    value = candidate;
+    cause = of;
+  }
+};
 
 }  // namespace
 
@@ -24,12 +48,6 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
   placeOnCone(curve);
 }
 
-void FeedSchedule::bound(double& value, double candidate, const char* cause) {
-  if (!(candidate < value)) return;
-  value = candidate;
-  limited_by_ = cause;
-}
-
 void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine) {
   const LogCurve curve(cutter);
   const AxisLimits& limits = machine.limits;
@@ -39,37 +57,45 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   const double thin_x = from_thin ? stroke.from : stroke.to;
   const double u_thin = curve.u(thin_x);
   const double u_thick = curve.u(from_thin ? stroke.to : stroke.from);
+  const double wanted = stroke.surface_feed / cutter.edgePerTravel();
+  const ForX velocity = forX(limits.max_velocity, tan_cone_, sin_rake_);
 
+  // The steps of a pair differ from their mean speed by b v T/u at the most, and must obey the velocity limits too.
+  const double turning = std::min(kMaxFeedOverride * wanted, velocity.limit) / u_thin;
+  const double ripple = 1 + b * std::min(turning, limits.max_velocity[kA] / k) * machine.period;
+
+  Bound even;  // of X, wherever it is
   // The odd points' deviation grows toward the thin end; the leading order is taken back by the next one.
-  speed_ = stroke.surface_feed / cutter.edgePerTravel();
   const double a_error = stroke.tolerance / (cutter.radius(thin_x) * cutter.cosHelixToGeneratrix());
   const double step = OddEvenInterpolator::largestStepLength(curve, 1, thin_x, a_error);
   if (std::isfinite(step)) {
     const double dx = step * u_thin / std::hypot(u_thin, curve.k());
-    bound(speed_, dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
+    even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
   }
-
-  // The steps of a pair differ from their mean speed by b v T/u at the most, and must obey the velocity limits too.
-  const double turning = std::min(speed_, forX(limits.max_velocity, tan_cone_, sin_rake_)) / u_thin;
-  const double ripple = 1 + b * std::min(turning, limits.max_velocity[kA] / k) * machine.period;
-  bound(speed_, limits.max_velocity[kX] / ripple, "axis_x velocity");
-  bound(speed_, limits.max_velocity[kY] / std::abs(tan_cone_) / ripple, "axis_y velocity");
-  bound(speed_, limits.max_velocity[kZ] / std::abs(tan_cone_ * sin_rake_) / ripple, "axis_z velocity");
+  even.add(velocity.limit / ripple, velocity.axis + std::string(" velocity"));
+  if (even.value < wanted) cuts_.push_back({even.cause, stroke.from, stroke.to});
+  feed_speed_ = std::min(wanted, even.value);
 
   // A keeps half of its acceleration and most of its jerk for the feed law and the blend.
-  const double uncut = speed_ / u_thin;
-  double cut = uncut;
-  bound(cut, limits.max_velocity[kA] / k / ripple, "axis_a velocity");
-  bound(cut, std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), "axis_a acceleration");
-  bound(cut, std::cbrt(limits.max_jerk[kA] / (20 * k * b * b)), "axis_a jerk");
-  if (cut < uncut) {
-    // Where A goes evenly X gains speed: dv/dt = b c v.
-    bound(cut, forX(limits.max_acceleration, tan_cone_, sin_rake_) / (2 * b * speed_), "linear acceleration");
-    bound(cut, std::sqrt(forX(limits.max_jerk, tan_cone_, sin_rake_) / (4 * b * b * speed_)), "linear jerk");
-    speed_ = std::min(speed_, cut * u_thick);
+  Bound per_radius;
+  per_radius.add(limits.max_velocity[kA] / k / ripple, "axis_a velocity");
+  per_radius.add(std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), "axis_a acceleration");
+  per_radius.add(std::cbrt(limits.max_jerk[kA] / (20 * k * b * b)), "axis_a jerk");
+
+  if (!(per_radius.value < feed_speed_ / u_thin)) {
+    speed_ = std::min({kMaxFeedOverride * wanted, even.value, per_radius.value * u_thin});
+    speed_per_radius_ = speed_ / u_thin;
+    return;
   }
-  speed_per_radius_ = cut;
-  beta_ = cut < uncut && u_thin < u_thick ? b * cut / speed_ : 0;
+  // Where A goes evenly X gains speed: dv/dt = b c v.
+  const ForX acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_);
+  const ForX jerk = forX(limits.max_jerk, tan_cone_, sin_rake_);
+  per_radius.add(acceleration.limit / (2 * b * feed_speed_), acceleration.axis + std::string(" acceleration"));
+  per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), jerk.axis + std::string(" jerk"));
+  cuts_.push_back({per_radius.cause, stroke.from, stroke.to});  // as far as placeOnCone() finds
+  speed_per_radius_ = per_radius.value;
+  feed_speed_ = speed_ = std::min(feed_speed_, speed_per_radius_ * u_thick);
+  beta_ = u_thin < u_thick ? b * speed_per_radius_ / speed_ : 0;
 }
 
 void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits& limits) {
@@ -78,8 +104,8 @@ void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits&
   const double b = std::abs(curve.b());
   const double a_slope = std::abs(curve.k()) / u;
   const double a_curvature = a_slope * b / u;
-  const double x_acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_);
-  const double x_jerk = forX(limits.max_jerk, tan_cone_, sin_rake_);
+  const double x_acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_).limit;
+  const double x_jerk = forX(limits.max_jerk, tan_cone_, sin_rake_).limit;
   const double a_acceleration = limits.max_acceleration[kA];
   const double a_jerk = limits.max_jerk[kA];
 
@@ -118,6 +144,16 @@ void FeedSchedule::placeOnCone(const LogCurve& curve) {
   const double q_to = parameterOf(toward_thick * (to_ - blend_x));
   length_ = std::abs(q_to - q_from_);
   q_direction_ = q_to < q_from_ ? -1 : 1;
+  double& full_feed_end = q_direction_ > 0 ? cuts_.back().to : cuts_.back().from;
+  if (std::max(q_from_, q_to) > blend_) full_feed_end = blend_x + toward_thick * distance(blend_);
+}
+
+double FeedSchedule::runUp() const noexcept {
+  const double v = feed_speed_;
+  const double a = limits_.acceleration;
+  const double j = limits_.jerk;
+  const double time = v > a * a / j ? v / a + a / j : 2 * std::sqrt(v / j);
+  return v * time / 2;
 }
 
 double FeedSchedule::distance(double q) const noexcept {

@@ -109,6 +109,10 @@ void checkTogether(Checker& checker, const GrindJob& job) {
                   "up to the depth, " + field("process.depth").format(p.depth, checker.units()));
   checker.require(p.depth / p.infeed + p.spark_out + 2 <= kMaxPasses, field("process.infeed"),
                   "enough for the depth in " + std::to_string(kMaxPasses) + " passes");
+  if (!checker.good()) return;
+  const auto passes = static_cast<double>(job.tooth_angles.size() * passDepths(p).size());
+  checker.below("process.wheel_wear_per_pass", (p.wheel_diameter / 2 - p.wheel_wear) / passes,
+                "what is left of the wheel's radius, over the passes of all teeth");
 }
 
 template <typename Enum>
@@ -165,6 +169,8 @@ const std::vector<JobField>& jobFields() {
       mm("process.wheel_width", "process.wheel.width_mm", 0.1, 100,
          [](Job& j) -> double& { return j.process.wheel_width; }),
       mm("process.wheel_wear", "process.wheel.wear_mm", 0, 100, [](Job& j) -> double& { return j.process.wheel_wear; }),
+      {"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", "m", "mm", units::kMillimetre, 0, 1,
+       [](Job& j) -> double& { return j.process.wheel_wear_per_pass; }, true},
       {"interpolation.tolerance", "interpolation.tolerance_um", "m", "um", units::kMicrometre, 1e-9, 1000,
        [](Job& j) -> double& { return j.interpolation.tolerance; }},
       {"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", "m/rad", "mm/rad",
@@ -196,6 +202,18 @@ std::vector<double> passDepths(const GrindProcess& process) {
   if (process.finish_infeed > 0 || depths.empty()) depths.push_back(process.depth);
   depths.insert(depths.end(), static_cast<std::size_t>(process.spark_out), process.depth);
   return depths;
+}
+
+std::vector<ToothPass> passOrder(const GrindJob& job) {
+  const int teeth = static_cast<int>(job.tooth_angles.size());
+  const int passes = static_cast<int>(passDepths(job.process).size());
+  const bool tooth_major = job.process.order == GrindOrder::kToothMajor;
+  std::vector<ToothPass> order;
+  order.reserve(static_cast<std::size_t>(teeth) * static_cast<std::size_t>(passes));
+  for (int i = 0; i < teeth * passes; ++i) {
+    order.push_back(tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth});
+  }
+  return order;
 }
 
 }  // namespace flute_grinder

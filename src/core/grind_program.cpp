@@ -42,18 +42,26 @@ const Machine& checked(const Machine& machine, const Axes& start) {
 
 void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cutter) {
   const double rate = std::min(schedule.rate(0), schedule.rate(schedule.length()));
-  const double feed = schedule.limits().velocity * rate * cutter.edgePerTravel();
+  const double feed = schedule.feedSpeed() * rate * cutter.edgePerTravel();
   if (feed >= kMinFeed * (1 - 1e-9)) return;
   std::ostringstream text;
-  text << "process.feed: " << schedule.limitedBy() << " allows " << feed << " m/s ("
+  text << "process.feed: " << (schedule.cuts().empty() ? "it" : schedule.cuts().back().cause) << " allows " << feed << " m/s ("
        << feed / units::kMillimetrePerMinute << " mm/min); the slowest feed is " << kMinFeed << " m/s ("
        << kMinFeed / units::kMillimetrePerMinute << " mm/min)";
   throw std::invalid_argument(text.str());
 }
 
+void requireParkClear(const Machine& machine, double clearance_y) {
+  if (machine.park[kY] >= clearance_y) return;
+  std::ostringstream text;
+  text << "park position axis_y = " << machine.park[kY] << " m; allowed for this job: at least " << clearance_y
+       << " m, clear of the work";
+  throw std::invalid_argument(text.str());
+}
+
 }  // namespace
 
-GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first)
+GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first)
     : job_(job),
       machine_(checked(machine, start)),
       cutter_(job.cutter),
@@ -62,54 +70,48 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
       schedule_(cutter_, stroke_, machine),
       clearance_y_(std::max(cutter_.y(stroke_.from), cutter_.y(stroke_.to)) + job.process.clearance) {
   requireGrindableFeed(schedule_, cutter_);
-  const std::vector<double> depths = passDepths(job.process);
-  const int teeth = static_cast<int>(job.tooth_angles.size());
-  const int passes = static_cast<int>(depths.size());
-  if (!(first.tooth >= 0 && first.tooth < teeth && first.pass >= 0 && first.pass < passes)) {
+  requireParkClear(machine, clearance_y_);
+  const std::vector<ToothPass> order = passOrder(job);
+  const auto is_first = [&](const ToothPass& p) { return p.tooth == first.tooth && p.pass == first.pass; };
+  const auto begin = std::find_if(order.begin(), order.end(), is_first);
+  if (begin == order.end()) {
     std::ostringstream text;
-    text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to " << teeth - 1
-         << " and 0 to " << passes - 1;
-    throw std::invalid_argument(text.str());
-  }
-  if (!(machine.park[kY] >= clearance_y_)) {
-    std::ostringstream text;
-    text << "park position axis_y = " << machine.park[kY] << " m; allowed for this job: at least " << clearance_y_
-         << " m, clear of the work";
+    text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to "
+         << order.back().tooth << " and 0 to " << order.back().pass;
     throw std::invalid_argument(text.str());
   }
 
-  const bool tooth_major = job.process.order == GrindOrder::kToothMajor;
-  const int count = teeth * passes;
+  const std::vector<double> depths = passDepths(job.process);
   Axes at = start;
   // The wheel may stand in another cutter's flute, after a job that did not end: only the park position clears them
   // all.
   if (at[kY] < machine.park[kY]) {
     at[kY] = machine.park[kY];
-    append(MoveKind::kLift, first.tooth, first.pass, at);
+    append(MoveKind::kLift, first, at);
   }
-  for (int i = tooth_major ? first.tooth * passes + first.pass : first.pass * teeth + first.tooth; i < count; ++i) {
-    const int tooth = tooth_major ? i / passes : i % teeth;
-    const int pass = tooth_major ? i % passes : i / teeth;
-    appendPass(tooth, pass, depths[static_cast<std::size_t>(pass)], at);
+  for (auto pass = begin; pass != order.end(); ++pass) {
+    const auto passes_before = static_cast<double>(pass - order.begin());
+    const double wear = job.process.wheel_wear + passes_before * job.process.wheel_wear_per_pass;
+    appendPass(*pass, depths[static_cast<std::size_t>(pass->pass)] + wear, at);
   }
-  append(MoveKind::kReturn, moves_.back().tooth, moves_.back().pass, machine.park);
+  append(MoveKind::kReturn, order.back(), machine.park);
 }
 
-void GrindProgram::append(MoveKind kind, int tooth, int pass, const Axes& to) {
-  moves_.push_back({kind, static_cast<std::uint16_t>(tooth), static_cast<std::uint16_t>(pass), to});
+void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to) {
+  moves_.push_back({kind, static_cast<std::uint16_t>(pass.tooth), static_cast<std::uint16_t>(pass.pass), to});
 }
 
-void GrindProgram::appendPass(int tooth, int pass, double depth, Axes& at) {
+void GrindProgram::appendPass(const ToothPass& pass, double infeed, Axes& at) {
   const LogCurve curve(cutter_);
-  const double tooth_angle = job_.tooth_angles[static_cast<std::size_t>(tooth)];
-  const auto go = [&](MoveKind kind) { append(kind, tooth, pass, at); };
+  const double tooth_angle = job_.tooth_angles[static_cast<std::size_t>(pass.tooth)];
+  const auto go = [&](MoveKind kind) { append(kind, pass, at); };
+  at[kA] = tooth_angle + curve.a(stroke_.from);
+  go(MoveKind::kIndex);
   at[kX] = stroke_.from;
   at[kZ] = cutter_.z(stroke_.from);
-  at[kA] = tooth_angle + curve.a(stroke_.from);
   go(MoveKind::kPosition);
   at[kY] = cutter_.y(stroke_.from) + job_.process.clearance;
   go(MoveKind::kApproach);
-  const double infeed = depth + job_.process.wheel_wear;
   at[kY] = cutter_.y(stroke_.from) - infeed;
   go(MoveKind::kInfeed);
   at << stroke_.to, cutter_.y(stroke_.to) - infeed, cutter_.z(stroke_.to), tooth_angle + curve.a(stroke_.to);

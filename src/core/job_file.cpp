@@ -185,6 +185,7 @@ GrindJob parseJob(const std::string& text, const std::string& name) {
   GrindJob job;
   for (const JobField& field : jobFields()) {
     double value = 0;
+    if (field.optional && !file.has(field.file_key)) continue;
     file.take(field.file_key, field.range(UnitSystem::kShop), value);
     field.at(job) = value * field.shop_scale;
   }

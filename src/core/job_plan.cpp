@@ -2,6 +2,7 @@
 
 #include "flute_grinder/core/units.h"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -62,43 +63,92 @@ class Statistician {
   double deviation_ = 0;
 };
 
-std::string toleranceText(const Setpoint& p, double deviation, double tolerance) {
-  std::ostringstream text;
-  text << "interpolation.tolerance = " << tolerance << " m (" << tolerance / units::kMicrometre
-       << " um): the path deviates by " << deviation << " m (" << deviation / units::kMicrometre
-       << " um) at X = " << p.position[kX] << " m, cycle " << p.cycle
-       << "; lower process.feed, or set interpolation.even_step to exact";
-  return text.str();
-}
+/// All that speaks against a plan: of each kind the worst, and how many setpoints there are of it.
+class Objections {
+ public:
+  Objections(double tolerance, JobPlan& plan) : tolerance_(tolerance), plan_(plan) {}
 
-/// Runs through the stream up to the first setpoint that is refused.
+  void add(const LimitViolation& v) {
+    if (plan_.good()) plan_.fault = PlanFault::kLimit;
+    const auto excess = [](const LimitViolation& w) {
+      return w.quantity == LimitedQuantity::kPosition ? std::abs(w.value - w.limit) : std::abs(w.value);
+    };
+    const auto same = [&](const Limit& l) {
+      return l.worst.axis == v.axis && l.worst.quantity == v.quantity && l.worst.move == v.move;
+    };
+    auto it = std::find_if(limits_.begin(), limits_.end(), same);
+    if (it == limits_.end()) it = limits_.insert(it, {v, 0});
+    if (excess(v) > excess(it->worst)) it->worst = v;
+    ++it->count;
+  }
+
+  void addDeviation(const Setpoint& p, double deviation) {
+    if (plan_.good()) plan_.fault = PlanFault::kTolerance;
+    ++deviations_;
+    if (deviation <= deviation_) return;
+    deviation_ = deviation;
+    deviant_ = p;
+  }
+
+  void write() {
+    for (const Limit& l : limits_) plan_.reasons.push_back(l.worst.text() + others(l.count));
+    if (deviations_ > 0) plan_.reasons.push_back(toleranceText() + others(deviations_));
+  }
+
+ private:
+  struct Limit {
+    LimitViolation worst;
+    std::uint64_t count;
+  };
+
+  static std::string others(std::uint64_t count) {
+    return count == 1 ? "" : "; the worst of " + std::to_string(count) + " setpoints";
+  }
+
+  std::string toleranceText() const {
+    std::ostringstream text;
+    text << "interpolation.tolerance = " << tolerance_ << " m (" << tolerance_ / units::kMicrometre
+         << " um): the path deviates by " << deviation_ << " m (" << deviation_ / units::kMicrometre
+         << " um) at X = " << deviant_.position[kX] << " m, cycle " << deviant_.cycle
+         << "; lower process.feed, or set interpolation.even_step to exact";
+    return text.str();
+  }
+
+  double tolerance_;
+  JobPlan& plan_;
+  std::vector<Limit> limits_;
+  Setpoint deviant_;
+  double deviation_ = 0;
+  std::uint64_t deviations_ = 0;
+};
+
 void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(const Setpoint&)>& visit) {
   const GrindProgram& program = stream.program();
   const double tolerance = program.job().interpolation.tolerance;
   LimitCheck check(program.machine().limits, program.machine().period);
   Statistician statistician(program.cutter(), program.machine().period, plan.statistics);
+  Objections objections(tolerance, plan);
+  plan.move_ends.assign(program.moves().size(), 0);
   Setpoint p;
   while (stream.next(p)) {
-    const auto violation = check.check(p);
+    if (check.check(p)) std::for_each(check.begin(), check.end(), [&](const auto& v) { objections.add(v); });
     statistician.add(p, check);
+    plan.move_ends[p.move_index] = p.cycle;
     if (visit) visit(p);
-    if (violation) {
-      plan.fault = PlanFault::kLimit;
-      plan.reasons.push_back(violation->text());
-      break;
-    }
-    if (p.step != StepKind::kNone && !(statistician.deviation() <= tolerance)) {
-      plan.fault = PlanFault::kTolerance;
-      plan.reasons.push_back(toleranceText(p, statistician.deviation(), tolerance));
-      break;
-    }
+    const double deviation = statistician.deviation();
+    if (p.step != StepKind::kNone && !(deviation <= tolerance)) objections.addDeviation(p, deviation);
+  }
+  // A move of no length has no setpoints of its own.
+  for (std::size_t i = 1; i < plan.move_ends.size(); ++i) {
+    plan.move_ends[i] = std::max(plan.move_ends[i], plan.move_ends[i - 1]);
   }
   statistician.finish();
+  objections.write();
 }
 
 }  // namespace
 
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first,
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
                 const std::function<void(const Setpoint&)>& visit, UnitSystem units) {
   JobPlan plan;
   for (const JobError& error : validate(job, units)) plan.reasons.push_back(error.text());
@@ -113,7 +163,7 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     plan.reasons.emplace_back(error.what());
     return plan;
   }
-  plan.statistics.feed_limited_by = plan.program->schedule().limitedBy();
+  plan.statistics.feed_cuts = plan.program->schedule().cuts();
   SetpointStream stream(*plan.program);
   runThrough(stream, plan, visit);
   return plan;

@@ -39,57 +39,63 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
   velocity_ = (p - last_) * inverse_period_;
   last_ = p;
 
-  if (!within(p - middle_, half_range_)) {
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      const bool low = p[axis] < limits_.min_position[axis];
-      const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];
-      if (!std::isfinite(p[axis])) {
-        return LimitViolation{axis, LimitedQuantity::kNotFinite, p[axis], limit, setpoint.cycle, p[kX], setpoint.move};
-      }
-      if (low || p[axis] > limit) {
-        return LimitViolation{axis, LimitedQuantity::kPosition, p[axis], limit, setpoint.cycle, p[kX], setpoint.move};
-      }
+  violation_count_ = 0;
+  if (!within(p - middle_, half_range_)) checkPosition(setpoint);
+  if (!within(velocity_, limits_.max_velocity)) {
+    checkSize(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_);
+  }
+  if (setpoint.cycle % 2 == 0) checkPairEnd(setpoint);
+  if (violation_count_ == 0) return std::nullopt;
+  return violations_[0];
+}
+
+void LimitCheck::checkPosition(const Setpoint& setpoint) noexcept {
+  const Axes& p = setpoint.position;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const bool low = p[axis] < limits_.min_position[axis];
+    const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];
+    if (!std::isfinite(p[axis])) {
+      report(setpoint, axis, LimitedQuantity::kNotFinite, p[axis], limit);
+    } else if (low || p[axis] > limit) {
+      report(setpoint, axis, LimitedQuantity::kPosition, p[axis], limit);
     }
   }
-  if (!within(velocity_, limits_.max_velocity)) {
-    if (auto v = excess(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_))
-      return v;
-  }
-  if (setpoint.cycle % 2 != 0) return std::nullopt;
+}
 
+void LimitCheck::checkPairEnd(const Setpoint& setpoint) noexcept {
   const double inverse_pair = inverse_period_ / 2;
   const double inverse_pair2 = inverse_pair * inverse_pair;
-  const Axes change = p - ends_[0];
+  const Axes change = setpoint.position - ends_[0];
   const Axes last_change = ends_[0] - ends_[1];
   const Axes bend = change - last_change;
   acceleration_ = bend * inverse_pair2;
   jerk_ = (bend - (last_change - (ends_[1] - ends_[2]))) * (inverse_pair2 * inverse_pair);
   ends_[2] = ends_[1];
   ends_[1] = ends_[0];
-  ends_[0] = p;
+  ends_[0] = setpoint.position;
   if (!within(acceleration_, limits_.max_acceleration)) {
-    if (auto v = excess(setpoint, LimitedQuantity::kAcceleration, acceleration_, limits_.max_acceleration,
-                        4 * inverse_pair2)) {
-      return v;
-    }
+    checkSize(setpoint, LimitedQuantity::kAcceleration, acceleration_, limits_.max_acceleration, 4 * inverse_pair2);
   }
   if (!within(jerk_, limits_.max_jerk)) {
-    return excess(setpoint, LimitedQuantity::kJerk, jerk_, limits_.max_jerk, 8 * inverse_pair2 * inverse_pair);
+    checkSize(setpoint, LimitedQuantity::kJerk, jerk_, limits_.max_jerk, 8 * inverse_pair2 * inverse_pair);
   }
-  return std::nullopt;
 }
 
-std::optional<LimitViolation> LimitCheck::excess(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value,
-                                                 const Axes& limit, double rounding) const noexcept {
+void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
+                           double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     // A position is the sum of some numbers no larger than the largest seen, each rounded to half an epsilon.
     const double noise = 2 * std::numeric_limits<double>::epsilon() * largest_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
-      return LimitViolation{axis,         quantity, value[axis], limit[axis], setpoint.cycle, setpoint.position[kX],
-                            setpoint.move};
+      report(setpoint, axis, quantity, value[axis], limit[axis]);
     }
   }
-  return std::nullopt;
+}
+
+void LimitCheck::report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value,
+                        double limit) noexcept {
+  violations_[violation_count_++] = {axis,           quantity, value, limit, setpoint.cycle, setpoint.position[kX],
+                                     setpoint.move};
 }
 
 std::string LimitViolation::text() const {

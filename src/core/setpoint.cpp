@@ -5,6 +5,7 @@ namespace flute_grinder {
 const char* toString(MoveKind kind) noexcept {
   switch (kind) {
     case MoveKind::kLift: return "lift";
+    case MoveKind::kIndex: return "index";
     case MoveKind::kPosition: return "position";
     case MoveKind::kApproach: return "approach";
     case MoveKind::kInfeed: return "infeed";

@@ -18,6 +18,8 @@ MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
           (limits.max_jerk / size).minCoeff()};
 }
 
+bool goesAtFeed(MoveKind kind) noexcept { return kind == MoveKind::kInfeed || kind == MoveKind::kStroke; }
+
 }  // namespace
 
 SetpointStream::SetpointStream(GrindProgram program)
@@ -26,16 +28,16 @@ SetpointStream::SetpointStream(GrindProgram program)
       period_(program_.machine().period),
       interpolator_(curve_, program_.job().interpolation.rotary_scale, program_.job().interpolation.even_step,
                     program_.strokeFrom()) {
+  const Move& first = program_.moves().front();
   current_.position = program_.start();
+  current_.move = first.kind;
+  current_.tooth = first.tooth;
+  current_.pass = first.pass;
 }
 
 bool SetpointStream::next(Setpoint& setpoint) noexcept {
   if (!started_) {
     started_ = true;
-    const Move& first = program_.moves().front();
-    current_.move = first.kind;
-    current_.tooth = first.tooth;
-    current_.pass = first.pass;
     setpoint = current_;
     return true;
   }
@@ -45,6 +47,7 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   if (current_.move == MoveKind::kStroke) {
     if (mid_pair_) {
       strokePoint(even_point_, StepKind::kEven);
+      current_.progress = strokeParameter() / program_.schedule().length();
     } else {
       strokePair();
     }
@@ -58,68 +61,157 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   return true;
 }
 
-bool SetpointStream::beginPair() noexcept {
-  if (stopping_) {
-    law_.setTarget(0);
-    return !law_.resting();
+void SetpointStream::setFeedOverride(double fraction) noexcept {
+  if (fraction >= 0 && fraction <= kMaxFeedOverride) override_ = fraction;
+}
+
+void SetpointStream::resume() noexcept {
+  holding_ = false;
+  stay_lifted_ = false;
+}
+
+void SetpointStream::retract() noexcept {
+  if (mid_pair_ || !law_.resting()) return;
+  holding_ = false;
+  stay_lifted_ = true;
+  if (leg_ == Leg::kLift) return;
+  if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
+    reentry_ = std::max(0.0, strokeParameter() - program_.schedule().runUp());
   }
+  leg_ = Leg::kLift;
+  Axes lifted = current_.position;
+  lifted[kY] = std::max(lifted[kY], program_.clearanceHeight());
+  beginStraight(MoveKind::kLift, lifted);
+}
+
+bool SetpointStream::finished() const noexcept {
+  return onPath() && next_move_ == program_.moves().size() && law_.finished() && !mid_pair_;
+}
+
+bool SetpointStream::beginPair() noexcept {
+  law_.setTarget(targetSpeed());
   while (law_.resting()) {
-    if (next_move_ == program_.moves().size()) return false;
-    beginMove(program_.moves()[next_move_++]);
+    if (holding_ || !law_.finished() || !beginNext()) return false;
   }
   return true;
 }
 
+bool SetpointStream::beginNext() noexcept {
+  const bool left_stroke = next_move_ > 0 && program_.moves()[next_move_ - 1].kind == MoveKind::kStroke;
+  switch (leg_) {
+    case Leg::kPath:
+      if (next_move_ == program_.moves().size()) return false;
+      beginMove(program_.moves()[next_move_++]);
+      return true;
+    case Leg::kLift:
+      if (stay_lifted_) return false;
+      if (left_stroke) {
+        leg_ = Leg::kBack;
+        beginReturn();
+        return true;
+      }
+      // A straight move is begun again: from above it goes where it was to go.
+      leg_ = Leg::kPath;
+      if (next_move_ > 0) beginMove(program_.moves()[next_move_ - 1]);
+      return true;
+    case Leg::kBack: {
+      leg_ = Leg::kPlunge;
+      Axes on_path = current_.position;
+      on_path[kY] = program_.cutter().y(on_path[kX]) + y_offset_;
+      beginStraight(MoveKind::kInfeed, on_path);
+      return true;
+    }
+    case Leg::kPlunge:
+      leg_ = Leg::kPath;
+      beginStroke(reentry_);
+      return true;
+  }
+  return false;
+}
+
 void SetpointStream::beginMove(const Move& move) noexcept {
-  current_.move = move.kind;
   current_.tooth = move.tooth;
   current_.pass = move.pass;
+  current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
+  current_.progress = 0;
+  if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
+  y_offset_ = current_.position[kY] - program_.cutter().y(program_.strokeFrom());
+  a_offset_ = program_.job().tooth_angles[move.tooth];
+  beginStroke(0);
+}
+
+void SetpointStream::beginReturn() noexcept {
+  const double x = program_.schedule().x(reentry_);
+  Axes above;
+  above << x, current_.position[kY], program_.cutter().z(x), a_offset_ + curve_.a(x);
+  beginStraight(MoveKind::kPosition, above);
+}
+
+void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
+  current_.move = kind;
   current_.step = StepKind::kNone;
   current_.path_error = 0;
   current_.feed = 0;
   current_.at_feed = false;
-  if (move.kind == MoveKind::kStroke) {
-    const FeedSchedule& schedule = program_.schedule();
-    const double x = program_.strokeFrom();
-    interpolator_ = OddEvenInterpolator(curve_, program_.job().interpolation.rotary_scale,
-                                        program_.job().interpolation.even_step, x);
-    y_offset_ = current_.position[kY] - program_.cutter().y(x);
-    a_offset_ = program_.job().tooth_angles[move.tooth];
-    law_ = FeedLaw(schedule.limits(), schedule.length(), schedule.limits().velocity);
-    return;
-  }
   from_ = current_.position;
-  way_ = move.to - from_;
+  way_ = to - from_;
+  to_ = to;
   linear_way_ = way_.head<3>().matrix().norm();
   if ((way_.abs() <= kNoWay).all()) {
-    current_.position = move.to;
+    current_.position = to;
     law_ = FeedLaw();
     return;
   }
   MotionLimits limits = limitsAlong(way_, program_.machine().limits);
-  if (move.kind == MoveKind::kInfeed) {
-    limits.velocity = std::min(limits.velocity, program_.job().process.feed / linear_way_);
+  double speed = limits.velocity;
+  if (goesAtFeed(kind)) {
+    speed = std::min(speed, program_.job().process.feed / linear_way_);
+    limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
   }
-  law_ = FeedLaw(limits, 1, limits.velocity);
+  beginLaw(limits, 1, speed);
+}
+
+void SetpointStream::beginStroke(double s) noexcept {
+  const FeedSchedule& schedule = program_.schedule();
+  const GrindInterpolation& settings = program_.job().interpolation;
+  current_.move = MoveKind::kStroke;
+  stroke_from_ = s;
+  interpolator_ = OddEvenInterpolator(curve_, settings.rotary_scale, settings.even_step, schedule.x(s));
+  beginLaw(schedule.limits(), schedule.length() - s, schedule.feedSpeed());
+}
+
+void SetpointStream::beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept {
+  feed_speed_ = feed_speed;
+  law_ = FeedLaw(limits, distance, 0);
+  law_.setTarget(targetSpeed());
+}
+
+double SetpointStream::targetSpeed() const noexcept {
+  if (holding_) return 0;
+  return goesAtFeed(current_.move) ? std::min(override_ * feed_speed_, law_.limits().velocity) : feed_speed_;
+}
+
+double SetpointStream::strokeParameter() const noexcept {
+  return law_.finished() ? program_.schedule().length() : stroke_from_ + law_.position();
 }
 
 void SetpointStream::straightStep() noexcept {
   law_.advance(period_);
-  const Axes& to = program_.moves()[next_move_ - 1].to;
   if (law_.finished()) {
-    current_.position = to;
+    current_.position = to_;
   } else {
     current_.position = from_ + way_ * law_.position();
   }
   current_.feed = law_.speed() * linear_way_;
+  if (onPath()) current_.progress = law_.position();
 }
 
 void SetpointStream::strokePair() noexcept {
   const FeedSchedule& schedule = program_.schedule();
-  const auto steady = [&] { return law_.cruising() && schedule.rate(law_.position()) == 1; };
+  const auto steady = [&] { return law_.cruising() && schedule.rate(stroke_from_ + law_.position()) == 1; };
   const bool was_steady = steady();
   law_.advance(2 * period_);
-  const double s = law_.position();
+  const double s = strokeParameter();
   const double dx = schedule.x(s) - interpolator_.position().x;
   const OddEvenPair pair = interpolator_.advance(dx);
   current_.feed = law_.speed() * schedule.rate(s) * program_.cutter().edgePerTravel();

@@ -37,6 +37,16 @@ Interface& require(RobotHW& hw, const char* name) {
 
 }  // namespace
 
+const char* toString(Interlock interlock) noexcept {
+  switch (interlock) {
+    case Interlock::kNone: return "";
+    case Interlock::kNotHomed: return "the axes are not homed";
+    case Interlock::kSpindle: return "the spindle is not at speed";
+    case Interlock::kCoolant: return "no coolant flows";
+  }
+  return "unknown";
+}
+
 std::string LoopFault::text() const {
   const std::string unit = std::string(" ") + axisUnit(axis);
   const char* joint = kJointNames[static_cast<std::size_t>(axis)];
@@ -54,6 +64,12 @@ std::string LoopFault::text() const {
       text << joint << " following error " << value << unit << " is beyond its limit " << limit << unit;
       break;
     case FaultKind::kLimit: text << violation.text(); break;
+    case FaultKind::kHoming:
+      text << "the drive has not found its reference after " << value << " s, allowed " << limit << " s";
+      break;
+    case FaultKind::kInterlock:
+      text << toString(interlock) << ' ' << value << " s after the job was started, allowed " << limit << " s";
+      break;
   }
   return text.str();
 }
@@ -119,6 +135,12 @@ RequestReply ControlLoop::request(MachineEvent event, SetpointStream* stream) {
   return {false, std::string(toString(event)) + ": the control loop does not answer", false};
 }
 
+bool ControlLoop::setFeedOverride(double fraction) {
+  if (!(fraction >= 0 && fraction <= kMaxFeedOverride)) return false;
+  feed_override_ = fraction;
+  return true;
+}
+
 bool ControlLoop::post(MachineEvent event, SetpointStream* stream) {
   if (awaiting_answer_ || !commands_.push(Command{event, stream})) return false;
   awaiting_answer_ = true;
@@ -139,7 +161,7 @@ std::optional<RequestReply> ControlLoop::reply() {
       break;
     case Refusal::kEmergencyStop: text += "the emergency stop is pressed; release it first"; break;
     case Refusal::kDriveFault: text += "the drive reports a fault; reset it first"; break;
-    case Refusal::kNotHomed: text += "the axes are not homed"; break;
+    case Refusal::kInterlock: text += toString(answer.interlock); break;
     case Refusal::kNoPower: text += "the drive did not switch its power on in time"; break;
     case Refusal::kMoved: text += "the axes do not stand where the job was planned to start; plan it again"; break;
     case Refusal::kFeedback: text += "the drive gives no valid, fresh positions"; break;
@@ -157,17 +179,19 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   observe();
   if (powered()) checkDrive();
   takeCommand();
-  if (state_ == MachineState::kDisabled) awaitPower(record_.period);
-  if (stream_) move();
-  // So that switching power on moves nothing; after a fault the commands stay where they are.
-  if (state_ == MachineState::kDisabled && record_.position.isFinite().all()) command_ = record_.position;
+  if (state_ == MachineState::kDisabled) awaitPower();
+  if (state_ == MachineState::kHoming) awaitHoming();
+  if (stream_) advanceJob();
 
+  drive_command_.home = state_ == MachineState::kHoming;
+  drive_command_.spindle = drive_command_.coolant = stream_ != nullptr;
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
   drive_.setCommand(drive_command_);
   hw_.write(time, period);
 
   record_.command = command_;
   record_.state = state_;
+  record_.feed_override = feed_override_;
   if (records_.push(record_)) {
     record_.job_ended = false;
   } else {
@@ -186,6 +210,10 @@ void ControlLoop::observe() {
   }
   feedback_age_ = record_.drive.feedback_count == last_feedback_ ? feedback_age_ + record_.period : 0;
   last_feedback_ = record_.drive.feedback_count;
+  // Without power and while the drive homes, the commands follow, so that nothing moves when they count again; after a
+  // fault they stay where they are.
+  const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
+  if (follows && record_.position.isFinite().all()) command_ = record_.position;
 }
 
 void ControlLoop::checkDrive() {
@@ -229,9 +257,8 @@ void ControlLoop::takeCommand() {
   Command command;
   if (pending_ || !commands_.pop(command)) return;
   pending_ = command;
-  const bool is_request =
-      command.event < MachineEvent::kFinished && (command.stream || command.event != MachineEvent::kStart);
-  if (!is_request || !after(state_, command.event)) return answer(Refusal::kState);
+  const bool complete = isRequest(command.event) && (command.stream || command.event != MachineEvent::kStart);
+  if (!complete || !after(state_, command.event)) return answer(Refusal::kState);
   const Refusal refusal = carryOut(command);
   // Power takes its time: awaitPower() answers.
   if (refusal == Refusal::kNone && command.event == MachineEvent::kEnable && !powered()) return;
@@ -244,18 +271,30 @@ ControlLoop::Refusal ControlLoop::carryOut(const Command& command) {
       const Refusal refusal = obstacleToPower();
       if (refusal != Refusal::kNone) return refusal;
       drive_command_.enable = true;
-      power_wait_ = 0;
+      waited_ = 0;
       return Refusal::kNone;
     }
+    case MachineEvent::kHome:
+      homing_seen_ = false;
+      waited_ = 0;
+      break;
     case MachineEvent::kStart: return start(command.stream);
-    case MachineEvent::kCancel: stream_->stop(); break;
+    case MachineEvent::kHold:
+    case MachineEvent::kCancel: stream_->hold(); break;
+    case MachineEvent::kResume:
+      if (openInterlock() != Interlock::kNone) return Refusal::kInterlock;
+      record_.interlock = Interlock::kNone;
+      stream_->resume();
+      break;
+    case MachineEvent::kRetract: stream_->retract(); break;
     case MachineEvent::kReset:
       if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
       drive_command_.reset = true;
       record_.fault = LoopFault{};
       break;
     case MachineEvent::kDisable: drive_command_.enable = false; break;
-    case MachineEvent::kFinished:
+    case MachineEvent::kDone:
+    case MachineEvent::kAtRest:
     case MachineEvent::kFault: break;
   }
   apply(command.event);
@@ -270,43 +309,99 @@ ControlLoop::Refusal ControlLoop::obstacleToPower() const {
 }
 
 ControlLoop::Refusal ControlLoop::start(SetpointStream* stream) {
-  if (!record_.drive.homed) return Refusal::kNotHomed;
+  if (!record_.drive.homed) return Refusal::kInterlock;
   if (!(stream->program().start() == command_).all()) return Refusal::kMoved;
   stream_ = stream;
   limit_check_.restart();
+  record_.fault = LoopFault{};
+  record_.interlock = Interlock::kNone;
+  waited_ = 0;
   apply(MachineEvent::kStart);
   return Refusal::kNone;
 }
 
 void ControlLoop::answer(Refusal refusal) {
-  answers_.push(Answer{pending_->event, state_, refusal});
+  answers_.push(Answer{pending_->event, state_, refusal, openInterlock()});
   pending_.reset();
 }
 
-void ControlLoop::awaitPower(double period) {
+void ControlLoop::awaitPower() {
   if (!pending_ || pending_->event != MachineEvent::kEnable) return;
-  power_wait_ += period;
+  waited_ += record_.period;
   const Refusal refusal = obstacleToPower();
   if (refusal != Refusal::kNone) {
     drive_command_.enable = false;
     answer(refusal);
   } else if (record_.drive.enabled) {
-    command_ = record_.position;
     apply(MachineEvent::kEnable);
     answer(Refusal::kNone);
-  } else if (!(power_wait_ <= config_.enable_timeout)) {
+  } else if (!(waited_ <= config_.enable_timeout)) {
     drive_command_.enable = false;
     answer(Refusal::kNoPower);
   }
 }
 
+void ControlLoop::awaitHoming() {
+  waited_ += record_.period;
+  homing_seen_ |= record_.drive.homing;
+  const bool over = homing_seen_ && !record_.drive.homing;
+  if (over && record_.drive.homed) return apply(MachineEvent::kDone);
+  if (!over && waited_ <= config_.homing_timeout) return;
+  LoopFault fault;
+  fault.kind = FaultKind::kHoming;
+  fault.value = waited_;
+  fault.limit = config_.homing_timeout;
+  fail(fault);
+}
+
+void ControlLoop::awaitSpindle() {
+  const Interlock open = openInterlock();
+  if (open == Interlock::kNone) return apply(MachineEvent::kDone);
+  waited_ += record_.period;
+  if (waited_ <= config_.spindle_timeout) return;
+  record_.fault.kind = FaultKind::kInterlock;
+  record_.fault.interlock = open;
+  record_.fault.value = waited_;
+  record_.fault.limit = config_.spindle_timeout;
+  endJob();
+  apply(MachineEvent::kAtRest);
+}
+
+Interlock ControlLoop::openInterlock() const {
+  if (!record_.drive.homed) return Interlock::kNotHomed;
+  if (!record_.drive.spindle_at_speed) return Interlock::kSpindle;
+  if (!record_.drive.coolant_on) return Interlock::kCoolant;
+  return Interlock::kNone;
+}
+
+void ControlLoop::checkInterlocks() {
+  if (state_ == MachineState::kCanceling) return;
+  const Interlock open = openInterlock();
+  if (open != Interlock::kNone && record_.interlock == Interlock::kNone) {
+    record_.interlock = open;
+    if (after(state_, MachineEvent::kHold) && state_ != MachineState::kRetracting) {
+      stream_->hold();
+      apply(MachineEvent::kHold);
+    }
+  }
+  // A wheel that dwells burns the tool, and one that stands still or runs dry spoils it.
+  if (record_.interlock != Interlock::kNone && state_ == MachineState::kHeld) {
+    stream_->retract();
+    apply(MachineEvent::kRetract);
+  }
+}
+
+void ControlLoop::advanceJob() {
+  if (state_ == MachineState::kStarting) return awaitSpindle();
+  checkInterlocks();
+  if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
+  stream_->setFeedOverride(feed_override_);
+  move();
+}
+
 void ControlLoop::move() {
   Setpoint setpoint;
-  if (!stream_->next(setpoint)) {
-    stream_ = nullptr;
-    record_.job_ended = true;
-    return apply(MachineEvent::kFinished);
-  }
+  if (!stream_->next(setpoint)) return rest();
   if (const auto violation = limit_check_.check(setpoint)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;
@@ -319,10 +414,22 @@ void ControlLoop::move() {
   record_.setpoint = setpoint;
 }
 
+void ControlLoop::rest() {
+  const bool on_the_way = state_ == MachineState::kRunning || state_ == MachineState::kResuming;
+  if (on_the_way && !stream_->finished()) return;  // the feed override is 0
+  if (on_the_way || state_ == MachineState::kCanceling) endJob();
+  apply(MachineEvent::kAtRest);
+}
+
+void ControlLoop::endJob() {
+  stream_ = nullptr;
+  record_.job_ended = true;
+  record_.interlock = Interlock::kNone;
+}
+
 void ControlLoop::fail(const LoopFault& fault) {
   record_.fault = fault;
-  if (stream_) record_.job_ended = true;
-  stream_ = nullptr;
+  if (stream_) endJob();
   drive_command_.enable = false;
   apply(MachineEvent::kFault);
 }

@@ -157,6 +157,8 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.machine.period = 1 / p.number("control_rate", 10, 20000);
   config.feedback_timeout = p.number("feedback_timeout", 0, 1);
   config.enable_timeout = p.number("enable_timeout", 0, 60);
+  config.homing_timeout = p.number("homing_timeout", 0, 3600);
+  config.spindle_timeout = p.number("spindle_timeout", 0, 600);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
   return config;
 }

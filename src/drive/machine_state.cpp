@@ -14,17 +14,62 @@ using S = MachineState;
 using E = MachineEvent;
 
 constexpr Transition kTransitions[]{
-    {S::kDisabled, E::kEnable, S::kReady},    {S::kDisabled, E::kDisable, S::kDisabled},
+    {S::kDisabled, E::kEnable, S::kReady},
+    {S::kDisabled, E::kDisable, S::kDisabled},
     {S::kDisabled, E::kReset, S::kDisabled},  // of a fault that the drive has kept, or has got since
-    {S::kReady, E::kEnable, S::kReady},       {S::kReady, E::kDisable, S::kDisabled},
-    {S::kReady, E::kStart, S::kRunning},      {S::kRunning, E::kCancel, S::kCanceling},
-    {S::kRunning, E::kFinished, S::kReady},   {S::kCanceling, E::kCancel, S::kCanceling},
-    {S::kCanceling, E::kFinished, S::kReady}, {S::kFault, E::kReset, S::kDisabled},
-    {S::kReady, E::kFault, S::kFault},        {S::kRunning, E::kFault, S::kFault},
-    {S::kCanceling, E::kFault, S::kFault},
-};
 
-bool isRequest(MachineEvent event) noexcept { return event < MachineEvent::kFinished; }
+    {S::kReady, E::kEnable, S::kReady},
+    {S::kReady, E::kDisable, S::kDisabled},
+    {S::kReady, E::kHome, S::kHoming},
+    {S::kReady, E::kStart, S::kStarting},
+    {S::kReady, E::kFault, S::kFault},
+
+    {S::kHoming, E::kDisable, S::kDisabled},
+    {S::kHoming, E::kDone, S::kReady},
+    {S::kHoming, E::kFault, S::kFault},
+
+    {S::kStarting, E::kCancel, S::kCanceling},
+    {S::kStarting, E::kDone, S::kRunning},
+    {S::kStarting, E::kAtRest, S::kReady},  // spindle and coolant did not come
+    {S::kStarting, E::kFault, S::kFault},
+
+    {S::kRunning, E::kHold, S::kHolding},
+    {S::kRunning, E::kCancel, S::kCanceling},
+    {S::kRunning, E::kAtRest, S::kReady},
+    {S::kRunning, E::kFault, S::kFault},
+
+    {S::kHolding, E::kHold, S::kHolding},
+    {S::kHolding, E::kResume, S::kResuming},
+    {S::kHolding, E::kCancel, S::kCanceling},
+    {S::kHolding, E::kAtRest, S::kHeld},
+    {S::kHolding, E::kFault, S::kFault},
+
+    {S::kHeld, E::kHold, S::kHeld},
+    {S::kHeld, E::kResume, S::kResuming},
+    {S::kHeld, E::kRetract, S::kRetracting},
+    {S::kHeld, E::kCancel, S::kCanceling},
+    {S::kHeld, E::kFault, S::kFault},
+
+    {S::kRetracting, E::kHold, S::kHolding},
+    {S::kRetracting, E::kCancel, S::kCanceling},
+    {S::kRetracting, E::kAtRest, S::kRetracted},
+    {S::kRetracting, E::kFault, S::kFault},
+
+    {S::kRetracted, E::kResume, S::kResuming},
+    {S::kRetracted, E::kCancel, S::kCanceling},
+    {S::kRetracted, E::kFault, S::kFault},
+
+    {S::kResuming, E::kHold, S::kHolding},
+    {S::kResuming, E::kCancel, S::kCanceling},
+    {S::kResuming, E::kDone, S::kRunning},
+    {S::kResuming, E::kFault, S::kFault},
+
+    {S::kCanceling, E::kCancel, S::kCanceling},
+    {S::kCanceling, E::kAtRest, S::kReady},
+    {S::kCanceling, E::kFault, S::kFault},
+
+    {S::kFault, E::kReset, S::kDisabled},
+};
 
 }  // namespace
 
@@ -32,7 +77,14 @@ const char* toString(MachineState state) noexcept {
   switch (state) {
     case S::kDisabled: return "disabled";
     case S::kReady: return "ready";
+    case S::kHoming: return "homing";
+    case S::kStarting: return "starting";
     case S::kRunning: return "running";
+    case S::kHolding: return "holding";
+    case S::kHeld: return "held";
+    case S::kRetracting: return "retracting";
+    case S::kRetracted: return "retracted";
+    case S::kResuming: return "resuming";
     case S::kCanceling: return "canceling";
     case S::kFault: return "fault";
   }
@@ -43,10 +95,15 @@ const char* toString(MachineEvent event) noexcept {
   switch (event) {
     case E::kEnable: return "enable";
     case E::kDisable: return "disable";
+    case E::kHome: return "home";
     case E::kStart: return "start";
+    case E::kHold: return "hold";
+    case E::kResume: return "resume";
+    case E::kRetract: return "retract";
     case E::kCancel: return "cancel";
     case E::kReset: return "reset";
-    case E::kFinished: return "finished";
+    case E::kDone: return "done";
+    case E::kAtRest: return "at rest";
     case E::kFault: return "fault";
   }
   return "unknown";

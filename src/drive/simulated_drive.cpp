@@ -12,8 +12,9 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr std::array<const char*, 6> kFaultNames{"none",           "emergency_stop", "stuck_axis",
-                                                 "stale_feedback", "nan_feedback",   "drive_fault"};
+constexpr std::array<const char*, 9> kFaultNames{"none",           "emergency_stop", "stuck_axis",
+                                                 "stale_feedback", "nan_feedback",   "drive_fault",
+                                                 "reference_lost", "spindle_lost",   "coolant_lost"};
 
 template <std::size_t N>
 int indexOf(const std::array<const char*, N>& names, const std::string& name) {
@@ -40,17 +41,23 @@ bool SimulatedDrive::init(ros::NodeHandle&, ros::NodeHandle& robot_hw_nh) {
     model[i].time_constant = p.number(joint + "time_constant", 0, 10);
     model[i].counts_per_unit = p.number(joint + "counts_per_unit", 1, 1e12);
     model[i].start_position = p.number(joint + "start_position", -1e6, 1e6);
+    model[i].home_position = p.number(joint + "home_position", -1e6, 1e6);
+    model[i].homing_velocity = p.number(joint + "homing_velocity", 1e-6, 1e3);
   }
-  init(model);
+  init(model, {p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)});
   inject_service_ = robot_hw_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
   return true;
 }
 
-void SimulatedDrive::init(const Model& model) {
+void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
   model_ = model;
-  status_.homed = true;
+  equipment_ = equipment;
+  status_.homed = equipment.absolute_encoders;
   for (std::size_t i = 0; i < model.size(); ++i) {
-    motor_[static_cast<int>(i)] = position_[i] = command_[i] = sent_[i] = model[i].start_position;
+    const int axis = static_cast<int>(i);
+    motor_[axis] = model[i].start_position;
+    offset_[axis] = status_.homed ? 0 : motor_[axis];
+    position_[i] = command_[i] = sent_[i] = motor_[axis] - offset_[axis];
     const JointStateHandle state(kJointNames[i], &position_[i], &velocity_[i], &effort_[i]);
     joint_states_.registerHandle(state);
     joint_commands_.registerHandle(JointHandle(state, &command_[i]));
@@ -67,6 +74,21 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   const int failing_axis = injected >> 8;
   const double dt = period.toSec();
 
+  readSwitches(fault);
+  readEquipment(fault, dt);
+  const Axes last = motor_;
+  moveMotors(fault, failing_axis, dt);
+  if (fault == Fault::kStaleFeedback) return;
+  for (int i = 0; i < kAxisCount; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    velocity_[n] = dt > 0 ? (motor_[i] - last[i]) / dt : 0;
+    position_[n] = std::round((motor_[i] - offset_[i]) * model_[n].counts_per_unit) / model_[n].counts_per_unit;
+    if (fault == Fault::kNanFeedback && i == failing_axis) position_[n] = std::numeric_limits<double>::quiet_NaN();
+  }
+  ++status_.feedback_count;
+}
+
+void SimulatedDrive::readSwitches(Fault fault) {
   status_.emergency_stop = fault == Fault::kEmergencyStop;
   if (fault == Fault::kDriveFault) {
     status_.fault = true;
@@ -74,18 +96,48 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
     status_.fault = false;
   }
   status_.enabled = drive_command_.enable && !status_.emergency_stop && !status_.fault;
-  for (int i = 0; i < kAxisCount; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    const double last = motor_[i];
-    if (status_.enabled && !(fault == Fault::kStuckAxis && i == failing_axis)) {
-      motor_[i] += (sent_[n] - last) * dt / (model_[n].time_constant + dt);
+}
+
+void SimulatedDrive::readEquipment(Fault fault, double dt) {
+  if (fault == Fault::kReferenceLost) status_.homed = false;
+  const double change = equipment_.spindle_run_up_time > 0 ? dt / equipment_.spindle_run_up_time : 1;
+  spindle_speed_ = std::clamp(spindle_speed_ + (drive_command_.spindle ? change : -change), 0.0, 1.0);
+  if (fault == Fault::kSpindleLost) spindle_speed_ = 0;
+  status_.spindle_at_speed = spindle_speed_ >= 1;
+  status_.coolant_on = drive_command_.coolant && fault != Fault::kCoolantLost;
+}
+
+void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
+  const bool home_is_new = drive_command_.home && !home_was_commanded_;
+  home_was_commanded_ = drive_command_.home;
+  if (home_is_new) status_.homed = false;
+  status_.homing = status_.enabled && drive_command_.home && (home_is_new || status_.homing);
+  if (!status_.enabled) return;
+  const double stuck = motor_[failing_axis];
+  if (status_.homing) {
+    home(dt);
+  } else if (!drive_command_.home) {
+    for (int i = 0; i < kAxisCount; ++i) {
+      const auto n = static_cast<std::size_t>(i);
+      motor_[i] += (sent_[n] + offset_[i] - motor_[i]) * dt / (model_[n].time_constant + dt);
     }
-    if (fault == Fault::kStaleFeedback) continue;
-    velocity_[n] = dt > 0 ? (motor_[i] - last) / dt : 0;
-    position_[n] = std::round(motor_[i] * model_[n].counts_per_unit) / model_[n].counts_per_unit;
-    if (fault == Fault::kNanFeedback && i == failing_axis) position_[n] = std::numeric_limits<double>::quiet_NaN();
   }
-  if (fault != Fault::kStaleFeedback) ++status_.feedback_count;
+  if (fault == Fault::kStuckAxis) motor_[failing_axis] = stuck;
+}
+
+void SimulatedDrive::home(double dt) {
+  bool there = true;
+  for (int i = 0; i < kAxisCount; ++i) {
+    const AxisModel& axis = model_[static_cast<std::size_t>(i)];
+    const double way = axis.home_position - motor_[i];
+    const double step = axis.homing_velocity * dt;
+    motor_[i] = std::abs(way) <= step ? axis.home_position : motor_[i] + std::copysign(step, way);
+    there = there && motor_[i] == axis.home_position;
+  }
+  if (!there) return;
+  offset_.setZero();
+  status_.homing = false;
+  status_.homed = true;
 }
 
 void SimulatedDrive::write(const ros::Time&, const ros::Duration&) { sent_ = command_; }

@@ -40,6 +40,7 @@ class FeedLaw {
   double speed() const noexcept { return speed_; }        ///< never negative but for rounding
   double acceleration() const noexcept { return acceleration_; }
   double target() const noexcept { return target_; }
+  const MotionLimits& limits() const noexcept { return limits_; }
 
   /// Time until the motion comes to rest if the target does not change [s].
   double timeLeft() const noexcept { return end_time_ - time_; }

@@ -6,8 +6,18 @@
 #include "flute_grinder/core/log_curve.h"
 
 #include <string>
+#include <vector>
 
 namespace flute_grinder {
+
+constexpr double kMaxFeedOverride = 1.2;  ///< the fastest that an operator may ask for, of the job's feed
+
+/// Where the feed is held below the one asked for, and why.
+struct FeedCut {
+  std::string cause;  ///< e.g. "axis_a velocity"
+  double from = 0;    ///< X [m]
+  double to = 0;      ///< X [m]
+};
 
 /// Where along a stroke the feed must be cut so that no axis exceeds a limit, and what the feed law may do there.
 ///
@@ -35,8 +45,15 @@ class FeedSchedule {
   /// Length of the stroke in s [m]: the travel in X, longer where the feed is cut.
   double length() const noexcept { return length_; }
 
-  /// Bounds of the motion along s; the velocity is the speed of X where the feed is not cut [m/s].
+  /// Bounds of the motion along s; the velocity is that of the job's feed times as much of kMaxFeedOverride as the axes
+  /// allow, which is none where A holds the feed back [m/s].
   const MotionLimits& limits() const noexcept { return limits_; }
+
+  /// Speed along s at the job's feed, which is the speed of X where A does not hold it back [m/s].
+  double feedSpeed() const noexcept { return feed_speed_; }
+
+  /// Way that it takes to reach the job's feed from rest. [m of s]
+  double runUp() const noexcept;
 
   /// X at s; exactly the stroke's end at s = length(). Real-time safe. [m]
   double x(double s) const noexcept;
@@ -44,11 +61,10 @@ class FeedSchedule {
   /// dX/dt over ds/dt at s: 1 where the feed is not cut for A. Real-time safe.
   double rate(double s) const noexcept;
 
-  /// Which limit holds the feed below the one asked for, e.g. "axis_a velocity"; empty where the feed is never cut.
-  const std::string& limitedBy() const noexcept { return limited_by_; }
+  /// What holds the feed below the one asked for; empty where nothing does.
+  const std::vector<FeedCut>& cuts() const noexcept { return cuts_; }
 
  private:
-  void bound(double& value, double candidate, const char* cause);
   void chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine);
   void chooseBlendAndLimits(const LogCurve& curve, const AxisLimits& limits);
   void placeOnCone(const LogCurve& curve);
@@ -58,11 +74,12 @@ class FeedSchedule {
   double slope(double q) const noexcept;         ///< its derivative
 
   // Speeds: v = min(speed_, speed_per_radius_ * u).
-  double speed_ = 0;             ///< dX/dt where A does not limit it [m/s]
+  double feed_speed_ = 0;        ///< dX/dt at the job's feed, where A does not limit it [m/s]
+  double speed_ = 0;             ///< the same at the largest override [m/s]
   double speed_per_radius_ = 0;  ///< c [m/s]
   double tan_cone_ = 0;
   double sin_rake_ = 0;
-  std::string limited_by_;
+  std::vector<FeedCut> cuts_;
 
   // The parameter q of the blend: cut below 0, blend from 0 to blend_, full feed above.
   double beta_ = 0;        ///< relative growth of the speed per parameter where it is cut [1/m]

@@ -32,6 +32,13 @@ struct GrindProcess {
   double wheel_diameter = 0;  ///< when new [m]
   double wheel_width = 0;     ///< [m]
   double wheel_wear = 0;      ///< of the wheel's radius since Y was set; taken up by Y [m]
+  double wheel_wear_per_pass = 0;  ///< what each pass of any tooth adds to that; taken up before the next pass [m]
+};
+
+/// A pass of a tooth.
+struct ToothPass {
+  int tooth = 0;  ///< from 0
+  int pass = 0;   ///< from 0
 };
 
 /// How the flutes are interpolated.
@@ -72,6 +79,7 @@ struct JobField {
   double shop_scale;      ///< SI value over shop value
   double min, max;        ///< allowed, in shop units, both included
   double& (*at)(GrindJob& job);
+  bool optional = false;  ///< 0 where a job file leaves it out
 
   double get(const GrindJob& job) const { return at(const_cast<GrindJob&>(job)); }
 
@@ -97,5 +105,8 @@ std::vector<JobError> validate(const GrindJob& job, UnitSystem units = UnitSyste
 
 /// The depth of every pass, first to last: infeed steps, the finishing pass, spark-out. [m]
 std::vector<double> passDepths(const GrindProcess& process);
+
+/// The passes of all teeth in the order in which they are ground.
+std::vector<ToothPass> passOrder(const GrindJob& job);
 
 }  // namespace flute_grinder

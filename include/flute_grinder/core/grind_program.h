@@ -18,14 +18,10 @@ struct Move {
   Axes to = Axes::Zero();  ///< [m], A [rad]
 };
 
-/// From which pass of which tooth a job starts.
-struct JobStart {
-  int tooth = 0;
-  int pass = 0;
-};
-
-/// The ordered moves of all teeth and passes of a job: up to the park position's height if the wheel stands lower,
-/// above the start, down to the clearance, infeed, stroke with overtravel, retract; last to the park position.
+/// The ordered moves of all teeth and passes of a job. First up to the park position's height if the wheel stands lower;
+/// then for each pass A is indexed, the wheel runs in above the start, comes down to the clearance, plunges at feed,
+/// makes its stroke with overtravel, and retracts radially; last it returns to the park position. The wheel's wear is
+/// taken up by the plunge, and so never within a pass.
 class GrindProgram {
  public:
   /// @param job a job that validate() accepts.
@@ -34,7 +30,7 @@ class GrindProgram {
   /// @param first first pass to grind.
   /// @throw std::invalid_argument if `first` is not a pass of the job, or where the feed would have to be cut below
   ///        kMinFeed.
-  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first = {});
+  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
 
   const GrindJob& job() const noexcept { return job_; }
   const Machine& machine() const noexcept { return machine_; }
@@ -47,9 +43,12 @@ class GrindProgram {
   double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
   double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
 
+  /// Y at which the wheel is clear of the whole stroke [m].
+  double clearanceHeight() const noexcept { return clearance_y_; }
+
  private:
-  void append(MoveKind kind, int tooth, int pass, const Axes& to);
-  void appendPass(int tooth, int pass, double depth, Axes& at);
+  void append(MoveKind kind, const ToothPass& pass, const Axes& to);
+  void appendPass(const ToothPass& pass, double infeed, Axes& at);
 
   GrindJob job_;
   Machine machine_;
@@ -57,7 +56,7 @@ class GrindProgram {
   Axes start_;
   FeedSchedule::Stroke stroke_;
   FeedSchedule schedule_;
-  double clearance_y_;  ///< clear of the whole stroke [m]
+  double clearance_y_;
   std::vector<Move> moves_;
 };
 

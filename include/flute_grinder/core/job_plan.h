@@ -25,7 +25,7 @@ struct PlanStatistics {
   Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
   Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
   Axes ripple_acceleration = Axes::Zero();             ///< over single cycles: the odd-even steps' [m/s^2], A [rad/s^2]
-  std::string feed_limited_by;                         ///< what holds the feed below the one asked for; may be empty
+  std::vector<FeedCut> feed_cuts;                      ///< what holds the feed below the one asked for, and where
 };
 
 /// Why a plan is refused.
@@ -34,8 +34,9 @@ enum class PlanFault { kNone, kInvalidJob, kLimit, kTolerance };
 /// A job that was generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
-  std::vector<std::string> reasons;  ///< why not, one text each
+  std::vector<std::string> reasons;  ///< why not, one text for each figure, axis and kind of limit
   PlanStatistics statistics;
+  std::vector<std::uint64_t> move_ends;   ///< last cycle of every move of the program
   std::unique_ptr<GrindProgram> program;  ///< null where the job's figures are refused
 
   bool good() const { return fault == PlanFault::kNone; }
@@ -48,7 +49,7 @@ struct JobPlan {
 /// @param first first pass to grind.
 /// @param visit called with every setpoint, if given.
 /// @param units of the texts about the job's figures.
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const JobStart& first = {},
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
                 const std::function<void(const Setpoint&)>& visit = {}, UnitSystem units = UnitSystem::kSi);
 
 }  // namespace flute_grinder

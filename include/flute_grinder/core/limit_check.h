@@ -3,6 +3,7 @@
 #include "flute_grinder/core/axis_limits.h"
 #include "flute_grinder/core/setpoint.h"
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -37,8 +38,12 @@ class LimitCheck {
   /// Forgets the past: the next setpoint is taken as preceded by rest.
   void restart() noexcept { seen_ = 0; }
 
-  /// @return the violation, if the setpoint is one.
+  /// @return the first violation, if the setpoint is one; violations() has all.
   std::optional<LimitViolation> check(const Setpoint& setpoint) noexcept;
+
+  /// All violations of the last setpoint checked.
+  const LimitViolation* begin() const noexcept { return violations_.data(); }
+  const LimitViolation* end() const noexcept { return violations_.data() + violation_count_; }
 
   /// Of the last setpoint checked, or pair end: what it asked of the axes.
   const Axes& velocity() const noexcept { return velocity_; }
@@ -46,8 +51,11 @@ class LimitCheck {
   const Axes& jerk() const noexcept { return jerk_; }
 
  private:
-  std::optional<LimitViolation> excess(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value,
-                                       const Axes& limit, double rounding) const noexcept;
+  void checkPosition(const Setpoint& setpoint) noexcept;
+  void checkPairEnd(const Setpoint& setpoint) noexcept;
+  void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
+                 double rounding) noexcept;
+  void report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value, double limit) noexcept;
 
   AxisLimits limits_;
   Axes middle_, half_range_;  ///< of the positions
@@ -59,6 +67,10 @@ class LimitCheck {
   Axes velocity_ = Axes::Zero();
   Axes acceleration_ = Axes::Zero();
   Axes jerk_ = Axes::Zero();
+
+  /// One for each axis and each of position, velocity, acceleration and jerk.
+  std::array<LimitViolation, kAxisCount * 4> violations_;
+  std::size_t violation_count_ = 0;
 };
 
 }  // namespace flute_grinder

@@ -9,7 +9,8 @@ namespace flute_grinder {
 /// What a move of a job is for.
 enum class MoveKind : std::uint8_t {
   kLift,      ///< radially up to where it is clear of all work, before anything else moves
-  kPosition,  ///< rapid in X, Z and A above the work, to the start of a stroke
+  kIndex,     ///< rapid in A above the work, to the tooth at the start of its stroke
+  kPosition,  ///< rapid in X and Z above the work, to the start of a stroke
   kApproach,  ///< rapid down to the clearance above the start
   kInfeed,    ///< down to the pass' depth, at feed
   kStroke,    ///< along the flute, odd-even interpolated
@@ -17,7 +18,7 @@ enum class MoveKind : std::uint8_t {
   kReturn,    ///< rapid to the park position
 };
 
-constexpr int kMoveKindCount = 7;
+constexpr int kMoveKindCount = 8;
 
 /// e.g. "stroke".
 const char* toString(MoveKind kind) noexcept;
@@ -35,6 +36,8 @@ struct Setpoint {
   Axes velocity = Axes::Zero();  ///< mean over the cycle that ends here [m/s], A [rad/s]
   double path_error = 0;         ///< in A: theory - commanded, 0 off the stroke [rad]
   double feed = 0;               ///< along the cutting edge, or of the linear axes off the stroke [m/s]
+  double progress = 0;           ///< done of the program's move, 0..1; exactly 1 at its end
+  std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the one that was interrupted
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0
   MoveKind move = MoveKind::kLift;

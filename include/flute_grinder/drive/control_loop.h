@@ -34,7 +34,9 @@ enum class FaultKind : std::uint8_t {
   kStaleFeedback,    ///< no fresh positions
   kInvalidFeedback,  ///< a position that is not a number
   kFollowingError,
-  kLimit,  ///< a setpoint that an axis may not follow
+  kLimit,      ///< a setpoint that an axis may not follow
+  kHoming,     ///< the drive did not find its reference
+  kInterlock,  ///< a job could not begin; the machine stays ready
 };
 
 /// A fault with its figures; plain data, put in words outside of the loop.
@@ -44,6 +46,7 @@ struct LoopFault {
   double value = 0;          ///< of what went too far
   double limit = 0;          ///< how far it may go
   LimitViolation violation;  ///< of kLimit
+  Interlock interlock = Interlock::kNone;  ///< of kInterlock
 
   /// e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m".
   std::string text() const;
@@ -61,7 +64,9 @@ struct CycleRecord {
   bool has_setpoint = false;
   Setpoint setpoint;               ///< that was written, if there was one
   bool job_ended = false;          ///< the job's stream is no longer in use
-  LoopFault fault;                 ///< while the state is kFault
+  LoopFault fault;                 ///< of the state kFault, or why the last job did not begin
+  Interlock interlock = Interlock::kNone;  ///< why the loop has held the job by itself, until it is resumed
+  double feed_override = 1;                ///< fraction
   std::uint64_t records_lost = 0;  ///< since the start, because nobody took them
 };
 
@@ -93,6 +98,11 @@ class ControlLoop {
   /// @param stream of kStart: must stay alive until a record says job_ended, or the answer is no.
   RequestReply request(MachineEvent event, SetpointStream* stream = nullptr);
 
+  /// Sets the feed override, of the running job and of those to come. Thread safe.
+  /// @param fraction 0 to kMaxFeedOverride.
+  /// @return whether it is in that range; others are not taken.
+  bool setFeedOverride(double fraction);
+
   /// Takes the oldest record; false if there is none. One consumer at a time.
   bool pop(CycleRecord& record) { return records_.pop(record); }
 
@@ -116,7 +126,7 @@ class ControlLoop {
     kState,
     kEmergencyStop,
     kDriveFault,
-    kNotHomed,
+    kInterlock,
     kNoPower,
     kMoved,
     kFeedback
@@ -129,6 +139,7 @@ class ControlLoop {
     MachineEvent event;
     MachineState state;
     Refusal refusal;
+    Interlock interlock;
   };
 
   void run();
@@ -138,9 +149,16 @@ class ControlLoop {
   Refusal obstacleToPower() const;
   Refusal start(SetpointStream* stream);
   void answer(Refusal refusal);
-  void awaitPower(double period);
+  void awaitPower();
+  void awaitHoming();
+  void awaitSpindle();
   void checkDrive();
+  void checkInterlocks();
+  Interlock openInterlock() const;
+  void advanceJob();
   void move();
+  void rest();
+  void endJob();
   void fail(const LoopFault& fault);
   void apply(MachineEvent event);
   bool powered() const;
@@ -158,7 +176,8 @@ class ControlLoop {
   DriveCommand drive_command_;
   std::uint64_t last_feedback_ = 0;
   double feedback_age_ = 0;
-  double power_wait_ = 0;
+  double waited_ = 0;  ///< for power, the reference, or spindle and coolant [s]
+  bool homing_seen_ = false;
   std::optional<Command> pending_;
   CycleRecord record_;
 
@@ -169,6 +188,7 @@ class ControlLoop {
   std::mutex request_mutex_;
   bool awaiting_answer_ = false;
   std::thread thread_;
+  std::atomic<double> feed_override_{1};
   std::atomic<bool> running_{false};
   std::atomic<bool> realtime_scheduling_{false};
   std::atomic<bool> memory_locked_{false};

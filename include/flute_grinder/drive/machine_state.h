@@ -8,31 +8,46 @@ namespace flute_grinder {
 
 /// What the machine is doing.
 enum class MachineState : std::uint8_t {
-  kDisabled,   ///< power off; commands follow the positions
-  kReady,      ///< power on, at rest
-  kRunning,    ///< a job moves the axes
-  kCanceling,  ///< stopping on the path, to end the job
-  kFault,      ///< power off after a fault, until reset
+  kDisabled,    ///< power off; commands follow the positions
+  kReady,       ///< power on, at rest
+  kHoming,      ///< the drive looks for the axes' reference
+  kStarting,    ///< a job waits for spindle and coolant
+  kRunning,     ///< a job moves the axes
+  kHolding,     ///< stopping on the path
+  kHeld,        ///< at rest in the midst of a job
+  kRetracting,  ///< lifting the wheel off the work
+  kRetracted,   ///< at rest in the midst of a job, the wheel off the work
+  kResuming,    ///< on the way back to the place where the path was left
+  kCanceling,   ///< stopping on the path, to end the job
+  kFault,       ///< power off after a fault, until reset
 };
 
 /// What may change the state: requests from outside, and what the loop sees by itself.
 enum class MachineEvent : std::uint8_t {
   kEnable,
   kDisable,
+  kHome,
   kStart,
+  kHold,
+  kResume,
+  kRetract,
   kCancel,
   kReset,
-  kFinished,  ///< the job came to rest at its end, or after a cancel
+  kDone,    ///< what the state waited for has come: the reference, spindle and coolant, the path
+  kAtRest,  ///< the axes have come to rest
   kFault,
 };
 
 const char* toString(MachineState state) noexcept;  ///< e.g. "ready"
 const char* toString(MachineEvent event) noexcept;  ///< e.g. "enable"
 
+/// Whether an event is a request from outside.
+constexpr bool isRequest(MachineEvent event) noexcept { return event < MachineEvent::kDone; }
+
 /// The state after an event, or nothing where the state does not allow it. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;
 
-/// Which requests a state allows, e.g. "start, disable".
+/// Which requests a state allows, e.g. "disable, start".
 std::string allowedIn(MachineState state);
 
 }  // namespace flute_grinder

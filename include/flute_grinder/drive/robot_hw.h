@@ -70,6 +70,9 @@ struct DriveStatus {
   bool emergency_stop = false;       ///< the emergency stop is pressed
   bool fault = false;                ///< the drive reports a fault of its own
   bool homed = false;                ///< positions refer to the machine's reference
+  bool homing = false;               ///< the axes are looking for it, as they were told
+  bool spindle_at_speed = false;     ///< the wheel turns as fast as it is to grind
+  bool coolant_on = false;           ///< coolant flows
   std::uint64_t feedback_count = 0;  ///< goes up with each fresh set of positions
 };
 
@@ -77,6 +80,9 @@ struct DriveStatus {
 struct DriveCommand {
   bool enable = false;  ///< switch power on, or off: the axes are then stopped by the drive at once
   bool reset = false;   ///< clear a fault of the drive, for the one cycle in which it is set
+  bool home = false;    ///< look for the machine's reference, as long as it is set; position commands do not count then
+  bool spindle = false;  ///< turn the wheel
+  bool coolant = false;  ///< let coolant flow
 };
 
 /// Connects the machine's signals that belong to no joint. Real-time safe but for the constructor.

@@ -45,8 +45,8 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
   const double feed = schedule.feedSpeed() * rate * cutter.edgePerTravel();
   if (feed >= kMinFeed * (1 - 1e-9)) return;
   std::ostringstream text;
-  text << "process.feed: " << (schedule.cuts().empty() ? "it" : schedule.cuts().back().cause) << " allows " << feed << " m/s ("
-       << feed / units::kMillimetrePerMinute << " mm/min); the slowest feed is " << kMinFeed << " m/s ("
+  text << "process.feed: " << (schedule.cuts().empty() ? "it" : schedule.cuts().back().cause) << " allows " << feed
+       << " m/s (" << feed / units::kMillimetrePerMinute << " mm/min); the slowest feed is " << kMinFeed << " m/s ("
        << kMinFeed / units::kMillimetrePerMinute << " mm/min)";
   throw std::invalid_argument(text.str());
 }

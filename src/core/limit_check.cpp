@@ -94,7 +94,7 @@ void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, c
 
 void LimitCheck::report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value,
                         double limit) noexcept {
-  violations_[violation_count_++] = {axis,           quantity, value, limit, setpoint.cycle, setpoint.position[kX],
+  violations_[violation_count_++] = {axis,         quantity, value, limit, setpoint.cycle, setpoint.position[kX],
                                      setpoint.move};
 }
 

@@ -394,14 +394,15 @@ void ControlLoop::checkInterlocks() {
 void ControlLoop::advanceJob() {
   if (state_ == MachineState::kStarting) return awaitSpindle();
   checkInterlocks();
-  if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
   stream_->setFeedOverride(feed_override_);
   move();
 }
 
 void ControlLoop::move() {
   Setpoint setpoint;
-  if (!stream_->next(setpoint)) return rest();
+  const bool moves = stream_->next(setpoint);
+  if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
+  if (!moves) return rest();
   if (const auto violation = limit_check_.check(setpoint)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;

@@ -1,6 +1,11 @@
 #include "flute_grinder/node/conversions.h"
 
+#include <openssl/evp.h>
+#include <ros/serialization.h>
+
 #include <algorithm>
+#include <stdexcept>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -38,6 +43,7 @@ GrindJob jobFromGoal(const GrindGoal& goal) {
   job.process.wheel_diameter = p.wheel_diameter;
   job.process.wheel_width = p.wheel_width;
   job.process.wheel_wear = p.wheel_wear;
+  job.process.wheel_wear_per_pass = p.wheel_wear_per_pass;
   job.interpolation.even_step = static_cast<EvenStepRule>(i.even_step);
   job.interpolation.tolerance = i.tolerance;
   job.interpolation.rotary_scale = i.rotary_scale;
@@ -65,10 +71,36 @@ GrindGoal goalFromJob(const GrindJob& job) {
   goal.process.wheel_diameter = job.process.wheel_diameter;
   goal.process.wheel_width = job.process.wheel_width;
   goal.process.wheel_wear = job.process.wheel_wear;
+  goal.process.wheel_wear_per_pass = job.process.wheel_wear_per_pass;
   goal.interpolation.even_step = static_cast<std::uint8_t>(job.interpolation.even_step);
   goal.interpolation.tolerance = job.interpolation.tolerance;
   goal.interpolation.rotary_scale = job.interpolation.rotary_scale;
   return goal;
+}
+
+std::string jobDigest(const GrindJob& job) {
+  const GrindGoal goal = goalFromJob(job);
+  std::vector<std::uint8_t> bytes;
+  const auto append = [&](const auto& part) {
+    std::vector<std::uint8_t> of_part(ros::serialization::serializationLength(part));
+    ros::serialization::OStream stream(of_part.data(), static_cast<std::uint32_t>(of_part.size()));
+    ros::serialization::serialize(stream, part);
+    bytes.insert(bytes.end(), of_part.begin(), of_part.end());
+  };
+  append(goal.cutter);
+  append(goal.process);
+  append(goal.interpolation);
+
+  std::array<std::uint8_t, 32> digest{};
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("the job's digest cannot be computed");
+  }
+  std::string text;
+  for (const std::uint8_t byte : digest) {
+    constexpr const char* digits = "0123456789abcdef";
+    text += {digits[byte >> 4], digits[byte & 15]};
+  }
+  return text;
 }
 
 PathStatistics toMessage(const PlanStatistics& s) {
@@ -85,7 +117,13 @@ PathStatistics toMessage(const PlanStatistics& s) {
   copy(s.max_acceleration, m.max_acceleration);
   copy(s.max_jerk, m.max_jerk);
   copy(s.ripple_acceleration, m.ripple_acceleration);
-  m.feed_limited_by = s.feed_limited_by;
+  for (const FeedCut& cut : s.feed_cuts) {
+    FeedLimit limit;
+    limit.cause = cut.cause;
+    limit.from_x = cut.from;
+    limit.to_x = cut.to;
+    m.feed_limits.push_back(limit);
+  }
   return m;
 }
 
@@ -103,7 +141,7 @@ PlanStatistics fromMessage(const PathStatistics& m) {
   s.max_acceleration = axesOf(m.max_acceleration);
   s.max_jerk = axesOf(m.max_jerk);
   s.ripple_acceleration = axesOf(m.ripple_acceleration);
-  s.feed_limited_by = m.feed_limited_by;
+  for (const FeedLimit& limit : m.feed_limits) s.feed_cuts.push_back({limit.cause, limit.from_x, limit.to_x});
   return s;
 }
 

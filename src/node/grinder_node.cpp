@@ -15,9 +15,10 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTickPeriod = 0.01;         ///< of joint states [s]
-constexpr std::uint64_t kTicksPerBatch = 5;  ///< setpoints, state and feedback
-constexpr double kOverrun = 1.5;             ///< periods after which a cycle counts as late
+constexpr double kTickPeriod = 0.01;             ///< of joint states [s]
+constexpr std::uint64_t kTicksPerBatch = 5;      ///< setpoints, state and feedback
+constexpr std::uint64_t kTicksPerJournal = 100;  ///< within a pass
+constexpr double kOverrun = 1.5;                 ///< periods after which a cycle counts as late
 
 int errorCode(PlanFault fault) {
   switch (fault) {
@@ -38,7 +39,9 @@ int errorCode(FaultKind fault) {
     case FaultKind::kLimit: return GrindResult::LIMIT_VIOLATED;
     case FaultKind::kDriveFault:
     case FaultKind::kPowerLost:
+    case FaultKind::kHoming:
     case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
+    case FaultKind::kInterlock: return GrindResult::NOT_READY;
   }
   return GrindResult::HARDWARE_FAULT;
 }
@@ -78,12 +81,23 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   private_nh_.getParam("", values);
   const ParameterReader parameters(values, private_nh_.getNamespace());
   const LoopConfig config = readMachineConfig(urdf, parameters);
+  journal_ = std::make_unique<Journal>(parameters.text("journal"));
+  readJournal();
   loadDrive(parameters);
   loop_ = std::make_unique<ControlLoop>(*hw_, config);
   batch_.period = config.machine.period;
   advertise();
   loop_->start();
   server_->start();
+}
+
+void GrinderNode::readJournal() {
+  try {
+    progress_ = journal_->read().value_or(Progress{});
+  } catch (const JournalError& error) {
+    journal_error_ = error.what();
+    ROS_ERROR_STREAM(journal_error_ << "; the last job cannot be continued");
+  }
 }
 
 void GrinderNode::loadDrive(const ParameterReader& parameters) {
@@ -119,7 +133,12 @@ void GrinderNode::advertise() {
   };
   trigger("enable", MachineEvent::kEnable);
   trigger("disable", MachineEvent::kDisable);
+  trigger("home", MachineEvent::kHome);
+  trigger("hold", MachineEvent::kHold);
+  trigger("resume", MachineEvent::kResume);
+  trigger("retract", MachineEvent::kRetract);
   trigger("reset_fault", MachineEvent::kReset);
+  services_.push_back(private_nh_.advertiseService("set_feed_override", &GrinderNode::onFeedOverride, this));
   services_.push_back(private_nh_.advertiseService("plan", &GrinderNode::onPlan, this));
 
   server_ = std::make_unique<Server>(
@@ -203,16 +222,31 @@ void GrinderNode::show(const Preview& preview) {
   path_error_.publish(preview.errors->markers());
 }
 
-void GrinderNode::startJob(GoalHandle& goal, const JobPlan& plan) {
-  job_ = std::make_unique<Job>(Job{goal, std::make_unique<SetpointStream>(*plan.program), plan.statistics,
-                                   PathErrorMarkers(plan.program->cutter()), Setpoint{}});
-  const RequestReply reply = loop_->request(MachineEvent::kStart, job_->stream.get());
-  if (reply.accepted) return;
-  // A loop that has not answered may yet begin to use the stream.
-  if (!reply.answered) static_cast<void>(job_->stream.release());
-  job_.reset();
-  ROS_WARN_STREAM(reply.text);
-  goal.setAborted(result(GrindResult::NOT_READY, reply.text), reply.text);
+void GrinderNode::startJob(GoalHandle& goal, JobPlan& plan) {
+  const GrindJob& job = plan.program->job();
+  const auto request = goal.getGoal();
+  const Progress before = progress_;
+  progress_ = {jobDigest(job), false, {request->first_tooth, request->first_pass}, plan.program->strokeFrom()};
+  std::string refusal = writeJournal();
+  if (refusal.empty()) {
+    Setpoint at_start;
+    at_start.position = plan.program->start();
+    at_start.tooth = request->first_tooth;
+    at_start.pass = request->first_pass;
+    job_ = std::make_unique<Job>(Job{goal, std::make_unique<SetpointStream>(*plan.program), plan.statistics,
+                                     std::move(plan.move_ends), passOrder(job),
+                                     PathErrorMarkers(plan.program->cutter()), at_start});
+    const RequestReply reply = loop_->request(MachineEvent::kStart, job_->stream.get());
+    if (reply.accepted) return;
+    // A loop that has not answered may yet begin to use the stream.
+    if (!reply.answered) static_cast<void>(job_->stream.release());
+    job_.reset();
+    refusal = reply.text;
+  }
+  progress_ = before;
+  writeJournal();
+  ROS_WARN_STREAM(refusal);
+  goal.setAborted(result(GrindResult::NOT_READY, refusal), refusal);
 }
 
 void GrinderNode::onCancel(const GoalHandle& goal) {
@@ -234,6 +268,16 @@ bool GrinderNode::onRequest(MachineEvent event, std_srvs::Trigger::Response& res
   response.success = reply.accepted;
   response.message = reply.text;
   if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+bool GrinderNode::onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
+  response.success = loop_->setFeedOverride(request.fraction);
+  if (!response.success) {
+    std::ostringstream text;
+    text << "feed override = " << request.fraction << "; allowed: 0 to " << kMaxFeedOverride;
+    response.message = text.str();
+  }
   return true;
 }
 
@@ -262,6 +306,7 @@ void GrinderNode::tick() {
     takeRecords();
     if (records_ == 0) return;
     publishJointStates();
+    if (ticks_ % kTicksPerJournal == 0 && progress_made_) writeJournal();
     if (++ticks_ % kTicksPerBatch == 0) {
       publishBatch();
       publishState();
@@ -300,7 +345,10 @@ void GrinderNode::follow(const CycleRecord& record) {
       batch_.header.stamp = ros::Time(record.time);
       batch_.goal_id = job_->goal.getGoalID().id;
     }
+    ++job_->written;
+    trackProgress(record.setpoint);
     batch_.setpoints.push_back(toMessage(record.setpoint, record.position));
+    batch_.end_stamp = ros::Time(record.time);
     job_->last = record.setpoint;
     job_->largest_error = std::max(job_->largest_error, std::abs(record.setpoint.path_error));
     job_->errors.add(record.setpoint);
@@ -308,21 +356,54 @@ void GrinderNode::follow(const CycleRecord& record) {
   if (record.job_ended) finishJob(record);
 }
 
+void GrinderNode::trackProgress(const Setpoint& p) {
+  Progress& at = progress_;
+  if (p.move != MoveKind::kStroke || at.finished || p.tooth != at.next.tooth || p.pass != at.next.pass) return;
+  at.x = p.position[kX];
+  progress_made_ = true;
+  if (p.progress < 1) return;
+  const auto is_this = [&](const ToothPass& pass) { return pass.tooth == p.tooth && pass.pass == p.pass; };
+  const auto next = std::find_if(job_->passes.begin(), job_->passes.end(), is_this) + 1;
+  at.finished = next == job_->passes.end();
+  if (!at.finished) at.next = *next;
+  // Before anybody is told that the pass is done, so that none is ground again that was seen to be finished.
+  writeJournal();
+}
+
+std::string GrinderNode::writeJournal() {
+  progress_made_ = false;
+  try {
+    journal_->write(progress_);
+    journal_error_.clear();
+  } catch (const JournalError& error) {
+    journal_error_ = error.what();
+    ROS_ERROR_STREAM(journal_error_);
+  }
+  return journal_error_;
+}
+
+GrindResult GrinderNode::resultOf(const Job& job, int code, const std::string& text) const {
+  GrindResult r = result(code, text, job.statistics);
+  r.setpoints_written = job.written;
+  return r;
+}
+
 void GrinderNode::finishJob(const CycleRecord& record) {
+  if (progress_made_) writeJournal();
   publishBatch();
   publishFeedback();
   path_error_.publish(job_->errors.markers());
   const std::unique_ptr<Job> job = std::move(job_);
   publishState();
-  if (record.state == MachineState::kFault) {
+  if (record.fault.kind != FaultKind::kNone) {
     const std::string text = record.fault.text() + place(job->last);
     ROS_ERROR_STREAM("goal aborted: " << text);
-    job->goal.setAborted(result(errorCode(record.fault.kind), text, job->statistics), text);
+    job->goal.setAborted(resultOf(*job, errorCode(record.fault.kind), text), text);
   } else if (job->canceled) {
     const std::string text = "canceled; stopped on the path" + place(job->last);
-    job->goal.setCanceled(result(GrindResult::CANCELED, text, job->statistics), text);
+    job->goal.setCanceled(resultOf(*job, GrindResult::CANCELED, text), text);
   } else {
-    job->goal.setSucceeded(result(GrindResult::SUCCESSFUL, "", job->statistics));
+    job->goal.setSucceeded(resultOf(*job, GrindResult::SUCCESSFUL, ""));
   }
 }
 
@@ -350,23 +431,38 @@ void GrinderNode::publishState() {
   message.state_name = toString(record_.state);
   message.enabled = record_.drive.enabled;
   message.homed = record_.drive.homed;
+  message.spindle_at_speed = record_.drive.spindle_at_speed;
+  message.coolant_on = record_.drive.coolant_on;
   message.emergency_stop = record_.drive.emergency_stop;
-  message.override = 1;
+  message.override = record_.feed_override;
   if (job_) {
     message.feed = job_->last.feed;
     message.tooth = job_->last.tooth;
     message.pass = job_->last.pass;
   }
-  if (record_.state == MachineState::kFault) message.fault = record_.fault.text();
+  message.fault = record_.fault.text();
+  message.hold_reason = toString(record_.interlock);
+  message.progress.job_digest = progress_.job_digest;
+  message.progress.finished = progress_.finished;
+  message.progress.tooth = static_cast<std::uint16_t>(progress_.next.tooth);
+  message.progress.pass = static_cast<std::uint16_t>(progress_.next.pass);
+  message.progress.x = progress_.x;
   state_.publish(message);
+}
+
+double GrinderNode::plannedCycles() const {
+  const Setpoint& p = job_->last;
+  const auto& ends = job_->move_ends;
+  const auto begin = static_cast<double>(p.move_index == 0 ? 0 : ends[p.move_index - 1]);
+  return begin + p.progress * (static_cast<double>(ends[p.move_index]) - begin);
 }
 
 void GrinderNode::publishFeedback() {
   if (!job_) return;
   const Setpoint& p = job_->last;
   const GrindProgram& program = job_->stream->program();
-  const auto done = static_cast<double>(p.cycle + 1);
-  const auto all = static_cast<double>(job_->statistics.setpoints);
+  const double done = plannedCycles();
+  const auto all = static_cast<double>(job_->move_ends.back());
   GrindFeedback feedback;
   feedback.state = toString(record_.state);
   feedback.tooth = p.tooth;
@@ -402,6 +498,7 @@ void GrinderNode::diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.add("Records lost", record_.records_lost);
   status.add("Real-time scheduling", loop_->realtimeScheduling());
   status.add("Memory locked", loop_->memoryLocked());
+  if (!journal_error_.empty()) status.mergeSummary(DiagnosticStatus::ERROR, journal_error_);
   timing_ = Timing{};
 }
 
@@ -410,6 +507,7 @@ void GrinderNode::diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& sta
   using diagnostic_msgs::DiagnosticStatus;
   status.summary(DiagnosticStatus::OK, record_.drive.enabled ? "enabled" : "disabled");
   if (!record_.drive.homed) status.mergeSummary(DiagnosticStatus::WARN, "not homed");
+  if (record_.interlock != Interlock::kNone) status.summary(DiagnosticStatus::WARN, toString(record_.interlock));
   if (record_.drive.fault) status.summary(DiagnosticStatus::ERROR, "the drive reports a fault");
   if (record_.drive.emergency_stop) status.summary(DiagnosticStatus::ERROR, "emergency stop");
   if (record_.state == MachineState::kFault) status.summary(DiagnosticStatus::ERROR, record_.fault.text());

@@ -1,3 +1,4 @@
+#include "flute_grinder/core/feed_schedule.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/drive/machine_config.h"
 #include "flute_grinder/operator/csv.h"
@@ -55,11 +56,20 @@ void addRun(CLI::App& app, RunOptions& options) {
   auto& command = *app.add_subcommand("run", "grind the job; Ctrl-C cancels it and waits for the stop");
   addJob(command, options.job);
   command.add_flag("--dry-run", options.dry_run, "plan, check and show the path, but move nothing");
+  command.add_flag("--continue", options.go_on,
+                   "begin at the first pass that was not finished, by the grinder's journal");
   command.add_option("--csv", options.csv, "write the setpoints as streamed to this file");
 }
 
+void addOverride(CLI::App& app, double& percent) {
+  auto& command = *app.add_subcommand("override", "set the feed override; 0 stops the feed, rapids keep their speed");
+  command.add_option("PERCENT", percent, "of the job's feed, 0 to 120")
+      ->required()
+      ->check(CLI::Range(0.0, kMaxFeedOverride * 100));
+}
+
 /// What the command line asks for; called once it is parsed.
-int carryOut(const CLI::App& app, TableOptions& table, PlanOptions& plan, RunOptions& run) {
+int carryOut(const CLI::App& app, const TableOptions& table, PlanOptions& plan, const RunOptions& run, double percent) {
   if (app.got_subcommand("table")) return runTable(table);
   if (app.got_subcommand("plan")) {
     const std::string package = ros::package::getPath("flute_grinder");
@@ -70,6 +80,8 @@ int carryOut(const CLI::App& app, TableOptions& table, PlanOptions& plan, RunOpt
   if (!awaitMaster()) return 1;
   if (app.got_subcommand("run")) return runJob(run);
   if (app.got_subcommand("status")) return printStatus(run.node);
+  if (app.got_subcommand("home")) return home(run.node);
+  if (app.got_subcommand("override")) return setFeedOverride(run.node, percent);
   const std::string command = app.get_subcommands().front()->get_name();
   return callTrigger(run.node, command == "reset" ? "reset_fault" : command);
 }
@@ -86,16 +98,22 @@ int run(int argc, char** argv) {
   addTable(app, table);
   addPlan(app, plan);
   addRun(app, run);
+  double percent = 100;
+  addOverride(app, percent);
   app.add_subcommand("status", "print what the grinder is doing");
   app.add_subcommand("enable", "switch the drive's power on");
   app.add_subcommand("disable", "switch the drive's power off");
+  app.add_subcommand("home", "find the axes' reference, and wait until it is found");
+  app.add_subcommand("hold", "stop on the path");
+  app.add_subcommand("resume", "go on after hold or retract");
+  app.add_subcommand("retract", "after hold, lift the wheel off the work");
   app.add_subcommand("reset", "reset a fault; the machine is then disabled");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kUsage;
   }
-  return carryOut(app, table, plan, run);
+  return carryOut(app, table, plan, run, percent);
 }
 
 }  // namespace

@@ -88,7 +88,10 @@ void printStatistics(const PlanStatistics& s) {
   } else {
     std::printf("feed held            never reached\n");
   }
-  if (!s.feed_limited_by.empty()) std::printf("feed limited by      %s\n", s.feed_limited_by.c_str());
+  for (const FeedCut& cut : s.feed_cuts) {
+    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", cut.cause.c_str(), cut.from / kMillimetre,
+                cut.to / kMillimetre);
+  }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
                 v[kZ] / kMillimetre, linear, v[kA] / kDegree, rotary);

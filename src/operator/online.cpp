@@ -2,6 +2,7 @@
 
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/units.h"
@@ -60,6 +61,11 @@ class Recorder {
     const std::lock_guard<std::mutex> lock(mutex_);
     return missed_;
   }
+  /// From the first setpoint to the last, by the clock of the grinder [s].
+  double duration() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return (end_ - begin_).toSec();
+  }
   /// Ends the record. @throw FileError
   void close() {
     subscriber_.shutdown();
@@ -73,6 +79,8 @@ class Recorder {
     const std::lock_guard<std::mutex> lock(mutex_);
     try {
       if (!csv_ && !path_.empty()) csv_.emplace(path_, batch->period);
+      if (received_ == 0) begin_ = batch->header.stamp;
+      end_ = batch->end_stamp;
       for (const WrittenSetpoint& setpoint : batch->setpoints) {
         missed_ += setpoint.cycle - next_cycle_;
         next_cycle_ = setpoint.cycle + 1;
@@ -92,22 +100,56 @@ class Recorder {
   std::uint64_t received_ = 0;
   std::uint64_t missed_ = 0;
   std::uint64_t next_cycle_ = 0;
+  ros::Time begin_, end_;
 };
 
-/// Shows the feedback: a bar that grows on a terminal, a line for each tenth in a file.
+std::optional<GrinderState> stateOf(ros::NodeHandle& nh) {
+  const auto state = ros::topic::waitForMessage<GrinderState>("state", nh, kPatience);
+  if (!state) return std::nullopt;
+  return *state;
+}
+
+int noGrinder(const ros::NodeHandle& nh) { return fail("no grinder answers as " + nh.getNamespace()); }
+
+/// Has a goal begin where the journal says that the job was left. @return why it cannot be; empty if it can.
+std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal) {
+  if (progress.job_digest.empty()) return "there is no job to continue: the grinder's journal is empty";
+  if (progress.job_digest != jobDigest(job)) {
+    return "the grinder's last job was another one, or its file has changed since; run it from the beginning";
+  }
+  if (progress.finished) return "the job is finished: every pass of it is ground";
+  goal.first_tooth = progress.tooth;
+  goal.first_pass = progress.pass;
+  return "";
+}
+
+/// Shows the feedback: a bar that grows on a terminal, a line for each tenth and each state in a file.
 void showProgress(const GrindFeedback::ConstPtr& f) {
   static const bool terminal = isatty(STDERR_FILENO) != 0;
   static int tenths = -1;
+  static std::string state;
   const int now = static_cast<int>(f->job_fraction * 10);
-  if (!terminal && now == tenths) return;
+  if (!terminal && now == tenths && f->state == state) return;
   tenths = now;
+  state = f->state;
   std::string bar(30, '.');
   bar.replace(0, static_cast<std::size_t>(f->job_fraction * 30), static_cast<std::size_t>(f->job_fraction * 30), '#');
-  std::fprintf(stderr, "%s[%s] %3.0f %%  tooth %d  pass %d  X %7.3f mm  %.0f mm/min  %.1f s left%s",
-               terminal ? "\r" : "", bar.c_str(), f->job_fraction * 100, f->tooth + 1, f->pass + 1,
+  std::fprintf(stderr, "%s[%s] %3.0f %%  %s  tooth %d  pass %d  X %7.3f mm  %.0f mm/min  %.1f s left%s",
+               terminal ? "\r" : "", bar.c_str(), f->job_fraction * 100, f->state.c_str(), f->tooth + 1, f->pass + 1,
                f->x / units::kMillimetre, f->feed / units::kMillimetrePerMinute, f->remaining_time,
                terminal ? "\x1b[K" : "\n");
   std::fflush(stderr);
+}
+
+void printProgress(const JobProgress& progress) {
+  if (progress.job_digest.empty()) return;
+  std::printf("last job        %.12s, ", progress.job_digest.c_str());
+  if (progress.finished) {
+    std::printf("finished\n");
+  } else {
+    std::printf("tooth %d, pass %d not finished, X %.3f mm\n", progress.tooth + 1, progress.pass + 1,
+                progress.x / units::kMillimetre);
+  }
 }
 
 }  // namespace
@@ -127,13 +169,19 @@ int runJob(const RunOptions& options) {
   Client client(nh, "grind", false);
   Recorder recorder(nh, options.csv);
   if (!client.waitForServer(kPatience) || !await(kPatience, [&] { return recorder.connected(); })) {
-    return fail("no grinder answers as " + nh.getNamespace());
+    return noGrinder(nh);
   }
   std::signal(SIGINT, [](int) { interrupted = true; });
   std::signal(SIGTERM, [](int) { interrupted = true; });
 
   GrindGoal goal = goalFromJob(job);
   goal.dry_run = options.dry_run;
+  if (options.go_on) {
+    const auto state = stateOf(nh);
+    if (!state) return noGrinder(nh);
+    const std::string refusal = continueFrom(state->progress, job, goal);
+    if (!refusal.empty()) return fail(refusal);
+  }
   client.sendGoal(goal, Client::SimpleDoneCallback(), Client::SimpleActiveCallback(), &showProgress);
   bool canceling = false;
   while (!client.waitForResult(ros::Duration(0.05)) && ros::ok()) {
@@ -148,16 +196,16 @@ int runJob(const RunOptions& options) {
   const auto result = client.getResult();
   const bool good = client.getState() == actionlib::SimpleClientGoalState::SUCCEEDED && result->error_code == 0;
   // The last setpoints may come after the result, by another connection.
-  const std::uint64_t expected = options.dry_run ? 0 : result->statistics.setpoints;
-  await(ros::Duration(good ? 2 : 0.2), [&] { return recorder.received() + recorder.missed() >= expected; });
+  const std::uint64_t expected = result->setpoints_written;
+  await(ros::Duration(2), [&] { return recorder.received() + recorder.missed() >= expected; });
   const std::uint64_t received = recorder.received();
   recorder.close();
 
   if (result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   if (received > 0) {
-    const std::uint64_t missed = good ? expected - received : recorder.missed();
-    std::printf("streamed             %llu setpoints, %llu missed\n", static_cast<unsigned long long>(received),
-                static_cast<unsigned long long>(missed));
+    std::printf("streamed             %llu setpoints in %.3f s, %llu missed\n",
+                static_cast<unsigned long long>(received), recorder.duration(),
+                static_cast<unsigned long long>(expected - received));
     if (!options.csv.empty()) std::printf("setpoints written to %s\n", options.csv.c_str());
   }
   if (!good) return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
@@ -166,16 +214,22 @@ int runJob(const RunOptions& options) {
 
 int printStatus(const std::string& node) {
   ros::NodeHandle nh(node);
-  const auto state = ros::topic::waitForMessage<GrinderState>("state", nh, kPatience);
-  if (!state) return fail("no grinder answers as " + nh.getNamespace());
+  const auto state = stateOf(nh);
+  if (!state) return noGrinder(nh);
   std::printf("state           %s\n", state->state_name.c_str());
   std::printf("enabled         %s\n", state->enabled ? "yes" : "no");
   std::printf("homed           %s\n", state->homed ? "yes" : "no");
+  std::printf("spindle         %s\n", state->spindle_at_speed ? "at speed" : "not at speed");
+  std::printf("coolant         %s\n", state->coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state->emergency_stop ? "pressed" : "released");
   std::printf("feed            %.1f mm/min, override %.0f %%\n", state->feed / units::kMillimetrePerMinute,
               state->override * 100);
-  std::printf("tooth, pass     %d, %d\n", state->tooth + 1, state->pass + 1);
+  if (state->state >= GrinderState::STARTING && state->state <= GrinderState::CANCELING) {
+    std::printf("tooth, pass     %d, %d\n", state->tooth + 1, state->pass + 1);
+  }
+  if (!state->hold_reason.empty()) std::printf("held because    %s\n", state->hold_reason.c_str());
   if (!state->fault.empty()) std::printf("fault           %s\n", state->fault.c_str());
+  printProgress(state->progress);
   return 0;
 }
 
@@ -183,8 +237,31 @@ int callTrigger(const std::string& node, const std::string& service) {
   ros::NodeHandle nh(node);
   ros::ServiceClient client = nh.serviceClient<std_srvs::Trigger>(service);
   std_srvs::Trigger call;
-  if (!await(kPatience, [&] { return client.exists(); }) || !client.call(call))
-    return fail("no grinder answers as " + nh.getNamespace());
+  if (!await(kPatience, [&] { return client.exists(); }) || !client.call(call)) return noGrinder(nh);
+  return call.response.success ? 0 : fail(call.response.message);
+}
+
+int home(const std::string& node) {
+  if (const int status = callTrigger(node, "home")) return status;
+  ros::NodeHandle nh(node);
+  // A state that was published before the call does not count.
+  const ros::Time called = ros::Time::now();
+  while (ros::ok()) {
+    const auto state = stateOf(nh);
+    if (!state) return noGrinder(nh);
+    if (state->header.stamp < called || state->state == GrinderState::HOMING) continue;
+    if (state->homed) return 0;
+    return fail(state->fault.empty() ? "homing was broken off" : state->fault);
+  }
+  return 1;
+}
+
+int setFeedOverride(const std::string& node, double percent) {
+  ros::NodeHandle nh(node);
+  ros::ServiceClient client = nh.serviceClient<SetFeedOverride>("set_feed_override");
+  SetFeedOverride call;
+  call.request.fraction = percent / 100;
+  if (!await(kPatience, [&] { return client.exists(); }) || !client.call(call)) return noGrinder(nh);
   return call.response.success ? 0 : fail(call.response.message);
 }
 

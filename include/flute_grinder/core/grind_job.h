@@ -29,9 +29,9 @@ struct GrindProcess {
   double overtravel_shank = 0;  ///< of the stroke beyond the flute on the shank's side [m]
   GrindOrder order = GrindOrder::kToothMajor;
   StrokeDirection direction = StrokeDirection::kFromEnd;
-  double wheel_diameter = 0;  ///< when new [m]
-  double wheel_width = 0;     ///< [m]
-  double wheel_wear = 0;      ///< of the wheel's radius since Y was set; taken up by Y [m]
+  double wheel_diameter = 0;       ///< when new [m]
+  double wheel_width = 0;          ///< [m]
+  double wheel_wear = 0;           ///< of the wheel's radius since Y was set; taken up by Y [m]
   double wheel_wear_per_pass = 0;  ///< what each pass of any tooth adds to that; taken up before the next pass [m]
 };
 

@@ -18,10 +18,10 @@ struct Move {
   Axes to = Axes::Zero();  ///< [m], A [rad]
 };
 
-/// The ordered moves of all teeth and passes of a job. First up to the park position's height if the wheel stands lower;
-/// then for each pass A is indexed, the wheel runs in above the start, comes down to the clearance, plunges at feed,
-/// makes its stroke with overtravel, and retracts radially; last it returns to the park position. The wheel's wear is
-/// taken up by the plunge, and so never within a pass.
+/// The ordered moves of all teeth and passes of a job. First up to the park position's height if the wheel stands
+/// lower; then for each pass A is indexed, the wheel runs in above the start, comes down to the clearance, plunges at
+/// feed, makes its stroke with overtravel, and retracts radially; last it returns to the park position. The wheel's
+/// wear is taken up by the plunge, and so never within a pass.
 class GrindProgram {
  public:
   /// @param job a job that validate() accepts.

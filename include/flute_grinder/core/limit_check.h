@@ -69,7 +69,7 @@ class LimitCheck {
   Axes jerk_ = Axes::Zero();
 
   /// One for each axis and each of position, velocity, acceleration and jerk.
-  std::array<LimitViolation, kAxisCount * 4> violations_;
+  std::array<LimitViolation, std::size_t{kAxisCount} * 4> violations_;
   std::size_t violation_count_ = 0;
 };
 

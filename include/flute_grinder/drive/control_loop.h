@@ -23,7 +23,20 @@ struct LoopConfig {
   Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
   double feedback_timeout = 0;          ///< longest time without fresh positions [s]
   double enable_timeout = 0;            ///< longest time from the enable command to power [s]
+  double homing_timeout = 0;            ///< longest time that homing may take [s]
+  double spindle_timeout = 0;           ///< longest time until spindle and coolant are ready for a job [s]
 };
+
+/// What must be so for the wheel to be at the work.
+enum class Interlock : std::uint8_t {
+  kNone,
+  kNotHomed,
+  kSpindle,  ///< not at speed
+  kCoolant,  ///< does not flow
+};
+
+/// What is amiss, e.g. "the spindle is not at speed"; empty for kNone.
+const char* toString(Interlock interlock) noexcept;
 
 /// Why the loop stopped the machine.
 enum class FaultKind : std::uint8_t {
@@ -43,9 +56,9 @@ enum class FaultKind : std::uint8_t {
 struct LoopFault {
   FaultKind kind = FaultKind::kNone;
   int axis = 0;
-  double value = 0;          ///< of what went too far
-  double limit = 0;          ///< how far it may go
-  LimitViolation violation;  ///< of kLimit
+  double value = 0;                        ///< of what went too far
+  double limit = 0;                        ///< how far it may go
+  LimitViolation violation;                ///< of kLimit
   Interlock interlock = Interlock::kNone;  ///< of kInterlock
 
   /// e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m".
@@ -62,12 +75,12 @@ struct CycleRecord {
   Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
   Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
   bool has_setpoint = false;
-  Setpoint setpoint;               ///< that was written, if there was one
-  bool job_ended = false;          ///< the job's stream is no longer in use
-  LoopFault fault;                 ///< of the state kFault, or why the last job did not begin
+  Setpoint setpoint;                       ///< that was written, if there was one
+  bool job_ended = false;                  ///< the job's stream is no longer in use
+  LoopFault fault;                         ///< of the state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop has held the job by itself, until it is resumed
   double feed_override = 1;                ///< fraction
-  std::uint64_t records_lost = 0;  ///< since the start, because nobody took them
+  std::uint64_t records_lost = 0;          ///< since the start, because nobody took them
 };
 
 /// Whether a request was carried out, and if not, why.

@@ -7,6 +7,8 @@
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/core/setpoint.h"
 
+#include <string>
+
 /// @file
 /// The one place where messages and the types of core meet. Both are in SI.
 namespace flute_grinder {
@@ -16,6 +18,11 @@ GrindJob jobFromGoal(const GrindGoal& goal);
 
 /// The goal of a job.
 GrindGoal goalFromJob(const GrindJob& job);
+
+/// Tells a job from every other: SHA-256 of its figures, in hexadecimal. What a goal says beside the job does not
+/// count.
+/// @throw std::runtime_error if the computer cannot compute it.
+std::string jobDigest(const GrindJob& job);
 
 PathStatistics toMessage(const PlanStatistics& statistics);
 PlanStatistics fromMessage(const PathStatistics& message);

@@ -2,10 +2,12 @@
 
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/drive/control_loop.h"
 #include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/node/journal.h"
 #include "flute_grinder/node/path_markers.h"
 
 #include <actionlib/server/action_server.h>
@@ -43,9 +45,12 @@ class GrinderNode {
     GoalHandle goal;
     std::unique_ptr<SetpointStream> stream;
     PlanStatistics statistics;
+    std::vector<std::uint64_t> move_ends;  ///< as planned
+    std::vector<ToothPass> passes;         ///< in order
     PathErrorMarkers errors;
     Setpoint last;
     double largest_error = 0;  ///< since the last feedback [rad]
+    std::uint64_t written = 0;
     bool canceled = false;
   };
 
@@ -64,21 +69,27 @@ class GrinderNode {
   };
 
   void loadDrive(const ParameterReader& parameters);
+  void readJournal();
   void advertise();
 
   void onGoal(GoalHandle goal);
   void onCancel(const GoalHandle& goal);
   Preview makePreview(const GrindGoal& goal, const Axes& start) const;
   void show(const Preview& preview);
-  void startJob(GoalHandle& goal, const JobPlan& plan);
+  void startJob(GoalHandle& goal, JobPlan& plan);
   void cancelJob();
   bool onRequest(MachineEvent event, std_srvs::Trigger::Response& response);
+  bool onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response);
   bool onPlan(Plan::Request& request, Plan::Response& response);
 
   void tick();
   void takeRecords();
   bool refresh();
   void follow(const CycleRecord& record);
+  void trackProgress(const Setpoint& setpoint);
+  std::string writeJournal();
+  double plannedCycles() const;
+  GrindResult resultOf(const Job& job, int code, const std::string& text) const;
   void finishJob(const CycleRecord& record);
   void publishJointStates();
   void publishBatch();
@@ -93,6 +104,7 @@ class GrinderNode {
   std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;
   pluginlib::UniquePtr<RobotHW> hw_;
   std::unique_ptr<ControlLoop> loop_;
+  std::unique_ptr<Journal> journal_;
 
   std::unique_ptr<Server> server_;
   std::vector<ros::ServiceServer> services_;
@@ -104,6 +116,9 @@ class GrinderNode {
   CycleRecord record_;  ///< the newest
   std::uint64_t records_ = 0;
   std::unique_ptr<Job> job_;
+  Progress progress_;  ///< of the running job, or of the last one
+  bool progress_made_ = false;
+  std::string journal_error_;
   std::optional<GoalHandle> planning_;
   bool planning_canceled_ = false;
   SetpointBatch batch_;

@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <sstream>
@@ -43,6 +44,7 @@ const char* toString(Interlock interlock) noexcept {
     case Interlock::kNotHomed: return "the axes are not homed";
     case Interlock::kSpindle: return "the spindle is not at speed";
     case Interlock::kCoolant: return "no coolant flows";
+    case Interlock::kProbe: return "the measuring probe is in the way";
   }
   return "unknown";
 }
@@ -62,6 +64,9 @@ std::string LoopFault::text() const {
     case FaultKind::kInvalidFeedback: text << joint << " position from the drive is " << value; break;
     case FaultKind::kFollowingError:
       text << joint << " following error " << value << unit << " is beyond its limit " << limit << unit;
+      break;
+    case FaultKind::kUnderrun:
+      text << "the axes found no setpoint in " << value << " servo cycles, after setpoint " << cycle;
       break;
     case FaultKind::kLimit: text << violation.text(); break;
     case FaultKind::kHoming:
@@ -188,6 +193,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
   drive_.setCommand(drive_command_);
   hw_.write(time, period);
+  remember();
 
   record_.command = command_;
   record_.state = state_;
@@ -213,13 +219,35 @@ void ControlLoop::observe() {
   // Without power and while the drive homes, the commands follow, so that nothing moves when they count again; after a
   // fault they stay where they are.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
-  if (follows && record_.position.isFinite().all()) command_ = record_.position;
+  if (follows && record_.position.isFinite().all()) {
+    command_ = record_.position;
+    written_count_ = 0;
+  }
+}
+
+void ControlLoop::remember() {
+  written_[next_written_] = command_;
+  next_written_ = (next_written_ + 1) % written_.size();
+  written_count_ = std::min(written_count_ + 1, written_.size());
+}
+
+const Axes& ControlLoop::commandInEffect() const {
+  if (written_count_ == 0) return command_;
+  const std::size_t back = 1 + std::min<std::size_t>(record_.drive.commands_waiting, written_count_ - 1);
+  return written_[(next_written_ + written_.size() - back) % written_.size()];
 }
 
 void ControlLoop::checkDrive() {
   LoopFault fault;
   if (record_.drive.emergency_stop) {
     fault.kind = FaultKind::kEmergencyStop;
+    return fail(fault);
+  }
+  // Ahead of what the drive does about it.
+  if (record_.drive.underruns != underruns_before_) {
+    fault.kind = FaultKind::kUnderrun;
+    fault.value = static_cast<double>(record_.drive.underruns - underruns_before_);
+    fault.cycle = record_.setpoint.cycle;
     return fail(fault);
   }
   if (record_.drive.fault) {
@@ -236,6 +264,12 @@ void ControlLoop::checkDrive() {
     fault.limit = config_.feedback_timeout;
     return fail(fault);
   }
+  checkPositions();
+}
+
+void ControlLoop::checkPositions() {
+  const Axes& command = commandInEffect();
+  LoopFault fault;
   for (int i = 0; i < kAxisCount; ++i) {
     fault.axis = i;
     if (!std::isfinite(record_.position[i])) {
@@ -243,7 +277,7 @@ void ControlLoop::checkDrive() {
       fault.value = record_.position[i];
       return fail(fault);
     }
-    const double error = std::abs(command_[i] - record_.position[i]);
+    const double error = std::abs(command[i] - record_.position[i]);
     if (!(error <= config_.following_error[i])) {
       fault.kind = FaultKind::kFollowingError;
       fault.value = error;
@@ -333,6 +367,7 @@ void ControlLoop::awaitPower() {
     drive_command_.enable = false;
     answer(refusal);
   } else if (record_.drive.enabled) {
+    underruns_before_ = record_.drive.underruns;
     apply(MachineEvent::kEnable);
     answer(Refusal::kNone);
   } else if (!(waited_ <= config_.enable_timeout)) {
@@ -371,6 +406,7 @@ Interlock ControlLoop::openInterlock() const {
   if (!record_.drive.homed) return Interlock::kNotHomed;
   if (!record_.drive.spindle_at_speed) return Interlock::kSpindle;
   if (!record_.drive.coolant_on) return Interlock::kCoolant;
+  if (!record_.drive.probe_free) return Interlock::kProbe;
   return Interlock::kNone;
 }
 
@@ -411,13 +447,16 @@ void ControlLoop::move() {
     return fail(fault);
   }
   command_ = setpoint.position;
+  rested_ = 0;
   record_.has_setpoint = true;
   record_.setpoint = setpoint;
 }
 
 void ControlLoop::rest() {
+  const std::uint64_t rested = rested_++;
   const bool on_the_way = state_ == MachineState::kRunning || state_ == MachineState::kResuming;
-  if (on_the_way && !stream_->finished()) return;  // the feed override is 0
+  if (on_the_way && !stream_->finished()) return;       // the feed override is 0
+  if (record_.drive.commands_waiting > rested) return;  // the axes have not got the last setpoint yet
   if (on_the_way || state_ == MachineState::kCanceling) endJob();
   apply(MachineEvent::kAtRest);
 }

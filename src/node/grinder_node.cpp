@@ -39,6 +39,7 @@ int errorCode(FaultKind fault) {
     case FaultKind::kLimit: return GrindResult::LIMIT_VIOLATED;
     case FaultKind::kDriveFault:
     case FaultKind::kPowerLost:
+    case FaultKind::kUnderrun:
     case FaultKind::kHoming:
     case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
     case FaultKind::kInterlock: return GrindResult::NOT_READY;
@@ -339,21 +340,36 @@ void GrinderNode::follow(const CycleRecord& record) {
   timing_.total += record.period;
   timing_.longest = std::max(timing_.longest, record.period);
   if (record.period > kOverrun * batch_.period) ++timing_.overruns;
-  if (!job_) return;
-  if (record.has_setpoint) {
-    if (batch_.setpoints.empty()) {
-      batch_.header.stamp = ros::Time(record.time);
-      batch_.goal_id = job_->goal.getGoalID().id;
-    }
-    ++job_->written;
-    trackProgress(record.setpoint);
-    batch_.setpoints.push_back(toMessage(record.setpoint, record.position));
-    batch_.end_stamp = ros::Time(record.time);
-    job_->last = record.setpoint;
-    job_->largest_error = std::max(job_->largest_error, std::abs(record.setpoint.path_error));
-    job_->errors.add(record.setpoint);
+  if (job_) followJob(record);
+}
+
+void GrinderNode::followJob(const CycleRecord& record) {
+  if (record.has_setpoint) job_->waiting.emplace_back(job_->cycle, record.setpoint);
+  // A drive may buffer commands: a setpoint is told with the positions of the cycle before the axes get it.
+  auto& waiting = job_->waiting;
+  while (!waiting.empty() && waiting.front().first + record.drive.commands_waiting <= job_->cycle) {
+    job_->last = waiting.front().second;
+    trackProgress(job_->last);
+    tell(job_->last, record);
+    waiting.pop_front();
   }
-  if (record.job_ended) finishJob(record);
+  ++job_->cycle;
+  if (!record.job_ended) return;
+  // Written, but the axes never got them.
+  for (const auto& never : waiting) tell(never.second, record);
+  finishJob(record);
+}
+
+void GrinderNode::tell(const Setpoint& setpoint, const CycleRecord& record) {
+  if (batch_.setpoints.empty()) {
+    batch_.header.stamp = ros::Time(record.time);
+    batch_.goal_id = job_->goal.getGoalID().id;
+  }
+  ++job_->written;
+  batch_.setpoints.push_back(toMessage(setpoint, record.position));
+  batch_.end_stamp = ros::Time(record.time);
+  job_->largest_error = std::max(job_->largest_error, std::abs(setpoint.path_error));
+  job_->errors.add(setpoint);
 }
 
 void GrinderNode::trackProgress(const Setpoint& p) {

@@ -33,6 +33,7 @@ enum class Interlock : std::uint8_t {
   kNotHomed,
   kSpindle,  ///< not at speed
   kCoolant,  ///< does not flow
+  kProbe,    ///< in the wheel's way
 };
 
 /// What is amiss, e.g. "the spindle is not at speed"; empty for kNone.
@@ -47,6 +48,7 @@ enum class FaultKind : std::uint8_t {
   kStaleFeedback,    ///< no fresh positions
   kInvalidFeedback,  ///< a position that is not a number
   kFollowingError,
+  kUnderrun,   ///< the axes found no command, though they move by a buffer that the loop fills
   kLimit,      ///< a setpoint that an axis may not follow
   kHoming,     ///< the drive did not find its reference
   kInterlock,  ///< a job could not begin; the machine stays ready
@@ -58,6 +60,7 @@ struct LoopFault {
   int axis = 0;
   double value = 0;                        ///< of what went too far
   double limit = 0;                        ///< how far it may go
+  std::uint64_t cycle = 0;                 ///< of the last setpoint written, of kUnderrun
   LimitViolation violation;                ///< of kLimit
   Interlock interlock = Interlock::kNone;  ///< of kInterlock
 
@@ -166,6 +169,9 @@ class ControlLoop {
   void awaitHoming();
   void awaitSpindle();
   void checkDrive();
+  void checkPositions();
+  const Axes& commandInEffect() const;
+  void remember();
   void checkInterlocks();
   Interlock openInterlock() const;
   void advanceJob();
@@ -186,6 +192,11 @@ class ControlLoop {
   SetpointStream* stream_ = nullptr;
   LimitCheck limit_check_;
   Axes command_ = Axes::Zero();
+  std::array<Axes, kMaxCommandsWaiting + 1> written_;  ///< the commands of the last cycles, in a ring
+  std::size_t next_written_ = 0;                       ///< where the next one goes
+  std::size_t written_count_ = 0;       ///< how many of them count: those since the commands no longer follow
+  std::uint64_t rested_ = 0;            ///< cycles since the last setpoint
+  std::uint64_t underruns_before_ = 0;  ///< those that the drive had counted when the power came
   DriveCommand drive_command_;
   std::uint64_t last_feedback_ = 0;
   double feedback_age_ = 0;

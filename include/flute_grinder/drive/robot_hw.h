@@ -73,8 +73,15 @@ struct DriveStatus {
   bool homing = false;               ///< the axes are looking for it, as they were told
   bool spindle_at_speed = false;     ///< the wheel turns as fast as it is to grind
   bool coolant_on = false;           ///< coolant flows
+  bool probe_free = true;            ///< the measuring probe, if there is one, is out of the wheel's way
   std::uint64_t feedback_count = 0;  ///< goes up with each fresh set of positions
+  /// Of a drive that buffers: how many of the commands written the axes have not got yet, as of these positions.
+  std::uint32_t commands_waiting = 0;
+  std::uint64_t underruns = 0;  ///< servo cycles since the start in which powered axes found no command
 };
+
+/// The most commands that may wait in a drive's buffer: the loop knows no older ones to compare the positions with.
+constexpr std::uint32_t kMaxCommandsWaiting = 4095;
 
 /// What a drive is told, beside positions.
 struct DriveCommand {

@@ -16,10 +16,12 @@
 #include <std_srvs/Trigger.h>
 #include <pluginlib/class_loader.hpp>
 
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace flute_grinder {
 
@@ -48,10 +50,12 @@ class GrinderNode {
     std::vector<std::uint64_t> move_ends;  ///< as planned
     std::vector<ToothPass> passes;         ///< in order
     PathErrorMarkers errors;
-    Setpoint last;
+    Setpoint last;             ///< of those that the axes have got
     double largest_error = 0;  ///< since the last feedback [rad]
     std::uint64_t written = 0;
     bool canceled = false;
+    std::uint64_t cycle = 0;                                   ///< since the start
+    std::deque<std::pair<std::uint64_t, Setpoint>> waiting{};  ///< in the drive's buffer, with their cycles
   };
 
   /// A plan with what is to be shown of it.
@@ -86,6 +90,8 @@ class GrinderNode {
   void takeRecords();
   bool refresh();
   void follow(const CycleRecord& record);
+  void followJob(const CycleRecord& record);
+  void tell(const Setpoint& setpoint, const CycleRecord& record);
   void trackProgress(const Setpoint& setpoint);
   std::string writeJournal();
   double plannedCycles() const;

@@ -185,7 +185,7 @@ BAD_PARAMETERS = [
     ('hardware_missing', 'hardware', None, 'hardware/type is missing'),
     ('hardware_type_missing', 'hardware/type', None, 'missing; allowed: a text'),
     ('hardware_type_unknown', 'hardware/type', 'flute_grinder/NoSuchDrive',
-     '= flute_grinder/NoSuchDrive; allowed: flute_grinder/SimulatedDrive'),
+     '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
     ('hardware_type_is_a_number', 'hardware/type', 7, 'allowed: a text'),
     ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None, 'missing; allowed: a number'),
     ('hardware_parameter_nan', 'hardware/axis_a/counts_per_unit', math.nan, 'nan; allowed: '),

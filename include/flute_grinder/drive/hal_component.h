@@ -1,0 +1,68 @@
+#pragma once
+
+#include <hal.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A user-space component of LinuxCNC's HAL. A pin `<component>.<pin>` belongs to the signal `<pin>`, which the HAL
+/// file makes: so the HAL file is loaded first and stays as it is when the program comes and goes. Not real-time.
+class HalComponent {
+ public:
+  /// Attaches to HAL. A component of the same name that a dead program has left is removed; its signals stay.
+  /// @param name of the component, up to 20 characters.
+  /// @throw MachineConfigError if HAL does not run, gives no permission, or has a living component of that name.
+  explicit HalComponent(const std::string& name);
+  ~HalComponent();
+  HalComponent(const HalComponent&) = delete;
+  HalComponent& operator=(const HalComponent&) = delete;
+
+  int id() const { return id_; }
+  const std::string& name() const { return name_; }
+
+  /// Memory that HAL can reach, zeroed; pins' pointers must lie in it.
+  /// @throw MachineConfigError if HAL has none left.
+  void* allocate(std::size_t size) const;
+
+  /// Makes a pin and links it with its signal.
+  /// @param name of pin and signal.
+  /// @param data where HAL puts the address of the value; from allocate().
+  /// @param required whether the signal must be there; a missing one is told by ready().
+  /// @throw MachineConfigError if the signal is of another type or has another writer.
+  template <typename Value>
+  void addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
+    addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)), required);
+  }
+
+  /// Tells HAL that all pins are there.
+  /// @throw MachineConfigError that lists the signals that are missing.
+  void ready() const;
+
+ private:
+  static constexpr hal_type_t typeOf(hal_bit_t**) { return HAL_BIT; }
+  static constexpr hal_type_t typeOf(hal_float_t**) { return HAL_FLOAT; }
+  static constexpr hal_type_t typeOf(hal_s32_t**) { return HAL_S32; }
+  static constexpr hal_type_t typeOf(hal_u32_t**) { return HAL_U32; }
+
+  HalComponent() = default;
+  void addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data, bool required);
+  void removeDead(int reason);
+
+  std::string name_;
+  int id_ = -1;
+  int helper_ = -1;  ///< a second component, where a dead one was removed
+  std::vector<std::string> missing_;
+};
+
+/// What HAL's shared memory of a key is: there, missing, or not for this user.
+/// @param key as of shmget().
+/// @param what it is, for the message, e.g. "HAL".
+/// @param remedy what to do if it is missing.
+/// @return its size in bytes.
+/// @throw MachineConfigError unless it is there and may be read and written.
+std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy);
+
+}  // namespace flute_grinder

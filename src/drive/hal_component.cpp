@@ -1,0 +1,132 @@
+#include "flute_grinder/drive/hal_component.h"
+
+#include "flute_grinder/drive/machine_config.h"
+
+#include <signal.h>
+#include <sys/ipc.h>
+#include <sys/shm.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace flute_grinder {
+
+namespace {
+
+/// Of HAL's own shared memory; hal_init() would make it where HAL does not run.
+constexpr int kHalKey = 0x48414C32;
+constexpr int kLargestId = 1 << 16;
+constexpr const char* kProcessPin = "process";
+
+const char* typeName(hal_type_t type) {
+  switch (type) {
+    case HAL_BIT: return "bit";
+    case HAL_FLOAT: return "float";
+    case HAL_S32: return "s32";
+    case HAL_U32: return "u32";
+    default: return "other";
+  }
+}
+
+}  // namespace
+
+std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy) {
+  const int id = shmget(key, 0, 0);
+  if (id < 0) throw MachineConfigError(what + " is not there (" + std::strerror(errno) + "); " + remedy);
+  shmid_ds status{};
+  void* memory = shmctl(id, IPC_STAT, &status) == 0 ? shmat(id, nullptr, 0) : reinterpret_cast<void*>(-1);
+  if (memory == reinterpret_cast<void*>(-1)) {
+    throw MachineConfigError("no permission to use " + what + " as user " + std::to_string(geteuid()) +
+                             "; it belongs to user " + std::to_string(status.shm_perm.uid) +
+                             "; allowed: the user that has started HAL");
+  }
+  shmdt(memory);
+  return status.shm_segsz;
+}
+
+HalComponent::HalComponent(const std::string& name) : HalComponent() {
+  name_ = name;
+  requireHalMemory(kHalKey, "LinuxCNC's HAL", "start it first: halcmd -f FILE.hal");
+  id_ = hal_init(name_.c_str());
+  if (id_ < 0) {
+    removeDead(id_);
+    id_ = hal_init(name_.c_str());
+  }
+  if (id_ < 0) throw MachineConfigError("HAL takes no component '" + name_ + "': " + std::strerror(-id_));
+  auto*& process = *static_cast<hal_s32_t**>(allocate(sizeof(hal_s32_t*)));
+  addPin(kProcessPin, HAL_OUT, process, false);
+  *process = getpid();
+}
+
+HalComponent::~HalComponent() {
+  if (id_ >= 0) hal_exit(id_);
+  if (helper_ >= 0) hal_exit(helper_);
+}
+
+void HalComponent::removeDead(int reason) {
+  // HAL's library lets go of HAL as often as components are removed, and another program's counts too: a second one of
+  // our own makes up for it.
+  helper_ = hal_init((name_ + '-' + std::to_string(getpid())).c_str());
+  if (helper_ < 0) throw MachineConfigError("HAL takes no component '" + name_ + "': " + std::strerror(-reason));
+  int other = 1;
+  for (const char* name = ""; other < kLargestId; ++other) {
+    name = hal_comp_name(other);
+    if (name && name == name_) break;
+  }
+  const std::string taken = "HAL has a component '" + name_ + "' already";
+  hal_type_t type = HAL_TYPE_UNSPECIFIED;
+  hal_data_u* process = nullptr;
+  const std::string pin = name_ + '.' + kProcessPin;
+  if (other == kLargestId || hal_get_pin_value_by_name(pin.c_str(), &type, &process, nullptr) != 0) {
+    throw MachineConfigError(taken + ", and it is not a grinder's; allowed: another name");
+  }
+  if (kill(process->s, 0) == 0 || errno != ESRCH) {
+    throw MachineConfigError(taken + ", of the running process " + std::to_string(process->s) +
+                             "; allowed: to end that first, or another name");
+  }
+  hal_exit(other);
+}
+
+void* HalComponent::allocate(std::size_t size) const {
+  void* memory = hal_malloc(static_cast<long>(size));
+  if (!memory) throw MachineConfigError("HAL has no memory left for component '" + name_ + "'");
+  std::memset(memory, 0, size);
+  return memory;
+}
+
+void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data,
+                          bool required) {
+  const std::string full = name_ + '.' + name;
+  const int made = hal_pin_new(full.c_str(), type, direction, data, id_);
+  if (made < 0) throw MachineConfigError("HAL makes no pin '" + full + "': " + std::strerror(-made));
+  hal_type_t signal_type = HAL_TYPE_UNSPECIFIED;
+  hal_data_u* value = nullptr;
+  bool written = false;
+  if (hal_get_signal_value_by_name(name.c_str(), &signal_type, &value, &written) != 0) {
+    if (required) missing_.push_back(name);
+    return;
+  }
+  if (signal_type != type) {
+    throw MachineConfigError("HAL's signal '" + name + "' is of type " + typeName(signal_type) +
+                             "; allowed: " + typeName(type));
+  }
+  if (written && direction == HAL_OUT) {
+    throw MachineConfigError("HAL's signal '" + name + "' has a writer already; allowed: none beside " + full);
+  }
+  // A signal that a HAL file has only set takes the value of the first pin that is linked with it.
+  if (direction == HAL_IN) std::memcpy(*data, value, sizeof(*value));
+  const int linked = hal_link(full.c_str(), name.c_str());
+  if (linked < 0) throw MachineConfigError("HAL does not link pin '" + full + "': " + std::strerror(-linked));
+}
+
+void HalComponent::ready() const {
+  std::string names;
+  for (const std::string& name : missing_) names += (names.empty() ? "" : ", ") + name;
+  if (!missing_.empty()) {
+    throw MachineConfigError("HAL lacks the signals " + names + "; allowed: a HAL file that makes them all");
+  }
+  hal_ready(id_);
+}
+
+}  // namespace flute_grinder

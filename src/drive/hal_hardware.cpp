@@ -1,0 +1,208 @@
+#include "flute_grinder/drive/hal_hardware.h"
+
+#include "flute_grinder/drive/machine_config.h"
+
+#include <pluginlib/class_list_macros.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kResetCycles = 100;    ///< as long as the reset is shown, so that every servo cycle and drive sees it
+constexpr int kNapsPerCycle = 4;     ///< looks at the FIFO in a period
+constexpr int kLongestWait = 10;     ///< periods after which a cycle begins even if HAL plays nothing
+constexpr double kRateError = 1e-3;  ///< relative, between HAL's thread and the control loop
+
+void nap(std::int64_t nanoseconds) {
+  const timespec time{0, static_cast<long>(nanoseconds)};
+  clock_nanosleep(CLOCK_MONOTONIC, 0, &time, nullptr);
+}
+
+}  // namespace
+
+bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
+  XmlRpc::XmlRpcValue parameters, root_parameters;
+  robot_hw_nh.getParam("", parameters);
+  root_nh.getParam("", root_parameters);
+  const ParameterReader p(parameters, robot_hw_nh.getNamespace());
+  const double control_rate =
+      ParameterReader(root_parameters, root_nh.getNamespace()).number("control_rate", 10, 20000);
+  const double longest = kMaxCommandsWaiting / 2 / control_rate;
+  buffer_ = static_cast<std::uint32_t>(std::ceil(p.number("buffer", 2 / control_rate, longest) * control_rate));
+  const int streamer = static_cast<int>(p.number("streamer", 0, 7));
+
+  component_ = std::make_unique<HalComponent>(p.text("component"));
+  fifo_ = std::make_unique<HalFifo>(component_->id(), streamer, 2 * buffer_);
+  makePins();
+  checkServoThread(control_rate);
+  registerHandles();
+  return true;
+}
+
+void HalHardware::makePins() {
+  pins_ = static_cast<Pins*>(component_->allocate(sizeof(Pins)));
+  Pins& pins = *pins_;
+  HalComponent& c = *component_;
+  for (std::size_t i = 0; i < pins.joints.size(); ++i) {
+    Pins::Joint& joint = pins.joints[i];
+    const std::string axis = std::string("axis-") + "xyza"[i] + '-';
+    c.addPin(axis + "feedback", HAL_IN, joint.feedback, true);
+    c.addPin(axis + "velocity", HAL_IN, joint.velocity, true);
+    c.addPin(axis + "fault", HAL_IN, joint.fault, true);
+    c.addPin(axis + "homed", HAL_IN, joint.homed, true);
+    c.addPin(axis + "enable", HAL_OUT, joint.enable, false);
+    c.addPin(axis + "command", HAL_OUT, joint.command, false);
+  }
+  c.addPin("enabled", HAL_IN, pins.enabled, true);
+  c.addPin("emergency-stop", HAL_IN, pins.emergency_stop, true);
+  c.addPin("homing", HAL_IN, pins.homing, true);
+  c.addPin("spindle-at-speed", HAL_IN, pins.spindle_at_speed, true);
+  c.addPin("coolant-on", HAL_IN, pins.coolant_on, true);
+  c.addPin("probe-free", HAL_IN, pins.probe_free, true);
+  c.addPin("servo-cycles", HAL_IN, pins.servo_cycles, true);
+  c.addPin("servo-rate", HAL_IN, pins.servo_rate, true);
+  c.addPin("played", HAL_IN, pins.played, true);
+  c.addPin("underruns", HAL_IN, pins.underruns, true);
+  c.addPin("enable", HAL_OUT, pins.enable, true);
+  c.addPin("heartbeat", HAL_OUT, pins.heartbeat, true);
+  c.addPin("fault-reset", HAL_OUT, pins.fault_reset, false);
+  c.addPin("home", HAL_OUT, pins.home, false);
+  c.addPin("spindle-run", HAL_OUT, pins.spindle_run, false);
+  c.addPin("coolant-run", HAL_OUT, pins.coolant_run, false);
+  component_->ready();
+}
+
+void HalHardware::checkServoThread(double control_rate) const {
+  // Each servo cycle plays one command: at another rate the axes would move faster or slower than planned.
+  const double rate = *pins_->servo_rate;
+  if (std::abs(rate - control_rate) <= kRateError * control_rate) return;
+  std::ostringstream text;
+  text << "HAL's servo thread runs at " << rate
+       << " Hz (0 if it was not started); allowed: control_rate = " << control_rate << " Hz";
+  throw MachineConfigError(text.str());
+}
+
+void HalHardware::registerHandles() {
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const JointStateHandle state(kJointNames[i], &position_[i], &velocity_[i], &effort_[i]);
+    joint_states_.registerHandle(state);
+    joint_commands_.registerHandle(JointHandle(state, &command_[i]));
+  }
+  drive_.registerHandle(DriveHandle("drive", &status_, &drive_command_));
+  registerInterface(&joint_states_);
+  registerInterface(&joint_commands_);
+  registerInterface(&drive_);
+}
+
+void HalHardware::read(const ros::Time&, const ros::Duration&) {
+  // First, so that what has switched the power off is seen too.
+  status_.enabled = *pins_->enabled;
+  status_.emergency_stop = *pins_->emergency_stop;
+  status_.underruns = static_cast<std::uint32_t>(*pins_->underruns);
+  status_.commands_waiting = waiting();
+  status_.spindle_at_speed = *pins_->spindle_at_speed;
+  status_.coolant_on = *pins_->coolant_on;
+  status_.probe_free = *pins_->probe_free;
+  readJoints();
+  readHoming();
+  const double servo_cycles = *pins_->servo_cycles;
+  if (servo_cycles != servo_cycles_) ++status_.feedback_count;
+  servo_cycles_ = servo_cycles;
+}
+
+void HalHardware::readJoints() {
+  status_.fault = overflow_;
+  status_.homed = true;
+  for (std::size_t i = 0; i < position_.size(); ++i) {
+    const Pins::Joint& joint = pins_->joints[i];
+    position_[i] = *joint.feedback;
+    velocity_[i] = *joint.velocity;
+    status_.fault = status_.fault || *joint.fault;
+    status_.homed = status_.homed && *joint.homed;
+  }
+}
+
+void HalHardware::readHoming() {
+  const bool homing = *pins_->homing;
+  if (homing_ && !homing) {
+    // What waits in the FIFO has the old reference: the axes must not get it when commands count again.
+    settling_ = true;
+    settled_ = sent_ + 1;
+  }
+  homing_ = homing;
+  if (settling_ && static_cast<std::int32_t>(*pins_->played - settled_) >= 0) settling_ = false;
+  status_.homing = homing || (settling_ && status_.enabled);
+}
+
+void HalHardware::write(const ros::Time&, const ros::Duration&) {
+  writeSwitches();
+  if (!drive_command_.enable) {
+    switchOff();
+  } else if (!*pins_->enable) {
+    switchOn();
+  } else if (status_.enabled) {
+    send();
+  }
+}
+
+void HalHardware::writeSwitches() {
+  *pins_->heartbeat = !*pins_->heartbeat;
+  if (drive_command_.reset) {
+    reset_cycles_ = kResetCycles;
+    overflow_ = false;
+  }
+  *pins_->fault_reset = reset_cycles_ > 0;
+  if (reset_cycles_ > 0) --reset_cycles_;
+  *pins_->home = drive_command_.home;
+  *pins_->spindle_run = drive_command_.spindle;
+  *pins_->coolant_run = drive_command_.coolant;
+  for (std::size_t i = 0; i < command_.size(); ++i) {
+    *pins_->joints[i].command = command_[i];
+    *pins_->joints[i].enable = drive_command_.enable;
+  }
+}
+
+void HalHardware::switchOff() {
+  *pins_->enable = false;
+  if (*pins_->enabled) return;  // the streamer may still read
+  fifo_->drain();
+  sent_ = *pins_->played;
+  settling_ = false;
+}
+
+void HalHardware::switchOn() {
+  if (*pins_->enabled) return;  // HAL has not switched off yet
+  // The first commands are there before the power is: the streamer's pins still show where a job was broken off.
+  fifo_->drain();
+  sent_ = *pins_->played;
+  for (std::uint32_t i = 0; i < buffer_; ++i) send();
+  *pins_->enable = true;
+}
+
+void HalHardware::send() {
+  Axes command;
+  std::copy(command_.begin(), command_.end(), command.data());
+  if (fifo_->push(command, sent_ + 1)) {
+    ++sent_;
+  } else {
+    overflow_ = true;
+  }
+}
+
+void HalHardware::wait(const ros::Duration& period) {
+  if (!*pins_->enabled || !*pins_->enable) return RobotHW::wait(period);
+  const std::int64_t time = period.toNSec() / kNapsPerCycle;
+  for (int naps = 0; naps < kNapsPerCycle * kLongestWait; ++naps) {
+    if (waiting() < buffer_ || !*pins_->enabled) return;
+    nap(time);
+  }
+}
+
+}  // namespace flute_grinder
+
+PLUGINLIB_EXPORT_CLASS(flute_grinder::HalHardware, flute_grinder::RobotHW)

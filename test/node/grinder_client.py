@@ -25,9 +25,9 @@ DEG = math.pi / 180
 
 X, Y, Z, A = range(4)
 JOINTS = ['axis_x', 'axis_y', 'axis_z', 'axis_a']
-MOVES = ['lift', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
+MOVES = ['lift', 'index', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
 STEPS = ['none', 'odd', 'even']
-LIFT, POSITION, APPROACH, INFEED, STROKE, RETRACT, RETURN = range(7)
+LIFT, INDEX, POSITION, APPROACH, INFEED, STROKE, RETRACT, RETURN = range(8)
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
 EPSILON = 2.0 ** -52
@@ -299,6 +299,11 @@ class Grinder:
     def plan(self, goal):
         return self._call('plan', Plan, goal)
 
+    def take_faults_back(self):
+        """Ends what a test has injected; other drives than the simulated one let none be injected."""
+        if rospy.get_param('/%s/hardware/type' % self.name) == 'flute_grinder/SimulatedDrive':
+            self.inject('none')
+
     def inject(self, fault, joint=''):
         return self._call('hardware/inject_fault', InjectFault, fault, joint)
 
@@ -371,7 +376,7 @@ class Grinder:
         self.client.cancel_all_goals()
         busy = (GrinderState.RUNNING, GrinderState.CANCELING)
         poll(lambda: self.fresh_state().state not in busy, 'the end of all goals')
-        self.inject('none')
+        self.take_faults_back()
         poll(lambda: not self.fresh_state().emergency_stop, 'the emergency stop released')
         if self.fresh_state().state == GrinderState.FAULT:
             self.reset()

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Shows how the node starts on HAL: not at all, with the reason, where HAL, its FIFO, a signal or a permission is missing; and
+that a start that fails leaves HAL as it was."""
+
+import ctypes
+import os
+import signal
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState
+
+import hal_bench
+from hal_bench import gc
+
+IN_HAL = hal_bench.ROOT + '/test/hal/in_hal'
+NAMESPACE = ('unshare', '--ipc')
+
+
+class TestRefusals(unittest.TestCase):
+    def check(self, *texts, prefix=(), **hardware):
+        """The node ends by itself with status 1 and says why."""
+        node = hal_bench.Node('refused', prefix=prefix, **hardware)
+        self.assertEqual(node.end(None), 1, node.output)
+        for text in texts:
+            self.assertIn(text, node.output)
+
+    def check_in_hal(self, old, new, *texts, **hardware):
+        """The same on a HAL of its own, from the bench's file with another text in it."""
+        with open(hal_bench.ROOT + '/hal/bench.hal') as bench:
+            file = bench.read()
+        self.assertIn(old, file)
+        with tempfile.NamedTemporaryFile('w', suffix='.hal') as changed:
+            changed.write(file.replace(old, new))
+            changed.flush()
+            os.chmod(changed.name, 0o644)
+            self.check(*texts, prefix=('env', '-u', 'INSIDE_HAL', 'HAL_FILE=' + changed.name, IN_HAL), **hardware)
+
+    def tearDown(self):
+        """A node can start after all of them."""
+        node = hal_bench.Node('well')
+        try:
+            grinder = gc.Grinder('well')
+            self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
+            grinder.close()
+        finally:
+            self.assertEqual(node.end(), 0, node.output)
+
+    def test_hal_absent(self):
+        self.check("LinuxCNC's HAL is not there (No such file or directory); start it first: halcmd -f FILE.hal",
+                   prefix=NAMESPACE)
+
+    @unittest.skipUnless(os.getuid() == 0, 'only root may become somebody else')
+    def test_no_permission(self):
+        with tempfile.TemporaryDirectory() as home:
+            os.chmod(home, 0o777)
+            self.check("no permission to use LinuxCNC's HAL as user 65533",
+                       prefix=('env', 'HOME=' + home, 'setpriv', '--reuid=65533', '--regid=65533', '--clear-groups'))
+
+    def test_no_streamer_of_that_number(self):
+        self.check("HAL's streamer.1 is not there (No such file or directory); load it: loadrt streamer cfg=ffffu",
+                   streamer=1)
+
+    def test_fifo_of_another_type(self):
+        self.check_in_hal('depth=4096 cfg=ffffu\n', 'depth=4096,4096 cfg=ffffu,fffsu\n',
+                          "HAL's streamer.1 has other columns; allowed: cfg=ffffu (X, Y, Z, A, number)", streamer=1)
+
+    def test_fifo_with_one_column_more(self):
+        self.check_in_hal('cfg=ffffu\n', 'cfg=ffffub\n', "HAL's streamer.0 has other columns; allowed: cfg=ffffu")
+
+    def test_fifo_not_deep_enough(self):
+        self.check_in_hal('streamer    depth=4096', 'streamer    depth=90',
+                          "HAL's streamer.0 has depth=90; allowed: 100 or more for this buffer")
+
+    def test_signals_missing(self):
+        self.check_in_hal('newsig probe-free bit\nsets probe-free true\n', '', 'HAL lacks the signals probe-free;')
+
+    def test_signal_of_another_type(self):
+        self.check_in_hal('newsig probe-free bit\nsets probe-free true\n', 'newsig probe-free float\n',
+                          "HAL's signal 'probe-free' is of type float; allowed: bit")
+
+    def test_signal_with_another_writer(self):
+        self.check_in_hal('net heartbeat ', 'net heartbeat chain.fault-out\nnet heartbeat ',
+                          "HAL's signal 'heartbeat' has a writer already; allowed: none beside flute-grinder.heartbeat")
+
+    def test_servo_thread_not_started(self):
+        self.check_in_hal('\nstart\n', '\n', "HAL's servo thread runs at 0 Hz (0 if it was not started); allowed: "
+                          'control_rate = 1000 Hz')
+
+    def test_servo_thread_of_another_rate(self):
+        self.check_in_hal('period1=1000000', 'period1=2000000', "HAL's servo thread runs at 500 Hz")
+
+    def test_buffer_out_of_range(self):
+        self.check('parameter /refused/hardware/buffer = 5; allowed: 0.002 to 2.047', buffer=5.0)
+        self.check('parameter /refused/hardware/buffer = nan', buffer=float('nan'))
+
+    def test_component_of_a_running_node(self):
+        node = hal_bench.Node('first')
+        grinder = gc.Grinder('first')
+        self.check("HAL has a component 'flute-grinder' already, of the running process %d" % node.process.pid)
+        self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
+        grinder.close()
+        self.assertEqual(node.end(), 0)
+
+    def test_component_of_another_program(self):
+        hal = ctypes.CDLL('liblinuxcnchal.so.0')
+        other = hal.hal_init(b'flute-grinder')
+        self.assertGreater(other, 0)
+        try:
+            self.check("HAL has a component 'flute-grinder' already, and it is not a grinder's; allowed: another name")
+        finally:
+            hal.hal_exit(other)
+
+
+class TestTakeover(unittest.TestCase):
+    def test_node_takes_over_from_a_killed_one_again_and_again(self):
+        for _ in range(3):
+            node = hal_bench.Node('killed')
+            grinder = gc.Grinder('killed')
+            grinder.make_ready()
+            grinder.close()
+            node.end(signal.SIGKILL)
+        node = hal_bench.Node('killed')
+        grinder = gc.Grinder('killed')
+        grinder.make_ready()
+        grinder.close()
+        self.assertEqual(node.end(), 0, node.output)
+        self.assertNotIn('flute-grinder ', hal_bench.halcmd('show', 'comp'))
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_hal_start')
+    rostest.rosrun('flute_grinder', 'hal_start', '__main__')

@@ -1,0 +1,230 @@
+#!/usr/bin/env python3
+"""Shows on the real HAL what stops the axes in the midst of a stroke: the emergency stop, a node that no longer lives, a node
+that is late, a motor that does not follow. HAL does it by itself, the node tells it, nothing that was still to come is
+played later, and the axes start again from where they stand."""
+
+import re
+import signal
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState, GrindResult
+
+import hal_bench
+from hal_bench import gc
+from grinder_client import DEG, MM, STROKE
+
+RECORDER = hal_bench.Recorder()
+BUFFER = 0.2
+# Longer than any host stalls.
+NEVER = 1000
+HEARTBEAT = 0.05
+STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM)
+AGAIN = dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.feed': 3000 * gc.MM_MIN, 'process.clearance': 12 * MM})
+
+
+class Stop:
+    """What holds of every stop. Each test runs into the stop anew."""
+
+    buffer = BUFFER
+
+    def setUp(self):
+        hal_bench.press_emergency_stop(False)
+        hal_bench.patience(NEVER)
+        self.start()
+        self.grinder.make_ready()
+        self.limits, self.period = self.grinder.limits(), self.grinder.period()
+        self.goal_run = self.grinder.send(STEEP).wait_in_stroke(5 * MM)
+        self.first = RECORDER.now()
+
+    def start(self):
+        self.node = hal_bench.Node(buffer=self.buffer)
+        self.grinder = gc.Grinder()
+
+    def tearDown(self):
+        self.grinder.close()
+        self.node.send(signal.SIGCONT)
+        self.node.end()
+
+    def wait_power_off(self):
+        gc.poll(lambda: not RECORDER.over(1)[-1].enabled, 'the power off')
+
+    def rows_from_stop(self):
+        """From the first servo cycle without power after setUp()."""
+        rows = RECORDER.read()
+        return rows[next(i for i in range(self.first, len(rows)) if not rows[i].enabled):]
+
+    def check_standing(self):
+        """From the stop on, not one command is played, and the axes come to rest without a jump."""
+        rows = RECORDER.read()[self.first:] + RECORDER.over(300)
+        self.assertEqual({row.command for row in self.rows_from_stop() if not row.enabled},
+                         {self.rows_from_stop()[0].command})
+        self.assertEqual({row.played for row in self.rows_from_stop() if not row.enabled},
+                         {self.rows_from_stop()[0].played})
+        self.assertEqual(len({row.position for row in RECORDER.over(100)}), 1)
+        self.check_steps(rows)
+
+    def check_steps(self, rows):
+        for step, velocity in zip(hal_bench.largest_steps(rows), self.limits['max_velocity']):
+            self.assertLessEqual(step, velocity * self.period * (1 + 1e-9))
+
+    def check_goal(self, code, text):
+        self.goal_run.wait()
+        self.assertEqual((self.goal_run.status, self.goal_run.code), ('ABORTED', code), self.goal_run.text)
+        self.assertRegex(self.goal_run.text, text)
+        self.assertRegex(self.goal_run.text, r'stroke of tooth 0, pass 0, X = 0\.0[0-3]\d* m')
+
+    def check_start_from_standing(self):
+        """Reset, power and a new goal: the axes start from where they stand."""
+        first = RECORDER.now()
+        standing = RECORDER.over(1)[0].position
+        self.grinder.make_ready()
+        powered = next(row for row in RECORDER.read()[first:] if row.enabled)
+        self.assertEqual(powered.command, standing)
+        run = self.grinder.run(AGAIN)
+        self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
+        self.assertEqual(tuple(run.setpoints[0].position), standing)
+        self.check_steps(RECORDER.read()[first:])
+
+
+class TestEmergencyStop(Stop, unittest.TestCase):
+    def test_hal_stops_and_the_node_tells_it(self):
+        hal_bench.press_emergency_stop(True)
+        self.check_goal(GrindResult.EMERGENCY_STOP, r'^emergency stop')
+        rows = RECORDER.read()
+        pressed = next(i for i in range(self.first, len(rows)) if rows[i].emergency_stop)
+        # In the very servo cycle, or the next.
+        self.assertFalse(rows[pressed + 1].enabled)
+        self.assertEqual(len({row.command for row in rows[pressed + 1:]}), 1)
+        self.check_standing()
+        state = self.grinder.wait_state(GrinderState.FAULT)
+        self.assertTrue(state.emergency_stop)
+        self.assertFalse(self.grinder.reset().success)
+        hal_bench.press_emergency_stop(False)
+        self.check_standing()
+        self.check_start_from_standing()
+
+
+class TestHeartbeat(Stop, unittest.TestCase):
+    # The heartbeat's time is over ahead of the buffer, whatever the host does meanwhile.
+    buffer = 1.0
+
+    def expect_heartbeat(self):
+        hal_bench.patience(HEARTBEAT)
+        # The watchdog takes the new time with the next beat.
+        RECORDER.over(5)
+
+    def test_stopped_node_loses_power_and_plays_nothing_later(self):
+        self.expect_heartbeat()
+        self.node.send(signal.SIGSTOP)
+        self.wait_power_off()
+        self.check_standing()
+        # HAL has opened the chain ahead of the end of the FIFO, because no heartbeat came.
+        self.assertEqual({row.underruns for row in RECORDER.read()[self.first:]}, {RECORDER.rows[self.first].underruns})
+        hal_bench.patience(NEVER)
+        self.node.send(signal.SIGCONT)
+        self.check_goal(GrindResult.HARDWARE_FAULT, r'^the drive has switched its power off')
+        self.check_standing()
+        self.check_start_from_standing()
+
+    def test_killed_node_loses_power_and_a_new_one_takes_over(self):
+        self.expect_heartbeat()
+        self.node.end(signal.SIGKILL)
+        self.wait_power_off()
+        hal_bench.patience(NEVER)
+        self.assertEqual({row.underruns for row in RECORDER.read()[self.first:]}, {RECORDER.rows[self.first].underruns})
+        self.check_standing()
+        standing = RECORDER.over(1)[0].position
+        self.grinder.close()
+        self.start()
+        self.assertEqual(self.grinder.fresh_state().state, GrinderState.DISABLED)
+        self.assertEqual(tuple(self.grinder.wait_rest()), standing)
+        self.check_standing()
+        self.check_start_from_standing()
+
+
+class TestUnderrun(Stop, unittest.TestCase):
+    def test_late_node_is_told_with_count_and_setpoint(self):
+        before = RECORDER.rows[self.first - 1].underruns
+        self.node.send(signal.SIGSTOP)
+        self.wait_power_off()
+        self.check_standing()
+        counted = RECORDER.over(1)[0].underruns - before
+        self.assertGreaterEqual(counted, 1)
+        self.node.send(signal.SIGCONT)
+        self.check_goal(GrindResult.HARDWARE_FAULT, r'^the axes found no setpoint in \d+ servo cycles, after setpoint \d+ ')
+        count, last = map(int, re.findall(r'\d+', self.goal_run.text)[:2])
+        self.assertEqual(count, counted)
+        self.grinder.fresh_state()
+        setpoints = self.goal_run.setpoints
+        self.assertEqual(setpoints[-1].cycle, last)
+        self.assertTrue(gc.is_gapless(setpoints))
+        # All of them were played, and the axes stand at the last one.
+        self.assertEqual(self.rows_from_stop()[0].command, tuple(setpoints[-1].position))
+        self.check_standing()
+        self.check_start_from_standing()
+
+
+class TestFollowingError(Stop, unittest.TestCase):
+    def test_hal_trips_where_a_motor_does_not_follow(self):
+        # Less than the node allows, so that HAL is first.
+        hal_bench.halcmd('setp', 'window-x.max', '0.0005')
+        self.addCleanup(hal_bench.halcmd, 'setp', 'window-x.max', '0.002')
+        hal_bench.halcmd('setp', 'motor-x.maxv', '0.0001')
+        self.addCleanup(hal_bench.halcmd, 'setp', 'motor-x.maxv', '0.25')
+        self.check_goal(GrindResult.HARDWARE_FAULT, r'^the drive reports a fault')
+        self.check_standing()
+        hal_bench.halcmd('setp', 'motor-x.maxv', '0.25')
+        self.assertTrue(self.grinder.reset().success)
+        self.check_start_from_standing()
+
+    def test_node_compares_with_the_command_that_was_played(self):
+        hal_bench.halcmd('setp', 'motor-x.maxv', '0.0001')
+        self.addCleanup(hal_bench.halcmd, 'setp', 'motor-x.maxv', '0.25')
+        self.check_goal(GrindResult.PATH_TOLERANCE_VIOLATED, r'^axis_x following error 0\.001\d* m is beyond its limit 0\.001 m')
+        self.check_standing()
+
+
+class TestHold(Stop, unittest.TestCase):
+    def test_hold_takes_the_buffer_and_the_ramp(self):
+        self.assertTrue(self.grinder._call('hold', gc.Trigger).success)
+        self.grinder.wait_state(GrinderState.HELD)
+        # Held is told when the axes have got the last setpoint.
+        row = RECORDER.over(1)[0]
+        self.assertEqual(row.command, row.position)
+        self.assertEqual({r.command for r in RECORDER.over(300)}, {row.command})
+        self.assertTrue(all(r.enabled for r in RECORDER.read()[self.first:]))
+        self.assertTrue(self.grinder._call('resume', gc.Trigger).success)
+        self.goal_run.wait_complete()
+        self.assertEqual((self.goal_run.status, self.goal_run.text), ('SUCCEEDED', ''))
+        self.assertTrue(gc.is_gapless(self.goal_run.setpoints))
+        self.check_steps(RECORDER.read()[self.first:])
+
+    def test_cancel_stops_on_the_path(self):
+        self.goal_run.cancel()
+        self.goal_run.wait()
+        self.assertEqual((self.goal_run.status, self.goal_run.code), ('PREEMPTED', GrindResult.CANCELED))
+        row = RECORDER.over(1)[0]
+        self.assertEqual(row.command, row.position)
+        self.assertEqual({r.command for r in RECORDER.over(300)}, {row.command})
+        self.grinder.fresh_state()
+        self.assertEqual(row.command, tuple(self.goal_run.setpoints[-1].position))
+        self.assertEqual(self.goal_run.setpoints[-1].move, STROKE)
+        self.assertEqual(gc.excesses(self.goal_run.setpoints, self.limits, self.period), [])
+
+
+class TestHoming(Stop, unittest.TestCase):
+    def test_homing_ends_ready_and_without_a_step(self):
+        self.goal_run.wait()
+        first = RECORDER.now()
+        self.assertTrue(self.grinder._call('home', gc.Trigger).success)
+        self.grinder.wait_state(GrinderState.READY)
+        rows = RECORDER.read()[first:]
+        self.assertEqual(len({row.command for row in rows}), 1)
+        self.assertTrue(all(row.enabled for row in rows))
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_hal_stops')
+    rostest.rosrun('flute_grinder', 'hal_stops', '__main__')

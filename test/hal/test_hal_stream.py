@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Shows on the real HAL that each servo cycle plays exactly one setpoint: a stroke of 30 s and short jobs, recorded by a HAL
+sampler, are to the last bit what the node says that it wrote."""
+
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState
+
+import hal_bench
+from hal_bench import gc
+
+RECORDER = hal_bench.Recorder()
+# Long, so that a host that stalls does not decide the test.
+BUFFER = 0.2
+# Of the bench's streamer.
+DEPTH = 4096
+
+
+def bits(position):
+    return tuple(value.hex() for value in position)
+
+
+class TestStream(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        hal_bench.patience(2 * BUFFER)
+        cls.node = hal_bench.Node(buffer=BUFFER)
+        cls.grinder = gc.Grinder()
+        cls.grinder.make_ready()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.grinder.close()
+        cls.node.end()
+
+    def record(self, job):
+        """Runs a job; returns its setpoints, and the rows from the first setpoint to where HAL goes on at rest."""
+        first = RECORDER.now()
+        run = self.grinder.send(job).wait_complete(timeout=120)
+        self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
+        rows = RECORDER.read()[first:] + RECORDER.over(10)
+        setpoints = [bits(s.position) for s in run.setpoints]
+        self.assertTrue(gc.is_gapless(run.setpoints))
+        # The first setpoints are where the axes stand; the first that is not shows where they begin.
+        start = setpoints[0]
+        standing = next(i for i, s in enumerate(setpoints) if s != start)
+        moving = next(i for i, row in enumerate(rows) if bits(row.command) != start)
+        return setpoints, rows[moving - standing:]
+
+    def check(self, job):
+        setpoints, rows = self.record(job)
+        played = [bits(row.command) for row in rows]
+        self.assertEqual(played[:len(setpoints)], setpoints)
+        self.assertEqual(set(played[len(setpoints):]), {setpoints[-1]})
+        # One more in each row: neither HAL nor its recorder has left a cycle out.
+        self.assertEqual({(b.played - a.played) % 2 ** 32 for a, b in zip(rows, rows[1:])}, {1})
+        self.assertEqual({row.underruns for row in rows}, {rows[0].underruns})
+        self.assertTrue(all(row.enabled for row in rows))
+        return setpoints
+
+    def test_stroke_of_30_s_is_played_to_the_last_bit(self):
+        setpoints = self.check(gc.paper(feed=75 * gc.MM_MIN))
+        self.assertGreater(len(setpoints), 30000)
+        self.assertGreater(len(setpoints), 7 * DEPTH, 'the FIFO goes round more than once')
+
+    def test_last_setpoint_is_played_wherever_it_lies_in_the_fifo(self):
+        for _ in range(3):
+            self.check(gc.SHORT)
+
+    def test_axes_follow_to_the_last_bit_at_rest(self):
+        self.check(gc.SHORT)
+        row = RECORDER.over(1)[0]
+        self.assertEqual(bits(row.position), bits(row.command))
+        self.assertEqual(self.grinder.wait_rest(), list(row.position))
+        self.assertEqual(self.grinder.fresh_state().state, GrinderState.READY)
+
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_hal_stream')
+    rostest.rosrun('flute_grinder', 'hal_stream', '__main__')

@@ -31,6 +31,8 @@ inline LoopConfig machineConfig() {
   config.following_error << 0.001, 0.001, 0.001, 0.05;
   config.feedback_timeout = 0.0025;
   config.enable_timeout = 0.0105;
+  config.homing_timeout = 1;
+  config.spindle_timeout = 1;
   return config;
 }
 
@@ -102,7 +104,7 @@ inline bool sameBits(const Axes& a, const Axes& b) {
 }
 
 inline void setUp(FakeDrive& drive, const LoopConfig& config) { drive.place(config.machine.park); }
-inline void setUp(SimulatedDrive& drive, const LoopConfig& config) { drive.init(driveModel(config)); }
+inline void setUp(SimulatedDrive& drive, const LoopConfig& config) { drive.init(driveModel(config), {}); }
 
 /// A drive and its loop; every cycle's record is popped into the log.
 template <typename Drive>
@@ -211,7 +213,7 @@ inline std::vector<Setpoint> allSetpoints(SetpointStream stream, std::optional<s
   std::vector<Setpoint> all;
   Setpoint setpoint;
   do {
-    if (stop_at && all.size() == *stop_at) stream.stop();
+    if (stop_at && all.size() == *stop_at) stream.hold();
     if (!stream.next(setpoint)) return all;
     all.push_back(setpoint);
   } while (all.size() < 1000000);

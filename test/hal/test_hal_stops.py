@@ -57,7 +57,8 @@ class Stop:
 
     def check_standing(self):
         """From the stop on, not one command is played, and the axes come to rest without a jump."""
-        rows = RECORDER.read()[self.first:] + RECORDER.over(300)
+        RECORDER.over(300)
+        rows = RECORDER.read()[self.first:]
         self.assertEqual({row.command for row in self.rows_from_stop() if not row.enabled},
                          {self.rows_from_stop()[0].command})
         self.assertEqual({row.played for row in self.rows_from_stop() if not row.enabled},

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace flute_grinder {
@@ -35,10 +36,9 @@ std::size_t requireHalMemory(int key, const std::string& what, const std::string
   const int id = shmget(key, 0, 0);
   if (id < 0) throw MachineConfigError(what + " is not there (" + std::strerror(errno) + "); " + remedy);
   shmid_ds status{};
-  void* memory = shmctl(id, IPC_STAT, &status) == 0 ? shmat(id, nullptr, 0) : reinterpret_cast<void*>(-1);
-  if (memory == reinterpret_cast<void*>(-1)) {
+  const void* memory = shmat(id, nullptr, 0);
+  if (reinterpret_cast<std::intptr_t>(memory) == -1 || shmctl(id, IPC_STAT, &status) != 0) {
     throw MachineConfigError("no permission to use " + what + " as user " + std::to_string(geteuid()) +
-                             "; it belongs to user " + std::to_string(status.shm_perm.uid) +
                              "; allowed: the user that has started HAL");
   }
   shmdt(memory);

@@ -32,8 +32,10 @@ bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
   const ParameterReader p(parameters, robot_hw_nh.getNamespace());
   const double control_rate =
       ParameterReader(root_parameters, root_nh.getNamespace()).number("control_rate", 10, 20000);
-  const double longest = kMaxCommandsWaiting / 2 / control_rate;
-  buffer_ = static_cast<std::uint32_t>(std::ceil(p.number("buffer", 2 / control_rate, longest) * control_rate));
+  // Half of what the loop remembers: HAL may stall, and a cycle begin without room, a few times.
+  constexpr double most = kMaxCommandsWaiting / 2.0;
+  buffer_ =
+      static_cast<std::uint32_t>(std::lround(p.number("buffer", 2 / control_rate, most / control_rate) * control_rate));
   const int streamer = static_cast<int>(p.number("streamer", 0, 7));
 
   component_ = std::make_unique<HalComponent>(p.text("component"));

@@ -18,13 +18,14 @@ LOAD = 'while :; do :; done'
 
 
 def measure(recorder, buffer, seconds):
-    """Runs jobs for a time; returns (servo cycles with power, underruns, jobs that failed)."""
+    """Runs jobs for a time; returns (servo cycles with power, underruns, why jobs failed)."""
     node = hal_bench.Node(buffer=buffer)
     grinder = gc.Grinder()
-    first, failed = recorder.now(), 0
+    first, failed = recorder.now(), []
     while recorder.now() - first < seconds * 1000:
         grinder.make_ready()
-        failed += grinder.send(gc.PAPER).wait().status != 'SUCCEEDED'
+        run = grinder.send(gc.PAPER).wait()
+        failed += [run.text] if run.status != 'SUCCEEDED' else []
     rows = recorder.read()[first:]
     grinder.close()
     node.end()
@@ -41,7 +42,9 @@ def main():
         try:
             for buffer in BUFFERS:
                 cycles, underruns, failed = measure(recorder, buffer, seconds)
-                print('%-8s %5.0f ms %14d %10d %12d' % (cores, buffer * 1000, cycles, underruns, failed), flush=True)
+                print('%-8s %5.0f ms %14d %10d %12d' % (cores, buffer * 1000, cycles, underruns, len(failed)), flush=True)
+                for reason in failed:
+                    print('    ' + reason, flush=True)
         finally:
             for burner in burners:
                 burner.kill()

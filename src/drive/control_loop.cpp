@@ -223,6 +223,7 @@ void ControlLoop::observe() {
     command_ = record_.position;
     written_count_ = 0;
   }
+  record_.target = commandInEffect();
 }
 
 void ControlLoop::remember() {
@@ -268,7 +269,6 @@ void ControlLoop::checkDrive() {
 }
 
 void ControlLoop::checkPositions() {
-  const Axes& command = commandInEffect();
   LoopFault fault;
   for (int i = 0; i < kAxisCount; ++i) {
     fault.axis = i;
@@ -277,7 +277,7 @@ void ControlLoop::checkPositions() {
       fault.value = record_.position[i];
       return fail(fault);
     }
-    const double error = std::abs(command[i] - record_.position[i]);
+    const double error = std::abs(record_.target[i] - record_.position[i]);
     if (!(error <= config_.following_error[i])) {
       fault.kind = FaultKind::kFollowingError;
       fault.value = error;

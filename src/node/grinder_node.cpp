@@ -527,9 +527,11 @@ void GrinderNode::diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& sta
   if (record_.drive.fault) status.summary(DiagnosticStatus::ERROR, "the drive reports a fault");
   if (record_.drive.emergency_stop) status.summary(DiagnosticStatus::ERROR, "emergency stop");
   if (record_.state == MachineState::kFault) status.summary(DiagnosticStatus::ERROR, record_.fault.text());
+  status.add("Commands waiting", record_.drive.commands_waiting);
+  status.add("Underruns", record_.drive.underruns);
   for (int i = 0; i < kAxisCount; ++i) {
     status.add(std::string(kJointNames[static_cast<std::size_t>(i)]) + " following error [" + axisUnit(i) + "]",
-               record_.command[i] - record_.position[i]);
+               record_.target[i] - record_.position[i]);
   }
 }
 

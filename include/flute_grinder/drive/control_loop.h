@@ -77,6 +77,7 @@ struct CycleRecord {
   Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
   Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
   Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
+  Axes target = Axes::Zero();    ///< the command that the positions are to follow; older if the drive buffers
   bool has_setpoint = false;
   Setpoint setpoint;                       ///< that was written, if there was one
   bool job_ended = false;                  ///< the job's stream is no longer in use

@@ -90,15 +90,34 @@ class Stop:
 
 
 class TestEmergencyStop(Stop, unittest.TestCase):
+    # So much that it cannot be its end that stops the axes.
+    buffer = 1.0
+
+    def check_stopped_at_once(self):
+        """In the very servo cycle, or the next."""
+        rows = RECORDER.read()
+        pressed = next(i for i in range(self.first, len(rows)) if rows[i].emergency_stop)
+        self.assertTrue(rows[pressed - 1].enabled)
+        self.assertFalse(rows[pressed + 1].enabled)
+        self.assertEqual(len({row.command for row in rows[pressed + 1:]}), 1)
+
+    def test_hal_stops_without_the_node(self):
+        self.node.send(signal.SIGSTOP)
+        hal_bench.press_emergency_stop(True)
+        self.wait_power_off()
+        self.check_standing()
+        self.check_stopped_at_once()
+        hal_bench.press_emergency_stop(False)
+        self.check_standing()
+        self.node.send(signal.SIGCONT)
+        self.check_goal(GrindResult.HARDWARE_FAULT, r'^the drive has switched its power off')
+        self.check_start_from_standing()
+
     def test_hal_stops_and_the_node_tells_it(self):
         hal_bench.press_emergency_stop(True)
         self.check_goal(GrindResult.EMERGENCY_STOP, r'^emergency stop')
-        rows = RECORDER.read()
-        pressed = next(i for i in range(self.first, len(rows)) if rows[i].emergency_stop)
-        # In the very servo cycle, or the next.
-        self.assertFalse(rows[pressed + 1].enabled)
-        self.assertEqual(len({row.command for row in rows[pressed + 1:]}), 1)
         self.check_standing()
+        self.check_stopped_at_once()
         state = self.grinder.wait_state(GrinderState.FAULT)
         self.assertTrue(state.emergency_stop)
         self.assertFalse(self.grinder.reset().success)

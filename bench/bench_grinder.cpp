@@ -9,6 +9,7 @@
 #include "flute_grinder/drive/simulated_drive.h"
 
 #include <benchmark/benchmark.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 
@@ -82,17 +83,39 @@ void plan(benchmark::State& state) {
 }
 BENCHMARK(plan)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
+/// A whole tool, ten teeth in twenty passes: some ten million setpoints, in a memory that does not grow with them. Peak
+/// memory is that of the whole program, in MB.
+void planTool(benchmark::State& state) {
+  GrindJob job = paperJob(52);
+  for (int tooth = 1; tooth < 10; ++tooth) job.tooth_angles.push_back(tooth * 36 * units::kDegree);
+  job.process.infeed = job.process.depth / 20;
+  std::int64_t setpoints = 0;
+  for (auto _ : state) {
+    const JobPlan plan = planJob(job, machine(), machine().park);
+    if (!plan.good()) state.SkipWithError(plan.reasons.front().c_str());
+    setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
+  }
+  state.SetItemsProcessed(setpoints);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  state.counters["setpoints"] = static_cast<double>(setpoints) / static_cast<double>(state.iterations());
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
+}
+BENCHMARK(planTool)->Unit(benchmark::kMillisecond);
+
 /// One cycle of the control loop: read, checks, next, check, write and record, with the simulated drive.
 void cycle(benchmark::State& state) {
   SimulatedDrive drive;
   SimulatedDrive::Model model;
   for (int i = 0; i < kAxisCount; ++i) model[static_cast<std::size_t>(i)] = {0.002, 1e7, machine().park[i]};
-  drive.init(model);
+  drive.init(model, {});
   LoopConfig config;
   config.machine = machine();
   config.following_error << 1e-3, 1e-3, 1e-3, 0.05;
   config.feedback_timeout = 0.002;
   config.enable_timeout = 1;
+  config.homing_timeout = 1;
+  config.spindle_timeout = 1;
   const auto loop = std::make_unique<ControlLoop>(drive, config);
   const ros::Time time(1000);
   const ros::Duration period(config.machine.period);

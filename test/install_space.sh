@@ -24,7 +24,7 @@ for file in urdf/grinder.urdf meshes/cutter.stl rviz/grinder.rviz config/grinder
 done
 
 port=${ROS_MASTER_URI##*:}
-roslaunch -p "$port" flute_grinder grinder.launch >"$log" 2>&1 &
+roslaunch -p "$port" flute_grinder grinder.launch journal:="$staging/journal" >"$log" 2>&1 &
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'

@@ -71,7 +71,7 @@ void SetpointStream::resume() noexcept {
 }
 
 void SetpointStream::retract() noexcept {
-  if (mid_pair_ || !law_.resting()) return;
+  if (mid_pair_ || !law_.resting() || finished()) return;
   holding_ = false;
   stay_lifted_ = true;
   if (leg_ == Leg::kLift) return;

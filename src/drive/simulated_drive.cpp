@@ -112,7 +112,8 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
   home_was_commanded_ = drive_command_.home;
   if (home_is_new) status_.homed = false;
   status_.homing = status_.enabled && drive_command_.home && (home_is_new || status_.homing);
-  if (!status_.enabled) return;
+  // However short the way, homing shows in one reading at least.
+  if (!status_.enabled || home_is_new) return;
   const double stuck = motor_[failing_axis];
   if (status_.homing) {
     home(dt);

@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 
@@ -50,8 +51,8 @@ std::optional<Progress> Journal::read() const {
     Progress progress;
     progress.job_digest = file["job_digest"].as<std::string>();
     progress.finished = file["finished"].as<bool>();
-    progress.next.tooth = file["tooth"].as<int>();
-    progress.next.pass = file["pass"].as<int>();
+    progress.next.tooth = file["tooth"].as<std::uint16_t>();
+    progress.next.pass = file["pass"].as<std::uint16_t>();
     progress.x = file["x_m"].as<double>();
     return progress;
   } catch (const YAML::Exception& error) {

@@ -73,11 +73,11 @@ geometry_msgs::Point onSurface(const ConicalCutter& cutter, double x, double a) 
 }
 
 /// The largest axial distance between points of the strip that keeps within kPathTolerance of the helix: its chord
-/// error is step^2 / 8 times the curvature, that of a helix about a cylinder of the smallest radius at the most.
+/// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
 double pathStep(const GrindProgram& program) {
   const ConicalCutter& cutter = program.cutter();
   const double radius = std::min(cutter.radius(program.strokeFrom()), cutter.radius(program.strokeTo()));
-  const double turning = cutter.tanSpiral() * cutter.tanSpiral() / radius;  // curvature per squared axial travel
+  const double turning = std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius;
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 

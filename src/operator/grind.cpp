@@ -63,9 +63,10 @@ void addRun(CLI::App& app, RunOptions& options) {
 
 void addOverride(CLI::App& app, double& percent) {
   auto& command = *app.add_subcommand("override", "set the feed override; 0 stops the feed, rapids keep their speed");
-  command.add_option("PERCENT", percent, "of the job's feed, 0 to 120")
-      ->required()
-      ->check(CLI::Range(0.0, kMaxFeedOverride * 100));
+  command.add_option("PERCENT", percent, "of the job's feed, 0 to 120")->required()->check([](const std::string& text) {
+    const double value = std::strtod(text.c_str(), nullptr);
+    return value >= 0 && value <= kMaxFeedOverride * 100 ? "" : text + "; allowed: 0 to 120 %";
+  });
 }
 
 /// What the command line asks for; called once it is parsed.

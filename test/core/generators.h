@@ -139,13 +139,24 @@ inline rc::Gen<Work> work(double cycles) {
       w.machine.park << g.flute_length / 2, highest + p.clearance + *uniform(0, 2e-3), 1e-3, 0.1;
       w.start << *uniform(-2e-3, 2e-3), highest + p.clearance * *uniform(-0.5, 1.5), -1e-3, *uniform(-1, 1);
       const FeedSchedule schedule = w.program().schedule();
-      const double excess = schedule.length() / schedule.limits().velocity / w.machine.period / cycles;
+      const double excess = schedule.length() / schedule.feedSpeed() / w.machine.period / cycles;
       if (excess <= 1.2) return w;
       g.flute_length = std::max(0.1e-3, g.flute_length / excess);
       p.overtravel_end /= excess;
       p.overtravel_shank /= excess;
     }
     RC_DISCARD("too slow");
+    return w;
+  });
+}
+
+/// The same with two or three teeth, not evenly spaced, in either order.
+inline rc::Gen<Work> toothedWork(double cycles) {
+  return rc::gen::exec([=] {
+    Work w = *work(cycles);
+    const int teeth = *whole(2, 3);
+    for (int i = 1; i < teeth; ++i) w.job.tooth_angles.push_back(w.job.tooth_angles.back() + *uniform(0.2, 3));
+    w.job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
     return w;
   });
 }
@@ -216,7 +227,8 @@ inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
              << ", feed " << j.process.feed << " m/s, overtravel " << j.process.overtravel_end << " "
              << j.process.overtravel_shank << " m, depth " << j.process.depth << " m, clearance " << j.process.clearance
              << " m, tolerance " << j.interpolation.tolerance << " m, scale " << j.interpolation.rotary_scale
-             << " m/rad, spark out " << j.process.spark_out;
+             << " m/rad, spark out " << j.process.spark_out << ", " << j.tooth_angles.size() << " teeth, "
+             << toString(j.process.order);
 }
 
 namespace testing {

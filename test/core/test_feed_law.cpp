@@ -217,6 +217,14 @@ TEST(FeedLaw, TakesTheAccelerationBackBeforeItStops) {
   EXPECT_NEAR(law.acceleration(), 0, 1e-14);
 }
 
+TEST(FeedLaw, TellsItsLimits) {
+  const FeedLaw law({2, 3, 5}, 1, 1);
+  EXPECT_EQ(law.limits().velocity, 2);
+  EXPECT_EQ(law.limits().acceleration, 3);
+  EXPECT_EQ(law.limits().jerk, 5);
+  EXPECT_EQ(FeedLaw().limits().velocity, 0);
+}
+
 TEST(FeedLaw, RefusesBadArguments) {
   const double bad_limits[]{0, -1, kNan, kInf, -kInf};
   for (const double bad : bad_limits) {
@@ -284,6 +292,64 @@ TEST(FeedLaw, StoppedDuringTheFinalBrakingItNeitherPassesTheEndNorFailsToResume)
     law.advance(100 * total);
     ASSERT_TRUE(law.finished()) << i;
   }
+}
+
+/// Rest is without speed and acceleration, and nothing then moves any more.
+void assertRestsIfItSaysSo(FeedLaw law, const Motion& m) {
+  if (!law.resting()) return;
+  RC_ASSERT(law.speed() == 0);
+  RC_ASSERT(law.acceleration() == 0);
+  RC_ASSERT(law.timeLeft() <= 0);
+  RC_ASSERT(law.target() == 0 || law.position() == m.distance);
+  const double rest = law.position();
+  law.advance(m.dt);
+  RC_ASSERT(law.position() == rest);
+}
+
+RC_GTEST_PROP(FeedLawProperty, ATargetSetAtTheVeryEndLeavesNoSpeedInALawThatRests, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  const bool stops_short = *rc::gen::arbitrary<bool>();
+  if (stops_short) {
+    law.advance(law.timeLeft() * *uniform(0, 1));
+    law.setTarget(0);
+  }
+  // To within some roundings of the end, and there in the smallest steps that time has.
+  law.advance(law.timeLeft() * (1 - *logUniform(1e-16, 1e-4)));
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1);
+  for (int i = 0; i < 50; ++i) {
+    const double chance = fraction(random);
+    law.setTarget(chance < 0.3 ? 0 : m.limits.velocity * fraction(random));
+    assertRestsIfItSaysSo(law, m);
+    law.advance(law.timeLeft() * (chance < 0.5 ? 1 - std::pow(10, -16 * fraction(random)) : 0.5));
+    assertRestsIfItSaysSo(law, m);
+  }
+}
+
+TEST(FeedLaw, APlanWithoutMotionRestsAtOnce) {
+  // Told to stop just where the final braking would begin, it comes to the end with a rounding of speed left: a target
+  // then makes a plan without motion.
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> fraction(0.1, 1);
+  int at_the_end = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const MotionLimits limits{2, fraction(random), fraction(random)};
+    const double ramp = 2 / limits.acceleration + limits.acceleration / limits.jerk;
+    const double distance = 2 * ramp + fraction(random);
+    FeedLaw law(limits, distance, limits.velocity);
+    law.advance(law.timeLeft() - ramp);
+    law.setTarget(0);
+    law.advance(law.timeLeft() * (1 - 1e-9));
+    if (law.resting() || law.position() < distance) continue;
+    law.setTarget(limits.velocity);
+    if (!law.resting()) continue;  // it was braking for the end already, and so keeps its plan
+    ++at_the_end;
+    ASSERT_EQ(law.speed(), 0) << i;
+    ASSERT_EQ(law.acceleration(), 0) << i;
+    ASSERT_TRUE(law.finished());
+  }
+  EXPECT_GT(at_the_end, 100);
 }
 
 RC_GTEST_PROP(FeedLawProperty, UndisturbedItTakesTheDoubleSTime, ()) {

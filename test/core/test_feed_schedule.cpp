@@ -103,6 +103,13 @@ Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
   return result;
 }
 
+/// The one cause for which a feed is cut; empty where it is not, and all where there are several.
+std::string causeOf(const FeedSchedule& schedule) {
+  std::string causes;
+  for (const FeedCut& cut : schedule.cuts()) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  return causes;
+}
+
 void expectWithin(const Excess& excess) {
   if (excess.worst > 1 + 1e-6) RC_FAIL(excess.what + " " + std::to_string(excess.worst) + " of its limit");
 }
@@ -169,17 +176,72 @@ RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
   c.machine.period = 1e-6;
   c.stroke.tolerance = 1e-3;
   const FeedSchedule schedule = c.schedule();
-  RC_ASSERT(schedule.limitedBy() == "");
-  RC_ASSERT(std::abs(schedule.limits().velocity * testing::edgePerTravel(c.cutter) - c.stroke.surface_feed) <=
-            4 * kEps * c.stroke.surface_feed);
+  RC_ASSERT(schedule.cuts().empty());
+  const double edge = testing::edgePerTravel(c.cutter);
+  const double feed = c.stroke.surface_feed;
+  RC_ASSERT(std::abs(schedule.feedSpeed() * edge - feed) <= 4 * kEps * feed);
+  RC_ASSERT(std::abs(schedule.limits().velocity * edge - 1.2 * feed) <= 8 * kEps * feed);
   RC_ASSERT(std::abs(schedule.length() - std::abs(c.stroke.to - c.stroke.from)) <= 4 * kEps * schedule.length());
   for (int i = 0; i <= 20; ++i) RC_ASSERT(schedule.rate(schedule.length() * i / 20) == 1);
 }
 
-RC_GTEST_PROP(FeedScheduleProperty, NeverAsksForMoreThanTheFeed, ()) {
+RC_GTEST_PROP(FeedScheduleProperty, NeverAsksForMoreThanTheFeedAndAFifth, ()) {
   const Case c = Case::draw();
-  RC_ASSERT(c.schedule().limits().velocity * testing::edgePerTravel(c.cutter) <=
-            c.stroke.surface_feed * (1 + 4 * kEps));
+  const FeedSchedule schedule = c.schedule();
+  const double asked = c.stroke.surface_feed / testing::edgePerTravel(c.cutter);
+  RC_ASSERT(schedule.feedSpeed() <= asked * (1 + 4 * kEps));
+  RC_ASSERT(schedule.limits().velocity >= schedule.feedSpeed());
+  RC_ASSERT(schedule.limits().velocity <= 1.2 * asked * (1 + 8 * kEps));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, LeavesNoRoomForMoreWhereSomethingHoldsTheFeedBack, ()) {
+  const FeedSchedule schedule = Case::draw().schedule();
+  RC_PRE(!schedule.cuts().empty());
+  RC_ASSERT(schedule.limits().velocity == schedule.feedSpeed());
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, TellsWhereAHoldsTheFeedBack, ()) {
+  Case c = Case::draw();
+  c.machine.limits.max_velocity[kA] *= *testing::logUniform(0.01, 1);
+  const FeedSchedule schedule = c.schedule();
+  const bool forward = c.stroke.to > c.stroke.from;
+  const auto ahead = [&](double x, double of) { return forward ? x > of : x < of; };
+  for (const FeedCut& cut : schedule.cuts()) {
+    RC_ASSERT(ahead(cut.to, cut.from));
+    RC_ASSERT(!ahead(c.stroke.from, cut.from));
+    RC_ASSERT(!ahead(cut.to, c.stroke.to));
+  }
+  bool slower = false;
+  for (int i = 0; i <= 1000; ++i) slower = slower || schedule.rate(schedule.length() * i / 1000) < 1 - 1e-6;
+  RC_PRE(slower);  // and not next to a cylinder, which is as thin everywhere
+  const FeedCut& cut = schedule.cuts().back();
+  RC_ASSERT(cut.from == c.stroke.from || cut.to == c.stroke.to);
+  const double range = cut.to - cut.from;
+  // The feed nears the full one evenly where the cut ends, and is all but there in the last part of the range.
+  const bool ends_early = cut.to != c.stroke.to;
+  const bool begins_late = cut.from != c.stroke.from;
+  for (int i = 0; i <= 1000; ++i) {
+    const double s = schedule.length() * i / 1000;
+    const double x = schedule.x(s);
+    const double from = cut.from + (begins_late ? 0.1 : 0) * range;
+    const double to = cut.to - (ends_early ? 0.1 : 0) * range;
+    if (ahead(x, from) && ahead(to, x)) RC_ASSERT(schedule.rate(s) < 1);
+    const double rounding = 1e-12 * range;
+    if (ahead(cut.from - rounding, x) || ahead(x, cut.to + rounding)) RC_ASSERT(schedule.rate(s) >= 1 - 4 * kEps);
+  }
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, TheRunUpIsTheWayToTheFeedFromRest, ()) {
+  const FeedSchedule schedule = Case::draw().schedule();
+  const MotionLimits l = schedule.limits();
+  const double speed = schedule.feedSpeed();
+  FeedLaw law(l, 1e3 * (schedule.runUp() + schedule.length()), speed);
+  // Time is cut until the law has just come to its speed.
+  const double all_of_it = speed / l.acceleration + 2 * std::sqrt(speed / l.jerk) + l.acceleration / l.jerk;
+  for (int i = 0; i < 100000 && !law.cruising(); ++i) law.advance(all_of_it / 10000);
+  RC_ASSERT(law.cruising());
+  RC_ASSERT(law.position() >= schedule.runUp() * (1 - 1e-9));
+  RC_ASSERT(law.position() <= schedule.runUp() * (1 + 1e-9) + speed * all_of_it / 10000 * (1 + 1e-9));
 }
 
 RC_GTEST_PROP(FeedScheduleProperty, LeavesTheFeedLawSomethingToGoBy, ()) {
@@ -195,7 +257,7 @@ RC_GTEST_PROP(FeedScheduleProperty, LeavesTheFeedLawSomethingToGoBy, ()) {
 RC_GTEST_PROP(FeedScheduleProperty, AnEvenMotionKeepsAllAxesWithinTheirLimits, ()) {
   const Case c = Case::draw();
   const FeedSchedule schedule = c.schedule();
-  const double speed = schedule.limits().velocity;
+  const double speed = schedule.limits().velocity;  // of the largest override
   const double duration = schedule.length() / speed;
   // At the control cycle or finer, a few thousand places in a window of the stroke.
   const double h = std::max(std::min(c.machine.period, duration / 2000), 2e-4);
@@ -238,7 +300,7 @@ RC_GTEST_PROP(FeedScheduleProperty, UsesTheLimitOfAWhereAHindersTheFeed, ()) {
   const Real a_speed = schedule.limits().velocity * schedule.rate(0) * std::abs(curve.slope(schedule.x(0)));
   RC_ASSERT(a_speed <= machine.limits.max_velocity[kA]);
   RC_ASSERT(a_speed >= 0.99 * machine.limits.max_velocity[kA]);
-  RC_ASSERT(schedule.limitedBy() == "axis_a velocity");
+  RC_ASSERT(causeOf(schedule) == "axis_a velocity");
 }
 
 TEST(FeedSchedule, TurnsAEvenlyWhereItCutsTheFeed) {
@@ -253,24 +315,55 @@ TEST(FeedSchedule, TurnsAEvenlyWhereItCutsTheFeed) {
   EXPECT_EQ(schedule.rate(schedule.length()), 1);
 }
 
-TEST(FeedSchedule, CutsTheFeedFurtherWhereXCannotGainSpeedAsAAllows) {
-  // A allows the feed to grow along the cone faster than X may: dv/dt = b c v, and d2v/dt2 = (b c)^2 v.
+TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
+  // A allows the feed to grow along the cone faster than X may: dv/dt = b c v, and d2v/dt2 = (b c)^2 v. Y and Z follow
+  // X in proportion, by tan C and tan C sin r.
   Case c;
   c.cutter = {1e-3, 20 * units::kDegree, 10 * units::kDegree, 8 * units::kDegree, 20e-3};
   c.stroke = {0, 20e-3, 0.01, 1e-3};
-  for (const bool by_jerk : {true, false}) {
-    c.machine = boundless();
-    c.machine.limits.max_velocity[kA] = 2.5;
-    (by_jerk ? c.machine.limits.max_jerk : c.machine.limits.max_acceleration)[kX] = by_jerk ? 0.1 : 0.02;
-    const FeedSchedule schedule = c.schedule();
-    EXPECT_EQ(schedule.limitedBy(), by_jerk ? "linear jerk" : "linear acceleration");
-    EXPECT_GT(schedule.limits().acceleration, 0);
-    EXPECT_GT(schedule.limits().jerk, 0);
-    std::vector<double> xs;
-    const double h = 2e-3;
-    for (double s = 0; s < schedule.length(); s += h * schedule.limits().velocity) xs.push_back(schedule.x(s));
-    const Excess excess = excessOf(c, xs, h);
-    EXPECT_LE(excess.worst, 1 + 1e-6) << excess.what;
+  const double growth = std::tan(20 * units::kDegree);
+  const double per_x[]{1, growth, growth * std::sin(8 * units::kDegree)};
+  const char* const names[]{"axis_x", "axis_y", "axis_z"};
+  for (const int axis : {kX, kY, kZ}) {
+    for (const bool by_jerk : {true, false}) {
+      SCOPED_TRACE(names[axis]);
+      c.machine = boundless();
+      c.machine.limits.max_velocity[kA] = 2.5;
+      (by_jerk ? c.machine.limits.max_jerk : c.machine.limits.max_acceleration)[axis] =
+          (by_jerk ? 0.1 : 0.02) * per_x[axis];
+      const FeedSchedule schedule = c.schedule();
+      EXPECT_EQ(causeOf(schedule), std::string(names[axis]) + (by_jerk ? " jerk" : " acceleration"));
+      EXPECT_GT(schedule.limits().acceleration, 0);
+      EXPECT_GT(schedule.limits().jerk, 0);
+      std::vector<double> xs;
+      const double h = 2e-3;
+      for (double s = 0; s < schedule.length(); s += h * schedule.limits().velocity) xs.push_back(schedule.x(s));
+      const Excess excess = excessOf(c, xs, h);
+      EXPECT_LE(excess.worst, 1 + 1e-6) << excess.what;
+    }
+  }
+}
+
+TEST(FeedSchedule, TellsEveryCauseWithItsRange) {
+  // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
+  // and as much as X where the radius is v tan S / 5 rad/s.
+  Machine machine = boundless();
+  const double asked = 0.01 / testing::edgePerTravel(thinCutter());
+  machine.limits.max_velocity[kX] = asked / 2;
+  machine.limits.max_velocity[kA] = 5;
+  machine.period = 1e-6;
+  for (const bool backward : {false, true}) {
+    FeedSchedule::Stroke stroke = plainStroke();
+    if (backward) std::swap(stroke.from, stroke.to);
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
+    ASSERT_EQ(causeOf(schedule), "axis_x velocity, axis_a velocity");
+    const FeedCut& along = schedule.cuts()[0];
+    const FeedCut& tip = schedule.cuts()[1];
+    EXPECT_EQ(along.from, stroke.from);
+    EXPECT_EQ(along.to, stroke.to);
+    const double end = (asked / 2 / 5 - 0.5e-3) / std::tan(12 * units::kDegree);
+    EXPECT_EQ(backward ? tip.to : tip.from, -0.5e-3);
+    EXPECT_NEAR(backward ? tip.from : tip.to, end, 0.01e-3);
   }
 }
 
@@ -293,7 +386,7 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   const auto limitedBy = [](Machine machine, double tolerance = 1e-3) {
     FeedSchedule::Stroke stroke = plainStroke();
     stroke.tolerance = tolerance;
-    return FeedSchedule(ConicalCutter(thinCutter()), stroke, machine).limitedBy();
+    return causeOf(FeedSchedule(ConicalCutter(thinCutter()), stroke, machine));
   };
   const double x_speed = 0.01 / testing::edgePerTravel(thinCutter());
   EXPECT_EQ(limitedBy(boundless()), "");
@@ -328,7 +421,7 @@ TEST(FeedSchedule, OfACylinderIsNotBentByA) {
   EXPECT_NEAR(schedule.limits().velocity, 1e-3, 1e-12);
   EXPECT_NEAR(schedule.length(), 20.5e-3, 1e-15);
   EXPECT_EQ(schedule.rate(0), 1);
-  EXPECT_EQ(schedule.limitedBy(), "axis_a velocity");
+  EXPECT_EQ(causeOf(schedule), "axis_a velocity");
 }
 
 TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {

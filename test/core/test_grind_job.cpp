@@ -67,6 +67,8 @@ const Field kFields[]{
      [](GrindJob& j) -> double& { return j.process.wheel_width; }},
     {"process.wheel_wear", "process.wheel.wear_mm", 1e-3, "m", "mm", 0, 100, "0 to 100 mm",
      [](GrindJob& j) -> double& { return j.process.wheel_wear; }},
+    {"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", 1e-3, "m", "mm", 0, 1, "0 to 1 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_wear_per_pass; }},
     {"interpolation.tolerance", "interpolation.tolerance_um", 1e-6, "m", "um", 1e-9, 1000, "1e-09 to 1000 um",
      [](GrindJob& j) -> double& { return j.interpolation.tolerance; }},
     {"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", 1e-3, "m/rad", "mm/rad", 1e-3, 1000,
@@ -252,6 +254,16 @@ INSTANTIATE_TEST_SUITE_P(
                       "process.finish_infeed", "process.finish_infeed_mm", "0.0006 m", "up to the depth, 0.0005 m"},
         Contradiction{"WearIsTheWheelsRadius", [](GrindJob& j) { j.process.wheel_wear = 50e-3; }, "process.wheel_wear",
                       "process.wheel.wear_mm", "0.05 m", "less than 0.05 m"},
+        // Of 50 mm half a millimetre is left, for two teeth in two passes each.
+        Contradiction{"WearPerPassTakesAllOfTheWheel",
+                      [](GrindJob& j) {
+                        j.tooth_angles = {0, 3};
+                        j.process.spark_out = 1;
+                        j.process.wheel_wear = 49.5e-3;
+                        j.process.wheel_wear_per_pass = 0.125e-3 * (1 + 1e-6);
+                      },
+                      "process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", "0.000125000125 m",
+                      "less than 0.000125 m"},
         Contradiction{"TooManyPasses",
                       [](GrindJob& j) {
                         j.process.depth = 4e-3;
@@ -291,6 +303,15 @@ TEST(GrindJob, TakesAsMuchAsTheConeAllows) {
   EXPECT_TRUE(validate(job).empty());
   backTaper(job, 18e-3, 1e-3);
   job.process.overtravel_end = 100e-3;
+  EXPECT_TRUE(validate(job).empty());
+}
+
+TEST(GrindJob, TakesAsMuchWearAsTheWheelHas) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 3};
+  job.process.spark_out = 1;
+  job.process.wheel_wear = 49.5e-3;
+  job.process.wheel_wear_per_pass = 0.125e-3 * (1 - 1e-6);
   EXPECT_TRUE(validate(job).empty());
 }
 
@@ -385,6 +406,23 @@ INSTANTIATE_TEST_SUITE_P(ByHand, PassDepths,
                                            Passes{"FinishAndSparkOut", 1.5, 0.5, 0.05, 1, {0.5, 1, 1.45, 1.5, 1.5}},
                                            Passes{"FinishLargerThanInfeed", 1, 0.25, 0.5, 0, {0.25, 0.5, 1}}),
                          [](const auto& info) { return std::string(info.param.name); });
+
+/// The passes as "tooth/pass".
+std::vector<std::string> orderOf(const GrindJob& job) {
+  std::vector<std::string> order;
+  for (const ToothPass& p : passOrder(job)) order.push_back(std::to_string(p.tooth) + "/" + std::to_string(p.pass));
+  return order;
+}
+
+TEST(PassOrder, IsThatOfTeethOrOfPasses) {
+  GrindJob job = paperJob();
+  EXPECT_EQ(orderOf(job), std::vector<std::string>{"0/0"});
+  job.tooth_angles = {0, 1, 3};
+  job.process.spark_out = 1;
+  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "0/1", "1/0", "1/1", "2/0", "2/1"}));
+  job.process.order = GrindOrder::kPassMajor;
+  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
+}
 
 RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
   GrindProcess p;

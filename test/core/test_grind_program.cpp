@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -24,7 +25,7 @@ using testing::Work;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-GrindProgram programOf(const GrindJob& job, const JobStart& first = {}) {
+GrindProgram programOf(const GrindJob& job, const ToothPass& first = {}) {
   return GrindProgram(job, plainMachine(), plainMachine().park, first);
 }
 
@@ -69,10 +70,10 @@ GrindJob manyPasses() {
   return j;
 }
 
-TEST(GrindProgram, OfOnePassGoesOverTheWorkDownAlongAndOut) {
+TEST(GrindProgram, OfOnePassIndexesGoesOverTheWorkDownAlongAndOut) {
   EXPECT_EQ(kindsOf(programOf(paperJob())),
-            (std::vector<MoveKind>{MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed, MoveKind::kStroke,
-                                   MoveKind::kRetract, MoveKind::kReturn}));
+            (std::vector<MoveKind>{MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
+                                   MoveKind::kStroke, MoveKind::kRetract, MoveKind::kReturn}));
 }
 
 TEST(GrindProgram, StartingInTheWorkBeginsWithALift) {
@@ -86,7 +87,7 @@ TEST(GrindProgram, StartingInTheWorkBeginsWithALift) {
   EXPECT_EQ(lift.to[kA], start[kA]);
   // It may be another cutter's work: this one's clearance plane is no measure.
   EXPECT_EQ(lift.to[kY], plainMachine().park[kY]);
-  EXPECT_EQ(program.moves()[1].kind, MoveKind::kPosition);
+  EXPECT_EQ(program.moves()[1].kind, MoveKind::kIndex);
 }
 
 TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
@@ -96,10 +97,16 @@ TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
   const testing::ReferenceCurve curve(job.cutter);
   const double growth = std::tan(5 * units::kDegree);
   const double sin_rake = std::sin(8 * units::kDegree);
+  const Move& index = firstOf(program, MoveKind::kIndex);
+  EXPECT_EQ(index.to[kX], plainMachine().park[kX]);
+  EXPECT_EQ(index.to[kY], plainMachine().park[kY]);
+  EXPECT_EQ(index.to[kZ], plainMachine().park[kZ]);
+  EXPECT_NEAR(index.to[kA], 2 + static_cast<double>(curve.a(-1e-3L)), 1e-15);
   const Move& position = firstOf(program, MoveKind::kPosition);
   EXPECT_NEAR(position.to[kX], -1e-3, 1e-18);
+  EXPECT_EQ(position.to[kY], plainMachine().park[kY]);
   EXPECT_NEAR(position.to[kZ], -1e-3 * growth * sin_rake, 1e-18);
-  EXPECT_NEAR(position.to[kA], 2 + static_cast<double>(curve.a(-1e-3L)), 1e-15);
+  EXPECT_EQ(position.to[kA], index.to[kA]);
   const Move& approach = firstOf(program, MoveKind::kApproach);
   EXPECT_NEAR(approach.to[kY], -1e-3 * growth + 5e-3, 1e-17);
   const Move& infeed = firstOf(program, MoveKind::kInfeed);
@@ -124,8 +131,8 @@ TEST(GrindProgram, TakesAPassOfAllTeethBeforeTheNext) {
 TEST(GrindProgram, EveryPassOfManyHasItsMoves) {
   std::vector<MoveKind> expected;
   for (int i = 0; i < 6; ++i) {
-    expected.insert(expected.end(), {MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed, MoveKind::kStroke,
-                                     MoveKind::kRetract});
+    expected.insert(expected.end(), {MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
+                                     MoveKind::kStroke, MoveKind::kRetract});
   }
   expected.push_back(MoveKind::kReturn);
   EXPECT_EQ(kindsOf(programOf(manyPasses())), expected);
@@ -171,7 +178,7 @@ TEST(GrindProgram, ContinuesFromAPassOfATooth) {
 }
 
 TEST(GrindProgram, RefusesAFirstPassThatIsNotThere) {
-  for (const JobStart& first : {JobStart{-1, 0}, JobStart{2, 0}, JobStart{0, -1}, JobStart{0, 3}}) {
+  for (const ToothPass& first : {ToothPass{-1, 0}, ToothPass{2, 0}, ToothPass{0, -1}, ToothPass{0, 3}}) {
     const std::string error = errorOf([&] { programOf(manyPasses(), first); });
     EXPECT_TRUE(contains(error, "first_tooth = " + std::to_string(first.tooth))) << error;
     EXPECT_TRUE(contains(error, "first_pass = " + std::to_string(first.pass))) << error;
@@ -248,12 +255,140 @@ TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
   EXPECT_TRUE(contains(error, "axis_a velocity")) << error;
 }
 
+TEST(GrindProgram, TellsTheHeightAtWhichAllOfTheStrokeIsClear) {
+  EXPECT_NEAR(programOf(paperJob()).clearanceHeight(), 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-17);
+  GrindJob back_taper = paperJob();
+  back_taper.cutter.cone_angle = -3 * units::kDegree;
+  EXPECT_NEAR(programOf(back_taper).clearanceHeight(), 1e-3 * std::tan(3 * units::kDegree) + 5e-3, 1e-17);
+}
+
+TEST(GrindProgram, IndexesFromToothToToothAtTheStartOfTheirStrokes) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1.5, 3.3};  // not evenly spaced
+  for (const double hand : {1, -1}) {
+    for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+      job.cutter.spiral_angle = hand * 30 * units::kDegree;
+      job.process.direction = direction;
+      const GrindProgram program = programOf(job);
+      const double from = direction == StrokeDirection::kFromEnd ? -1e-3 : 31e-3;
+      const double to = 30e-3 - from;
+      const testing::ReferenceCurve curve(job.cutter);
+      std::vector<double> indexed;
+      std::vector<double> reached;
+      for (const Move& move : program.moves()) {
+        if (move.kind == MoveKind::kIndex) indexed.push_back(move.to[kA]);
+        if (move.kind == MoveKind::kStroke) reached.push_back(move.to[kA]);
+      }
+      ASSERT_EQ(indexed.size(), 3u);
+      ASSERT_EQ(reached.size(), 3u);
+      for (std::size_t tooth = 0; tooth < 3; ++tooth) {
+        EXPECT_NEAR(indexed[tooth], job.tooth_angles[tooth] + static_cast<double>(curve.a(from)), 1e-14);
+        EXPECT_NEAR(reached[tooth], job.tooth_angles[tooth] + static_cast<double>(curve.a(to)), 1e-14);
+      }
+      EXPECT_GT(hand * (reached[0] - indexed[0]) * (to - from), 0);  // the left hand turns the other way
+    }
+  }
+}
+
+/// Y of every infeed over that of the surface there, in the order of the moves. [m]
+std::vector<double> infeedsOf(const GrindProgram& program) {
+  std::vector<double> infeeds;
+  for (const Move& move : program.moves()) {
+    if (move.kind == MoveKind::kInfeed) infeeds.push_back(move.to[kY] - move.to[kX] * std::tan(5 * units::kDegree));
+  }
+  return infeeds;
+}
+
+/// Two teeth; 0.5 mm, 0.95 mm, finished to 1 mm, and once more without infeed.
+GrindJob wornJob() {
+  GrindJob j = paperJob();
+  j.tooth_angles = {0, 3};
+  j.process.depth = 1e-3;
+  j.process.infeed = 0.5e-3;
+  j.process.finish_infeed = 0.05e-3;
+  j.process.spark_out = 1;
+  j.process.wheel_wear = 0.2e-3;
+  j.process.wheel_wear_per_pass = 0.01e-3;
+  return j;
+}
+
+void expectInfeeds(const GrindProgram& program, const std::vector<double>& expected_mm) {
+  const auto infeeds = infeedsOf(program);
+  ASSERT_EQ(infeeds.size(), expected_mm.size());
+  for (std::size_t i = 0; i < infeeds.size(); ++i) EXPECT_NEAR(infeeds[i], -expected_mm[i] * 1e-3, 1e-16) << i;
+}
+
+TEST(GrindProgram, TakesUpTheWearOfEveryPassBeforeTheNext) {
+  GrindJob job = wornJob();
+  expectInfeeds(programOf(job), {0.7, 1.16, 1.22, 1.23, 0.74, 1.2, 1.26, 1.27});
+  job.process.order = GrindOrder::kPassMajor;
+  expectInfeeds(programOf(job), {0.7, 0.71, 1.17, 1.18, 1.24, 1.25, 1.26, 1.27});
+  job.process.direction = StrokeDirection::kToEnd;
+  expectInfeeds(programOf(job), {0.7, 0.71, 1.17, 1.18, 1.24, 1.25, 1.26, 1.27});
+}
+
+TEST(GrindProgram, CountsTheWearOfThePassesThatWereGroundBefore) {
+  expectInfeeds(programOf(wornJob(), {1, 1}), {1.2, 1.26, 1.27});
+}
+
+RC_GTEST_PROP(GrindProgramProperty, WearMovesYOfInfeedsAndStrokesOnly, ()) {
+  Work work = *testing::toothedWork(3000);
+  work.job.process.wheel_wear = *testing::uniform(0, 1e-3);
+  const GrindProgram without = work.program();
+  const double wear = *testing::uniform(1e-6, 1e-4);
+  work.job.process.wheel_wear_per_pass = wear;
+  const GrindProgram with = work.program();
+  RC_ASSERT(with.moves().size() == without.moves().size());
+  const double growth = std::tan(work.job.cutter.cone_angle);
+  double deeper = -wear;
+  double depth = 0;  // of the pass, below the surface
+  for (std::size_t i = 0; i < with.moves().size(); ++i) {
+    const Move& worn = with.moves()[i];
+    Axes moved = worn.to - without.moves()[i].to;
+    const bool cuts = worn.kind == MoveKind::kInfeed || worn.kind == MoveKind::kStroke;
+    if (worn.kind == MoveKind::kInfeed) {
+      deeper += wear;
+      depth = worn.to[kX] * growth - worn.to[kY];
+    }
+    if (worn.kind == MoveKind::kStroke) RC_ASSERT(std::abs(worn.to[kX] * growth - worn.to[kY] - depth) <= 1e-16);
+    RC_ASSERT(std::abs(moved[kY] + (cuts ? deeper : 0)) <= 1e-16);
+    moved[kY] = 0;
+    RC_ASSERT((moved == 0).all());
+  }
+}
+
+/// Which axes a move is for.
+std::vector<int> axesOf(MoveKind kind) {
+  switch (kind) {
+    case MoveKind::kIndex: return {kA};
+    case MoveKind::kPosition: return {kX, kZ};
+    case MoveKind::kLift:
+    case MoveKind::kApproach:
+    case MoveKind::kInfeed:
+    case MoveKind::kRetract: return {kY};
+    default: return {kX, kY, kZ, kA};
+  }
+}
+
+RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnly, ()) {
+  const GrindProgram program = (*testing::toothedWork(3000)).program();
+  Axes at = program.start();
+  for (const Move& move : program.moves()) {
+    const auto axes = axesOf(move.kind);
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) RC_ASSERT(move.to[axis] == at[axis]);
+    }
+    at = move.to;
+  }
+}
+
 RC_GTEST_PROP(GrindProgramProperty, MovesXZAndABelowTheClearancePlaneInStrokesOnly, ()) {
-  const Work work = *testing::work(3000);
+  const Work work = *testing::toothedWork(3000);
   const GrindProgram program = work.program();
   const double growth = std::tan(work.job.cutter.cone_angle);
   const double plane =
       std::max(program.strokeFrom() * growth, program.strokeTo() * growth) + work.job.process.clearance;
+  RC_ASSERT(std::abs(program.clearanceHeight() - plane) <= 1e-15);
   Axes at = work.start;
   for (const Move& move : program.moves()) {
     const bool only_y = move.to[kX] == at[kX] && move.to[kZ] == at[kZ] && move.to[kA] == at[kA];

@@ -137,6 +137,13 @@ TEST(JobFile, ReadsUnequalTeeth) {
   EXPECT_DOUBLE_EQ(job.tooth_angles[3], 268 * kPi / 180);
 }
 
+TEST(JobFile, ReadsTheWearPerPassWhereItIsGiven) {
+  EXPECT_EQ(parseJob(kGood, "job.yaml").process.wheel_wear_per_pass, 0);
+  const GrindJob job = parseJob(with("wear_mm: 0.3\n", "wear_mm: 0.3\n    wear_per_pass_mm: 0.004\n"), "job.yaml");
+  EXPECT_DOUBLE_EQ(job.process.wheel_wear_per_pass, 4e-6);
+  EXPECT_DOUBLE_EQ(job.process.wheel_wear, 0.0003);
+}
+
 TEST(JobFile, ReadsEveryChoice) {
   EXPECT_EQ(parseJob(with("pass_major", "tooth_major"), "f").process.order, GrindOrder::kToothMajor);
   EXPECT_EQ(parseJob(with("to_end", "from_end"), "f").process.direction, StrokeDirection::kFromEnd);
@@ -237,6 +244,26 @@ INSTANTIATE_TEST_SUITE_P(
                 "width_mm: 8",
                 "width_mm: 800",
                 {"job.yaml:20", "process.wheel.width_mm", "800 mm", "0.1 to 100 mm"}},
+        Mistake{"WearPerPassOutOfRange",
+                "    wear_mm: 0.3\n",
+                "    wear_mm: 0.3\n    wear_per_pass_mm: 1.5\n",
+                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "1.5 mm", "0 to 1 mm"}},
+        Mistake{"WearPerPassOfAWord",
+                "    wear_mm: 0.3\n",
+                "    wear_mm: 0.3\n    wear_per_pass_mm: some\n",
+                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "some", "0 to 1 mm"}},
+        Mistake{"WearPerPassWithoutAValue",
+                "    wear_mm: 0.3\n",
+                "    wear_mm: 0.3\n    wear_per_pass_mm:\n",
+                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "(nothing)", "0 to 1 mm"}},
+        Mistake{"WearPerPassTwice",
+                "    wear_mm: 0.3\n",
+                "    wear_mm: 0.3\n    wear_per_pass_mm: 0.1\n    wear_per_pass_mm: 0.2\n",
+                {"job.yaml:23", "process.wheel.wear_per_pass_mm", "second time"}},
+        Mistake{"WearPerPassTakesAllOfTheWheel",
+                "    wear_mm: 0.3\n",
+                "    wear_mm: 49\n    wear_per_pass_mm: 0.5\n",
+                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "0.5 mm", "less than 0.0"}},
         Mistake{"OvertravelOutOfRange",
                 "[1, 2]",
                 "[1, 200]",

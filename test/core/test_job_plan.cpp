@@ -6,9 +6,16 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
+#include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -32,6 +39,22 @@ std::string textOf(const JobPlan& plan) {
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
+/// The causes of all feed cuts.
+std::string causesOf(const JobPlan& plan) {
+  std::string causes;
+  for (const FeedCut& cut : plan.statistics.feed_cuts) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  return causes;
+}
+
+/// The reasons that have a part.
+std::vector<std::string> reasonsWith(const JobPlan& plan, const std::string& part) {
+  std::vector<std::string> reasons;
+  for (const std::string& reason : plan.reasons) {
+    if (contains(reason, part)) reasons.push_back(reason);
+  }
+  return reasons;
+}
+
 /// A cutter on which `published` drifts off: D1 2 mm, C 15 deg, S 45 deg.
 GrindJob steepJob() {
   GrindJob j = paperJob();
@@ -39,6 +62,15 @@ GrindJob steepJob() {
   j.process.overtravel_end = 0;
   j.process.depth = j.process.infeed = 0.2e-3;
   return j;
+}
+
+/// Limits that hardly hinder a feed.
+Machine strongMachine() {
+  Machine m = plainMachine();
+  m.limits.max_velocity *= 50;
+  m.limits.max_acceleration *= 1000;
+  m.limits.max_jerk *= 100000;
+  return m;
 }
 
 /// Every statistic once more, from the setpoints that the visitor saw.
@@ -129,13 +161,124 @@ TEST(JobPlan, MovesTakeTheWholeTime) {
   EXPECT_NEAR(sum, plan.statistics.duration, 1e-9);
 }
 
+/// Checks move_ends against the setpoints' own moves.
+void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& start, bool rc = false) {
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, start, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  std::vector<std::uint64_t> expected;
+  std::size_t i = 0;
+  for (const Move& move : plan.program->moves()) {
+    // The next setpoints of that kind, tooth and pass are the move's; there are none if it has no length.
+    while (i + 1 < visited.size() && visited[i + 1].move == move.kind && visited[i + 1].tooth == move.tooth &&
+           visited[i + 1].pass == move.pass) {
+      ++i;
+    }
+    expected.push_back(visited[i].cycle);
+  }
+  if (rc) {
+    RC_ASSERT(plan.move_ends == expected);
+    RC_ASSERT(plan.move_ends.back() + 1 == plan.statistics.setpoints);
+  } else {
+    EXPECT_EQ(plan.move_ends, expected);
+    EXPECT_EQ(plan.move_ends.back() + 1, plan.statistics.setpoints);
+  }
+}
+
+TEST(JobPlan, TellsWhereEveryMoveEnds) { expectMoveEnds(paperJob(), plainMachine(), plainMachine().park); }
+
+TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
+  GrindJob job = paperJob();
+  job.cutter.spiral_angle = 0;  // A never turns
+  job.process.spark_out = 2;
+  expectMoveEnds(job, plainMachine(), plainMachine().park);
+}
+
+RC_GTEST_PROP(JobPlanProperty, TellsWhereEveryMoveEnds, ()) {
+  const Work work = *testing::toothedWork(500);
+  expectMoveEnds(work.job, work.machine, work.start, true);
+}
+
+RC_GTEST_PROP(JobPlanProperty, MovesTakeTheWholeTime, ()) {
+  const Work work = *testing::toothedWork(500);
+  std::array<std::uint64_t, kMoveKindCount> cycles{};
+  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
+    if (p.cycle > 0) ++cycles.at(static_cast<std::size_t>(p.move));
+  });
+  double sum = 0;
+  for (std::size_t i = 0; i < kMoveKindCount; ++i) {
+    const double duration = static_cast<double>(cycles[i]) * work.machine.period;
+    RC_ASSERT(std::abs(plan.statistics.move_duration[i] - duration) <= 1e-9 * (1 + duration));
+    sum += plan.statistics.move_duration[i];
+  }
+  RC_ASSERT(std::abs(sum - plan.statistics.duration) <= 1e-9 * (1 + sum));
+}
+
+/// Where the pairs' own feed is below the one asked for, apart from the ramps at the stroke's ends; in the order of the
+/// stroke.
+std::pair<double, double> slowRange(const JobPlan& plan, const std::vector<Setpoint>& setpoints) {
+  const GrindJob& job = plan.program->job();
+  const double period = plan.program->machine().period;
+  const double edge = testing::edgePerTravel(job.cutter);
+  std::vector<double> slow;
+  for (std::size_t i = 2; i < setpoints.size(); i += 2) {
+    if (setpoints[i].step == StepKind::kNone) continue;
+    const double x = setpoints[i].position[kX];
+    const double before = setpoints[i - 2].position[kX];
+    const double ramp = 0.2e-3;
+    const bool ramps =
+        std::min(std::abs(x - plan.program->strokeFrom()), std::abs(x - plan.program->strokeTo())) < ramp;
+    if (!ramps && std::abs(x - before) / (2 * period) * edge < job.process.feed * (1 - 1e-4)) slow.push_back(x);
+  }
+  if (slow.empty()) return {0, 0};
+  return {slow.front(), slow.back()};
+}
+
+TEST(JobPlan, TellsWhereTheFeedIsCut) {
+  // 10 mm/s along the edge ask A for 1.015 rad/s at X = -1 mm and for 0.653 rad/s at 31 mm.
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    SCOPED_TRACE(toString(direction));
+    GrindJob job = paperJob();
+    job.process.direction = direction;
+    Machine machine = strongMachine();
+    machine.limits.max_velocity[kA] = 0.8;
+    std::vector<Setpoint> visited;
+    const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+    ASSERT_TRUE(plan.good()) << textOf(plan);
+    ASSERT_EQ(causesOf(plan), "axis_a velocity");
+    const FeedCut& cut = plan.statistics.feed_cuts[0];
+    const auto [from, to] = slowRange(plan, visited);
+    const bool from_end = direction == StrokeDirection::kFromEnd;
+    EXPECT_EQ(from_end ? cut.from : cut.to, -1e-3);
+    EXPECT_NEAR(from_end ? cut.from : cut.to, from_end ? from : to, 0.3e-3);  // up to the ramp
+    EXPECT_NEAR(from_end ? cut.to : cut.from, from_end ? to : from, 0.1e-3);
+    // Where v k/u = 0.8 rad/s, by hand.
+    const double growth = std::tan(5 * units::kDegree);
+    const double x = (0.01 / testing::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
+    EXPECT_NEAR(from_end ? cut.to : cut.from, x, 0.1e-3);
+  }
+}
+
+TEST(JobPlan, TellsThatTheFeedIsCutAllAlong) {
+  GrindJob job = paperJob();
+  Machine machine = strongMachine();
+  machine.limits.max_velocity[kX] = 0.004;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  ASSERT_EQ(causesOf(plan), "axis_x velocity");
+  EXPECT_EQ(plan.statistics.feed_cuts[0].from, -1e-3);
+  EXPECT_EQ(plan.statistics.feed_cuts[0].to, 31e-3);
+  const auto [from, to] = slowRange(plan, visited);
+  EXPECT_NEAR(from, -1e-3, 0.3e-3);
+  EXPECT_NEAR(to, 31e-3, 0.3e-3);
+}
+
 TEST(JobPlan, OfThePapersJobIsGoodAndHasNoReasons) {
   const JobPlan plan = planOf(paperJob());
   EXPECT_TRUE(plan.good());
   EXPECT_EQ(plan.fault, PlanFault::kNone);
   EXPECT_TRUE(plan.reasons.empty());
   ASSERT_NE(plan.program, nullptr);
-  EXPECT_EQ(plan.statistics.feed_limited_by, "");
+  EXPECT_EQ(causesOf(plan), "");
   EXPECT_NEAR(plan.statistics.min_feed, 0.01, 1e-8);
   EXPECT_NEAR(plan.statistics.max_feed, 0.01, 1e-8);
 }
@@ -198,18 +341,109 @@ TEST(JobPlan, RefusesABadMachine) {
   EXPECT_EQ(planOf(paperJob(), machine).fault, PlanFault::kInvalidJob);
 }
 
+/// What a plan should object to: setpoints beyond the upper limit of an axis, counted by moves.
+struct Beyond {
+  std::uint64_t count = 0;
+  double worst = 0;
+};
+
+std::map<MoveKind, Beyond> beyondUpperLimit(const std::vector<Setpoint>& setpoints, int axis, double limit) {
+  std::map<MoveKind, Beyond> moves;
+  for (const Setpoint& p : setpoints) {
+    if (p.position[axis] <= limit) continue;
+    Beyond& beyond = moves[p.move];
+    ++beyond.count;
+    beyond.worst = std::max(beyond.worst, p.position[axis]);
+  }
+  return moves;
+}
+
+/// Whether a plan has one reason for each kind of move that is beyond the upper limit of an axis, with its worst and
+/// the count, and no other for that axis.
+void expectReasons(const JobPlan& plan, const std::vector<Setpoint>& setpoints, int axis, double limit) {
+  const auto moves = beyondUpperLimit(setpoints, axis, limit);
+  const std::string name = kJointNames[static_cast<std::size_t>(axis)];
+  EXPECT_EQ(reasonsWith(plan, name).size(), moves.size()) << textOf(plan);
+  for (const auto& [kind, beyond] : moves) {
+    const auto reasons = reasonsWith(plan, std::string("(") + toString(kind) + ", cycle");
+    std::string reason;
+    for (const std::string& r : reasons) reason = contains(r, name) ? r : reason;
+    std::ostringstream worst;
+    worst << name << " position " << beyond.worst << ' ' << axisUnit(axis) << " is ";
+    EXPECT_TRUE(contains(reason, worst.str())) << worst.str() << " in\n" << textOf(plan);
+    std::ostringstream beyond_limit;
+    beyond_limit << "beyond its limit " << limit << ' ' << axisUnit(axis);
+    EXPECT_TRUE(contains(reason, beyond_limit.str())) << reason;
+    const std::string others = "; the worst of " + std::to_string(beyond.count) + " setpoints";
+    if (beyond.count > 1) {
+      EXPECT_TRUE(contains(reason, others)) << others << " in\n" << reason;
+    } else {
+      EXPECT_FALSE(contains(reason, "worst of")) << reason;
+    }
+  }
+}
+
 TEST(JobPlan, RefusesAWayBeyondAnAxisLimitWithTheAmount) {
   Machine machine = plainMachine();
   machine.limits.max_position[kX] = 0.030;  // the stroke goes to 31 mm
-  bool beyond = false;
-  const JobPlan plan =
-      planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { beyond = p.position[kX] > 0.030; });
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_TRUE(contains(plan.reasons[0], "axis_x position 0.03")) << plan.reasons[0];
-  EXPECT_TRUE(contains(plan.reasons[0], "beyond its limit 0.03 m")) << plan.reasons[0];
-  EXPECT_TRUE(contains(plan.reasons[0], "stroke")) << plan.reasons[0];
-  EXPECT_TRUE(beyond);  // the last setpoint visited is the one refused
+  ASSERT_EQ(plan.reasons.size(), 3u) << textOf(plan);  // stroke, and retract and return from its end
+  EXPECT_EQ(plan.reasons[0].find("axis_x position 0.031 m is 0.001 m beyond its limit 0.03 m (stroke, cycle "), 0u)
+      << plan.reasons[0];
+  expectReasons(plan, visited, kX, 0.030);
+  // It goes through to the end.
+  EXPECT_TRUE((visited.back().position == machine.park).all());
+  EXPECT_EQ(plan.statistics.setpoints, visited.size());
+}
+
+TEST(JobPlan, TellsOfEveryAxisThatIsBeyondItsLimits) {
+  Machine machine = plainMachine();
+  machine.limits.max_position << 0.030, 0.04, 0.2, 2;
+  machine.limits.min_position[kZ] = -1e-5;  // the stroke begins at -12 um
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  expectReasons(plan, visited, kX, 0.030);
+  expectReasons(plan, visited, kY, 0.04);
+  expectReasons(plan, visited, kA, 2);
+  std::set<MoveKind> low;
+  for (const Setpoint& p : visited) {
+    if (p.position[kZ] < -1e-5) low.insert(p.move);
+  }
+  EXPECT_EQ(low.size(), reasonsWith(plan, "axis_z").size()) << textOf(plan);
+  EXPECT_FALSE(low.empty());
+}
+
+TEST(JobPlan, TellsOfASingleSetpointWithoutACount) {
+  std::vector<double> xs;
+  const auto see = [&](const Setpoint& p) {
+    if (p.move == MoveKind::kStroke) xs.push_back(p.position[kX]);
+  };
+  Machine machine = plainMachine();
+  planJob(paperJob(), machine, machine.park, {}, see);
+  const double last = *std::max_element(xs.begin(), xs.end());
+  xs.erase(std::remove(xs.begin(), xs.end(), last), xs.end());
+  machine.limits.max_position[kX] = (last + *std::max_element(xs.begin(), xs.end())) / 2;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  ASSERT_EQ(beyondUpperLimit(visited, kX, machine.limits.max_position[kX])[MoveKind::kStroke].count, 1u);
+  const auto reasons = reasonsWith(plan, "(stroke, cycle");
+  ASSERT_EQ(reasons.size(), 1u) << textOf(plan);
+  EXPECT_FALSE(contains(reasons[0], "worst of")) << reasons[0];
+}
+
+TEST(JobPlan, TellsAllLimitsOfManyTeethInOneTextEach) {
+  Machine machine = plainMachine();
+  machine.limits.max_position[kX] = 0.030;
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1, 2};
+  job.process.spark_out = 1;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.reasons.size(), 5u) << textOf(plan);  // now index and position leave from beyond the limit too
+  expectReasons(plan, visited, kX, 0.030);
 }
 
 TEST(JobPlan, RefusesATurnBeyondTheLimitOfA) {
@@ -217,7 +451,12 @@ TEST(JobPlan, RefusesATurnBeyondTheLimitOfA) {
   machine.limits.max_position[kA] = 2;
   const JobPlan plan = planOf(paperJob(), machine);
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
-  EXPECT_TRUE(contains(textOf(plan), "axis_a position 2.0")) << textOf(plan);
+  // It is at (tan S / tan C) ln(31 mm * 2 tan C / 10 mm + 1) at the end of the stroke.
+  const double growth = std::tan(5 * units::kDegree);
+  const double end = std::tan(30 * units::kDegree) / growth * std::log1p(31e-3 * 2 * growth / 10e-3);
+  std::ostringstream text;
+  text << "axis_a position " << end << " rad is ";
+  EXPECT_TRUE(contains(textOf(plan), text.str())) << text.str() << " in\n" << textOf(plan);
   EXPECT_TRUE(contains(textOf(plan), "beyond its limit 2 rad")) << textOf(plan);
 }
 
@@ -239,15 +478,6 @@ TEST(JobPlan, RefusesAToleranceThatNoFeedMeets) {
   EXPECT_TRUE(contains(textOf(plan), "tolerance")) << textOf(plan);
 }
 
-/// Limits that leave the feed to the tolerance.
-Machine strongMachine() {
-  Machine m = plainMachine();
-  m.limits.max_velocity *= 50;
-  m.limits.max_acceleration *= 1000;
-  m.limits.max_jerk *= 100000;
-  return m;
-}
-
 TEST(JobPlan, RefusesPublishedWhereItDriftsOffTheTolerance) {
   // The even points of `published` drift by half of the odd points' error, in rad; six times the radius makes it too
   // much.
@@ -258,8 +488,63 @@ TEST(JobPlan, RefusesPublishedWhereItDriftsOffTheTolerance) {
   EXPECT_EQ(published.fault, PlanFault::kTolerance) << textOf(published);
   EXPECT_EQ(published.reasons.size(), 1u);
   EXPECT_TRUE(contains(textOf(published), "interpolation.tolerance = 2e-07 m")) << textOf(published);
-  EXPECT_EQ(published.statistics.feed_limited_by, "interpolation tolerance");
+  EXPECT_EQ(causesOf(published), "interpolation tolerance");
   EXPECT_GT(published.statistics.max_deviation, 0.2e-6);
+}
+
+TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
+  GrindJob job = steepJob();
+  job.process.feed = 600 * units::kMillimetrePerMinute;
+  const auto deviationAt = [&](double override_fraction) {
+    SetpointStream stream(GrindProgram(job, strongMachine(), strongMachine().park));
+    stream.setFeedOverride(override_fraction);
+    const ConicalCutter cutter(job.cutter);
+    double largest = 0;
+    for (Setpoint p; stream.next(p);) {
+      const double deviation = std::abs(p.path_error) * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
+      largest = std::max(largest, deviation);
+    }
+    return largest;
+  };
+  job.interpolation.tolerance = 1e-6;  // not in the way
+  const double at_feed = deviationAt(1);
+  const double at_fastest = deviationAt(kMaxFeedOverride);
+  ASSERT_GT(at_fastest, 1.3 * at_feed);
+  job.interpolation.tolerance = 0.97 * at_fastest;
+  EXPECT_EQ(planOf(job, strongMachine()).fault, PlanFault::kTolerance);
+  job.interpolation.tolerance = 1.03 * 1.44 * at_feed;
+  EXPECT_TRUE(planOf(job, strongMachine()).good());
+  EXPECT_LE(deviationAt(kMaxFeedOverride), job.interpolation.tolerance);
+}
+
+TEST(JobPlan, TellsToleranceAndLimitsTogether) {
+  GrindJob job = steepJob();
+  job.process.feed = 0.1;
+  job.interpolation.tolerance = 0.2e-6;
+  Machine machine = strongMachine();
+  machine.limits.max_position[kX] = 0.015;
+  std::uint64_t off = 0;
+  std::vector<Setpoint> visited;
+  const Real normal =
+      std::cos(std::atan(std::tan(Real(job.cutter.spiral_angle)) * std::cos(Real(job.cutter.cone_angle))));
+  const ReferenceCurve curve(job.cutter);
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) {
+    visited.push_back(p);
+    if (p.step == StepKind::kNone) return;
+    const Real x = p.position[kX];
+    const Real radius = Real(job.cutter.end_diameter) / 2 + x * std::tan(Real(job.cutter.cone_angle));
+    if (std::abs(curve.a(x) - Real(p.position[kA])) * radius * normal > 0.2e-6L) ++off;
+  });
+  EXPECT_FALSE(plan.good());
+  expectReasons(plan, visited, kX, 0.015);
+  const auto tolerance = reasonsWith(plan, "interpolation.tolerance");
+  ASSERT_EQ(tolerance.size(), 1u) << textOf(plan);
+  ASSERT_GT(off, 1u);
+  EXPECT_TRUE(contains(tolerance[0], "; the worst of " + std::to_string(off) + " setpoints")) << tolerance[0];
+  std::ostringstream worst;
+  worst << "deviates by " << plan.statistics.max_deviation << " m";
+  EXPECT_TRUE(contains(tolerance[0], worst.str())) << tolerance[0];
+  EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis_x").size());
 }
 
 TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
@@ -270,7 +555,7 @@ TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
     job.interpolation.even_step = rule;
     const JobPlan plan = planOf(job, strongMachine());
     EXPECT_TRUE(plan.good()) << toString(rule) << ": " << textOf(plan);
-    EXPECT_EQ(plan.statistics.feed_limited_by, "interpolation tolerance");
+    EXPECT_EQ(causesOf(plan), "interpolation tolerance");
     EXPECT_LE(plan.statistics.max_deviation, 0.2e-6);
     EXPECT_GT(plan.statistics.max_deviation, 0.18e-6);
   }
@@ -295,7 +580,7 @@ TEST(JobPlan, NamesTheAxisThatHindersTheFeedAtASmallEnd) {
   job.interpolation.tolerance = 100e-6;
   const JobPlan plan = planOf(job);
   ASSERT_TRUE(plan.good()) << textOf(plan);
-  EXPECT_EQ(plan.statistics.feed_limited_by.find("axis_a"), 0u) << plan.statistics.feed_limited_by;
+  EXPECT_EQ(causesOf(plan).find("axis_a"), 0u) << causesOf(plan);
 }
 
 TEST(JobPlan, RefusesAFeedBelowTheSlowest) {
@@ -310,10 +595,9 @@ TEST(JobPlan, RefusesAFeedBelowTheSlowest) {
 RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
   const Work work = *testing::work(2000);
   const JobPlan plan = planJob(work.job, work.machine, work.start);
-  if (plan.fault != PlanFault::kTolerance) {
-    RC_ASSERT(textOf(plan) == "");
-    RC_ASSERT(plan.good());
-  }
+  RC_ASSERT(reasonsWith(plan, "axis_").empty());
+  RC_ASSERT(plan.good() == plan.reasons.empty());
+  RC_ASSERT(plan.good() || plan.fault == PlanFault::kTolerance);
   RC_ASSERT((plan.statistics.max_velocity <= work.machine.limits.max_velocity * (1 + 1e-6)).all());
 }
 

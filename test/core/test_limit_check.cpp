@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -245,6 +246,74 @@ TEST(LimitCheck, ForgetsThePastAtARestart) {
   Feeder untold(kX);
   EXPECT_FALSE(untold.feedAll({0, 0, 0, 0}));
   EXPECT_TRUE(untold.feed(0.25));
+}
+
+/// All violations of the last setpoint checked, as "axis quantity".
+std::vector<std::string> allOf(const LimitCheck& check) {
+  static const char* const quantities[]{"position", "velocity", "acceleration", "jerk", "not finite"};
+  std::vector<std::string> all;
+  for (const LimitViolation& v : check) {
+    all.push_back(std::string(kJointNames[static_cast<std::size_t>(v.axis)]) + " " +
+                  quantities[static_cast<std::size_t>(v.quantity)]);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(LimitCheck, HasNoneOfASetpointThatIsGood) {
+  LimitCheck check(plainLimits(), kPeriod);
+  EXPECT_EQ(check.begin(), check.end());
+  EXPECT_FALSE(check.check(Setpoint{}));
+  EXPECT_EQ(check.begin(), check.end());
+}
+
+TEST(LimitCheck, HasAllOfASetpointOfWhichTheFirstIsTold) {
+  LimitCheck check(plainLimits(), kPeriod);
+  Setpoint p;
+  p.position[kX] = 1;
+  p.position[kA] = -17;
+  const auto first = check.check(p);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(allOf(check), (std::vector<std::string>{"axis_a position", "axis_x position"}));
+  EXPECT_EQ(first->axis, check.begin()->axis);
+  EXPECT_EQ(first->quantity, check.begin()->quantity);
+  EXPECT_EQ(first->value, 1);
+}
+
+TEST(LimitCheck, HasEveryKindOfEveryAxisAtOnce) {
+  LimitCheck check(plainLimits(), kPeriod);
+  Setpoint p;
+  for (p.cycle = 0; p.cycle < 2; ++p.cycle) EXPECT_FALSE(check.check(p));
+  p.position.setConstant(100);  // from 0 within a pair
+  EXPECT_TRUE(check.check(p));
+  std::vector<std::string> expected;
+  for (const char* const axis : {"axis_a", "axis_x", "axis_y", "axis_z"}) {
+    for (const char* const quantity : {"acceleration", "jerk", "position", "velocity"}) {
+      expected.push_back(std::string(axis) + " " + quantity);
+    }
+  }
+  EXPECT_EQ(allOf(check), expected);
+  for (const LimitViolation& v : check) {
+    EXPECT_EQ(v.cycle, 2u);
+    EXPECT_EQ(v.x, 100);
+  }
+}
+
+TEST(LimitCheck, ForgetsThoseOfTheSetpointBefore) {
+  AxisLimits l = plainLimits();
+  l.max_velocity.setConstant(1e9);
+  LimitCheck check(l, kPeriod);
+  Setpoint p;
+  p.cycle = 1;  // within a pair: neither acceleration nor jerk
+  p.position[kX] = 1;
+  EXPECT_TRUE(check.check(p));
+  EXPECT_EQ(allOf(check), std::vector<std::string>{"axis_x position"});
+  p.position << 0, 1, 0, 0;
+  EXPECT_TRUE(check.check(p));
+  EXPECT_EQ(allOf(check), std::vector<std::string>{"axis_y position"});
+  p.position.setZero();
+  EXPECT_FALSE(check.check(p));
+  EXPECT_EQ(check.begin(), check.end());
 }
 
 TEST(LimitCheck, TellsWhatTheSetpointsAskOfTheAxes) {

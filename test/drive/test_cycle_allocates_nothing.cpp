@@ -73,6 +73,7 @@ namespace flute_grinder {
 namespace {
 
 using testing::driveModel;
+using testing::equipment;
 using testing::machineConfig;
 using ::testing::TestWithParam;
 using ::testing::Values;
@@ -180,7 +181,7 @@ TEST(HeapUse, SeesIntoTheDriveLibrary) {
 TEST(HeapUse, SeesIntoTheSimulatedDrive) {
   const HeapUse use = heapUse([] {
     SimulatedDrive drive;
-    drive.init(driveModel());
+    drive.init(driveModel(), equipment());
   });
   EXPECT_GT(use.allocations, 0) << "handles are kept in a map";
 }
@@ -219,25 +220,34 @@ TEST_P(StreamAllocatesNothing, OverAWholeJob) {
   expectNone(use);
   EXPECT_GT(setpoints, 3000);
   // From the park position, which is clear of the work, there is no lift.
-  EXPECT_EQ(moves, 0b1111110u) << "some kind of move was not made";
+  EXPECT_EQ(moves, 0b11111110u) << "some kind of move was not made";
 }
 
-TEST_P(StreamAllocatesNothing, WhileItStops) {
+TEST_P(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
   for (const MoveKind move : {MoveKind::kPosition, MoveKind::kStroke, MoveKind::kReturn}) {
     SetpointStream stream = stream_;
-    bool stopped = false;
+    bool finished = false;
     const HeapUse use = heapUse([&] {
       Setpoint setpoint;
-      int in_move = 0;
-      while (stream.next(setpoint)) {
-        if (setpoint.move == move && ++in_move == 100) {
-          stream.stop();
-          stopped = true;
+      const auto run = [&](int most) {
+        for (int i = 0; i < most && stream.next(setpoint); ++i) {
         }
+      };
+      while (setpoint.move != move && stream.next(setpoint)) {
       }
+      run(100);
+      stream.setFeedOverride(0.5);
+      run(100);
+      stream.hold();
+      run(100000);
+      stream.retract();
+      run(100000);
+      stream.resume();
+      run(100000);
+      finished = stream.finished();
     });
     expectNone(use);
-    EXPECT_TRUE(stopped);
+    EXPECT_TRUE(finished) << toString(move);
   }
 }
 
@@ -253,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
 class CycleAllocatesNothing : public ::testing::Test {
  protected:
   CycleAllocatesNothing() {
-    drive_.init(driveModel());
+    drive_.init(driveModel(), equipment());
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
     cycle();
   }
@@ -277,6 +287,20 @@ class CycleAllocatesNothing : public ::testing::Test {
     }
     ADD_FAILURE() << "no answer";
     return false;
+  }
+
+  /// Runs until a state is reached.
+  bool reaches(MachineState state) {
+    for (int i = 0; i < 100000 && record_.state != state; ++i) cycle();
+    return record_.state == state;
+  }
+
+  /// Enables, starts a job and runs to the midst of its stroke.
+  bool grinds(SetpointStream& stream) {
+    if (!accepted(MachineEvent::kEnable) || !accepted(MachineEvent::kStart, &stream)) return false;
+    for (int i = 0; i < 100000 && !(record_.has_setpoint && record_.setpoint.move == MoveKind::kStroke); ++i) cycle();
+    run(500);
+    return record_.state == MachineState::kRunning;
   }
 
   SetpointStream paperStream() const {
@@ -321,17 +345,118 @@ TEST_F(CycleAllocatesNothing, OverACancel) {
   expectNone(used_);
 }
 
+TEST_F(CycleAllocatesNothing, OverHoldRetractAndResume) {
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  ASSERT_TRUE(accepted(MachineEvent::kHold));
+  ASSERT_TRUE(reaches(MachineState::kHeld));
+  run(20);
+  ASSERT_TRUE(accepted(MachineEvent::kResume));
+  run(300);
+  ASSERT_TRUE(accepted(MachineEvent::kHold));
+  ASSERT_TRUE(reaches(MachineState::kHeld));
+  ASSERT_TRUE(accepted(MachineEvent::kRetract));
+  run(20);
+  ASSERT_TRUE(accepted(MachineEvent::kHold));
+  ASSERT_TRUE(reaches(MachineState::kHeld));
+  ASSERT_TRUE(accepted(MachineEvent::kRetract));
+  ASSERT_TRUE(reaches(MachineState::kRetracted));
+  run(20);
+  ASSERT_TRUE(accepted(MachineEvent::kResume));
+  EXPECT_EQ(record_.state, MachineState::kResuming);
+  ASSERT_TRUE(reaches(MachineState::kRunning));
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  EXPECT_EQ(ended_, 1);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverFeedOverrides) {
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  used_ += heapUse([&] { loop_->setFeedOverride(0); });
+  run(300);
+  EXPECT_FALSE(record_.has_setpoint);
+  for (const double fraction : {0.3, 1.2, 1.0}) {
+    used_ += heapUse([&] { loop_->setFeedOverride(fraction); });
+    run(100);
+    EXPECT_TRUE(record_.has_setpoint);
+  }
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverEveryInterlock) {
+  using Fault = SimulatedDrive::Fault;
+  for (const Fault fault : {Fault::kSpindleLost, Fault::kCoolantLost, Fault::kReferenceLost}) {
+    SetpointStream stream = paperStream();
+    ASSERT_TRUE(grinds(stream));
+    drive_.inject(fault);
+    ASSERT_TRUE(reaches(MachineState::kRetracted)) << "of injected fault " << static_cast<int>(fault);
+    EXPECT_NE(record_.interlock, Interlock::kNone);
+    EXPECT_FALSE(accepted(MachineEvent::kResume));
+    drive_.inject(Fault::kNone);
+    run(10);
+    if (fault == Fault::kReferenceLost) {
+      ASSERT_TRUE(accepted(MachineEvent::kCancel));
+    } else {
+      ASSERT_TRUE(accepted(MachineEvent::kResume));
+    }
+    ASSERT_TRUE(reaches(MachineState::kReady));
+  }
+  EXPECT_EQ(ended_, 3);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverASpindleThatDoesNotCome) {
+  drive_.inject(SimulatedDrive::Fault::kSpindleLost);
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(accepted(MachineEvent::kStart, &stream));
+  EXPECT_EQ(record_.state, MachineState::kStarting);
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  EXPECT_EQ(record_.fault.kind, FaultKind::kInterlock);
+  EXPECT_EQ(ended_, 1);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverHomingThatEndsAndThatIsBrokenOff) {
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  ASSERT_TRUE(accepted(MachineEvent::kHome));
+  EXPECT_EQ(record_.state, MachineState::kHoming);
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  ASSERT_TRUE(accepted(MachineEvent::kHome));
+  ASSERT_TRUE(accepted(MachineEvent::kDisable));
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  ASSERT_TRUE(accepted(MachineEvent::kHome));
+  drive_.inject(SimulatedDrive::Fault::kEmergencyStop);
+  ASSERT_TRUE(reaches(MachineState::kFault));
+  EXPECT_EQ(record_.fault.kind, FaultKind::kEmergencyStop);
+  drive_.inject(SimulatedDrive::Fault::kNone);
+  run(2);
+  ASSERT_TRUE(accepted(MachineEvent::kReset));
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverHomingThatTakesTooLong) {
+  LoopConfig hasty = machineConfig();
+  hasty.homing_timeout = 0.0015;
+  loop_ = std::make_unique<ControlLoop>(drive_, hasty);
+  cycle();
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  ASSERT_TRUE(accepted(MachineEvent::kHome));
+  ASSERT_TRUE(reaches(MachineState::kFault));
+  EXPECT_EQ(record_.fault.kind, FaultKind::kHoming);
+  expectNone(used_);
+}
+
 TEST_F(CycleAllocatesNothing, OverEveryFaultAndItsReset) {
   using Fault = SimulatedDrive::Fault;
   for (const Fault fault :
        {Fault::kEmergencyStop, Fault::kStuckAxis, Fault::kStaleFeedback, Fault::kNanFeedback, Fault::kDriveFault}) {
-    ASSERT_TRUE(accepted(MachineEvent::kEnable));
     SetpointStream stream = paperStream();
-    ASSERT_TRUE(accepted(MachineEvent::kStart, &stream));
-    run(200);
+    ASSERT_TRUE(grinds(stream));
     drive_.inject(fault, kX);
-    for (int i = 0; i < 1000 && record_.state == MachineState::kRunning; ++i) cycle();
-    ASSERT_EQ(record_.state, MachineState::kFault) << "of injected fault " << static_cast<int>(fault);
+    ASSERT_TRUE(reaches(MachineState::kFault)) << "of injected fault " << static_cast<int>(fault);
     drive_.inject(Fault::kNone);
     run(2);
     ASSERT_TRUE(accepted(MachineEvent::kReset));
@@ -348,7 +473,7 @@ TEST_F(CycleAllocatesNothing, OverASetpointThatALimitForbids) {
   ASSERT_TRUE(accepted(MachineEvent::kEnable));
   SetpointStream stream = paperStream();
   ASSERT_TRUE(accepted(MachineEvent::kStart, &stream));
-  for (int i = 0; i < 10000 && record_.state == MachineState::kRunning; ++i) cycle();
+  EXPECT_TRUE(reaches(MachineState::kFault));
   EXPECT_EQ(record_.fault.kind, FaultKind::kLimit);
   expectNone(used_);
 }

@@ -96,6 +96,8 @@ TEST_F(PackageMachine, HasAParkPosition) { expectAxes(config_.machine.park, {-0.
 TEST_F(PackageMachine, HasTimeouts) {
   EXPECT_EQ(config_.feedback_timeout, 0.002);
   EXPECT_EQ(config_.enable_timeout, 2);
+  EXPECT_EQ(config_.homing_timeout, 60);
+  EXPECT_EQ(config_.spindle_timeout, 10);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -124,6 +126,8 @@ XmlRpcValue parameters() {
   p["control_rate"] = 500.0;
   p["feedback_timeout"] = 0.01;
   p["enable_timeout"] = 3.0;
+  p["homing_timeout"] = 45.0;
+  p["spindle_timeout"] = 7.5;
   for (const char* name : kJointNames) {
     const int axis = name == std::string("axis_a") ? 4 : name[5] - 'x' + 1;
     XmlRpcValue& limits = p["joint_limits"][name];
@@ -182,6 +186,8 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.machine.period, 0.002);
   EXPECT_EQ(config.feedback_timeout, 0.01);
   EXPECT_EQ(config.enable_timeout, 3);
+  EXPECT_EQ(config.homing_timeout, 45);
+  EXPECT_EQ(config.spindle_timeout, 7.5);
 }
 
 TEST(MachineConfig, ParameterLimitsGoOverTheUrdfs) {
@@ -223,8 +229,18 @@ TEST(MachineConfig, TakesTheEndsOfTheRanges) {
   }
   at(p, "feedback_timeout") = 0.0;
   at(p, "enable_timeout") = 60.0;
-  EXPECT_EQ(read(Description().urdf(), p).feedback_timeout, 0);
-  EXPECT_EQ(read(Description().urdf(), p).enable_timeout, 60);
+  at(p, "homing_timeout") = 3600.0;
+  at(p, "spindle_timeout") = 600.0;
+  const LoopConfig longest = read(Description().urdf(), p);
+  EXPECT_EQ(longest.feedback_timeout, 0);
+  EXPECT_EQ(longest.enable_timeout, 60);
+  EXPECT_EQ(longest.homing_timeout, 3600);
+  EXPECT_EQ(longest.spindle_timeout, 600);
+  at(p, "homing_timeout") = 0;
+  at(p, "spindle_timeout") = 0;
+  const LoopConfig shortest = read(Description().urdf(), p);
+  EXPECT_EQ(shortest.homing_timeout, 0);
+  EXPECT_EQ(shortest.spindle_timeout, 0);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -245,10 +261,14 @@ struct Number {
   bool negative_allowed;
 };
 
+constexpr std::size_t kMachineNumbers = 5;  ///< that are no axis' own; they come first
+
 std::vector<Number> numbers() {
   std::vector<Number> all{{"control_rate", "10 to 20000", false, false},
                           {"feedback_timeout", "0 to 1", true, false},
-                          {"enable_timeout", "0 to 60", true, false}};
+                          {"enable_timeout", "0 to 60", true, false},
+                          {"homing_timeout", "0 to 3600", true, false},
+                          {"spindle_timeout", "0 to 600", true, false}};
   const char* park[]{"-0.11 to 0.31", "-0.12 to 0.32", "-0.13 to 0.33", "-114 to 134"};
   for (std::size_t i = 0; i < kJointNames.size(); ++i) {
     const std::string name = kJointNames[i];
@@ -292,13 +312,15 @@ std::vector<BadParameter> badParameters() {
   add("too_fast", "control_rate", XmlRpcValue(20001), {"/grinder/control_rate = 20001", "allowed: 10 to 20000"});
   add("too_long", "feedback_timeout", XmlRpcValue(1.5), {"/grinder/feedback_timeout = 1.5", "allowed: 0 to 1"});
   add("too_long", "enable_timeout", XmlRpcValue(61), {"/grinder/enable_timeout = 61", "allowed: 0 to 60"});
+  add("too_long", "homing_timeout", XmlRpcValue(3601), {"/grinder/homing_timeout = 3601", "allowed: 0 to 3600"});
+  add("too_long", "spindle_timeout", XmlRpcValue(601), {"/grinder/spindle_timeout = 601", "allowed: 0 to 600"});
 
   for (std::size_t i = 0; i < kJointNames.size(); ++i) {
     const std::string name = kJointNames[i];
     const std::string ns = "joint_limits/" + name + "/";
     const std::string full = "/grinder/" + ns;
     const std::string park = "park_position/" + name;
-    const Number& allowed = numbers()[3 + 4 * i + 3];
+    const Number& allowed = numbers()[kMachineNumbers + 4 * i + 3];
     add("beyond", park, XmlRpcValue(135.0), {"/grinder/" + park + " = 135", "allowed: " + allowed.range});
     add("short_of", park, XmlRpcValue(-115.0), {"/grinder/" + park + " = -115", "allowed: " + allowed.range});
 

@@ -1,20 +1,28 @@
 """What the tests share: a client of the grinder that records all it says, and an evaluation of the cutter's mathematics
 that is independent of the grinder's own."""
 
+import atexit
+import contextlib
 import math
+import os
 import re
+import shutil
+import signal
 import subprocess
+import tempfile
 import threading
 import time
 import xml.etree.ElementTree as xml
 
 import actionlib
+import rosgraph
 import roslib.packages
 import rospkg
 import rospy
+import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import GrindAction, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
-from flute_grinder.srv import InjectFault, Plan
+from flute_grinder.srv import InjectFault, Plan, SetFeedOverride
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -56,6 +64,7 @@ PAPER = {
     'process.wheel_diameter': 100 * MM,
     'process.wheel_width': 8 * MM,
     'process.wheel_wear': 0.0,
+    'process.wheel_wear_per_pass': 0.0,
     'interpolation.even_step': 0,
     'interpolation.tolerance': 1 * UM,
     'interpolation.rotary_scale': 1 * MM,
@@ -143,6 +152,40 @@ def grind(*arguments, timeout=PATIENCE):
                           universal_newlines=True, timeout=timeout)
 
 
+def job_from_file(path):
+    """What a job file says, with the names and in the units of the goal's fields."""
+    with open(path) as text:
+        file = yaml.safe_load(text)
+    cutter, process, interpolation = file['cutter'], file['process'], file['interpolation']
+    wheel = process['wheel']
+    angles = cutter.get('tooth_angles_deg') or [i * 360.0 / cutter['teeth'] for i in range(cutter['teeth'])]
+    return {
+        'cutter.end_diameter': cutter['end_diameter_mm'] * MM,
+        'cutter.cone_angle': cutter['cone_angle_deg'] * DEG,
+        'cutter.spiral_angle': cutter['spiral_angle_deg'] * DEG,
+        'cutter.rake_angle': cutter['rake_angle_deg'] * DEG,
+        'cutter.flute_length': cutter['flute_length_mm'] * MM,
+        'cutter.tooth_angles': [angle * DEG for angle in angles],
+        'process.feed': process['feed_mm_min'] * MM_MIN,
+        'process.depth': process['depth_mm'] * MM,
+        'process.infeed': process['infeed_mm'] * MM,
+        'process.finish_infeed': process['finish_infeed_mm'] * MM,
+        'process.spark_out': process['spark_out'],
+        'process.clearance': process['clearance_mm'] * MM,
+        'process.overtravel_end': process['overtravel_mm'][0] * MM,
+        'process.overtravel_shank': process['overtravel_mm'][1] * MM,
+        'process.order': ['tooth_major', 'pass_major'].index(process['order']),
+        'process.direction': ['from_end', 'to_end'].index(process['direction']),
+        'process.wheel_diameter': wheel['diameter_mm'] * MM,
+        'process.wheel_width': wheel['width_mm'] * MM,
+        'process.wheel_wear': wheel['wear_mm'] * MM,
+        'process.wheel_wear_per_pass': wheel.get('wear_per_pass_mm', 0) * MM,
+        'interpolation.even_step': ['published', 'third_order', 'exact'].index(interpolation['even_step']),
+        'interpolation.tolerance': interpolation['tolerance_um'] * UM,
+        'interpolation.rotary_scale': interpolation['rotary_scale_mm_per_rad'] * MM,
+    }
+
+
 def job_file(path, **changes):
     """Writes jobs/paper.yaml to `path` with other values: feed_mm_min=60."""
     with open(package_file('jobs/paper.yaml')) as original:
@@ -222,33 +265,37 @@ class Run:
     def wait_complete(self, timeout=PATIENCE):
         """Waits for the end and for all setpoints, which come by another connection."""
         self.wait(timeout)
-        self._grinder.wait_for(lambda: len(self.setpoints) >= self.result.statistics.setpoints, 'all setpoints')
+        self._grinder.wait_for(lambda: len(self.setpoints) >= self.result.setpoints_written, 'all setpoints')
+        return self
+
+    @property
+    def last(self):
+        """The setpoint told last, if there is one."""
+        batches = self.batches
+        return batches[-1].setpoints[-1] if batches else None
+
+    def wait_past(self, past, what):
+        """Waits until the setpoint told last is one that is wanted."""
+        self._grinder.wait_for(lambda: self.done or self.last is not None and past(self.last), what)
+        assert not self.done, 'the goal ended ahead of %s: %s %s' % (what, self.status, self.text)
         return self
 
     def wait_in_stroke(self, x):
         """Waits until the stroke is past x."""
-
-        def past():
-            batches = self.batches
-            last = batches[-1].setpoints[-1] if batches else None
-            return self.done or last is not None and last.move == STROKE and last.position[X] > x
-
-        self._grinder.wait_for(past, 'the stroke at X = %g m' % x)
-        assert not self.done, 'the goal ended ahead of X = %g m: %s %s' % (x, self.status, self.text)
-        return self
+        return self.wait_past(lambda s: s.move == STROKE and s.position[X] > x, 'the stroke at X = %g m' % x)
 
 
 class Grinder:
     """A client of the grinder's node that records all it publishes."""
 
-    def __init__(self, name='grinder'):
+    def __init__(self, name='grinder', joint_states='/joint_states'):
         self.name = name
         self._changed = threading.Condition()
         self.states, self.batches, self.joints = [], [], []
         self._subscribers = [
             self._record('/%s/state' % name, GrinderState, self.states),
             self._record('/%s/setpoints' % name, SetpointBatch, self.batches),
-            self._record('/joint_states', JointState, self.joints),
+            self._record(joint_states, JointState, self.joints),
         ]
         self.client = actionlib.ActionClient('/%s/grind' % name, GrindAction)
         assert self.client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
@@ -268,6 +315,10 @@ class Grinder:
         for subscriber in self._subscribers:
             subscriber.unregister()
         self.client.stop()
+
+    def wait_end_of_connections(self):
+        """Waits until all is here that a node had sent that has ended."""
+        poll(lambda: all(s.get_num_connections() == 0 for s in self._subscribers), 'the end of the connections')
 
     def notify(self):
         with self._changed:
@@ -293,8 +344,23 @@ class Grinder:
     def disable(self):
         return self._call('disable', Trigger)
 
+    def home(self):
+        return self._call('home', Trigger)
+
+    def hold(self):
+        return self._call('hold', Trigger)
+
+    def resume(self):
+        return self._call('resume', Trigger)
+
+    def retract(self):
+        return self._call('retract', Trigger)
+
     def reset(self):
         return self._call('reset_fault', Trigger)
+
+    def set_feed_override(self, fraction):
+        return self._call('set_feed_override', SetFeedOverride, fraction)
 
     def plan(self, goal):
         return self._call('plan', Plan, goal)
@@ -372,16 +438,22 @@ class Grinder:
         return [tuple(joint.position) for joint in self.joints[first:]]
 
     def make_ready(self):
-        """Takes the machine from any state to ready, at rest."""
+        """Takes the machine from any state to ready, homed and at rest."""
         self.client.cancel_all_goals()
-        busy = (GrinderState.RUNNING, GrinderState.CANCELING)
-        poll(lambda: self.fresh_state().state not in busy, 'the end of all goals')
+        idle = (GrinderState.DISABLED, GrinderState.READY, GrinderState.HOMING, GrinderState.FAULT)
+        poll(lambda: self.fresh_state().state in idle, 'the end of all goals')
         self.take_faults_back()
+        assert self.set_feed_override(1).success
         poll(lambda: not self.fresh_state().emergency_stop, 'the emergency stop released')
         if self.fresh_state().state == GrinderState.FAULT:
             self.reset()
+        if self.fresh_state().state == GrinderState.HOMING:
+            self.disable()
         poll(lambda: self.enable().success, 'the power on')
         self.wait_state(GrinderState.READY)
+        if not self.fresh_state().homed:
+            assert self.home().success
+            self.wait_state(GrinderState.READY)
         return self.wait_rest()
 
     def make_ready_at_park(self):
@@ -389,6 +461,74 @@ class Grinder:
         if any(abs(p - park) > 1e-6 for p, park in zip(self.make_ready(), self.park())):
             assert self.run(SHORT).status == 'SUCCEEDED'
         return self.wait_rest()
+
+
+NODE = []
+
+
+def grinder():
+    """The client of the grinder that the launch file has started, one for all tests. Its journal goes with them."""
+    if not NODE:
+        NODE.append(Grinder())
+        atexit.register(remove_file, rospy.get_param('/grinder/journal'))
+    return NODE[0]
+
+
+def remove_file(path):
+    with contextlib.suppress(FileNotFoundError):
+        os.remove(path)
+
+
+def machine():
+    """The machine's parameters as shipped."""
+    with open(package_file('config/grinder.yaml')) as text:
+        return yaml.safe_load(text)
+
+
+class NodeProcess:
+    """A grinder's node with parameters of its own, and with a journal of its own unless the parameters name one."""
+
+    def __init__(self, name, parameters, arguments=()):
+        self.name = name
+        self.folder = tempfile.mkdtemp()
+        if rospy.has_param('/' + name):
+            rospy.delete_param('/' + name)
+        if parameters:
+            parameters = dict({'journal': os.path.join(self.folder, 'journal')}, **parameters)
+            parameters = {key: value for key, value in parameters.items() if value is not None}
+            rosgraph.Master(rospy.get_name()).setParam('/' + name, parameters)
+        # Not a pipe, which would have to be emptied.
+        self.log = tempfile.TemporaryFile('w+')
+        self.process = subprocess.Popen([program('grinder'), '__name:=' + name,
+                                         'joint_states:=/%s/joint_states' % name, *arguments],
+                                        stdout=self.log, stderr=subprocess.STDOUT)
+
+    def client(self):
+        return Grinder(self.name, '/%s/joint_states' % self.name)
+
+    @property
+    def output(self):
+        self.log.seek(0)
+        return self.log.read()
+
+    def end(self, with_signal=None):
+        """Waits for the end of the process, after a signal or by itself, and returns its exit status."""
+        if with_signal:
+            self.process.send_signal(with_signal)
+        try:
+            return self.process.wait(timeout=PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+            raise
+
+    def close(self):
+        if self.process.poll() is None:
+            self.end(signal.SIGTERM)
+        self.log.close()
+        shutil.rmtree(self.folder)
+        if rospy.has_param('/' + self.name):
+            rospy.delete_param('/' + self.name)
 
 
 def stroke_pairs(setpoints):

@@ -15,16 +15,7 @@ import rostest
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
-from grinder_client import MM, STROKE, X
-
-NODE = []
-
-
-def grinder():
-    if not NODE:
-        NODE.append(gc.Grinder())
-    return NODE[0]
-
+from grinder_client import MM, STROKE, X, grinder
 
 PAPER_JOB = gc.package_file('jobs/paper.yaml')
 
@@ -137,10 +128,28 @@ class TestPlan(CommandLine):
         self.assertAlmostEqual(high, 600, delta=600e-6)
 
     def test_path_outside_of_the_limits(self):
+        # The flute and 1 mm of overtravel, of which X reaches the first 300 mm.
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
-        reason = self.grind(1, 'plan', job).stderr
-        self.assertRegex(reason, r'axis_x position 0\.3\d* m is \S+ m beyond its limit 0\.3 m '
-                                 r'\(stroke, cycle \d+, X = 0\.3')
+        reasons = self.grind(1, 'plan', job, '--csv', self.path('plan.csv')).stderr.rstrip('\n').split('\n')
+        with open(self.path('plan.csv')) as lines:
+            rows = [line.split(',') for line in lines][1:]
+        self.assertEqual(len(reasons), 3)
+        for move, reason in zip(('stroke', 'retract', 'return'), reasons):
+            beyond = [row for row in rows if row[2] == move and float(row[6]) > 300]
+            worst = max(float(row[6]) for row in beyond)
+            cycle = next(row[0] for row in beyond if float(row[6]) == worst)
+            self.assertAlmostEqual(worst, 401, delta=1e-5)
+            self.assertEqual(reason, 'axis_x position 0.401 m is 0.101 m beyond its limit 0.3 m (%s, cycle %s, '
+                             'X = 0.401 m); the worst of %d setpoints' % (move, cycle, len(beyond)))
+
+    def test_all_that_speaks_against_a_job_is_told_at_once(self):
+        # 300 mm of a 4 mm cutter at 60 deg turn A by tan 60 deg 301 mm / 2 mm = 260.67 rad.
+        job = gc.job_file(self.path('long.yaml'), flute_length_mm=300, end_diameter_mm=4, cone_angle_deg=0,
+                          spiral_angle_deg=60)
+        reasons = self.grind(1, 'plan', job).stderr
+        self.assertRegex(reasons, r'(?m)^axis_x position 0\.301 m is 0\.001 m beyond its limit 0\.3 m \(stroke, ')
+        self.assertRegex(reasons, r'(?m)^axis_a position 260\.67\d* rad is 135\.0\d* rad beyond its limit '
+                                  r'125\.664 rad \(stroke, cycle \d+, X = 0\.301 m\)')
 
     def test_missing_file(self):
         reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
@@ -195,8 +204,60 @@ class TestUsage(CommandLine):
     def test_step_length_that_is_no_number(self):
         self.grind(2, 'table', PAPER_JOB, '--step-length', 'nan')
 
-    def test_help(self):
-        self.assertIn('plan', self.grind(0, '--help').stdout)
+    def test_help_lists_every_command(self):
+        printed = self.grind(0, '--help').stdout
+        for command in COMMANDS:
+            self.assertRegex(printed, r'(?m)^ +%s +\w' % command)
+
+    def check_help(self, command, *mentioned):
+        printed = self.grind(0, command, '--help').stdout
+        for text in mentioned:
+            self.assertIn(text, printed)
+
+    def check_wrong(self, *arguments):
+        self.grind(2, *arguments)
+
+
+# Every command, and what its help must mention.
+COMMANDS = {
+    'table': ['JOB', '--step-length', '--even-step', '--csv'],
+    'plan': ['JOB', '--csv', '--machine', '--urdf'],
+    'run': ['JOB', '--dry-run', '--continue', '--csv'],
+    'override': ['PERCENT', '0 to 120'],
+    'status': [],
+    'enable': ['power on'],
+    'disable': ['power off'],
+    'home': ['reference'],
+    'hold': ['stop on the path'],
+    'resume': ['hold', 'retract'],
+    'retract': ['lift'],
+    'reset': ['fault'],
+}
+
+# Name, arguments that are wrong.
+WRONG = [
+    ('override_without_percent', ['override']),
+    ('override_below_zero', ['override', '-1']),
+    ('override_above_the_largest', ['override', '120.5']),
+    ('override_nan', ['override', 'nan']),
+    ('override_that_is_no_number', ['override', 'full']),
+    ('home_with_more', ['home', 'axis_x']),
+    ('hold_with_more', ['hold', 'now']),
+    ('resume_with_more', ['resume', 'now']),
+    ('retract_with_more', ['retract', 'now']),
+    ('continue_without_job', ['run', '--continue']),
+]
+
+
+def add_usage():
+    for command, mentioned in COMMANDS.items():
+        setattr(TestUsage, 'test_help_of_' + command,
+                lambda self, command=command, mentioned=mentioned: self.check_help(command, *mentioned))
+    for name, arguments in WRONG:
+        setattr(TestUsage, 'test_' + name, lambda self, arguments=arguments: self.check_wrong(*arguments))
+
+
+add_usage()
 
 
 class TestMachine(CommandLine):
@@ -239,14 +300,87 @@ class TestMachine(CommandLine):
     def test_run_streams_what_plan_lists(self):
         grinder().make_ready_at_park()
         job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
+        batches = len(grinder().batches)
         self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
         printed = self.grind(0, 'run', job, '--csv', self.path('run.csv'))
         with open(self.path('plan.csv'), 'rb') as plan, open(self.path('run.csv'), 'rb') as run:
             planned, streamed = plan.read(), run.read()
         self.assertTrue(planned == streamed, 'the files differ')
-        self.assertRegex(printed.stdout, r'streamed +%d setpoints, 0 missed\n' % (planned.count(b'\n') - 1))
+        # From the first setpoint to the last, by the clock of the grinder.
+        new = grinder().batches[batches:]
+        duration = (new[-1].end_stamp - new[0].header.stamp).to_sec()
+        self.assertRegex(printed.stdout, r'streamed +%d setpoints in %s s, 0 missed\n'
+                         % (planned.count(b'\n') - 1, re.escape('%.3f' % duration)))
         self.assertRegex(printed.stderr, r'100 %')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def check_refused(self, command):
+        self.assertEqual(self.grind(1, command).stderr,
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start\n' % command)
+
+    def test_hold_without_a_job_is_refused(self):
+        self.check_refused('hold')
+
+    def test_resume_without_a_job_is_refused(self):
+        self.check_refused('resume')
+
+    def test_retract_without_a_job_is_refused(self):
+        self.check_refused('retract')
+
+    def test_home_while_disabled_is_refused(self):
+        self.grind(0, 'disable')
+        self.assertEqual(self.grind(1, 'home').stderr,
+                         'home refused: the machine is in state disabled; allowed: enable, disable, reset\n')
+
+    def test_home(self):
+        self.grind(0, 'home')
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^homed +yes$')
+        home = rospy.get_param('/grinder/hardware')
+        for joint, position in zip(gc.JOINTS, grinder().wait_rest()):
+            self.assertAlmostEqual(position, home[joint]['home_position'], delta=1e-6)
+
+    def test_override(self):
+        self.addCleanup(grinder().set_feed_override, 1)
+        for percent in ('50', '0', '120', '12.5'):
+            self.grind(0, 'override', percent)
+            self.assertEqual(grinder().fresh_state().override, float(percent) / 100)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^feed +0\.0 mm/min, override 1[23] %$')
+
+    def test_hold_retract_and_resume(self):
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        self.grind(0, 'override', '10')
+        self.addCleanup(grinder().set_feed_override, 1)
+        self.grind(0, 'hold')
+        grinder().wait_state(GrinderState.HELD)
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'(?m)^state +held$')
+        self.assertRegex(printed, r'(?m)^spindle +at speed$')
+        self.assertRegex(printed, r'(?m)^coolant +on$')
+        self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 10 %$')
+        self.assertRegex(printed, r'(?m)^last job +[0-9a-f]{12}, tooth 1, pass 1 not finished, X \d+\.\d{3} mm$')
+        self.grind(0, 'retract')
+        grinder().wait_state(GrinderState.RETRACTED)
+        self.grind(0, 'override', '120')
+        self.grind(0, 'resume')
+        printed, shown = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 0, shown)
+        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
+        for state in ('running', 'held', 'retracted'):
+            self.assertIn('  %s  tooth 1  pass 1  X ' % state, shown)
+
+    def test_status_tells_why_the_job_is_held(self):
+        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        grinder().inject('coolant_lost')
+        grinder().wait_state(GrinderState.RETRACTED)
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'(?m)^state +retracted$')
+        self.assertRegex(printed, r'(?m)^coolant +off$')
+        self.assertRegex(printed, r'(?m)^held because +no coolant flows$')
+        self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
+        run.cancel()
+        run.wait()
 
     def test_dry_run_moves_nothing(self):
         batches = len(grinder().batches)
@@ -308,7 +442,7 @@ class TestMachine(CommandLine):
             printed, reason = process.communicate(timeout=gc.PATIENCE)
             self.assertEqual(process.returncode, 1, reason)
             self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
-            self.assertRegex(printed, r'streamed +\d+ setpoints, 0 missed')
+            self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
             self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
             setpoints = [s for batch in grinder().batches[batches:] for s in batch.setpoints]
             self.assertTrue(gc.is_gapless(setpoints))

@@ -7,6 +7,7 @@ import glob
 import ipaddress
 import math
 import os
+import shutil
 import signal
 import socket
 import statistics
@@ -19,18 +20,11 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 from grinder_client import MM, STROKE, X
-
-
-def machine():
-    """The parameters as shipped."""
-    with open(gc.package_file('config/grinder.yaml')) as text:
-        return yaml.safe_load(text)
 
 
 def set_path(tree, path, value):
@@ -42,45 +36,6 @@ def set_path(tree, path, value):
         del tree[name]
     else:
         tree[name] = value
-
-
-class NodeProcess:
-    """A grinder's node with parameters of its own."""
-
-    def __init__(self, name, parameters, arguments=()):
-        self.name = name
-        master = rosgraph.Master('/test_node_life')
-        if rospy.has_param('/' + name):
-            rospy.delete_param('/' + name)
-        if parameters:
-            master.setParam('/' + name, parameters)
-        # Not a pipe, which would have to be emptied.
-        self.log = tempfile.TemporaryFile('w+')
-        self.process = subprocess.Popen([gc.program('grinder'), '__name:=' + name, *arguments],
-                                        stdout=self.log, stderr=subprocess.STDOUT)
-
-    @property
-    def output(self):
-        self.log.seek(0)
-        return self.log.read()
-
-    def end(self, with_signal=None):
-        """Waits for the end of the process, after a signal or by itself, and returns its exit status."""
-        if with_signal:
-            self.process.send_signal(with_signal)
-        try:
-            return self.process.wait(timeout=gc.PATIENCE)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
-            raise
-
-    def close(self):
-        if self.process.poll() is None:
-            self.end(signal.SIGTERM)
-        self.log.close()
-        if rospy.has_param('/' + self.name):
-            rospy.delete_param('/' + self.name)
 
 
 def listening(pid):
@@ -114,7 +69,10 @@ class TestLoopback(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         environment = {k: v for k, v in os.environ.items() if k not in ('ROS_HOSTNAME', 'ROS_IP')}
-        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=listener'],
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=listener',
+                                   'journal:=' + os.path.join(folder, 'journal')],
                                   env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             node = gc.Grinder('listener')
@@ -155,9 +113,15 @@ BAD_PARAMETERS = [
     ('control_rate_nan', 'control_rate', math.nan, 'nan; allowed: 10 to 20000'),
     ('control_rate_text', 'control_rate', 'fast', 'fast'),
     ('control_rate_flag', 'control_rate', True, 'allowed: a number'),
+    ('journal_is_a_number', 'journal', 7, 'allowed: a text'),
+    ('journal_empty', 'journal', '', 'allowed: a text'),
     ('feedback_timeout_missing', 'feedback_timeout', None, 'missing; allowed: a number'),
     ('feedback_timeout_nan', 'feedback_timeout', math.nan, 'nan; allowed: 0 to 1'),
     ('enable_timeout_inf', 'enable_timeout', math.inf, 'inf; allowed: 0 to 60'),
+    ('homing_timeout_missing', 'homing_timeout', None, 'missing; allowed: a number'),
+    ('homing_timeout_nan', 'homing_timeout', math.nan, 'nan; allowed: 0 to 3600'),
+    ('spindle_timeout_missing', 'spindle_timeout', None, 'missing; allowed: a number'),
+    ('spindle_timeout_negative', 'spindle_timeout', -1, '= -1; allowed: 0 to 600'),
     ('acceleration_missing', 'joint_limits/axis_x/max_acceleration', None, 'missing; allowed: a number'),
     ('acceleration_flag_missing', 'joint_limits/axis_x/has_acceleration_limits', None, 'missing'),
     ('acceleration_switched_off', 'joint_limits/axis_a/has_acceleration_limits', False, '= false; allowed: true'),
@@ -189,6 +153,14 @@ BAD_PARAMETERS = [
     ('hardware_type_is_a_number', 'hardware/type', 7, 'allowed: a text'),
     ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None, 'missing; allowed: a number'),
     ('hardware_parameter_nan', 'hardware/axis_a/counts_per_unit', math.nan, 'nan; allowed: '),
+    ('absolute_encoders_missing', 'hardware/absolute_encoders', None, 'missing; allowed: true or false'),
+    ('absolute_encoders_is_a_number', 'hardware/absolute_encoders', 1, 'allowed: true or false'),
+    ('spindle_run_up_time_missing', 'hardware/spindle_run_up_time', None, 'missing; allowed: a number'),
+    ('spindle_run_up_time_negative', 'hardware/spindle_run_up_time', -0.5, '= -0.5; allowed: 0 to 600'),
+    ('home_position_missing', 'hardware/axis_x/home_position', None, 'missing; allowed: a number'),
+    ('home_position_inf', 'hardware/axis_z/home_position', math.inf, 'inf; allowed: '),
+    ('homing_velocity_missing', 'hardware/axis_y/homing_velocity', None, 'missing; allowed: a number'),
+    ('homing_velocity_zero', 'hardware/axis_a/homing_velocity', 0, '= 0; allowed: '),
 ]
 
 # Name, text of the robot description and its replacement, what the message must say.
@@ -213,7 +185,7 @@ class TestStartFailsClosed(unittest.TestCase):
         if description is not None:
             rospy.set_param('/doubtful_description', description)
             arguments = ['robot_description:=/doubtful_description']
-        node = NodeProcess(name, parameters, arguments)
+        node = gc.NodeProcess(name, parameters, arguments)
         self.addCleanup(node.close)
         status = node.end()
         self.assertEqual(status, 1, node.output)
@@ -223,16 +195,19 @@ class TestStartFailsClosed(unittest.TestCase):
     def test_no_parameters_at_all(self):
         self.check({}, 'parameter /doubtful/')
 
+    def test_journal_missing(self):
+        self.check(dict(gc.machine(), journal=None), 'parameter /doubtful/journal is missing; allowed: a text')
+
     def test_robot_description_missing(self):
-        node = NodeProcess('doubtful', machine(), ['robot_description:=/nothing_here'])
+        node = gc.NodeProcess('doubtful', gc.machine(), ['robot_description:=/nothing_here'])
         self.addCleanup(node.close)
         self.assertEqual(node.end(), 1, node.output)
         self.assertIn('parameter /nothing_here is missing; allowed: a URDF', node.output)
 
     def test_same_node_starts_with_the_parameters_as_shipped(self):
-        node = NodeProcess('doubtful', machine())
+        node = gc.NodeProcess('doubtful', gc.machine())
         self.addCleanup(node.close)
-        grinder = gc.Grinder('doubtful')
+        grinder = node.client()
         self.addCleanup(grinder.close)
         self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
         self.assertEqual(node.end(signal.SIGTERM), 0, node.output)
@@ -241,7 +216,7 @@ class TestStartFailsClosed(unittest.TestCase):
 def add_cases():
     def bad_parameter(path, value, text):
         def check(self):
-            parameters = machine()
+            parameters = gc.machine()
             set_path(parameters, path, value)
             names = [] if text.endswith('is missing') else ['parameter /doubtful/' + path]
             self.check(parameters, text, *names)
@@ -252,7 +227,7 @@ def add_cases():
             with open(gc.package_file('urdf/grinder.urdf')) as original:
                 urdf = original.read()
             self.assertIn(old, urdf)
-            self.check(machine(), text, description=urdf.replace(old, new))
+            self.check(gc.machine(), text, description=urdf.replace(old, new))
         return check
 
     for name, *arguments in BAD_PARAMETERS:
@@ -270,13 +245,13 @@ class OwnNode(unittest.TestCase):
     name = 'own_grinder'
 
     def setUp(self):
-        self.node = NodeProcess(self.name, self.parameters())
+        self.node = gc.NodeProcess(self.name, self.parameters())
         self.addCleanup(self.node.close)
-        self.grinder = gc.Grinder(self.name)
+        self.grinder = self.node.client()
         self.addCleanup(self.grinder.close)
 
     def parameters(self):
-        return machine()
+        return gc.machine()
 
 
 class TestInterrupt(OwnNode):
@@ -341,7 +316,7 @@ class TestParametersAreObeyed(OwnNode):
     """Limits of the parameters go over those of the robot description, and the control rate is the one asked for."""
 
     def parameters(self):
-        parameters = machine()
+        parameters = gc.machine()
         parameters['control_rate'] = 500
         parameters['joint_limits']['axis_x'].update({'has_velocity_limits': True, 'max_velocity': 0.03})
         parameters['joint_limits']['axis_y'].update({'has_position_limits': True, 'min_position': -0.0004,
@@ -382,6 +357,11 @@ class TestDiagnostics(OwnNode):
 
 
 class TestLatency(OwnNode):
+    def parameters(self):
+        parameters = gc.machine()
+        parameters['hardware']['spindle_run_up_time'] = 0
+        return parameters
+
     def test_first_motion_comes_soon_after_the_goal(self):
         """From the sending of the paper's job, whole-job check included, to the first setpoint that moves."""
         latencies = []

@@ -11,16 +11,7 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
-from grinder_client import DEG, MM, MM_MIN, STROKE, UM, X
-
-NODE = []
-
-
-def grinder():
-    if not NODE:
-        NODE.append(gc.Grinder())
-    return NODE[0]
-
+from grinder_client import DEG, MM, MM_MIN, STROKE, UM, X, grinder
 
 # Long enough for something to happen meanwhile.
 LONG = gc.paper(feed=1500 * MM_MIN)
@@ -44,6 +35,7 @@ RANGES = {
     'process.wheel_diameter': (1 * MM, 500 * MM, 'm', False),
     'process.wheel_width': (0.1 * MM, 100 * MM, 'm', False),
     'process.wheel_wear': (0, 100 * MM, 'm', True),
+    'process.wheel_wear_per_pass': (0, 1 * MM, 'm', True),
     'interpolation.tolerance': (1e-9 * UM, 1000 * UM, 'm', False),
     'interpolation.rotary_scale': (1e-3 * MM, 1000 * MM, 'm/rad', False),
 }
@@ -117,12 +109,13 @@ CASES = [
       'process.depth': 0.01 * MM}, {}, 'INVALID_GOAL',
      [r'process\.feed: interpolation tolerance allows [\d.e-]+ m/s', r'slowest feed is 1\.66667e-06 m/s']),
     ('flute_beyond_the_end_of_x', {'cutter.flute_length': 400 * MM}, {}, 'LIMIT_VIOLATED',
-     [r'axis_x position', r'beyond its limit 0\.3 m', r'stroke, cycle \d+, X = 0\.3']),
-    # 120 mm of a 2 mm cutter at 60 deg take tan 60 deg 121 mm / 1 mm = 209 rad of axis_a's 125.66 rad.
+     [r'axis_x position 0\.401 m is 0\.101 m beyond its limit 0\.3 m \(stroke, cycle \d+, X = 0\.401 m\)']),
+    # 120 mm of a 2 mm cutter at 60 deg take tan 60 deg 121 mm / 1 mm = 209.58 rad of axis_a's 125.664 rad.
     ('flute_beyond_the_turns_of_a',
      {'cutter.flute_length': 120 * MM, 'cutter.end_diameter': 2 * MM, 'cutter.cone_angle': 0.0,
       'cutter.spiral_angle': 60 * DEG}, {}, 'LIMIT_VIOLATED',
-     [r'axis_a position', r'beyond its limit 125\.664 rad', r'stroke, cycle \d+, X = 0\.07']),
+     [r'axis_a position 209\.578 rad is 83\.914\d* rad beyond its limit 125\.664 rad '
+      r'\(stroke, cycle \d+, X = 0\.121 m\)']),
     ('depth_below_the_end_of_y',
      {'cutter.end_diameter': 60 * MM, 'process.depth': 25 * MM, 'process.infeed': 25 * MM}, {}, 'LIMIT_VIOLATED',
      [r'axis_y position', r'beyond its limit -0\.02 m', r'infeed, cycle \d+, X = -0\.001 m']),
@@ -174,11 +167,8 @@ class TestBadGoals(unittest.TestCase):
         value, excess, limit, x = map(float, re.search(
             r'axis_x position (\S+) m is (\S+) m beyond its limit (\S+) m \(stroke, cycle \d+, X = (\S+) m\)',
             run.text).groups())
-        # The first setpoint beyond: no farther than one step of the feed, but for the digits printed.
-        self.assertEqual(limit, 0.3)
-        self.assertAlmostEqual(value, limit + excess, delta=1e-6)
-        self.assertEqual(x, value)
-        self.assertTrue(0 < excess <= 600 * MM_MIN * grinder().period(), excess)
+        # The worst is the end of the stroke, the flute and the overtravel.
+        self.assertEqual((value, excess, limit, x), (0.401, 0.101, 0.3, 0.401))
 
 
 def add_cases():
@@ -271,7 +261,7 @@ class TestState(unittest.TestCase):
         for service in (grinder().disable, grinder().enable, grinder().reset):
             reply = service()
             self.assertFalse(reply.success)
-            self.assertRegex(reply.message, r'refused: the machine is in state running; allowed: cancel')
+            self.assertRegex(reply.message, r'refused: the machine is in state running; allowed: hold, cancel$')
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
         self.assertTrue(gc.is_gapless(run.setpoints))

@@ -33,7 +33,8 @@ class SetpointStream {
   /// where it was left, by the way that it takes to reach feed. Real-time safe.
   void resume() noexcept;
 
-  /// Lifts the wheel radially off the work and stays there; not taken unless the axes rest. Real-time safe.
+  /// Lifts the wheel radially off the work and stays there; not taken unless the axes rest ahead of the program's end.
+  /// Real-time safe.
   void retract() noexcept;
 
   /// Whether the program has ended.

@@ -102,14 +102,5 @@ TEST_F(BufferedDrive, FollowsPositionsAnewAfterAFault) {
   EXPECT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
 }
 
-TEST_F(BufferedDrive, JobWaitsForTheProbeToBeFree) {
-  rig_.drive.status.probe_free = false;
-  rig_.startPaper();
-  EXPECT_EQ(rig_.run(10).state, S::kStarting);
-  rig_.drive.status.probe_free = true;
-  rig_.cycle();
-  EXPECT_EQ(rig_.cycle().state, S::kRunning);
-}
-
 }  // namespace
 }  // namespace flute_grinder

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <tuple>
 
-// Reference, spindle and coolant: what a job waits for, what it asks for, and what becomes of it when one is lost.
+// Reference, spindle, coolant and probe: what a job waits for, what it asks for, and what becomes of it when one is
+// lost.
 namespace flute_grinder {
 namespace {
 
@@ -44,13 +45,15 @@ const std::vector<Part>& parts() {
       {"Reference", Interlock::kNotHomed, [](FakeDrive& d) { d.status.homed = false; }, "the axes are not homed"},
       {"Spindle", Interlock::kSpindle, [](FakeDrive& d) { d.status.spindle_at_speed = false; },
        "the spindle is not at speed"},
-      {"Coolant", Interlock::kCoolant, [](FakeDrive& d) { d.status.coolant_on = false; }, "no coolant flows"}};
+      {"Coolant", Interlock::kCoolant, [](FakeDrive& d) { d.status.coolant_on = false; }, "no coolant flows"},
+      {"Probe", Interlock::kProbe, [](FakeDrive& d) { d.status.probe_free = false; },
+       "the measuring probe is in the way"}};
   return all;
 }
 std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
 
 /// All is well: spindle and coolant are there when they are asked for, as the drive has them anyway.
-void allWell(FakeDrive& drive) { drive.status.homed = true; }
+void allWell(FakeDrive& drive) { drive.status.homed = drive.status.probe_free = true; }
 
 std::string partName(const TestParamInfo<Part>& info) { return info.param.name; }
 

@@ -61,10 +61,11 @@ std::string join(const std::vector<std::string>& reasons) {
   return text;
 }
 
+/// For people, who count teeth and passes from 1.
 std::string place(const Setpoint& p) {
   std::ostringstream text;
-  text << " (at " << toString(p.move) << " of tooth " << p.tooth << ", pass " << p.pass << ", X = " << p.position[kX]
-       << " m)";
+  text << " (at " << toString(p.move) << " of tooth " << p.tooth + 1 << ", pass " << p.pass + 1
+       << ", X = " << p.position[kX] << " m)";
   return text.str();
 }
 

@@ -74,7 +74,7 @@ class Stop:
         self.goal_run.wait()
         self.assertEqual((self.goal_run.status, self.goal_run.code), ('ABORTED', code), self.goal_run.text)
         self.assertRegex(self.goal_run.text, text)
-        self.assertRegex(self.goal_run.text, r'stroke of tooth 0, pass 0, X = 0\.0[0-3]\d* m')
+        self.assertRegex(self.goal_run.text, r'stroke of tooth 1, pass 1, X = 0\.0[0-3]\d* m')
 
     def check_start_from_standing(self):
         """Reset, power and a new goal: the axes start from where they stand."""

@@ -70,7 +70,7 @@ class FaultMidStroke:
 
     def test_text_names_what_and_where(self):
         self.assertRegex(self.goal_run.text, self.text)
-        self.assertRegex(self.goal_run.text, r'stroke of tooth 0, pass 0, X = 0\.0[0-2]\d* m')
+        self.assertRegex(self.goal_run.text, r'stroke of tooth 1, pass 1, X = 0\.0[0-2]\d* m')
 
     def test_state_tells_the_fault(self):
         for state in (self.state, self.still_fault):
@@ -266,7 +266,7 @@ class CancelledGoal:
 
     def test_goal_is_preempted(self):
         self.assertEqual((self.goal_run.status, self.goal_run.code), ('PREEMPTED', GrindResult.CANCELED))
-        self.assertRegex(self.goal_run.text, r'^canceled; stopped on the path \(at \w+ of tooth 0, pass 0, X = ')
+        self.assertRegex(self.goal_run.text, r'^canceled; stopped on the path \(at \w+ of tooth 1, pass 1, X = ')
 
     def test_machine_is_ready(self):
         self.assertEqual((self.state.state, self.state.enabled, self.state.fault), (GrinderState.READY, True, ''))

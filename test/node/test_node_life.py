@@ -272,7 +272,7 @@ class TestInterrupt(OwnNode):
         self.assertEqual(gc.off_path(setpoints, gc.Helix(gc.PAPER)), [])
         # That they come to rest within the limits shows that none of the stop is missing.
         self.assertEqual(gc.excesses(setpoints, limits, period, rest_after=True), [])
-        self.assertRegex(run.text, r'canceled; stopped on the path \(at stroke of tooth 0, pass 0, X = ')
+        self.assertRegex(run.text, r'canceled; stopped on the path \(at stroke of tooth 1, pass 1, X = ')
 
     def test_sigint_stops_on_the_path(self):
         self.interrupt(signal.SIGINT)

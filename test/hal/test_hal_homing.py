@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Shows on the real HAL that homing gives the axes a new reference without moving them: no job begins before, HAL homes when
-the node asks it to, and commands count again only when they have the new reference. The encoders are those of
+"""Shows on the real HAL that homing gives the axes a new reference without moving them: no job begins before, HAL homes
+when the node asks it to, and commands count again only when they have the new reference. The encoders are those of
 incremental.hal; the test plays the machine's part."""
 
 import unittest
@@ -19,8 +19,7 @@ BUFFER = 0.2
 NEVER = 1000
 AXES = 'xyza'
 NOT_HOMED = 'the axes are not homed'
-# Where the motors stand when they are homed, in m and rad: far more than a cycle's way from what is read before, and exact in
-# binary, so that not even rounding moves them.
+# What the axes read once they are homed, in m and rad: far more than a cycle's way from what they read before.
 FIRST = (-1 / 32, 1 / 32, 1 / 128, 0.5)
 SECOND = (1 / 64, 1 / 16, -1 / 256, -2.5)
 JOB = gc.paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)

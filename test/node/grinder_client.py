@@ -365,9 +365,13 @@ class Grinder:
     def plan(self, goal):
         return self._call('plan', Plan, goal)
 
+    def injects_faults(self):
+        """Whether the drive lets a test inject faults: only the simulated one does."""
+        return rospy.get_param('/%s/hardware/type' % self.name) == 'flute_grinder/SimulatedDrive'
+
     def take_faults_back(self):
-        """Ends what a test has injected; other drives than the simulated one let none be injected."""
-        if rospy.get_param('/%s/hardware/type' % self.name) == 'flute_grinder/SimulatedDrive':
+        """Ends what a test has injected."""
+        if self.injects_faults():
             self.inject('none')
 
     def inject(self, fault, joint=''):

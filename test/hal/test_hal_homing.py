@@ -1,0 +1,165 @@
+#!/usr/bin/env python3
+"""Shows on the real HAL that homing gives the axes a new reference without moving them: no job begins before, HAL homes
+when the node asks it to, and commands count again only when they have the new reference. The encoders are those of
+incremental.hal; the test plays the machine's part."""
+
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState, GrindResult
+
+import hal_bench
+from hal_bench import gc
+from grinder_client import MM, MM_MIN
+
+RECORDER = hal_bench.Recorder()
+BUFFER = 0.2
+# Longer than any host stalls.
+NEVER = 1000
+AXES = 'xyza'
+NOT_HOMED = 'the axes are not homed'
+# What the axes read once they are homed, in m and rad: far more than a cycle's way from what they read before.
+FIRST = (-1 / 32, 1 / 32, 1 / 128, 0.5)
+SECOND = (1 / 64, 1 / 16, -1 / 256, -2.5)
+JOB = gc.paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
+
+
+def signal(name):
+    return hal_bench.halcmd('gets', name).split()[-1]
+
+
+def wait_signal(name, value):
+    gc.poll(lambda: signal(name) == value, 'HAL signal %s %s' % (name, value))
+
+
+def set_homed(homed):
+    for axis in AXES:
+        hal_bench.halcmd('sets', 'axis-%s-homed' % axis, str(homed))
+
+
+def set_reference(motors, reading):
+    """Lets the encoders of motors that stand somewhere read something."""
+    for axis, motor, value in zip(AXES, motors, reading):
+        hal_bench.halcmd('sets', 'reference-' + axis, repr(motor - value))
+
+
+class TestHoming(unittest.TestCase):
+    def setUp(self):
+        hal_bench.patience(NEVER)
+        set_homed(False)
+        hal_bench.halcmd('sets', 'homing', 'false')
+        self.node = hal_bench.Node(buffer=BUFFER)
+        self.grinder = gc.Grinder()
+        self.assertTrue(self.grinder.enable().success)
+        self.grinder.wait_state(GrinderState.READY)
+        self.limits, self.period = self.grinder.limits(), self.grinder.period()
+
+    def tearDown(self):
+        self.grinder.close()
+        self.node.end()
+
+    def begin(self):
+        """Homing, as far as HAL says that it is under way; returns the number of the first row of it."""
+        first = RECORDER.now()
+        self.assertTrue(self.grinder.home().success)
+        wait_signal('home', 'TRUE')
+        hal_bench.halcmd('sets', 'homing', 'true')
+        return first
+
+    def machine_homes(self, reading):
+        """To the end; returns the rows until the machine is ready, and some in which the new commands count."""
+        first = self.begin()
+        set_reference(RECORDER.over(1)[0].position, reading)
+        # More than the FIFO holds, so that some of it has the old reference and some of it the new one.
+        RECORDER.over(int(BUFFER / self.period / 2))
+        set_homed(True)
+        hal_bench.halcmd('sets', 'homing', 'false')
+        self.grinder.wait_state(GrinderState.READY)
+        wait_signal('home', 'FALSE')
+        RECORDER.over(int(2 * BUFFER / self.period))
+        return RECORDER.read()[first:]
+
+    def check_still(self, rows):
+        """Power is there all the time, and neither a motor nor its target moves but by rounding."""
+        self.assertTrue(all(row.enabled for row in rows))
+        self.assertEqual({row.underruns for row in rows}, {rows[0].underruns})
+        for places in ([row.command for row in rows], [row.position for row in rows]):
+            for values in zip(*places):
+                self.assertLess(max(values) - min(values), 1e-12)
+
+    def check_steps(self, rows):
+        """Of the motors' targets while there is power."""
+        for a, b in zip(rows, rows[1:]):
+            for axis, velocity in enumerate(self.limits['max_velocity']):
+                self.assertLessEqual(abs(b.command[axis] - a.command[axis]), velocity * self.period * (1 + 1e-9))
+
+    def check_reading(self, reading):
+        for position, expected in zip(self.grinder.wait_rest(), reading):
+            self.assertAlmostEqual(position, expected, delta=1e-12)
+
+    def check_not_homed(self):
+        state = self.grinder.fresh_state()
+        self.assertEqual((state.state, state.homed), (GrinderState.READY, False))
+        first = RECORDER.now()
+        job = gc.package_file('jobs/paper.yaml')
+        refused = gc.grind('run', job)
+        self.assertEqual(refused.returncode, 1, refused.stdout)
+        self.assertIn('start refused: ' + NOT_HOMED, refused.stderr)
+        run = self.grinder.run(JOB)
+        self.assertEqual((run.status, run.code, run.text),
+                         ('ABORTED', GrindResult.NOT_READY, 'start refused: ' + NOT_HOMED))
+        self.assertEqual(run.setpoints, [])
+        self.check_still(RECORDER.read()[first:])
+
+    def check_job(self, reading):
+        """A job starts from where the axes stand by the new reference."""
+        first = RECORDER.now()
+        run = self.grinder.run(JOB)
+        self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
+        for told, expected in zip(run.setpoints[0].position, reading):
+            self.assertAlmostEqual(told, expected, delta=1e-12)
+        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertEqual(gc.excesses(run.setpoints, self.limits, self.period), [])
+        self.check_reading(self.grinder.park())
+        self.check_steps(RECORDER.read()[first:])
+
+    def test_new_reference_makes_no_step(self):
+        first = RECORDER.now()
+        self.check_not_homed()
+        for reading in (FIRST, SECOND):
+            self.check_still(self.machine_homes(reading))
+            state = self.grinder.fresh_state()
+            self.assertEqual((state.state, state.homed), (GrinderState.READY, True))
+            self.check_reading(reading)
+            self.check_job(reading)
+        self.check_steps(RECORDER.read()[first:])
+
+    def test_homing_that_finds_no_reference_is_a_fault(self):
+        first = self.begin()
+        RECORDER.over(10)
+        hal_bench.halcmd('sets', 'homing', 'false')
+        state = self.grinder.wait_state(GrinderState.FAULT)
+        self.assertRegex(state.fault, r'^the drive has not found its reference after ')
+        self.assertFalse(state.homed)
+        wait_signal('home', 'FALSE')
+        self.check_steps(RECORDER.read()[first:])
+        self.assertEqual(len({row.position for row in RECORDER.read()[first:]}), 1)
+
+    def test_disable_breaks_homing_off(self):
+        first = self.begin()
+        set_reference(RECORDER.over(1)[0].position, FIRST)
+        self.assertTrue(self.grinder.disable().success)
+        wait_signal('home', 'FALSE')
+        gc.poll(lambda: not RECORDER.over(1)[-1].enabled, 'the power off')
+        hal_bench.halcmd('sets', 'homing', 'false')
+        self.assertTrue(self.grinder.enable().success)
+        self.grinder.wait_state(GrinderState.READY)
+        self.check_not_homed()
+        self.assertEqual(len({row.position for row in RECORDER.read()[first:]}), 1)
+
+
+if __name__ == '__main__':
+    hal_bench.halcmd('-f', hal_bench.ROOT + '/test/hal/incremental.hal')
+    rospy.init_node('test_hal_homing')
+    rostest.rosrun('flute_grinder', 'hal_homing', '__main__')

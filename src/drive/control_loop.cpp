@@ -415,6 +415,7 @@ void ControlLoop::checkInterlocks() {
   const Interlock open = openInterlock();
   if (open != Interlock::kNone && record_.interlock == Interlock::kNone) {
     record_.interlock = open;
+    // A wheel that is being lifted, or that is lifted, goes where it is safe already.
     if (after(state_, MachineEvent::kHold) && state_ != MachineState::kRetracting) {
       stream_->hold();
       apply(MachineEvent::kHold);

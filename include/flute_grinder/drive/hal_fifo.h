@@ -22,7 +22,8 @@ class HalFifo {
   HalFifo(const HalFifo&) = delete;
   HalFifo& operator=(const HalFifo&) = delete;
 
-  /// Appends a command.
+  /// Appends a command. HAL keeps the last one back where their count is a multiple of the FIFO's depth (LinuxCNC 2.9),
+  /// until another is there: while there is power, write one in each cycle.
   /// @param number that the streamer shows when it plays the command.
   /// @return false if there is no room.
   bool push(const Axes& command, std::uint32_t number);

@@ -2,7 +2,6 @@
 the grinder that a test may stop, kill and start anew."""
 
 import collections
-import copy
 import ctypes
 import os
 import signal
@@ -107,11 +106,13 @@ def parameters(**hardware):
 
 
 class Node:
-    """A grinder's node on HAL."""
+    """A grinder's node on HAL. Longer than shipped (None), `feedback_timeout` lets a host that stalls not end a test."""
 
-    def __init__(self, name='grinder', prefix=(), **hardware):
+    def __init__(self, name='grinder', prefix=(), feedback_timeout=0.5, **hardware):
         self.name = name
-        machine = copy.deepcopy(parameters(**hardware))
+        machine = parameters(**hardware)
+        if feedback_timeout:
+            machine['feedback_timeout'] = feedback_timeout
         folder = tempfile.mkdtemp()
         # For a test that starts the node as somebody else.
         os.chmod(folder, 0o777)

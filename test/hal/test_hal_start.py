@@ -16,7 +16,7 @@ import hal_bench
 from hal_bench import gc
 
 IN_HAL = hal_bench.ROOT + '/test/hal/in_hal'
-NAMESPACE = ('unshare', '--ipc')
+NAMESPACE = ('unshare', '--ipc') if os.getuid() == 0 else ('unshare', '--user', '--map-current-user', '--ipc')
 
 
 class TestRefusals(unittest.TestCase):

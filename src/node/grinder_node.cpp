@@ -18,7 +18,6 @@ namespace {
 constexpr double kTickPeriod = 0.01;             ///< of joint states [s]
 constexpr std::uint64_t kTicksPerBatch = 5;      ///< setpoints, state and feedback
 constexpr std::uint64_t kTicksPerJournal = 100;  ///< within a pass
-constexpr double kOverrun = 1.5;                 ///< periods after which a cycle counts as late
 
 int errorCode(PlanFault fault) {
   switch (fault) {
@@ -83,6 +82,9 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   private_nh_.getParam("", values);
   const ParameterReader parameters(values, private_nh_.getNamespace());
   const LoopConfig config = readMachineConfig(urdf, parameters);
+  diagnostics_ = std::make_unique<Diagnostics>(config, readDiagnosticThresholds(parameters), [this] {
+    return Scheduling{loop_->realtimeScheduling(), loop_->memoryLocked()};
+  });
   journal_ = std::make_unique<Journal>(parameters.text("journal"));
   readJournal();
   loadDrive(parameters);
@@ -97,8 +99,8 @@ void GrinderNode::readJournal() {
   try {
     progress_ = journal_->read().value_or(Progress{});
   } catch (const JournalError& error) {
-    journal_error_ = error.what();
-    ROS_ERROR_STREAM(journal_error_ << "; the last job cannot be continued");
+    diagnostics_->setJournalError(error.what());
+    ROS_ERROR_STREAM(error.what() << "; the last job cannot be continued");
   }
 }
 
@@ -121,10 +123,9 @@ void GrinderNode::advertise() {
   tool_path_ = private_nh_.advertise<visualization_msgs::MarkerArray>("tool_path", 1, true);
   path_error_ = private_nh_.advertise<visualization_msgs::MarkerArray>("path_error", 1, true);
 
-  diagnostics_ = std::make_unique<diagnostic_updater::Updater>(nh_, private_nh_);
-  diagnostics_->setHardwareID(private_nh_.param<std::string>("hardware/type", ""));
-  diagnostics_->add("Control loop", this, &GrinderNode::diagnoseLoop);
-  diagnostics_->add("Drive", this, &GrinderNode::diagnoseDrive);
+  diagnostic_updater_ = std::make_unique<diagnostic_updater::Updater>(nh_, private_nh_);
+  diagnostic_updater_->setHardwareID(private_nh_.param<std::string>("hardware/type", ""));
+  diagnostics_->addTo(*diagnostic_updater_);
 
   const auto trigger = [this](const char* name, MachineEvent event) {
     const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
@@ -315,7 +316,7 @@ void GrinderNode::tick() {
       publishFeedback();
     }
   }
-  diagnostics_->update();
+  diagnostic_updater_->update();
 }
 
 void GrinderNode::takeRecords() {
@@ -337,10 +338,7 @@ bool GrinderNode::refresh() {
 }
 
 void GrinderNode::follow(const CycleRecord& record) {
-  ++timing_.cycles;
-  timing_.total += record.period;
-  timing_.longest = std::max(timing_.longest, record.period);
-  if (record.period > kOverrun * batch_.period) ++timing_.overruns;
+  diagnostics_->watch(record);
   if (job_) followJob(record);
 }
 
@@ -389,14 +387,15 @@ void GrinderNode::trackProgress(const Setpoint& p) {
 
 std::string GrinderNode::writeJournal() {
   progress_made_ = false;
+  std::string refusal;
   try {
     journal_->write(progress_);
-    journal_error_.clear();
   } catch (const JournalError& error) {
-    journal_error_ = error.what();
-    ROS_ERROR_STREAM(journal_error_);
+    refusal = error.what();
+    ROS_ERROR_STREAM(refusal);
   }
-  return journal_error_;
+  diagnostics_->setJournalError(refusal);
+  return refusal;
 }
 
 GrindResult GrinderNode::resultOf(const Job& job, int code, const std::string& text) const {
@@ -497,43 +496,6 @@ void GrinderNode::publishFeedback() {
   feedback.path_error = job_->largest_error;
   job_->largest_error = 0;
   job_->goal.publishFeedback(feedback);
-}
-
-void GrinderNode::diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  using diagnostic_msgs::DiagnosticStatus;
-  status.summary(DiagnosticStatus::OK, "running");
-  if (timing_.overruns > 0) status.summary(DiagnosticStatus::WARN, "cycles were late");
-  if (!loop_->realtimeScheduling()) status.mergeSummary(DiagnosticStatus::WARN, "no real-time scheduling");
-  if (record_.records_lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, "setpoints were not published");
-  if (timing_.cycles == 0) status.summary(DiagnosticStatus::ERROR, "not running");
-  status.add("State", toString(record_.state));
-  status.add("Nominal period [s]", batch_.period);
-  status.add("Mean period [s]", timing_.cycles > 0 ? timing_.total / static_cast<double>(timing_.cycles) : 0);
-  status.add("Longest period [s]", timing_.longest);
-  status.add("Late cycles", timing_.overruns);
-  status.add("Records lost", record_.records_lost);
-  status.add("Real-time scheduling", loop_->realtimeScheduling());
-  status.add("Memory locked", loop_->memoryLocked());
-  if (!journal_error_.empty()) status.mergeSummary(DiagnosticStatus::ERROR, journal_error_);
-  timing_ = Timing{};
-}
-
-void GrinderNode::diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  using diagnostic_msgs::DiagnosticStatus;
-  status.summary(DiagnosticStatus::OK, record_.drive.enabled ? "enabled" : "disabled");
-  if (!record_.drive.homed) status.mergeSummary(DiagnosticStatus::WARN, "not homed");
-  if (record_.interlock != Interlock::kNone) status.summary(DiagnosticStatus::WARN, toString(record_.interlock));
-  if (record_.drive.fault) status.summary(DiagnosticStatus::ERROR, "the drive reports a fault");
-  if (record_.drive.emergency_stop) status.summary(DiagnosticStatus::ERROR, "emergency stop");
-  if (record_.state == MachineState::kFault) status.summary(DiagnosticStatus::ERROR, record_.fault.text());
-  status.add("Commands waiting", record_.drive.commands_waiting);
-  status.add("Underruns", record_.drive.underruns);
-  for (int i = 0; i < kAxisCount; ++i) {
-    status.add(std::string(kJointNames[static_cast<std::size_t>(i)]) + " following error [" + axisUnit(i) + "]",
-               record_.target[i] - record_.position[i]);
-  }
 }
 
 }  // namespace flute_grinder

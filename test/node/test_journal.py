@@ -344,7 +344,7 @@ class TestUnreadableJournal(JournalTest):
         reports = []
 
         def on_report(message):
-            reports.extend(s for s in message.status if self.node.name in s.name and 'Control loop' in s.name)
+            reports.extend(s for s in message.status if self.node.name in s.name and 'Journal' in s.name)
 
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, on_report)
         self.addCleanup(subscriber.unregister)

@@ -20,7 +20,6 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
@@ -146,6 +145,12 @@ BAD_PARAMETERS = [
     ('constraint_zero', 'constraints/axis_x/trajectory', 0, '= 0; allowed: '),
     ('park_missing', 'park_position/axis_x', None, 'missing; allowed: a number'),
     ('park_beyond_the_limits', 'park_position/axis_x', 0.5, '= 0.5; allowed: -0.1 to 0.3'),
+    ('diagnostics_missing', 'diagnostics', None, 'diagnostics/late_cycles/warn is missing'),
+    ('diagnostics_half_specified', 'diagnostics/following_error/error', None, 'missing; allowed: a number'),
+    ('diagnostics_nan', 'diagnostics/limit_use/warn', math.nan, 'nan; allowed: 0 to 2'),
+    ('diagnostics_text', 'diagnostics/late_cycles/error', 'many', 'many'),
+    ('diagnostics_error_before_the_warning', 'diagnostics/following_error/error', 0.5, '= 0.5; allowed: 0.7 to 1'),
+    ('diagnostics_fuller_error_than_warning', 'diagnostics/buffer_fill/error', 0.6, '= 0.6; allowed: 0 to 0.5'),
     ('hardware_missing', 'hardware', None, 'hardware/type is missing'),
     ('hardware_type_missing', 'hardware/type', None, 'missing; allowed: a text'),
     ('hardware_type_unknown', 'hardware/type', 'flute_grinder/NoSuchDrive',
@@ -337,23 +342,6 @@ class TestParametersAreObeyed(OwnNode):
         fastest = max(abs(b - a) for a, b in zip(positions, positions[1:])) / 0.002
         # The rapid is long enough to reach the limit.
         self.assertAlmostEqual(fastest, 0.03, delta=1e-9)
-
-
-class TestDiagnostics(OwnNode):
-    def test_loop_and_drive_report(self):
-        reports = {}
-
-        def on_report(message):
-            reports.update({status.name.split(': ')[-1]: status for status in message.status
-                            if self.name in status.name})
-
-        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, on_report)
-        self.addCleanup(subscriber.unregister)
-        gc.poll(lambda: {'Control loop', 'Drive'} <= set(reports), 'diagnostics')
-        values = {v.key: v.value for v in reports['Control loop'].values}
-        self.assertEqual(float(values['Nominal period [s]']), 0.001)
-        self.assertEqual(values['Records lost'], '0')
-        self.assertEqual(reports['Drive'].hardware_id, 'flute_grinder/SimulatedDrive')
 
 
 class TestLatency(OwnNode):

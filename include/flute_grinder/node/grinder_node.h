@@ -7,6 +7,7 @@
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/drive/control_loop.h"
 #include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/node/diagnostics.h"
 #include "flute_grinder/node/journal.h"
 #include "flute_grinder/node/path_markers.h"
 
@@ -64,14 +65,6 @@ class GrinderNode {
     std::optional<PathErrorMarkers> errors;  ///< of a job whose figures are allowed
   };
 
-  /// Timing of the control loop since it was last reported.
-  struct Timing {
-    std::uint64_t cycles = 0;
-    std::uint64_t overruns = 0;
-    double longest = 0;  ///< period [s]
-    double total = 0;    ///< [s]
-  };
-
   void loadDrive(const ParameterReader& parameters);
   void readJournal();
   void advertise();
@@ -103,19 +96,17 @@ class GrinderNode {
   void publishFeedback();
   void reject(GoalHandle& goal, int code, const std::string& text);
 
-  void diagnoseLoop(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void diagnoseDrive(diagnostic_updater::DiagnosticStatusWrapper& status);
-
   ros::NodeHandle nh_, private_nh_;
   std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;
   pluginlib::UniquePtr<RobotHW> hw_;
   std::unique_ptr<ControlLoop> loop_;
   std::unique_ptr<Journal> journal_;
+  std::unique_ptr<Diagnostics> diagnostics_;
 
   std::unique_ptr<Server> server_;
   std::vector<ros::ServiceServer> services_;
   ros::Publisher joint_states_, state_, setpoints_, tool_path_, path_error_;
-  std::unique_ptr<diagnostic_updater::Updater> diagnostics_;
+  std::unique_ptr<diagnostic_updater::Updater> diagnostic_updater_;
   ros::SteadyTimer timer_;
 
   std::mutex mutex_;    ///< guards all below
@@ -124,11 +115,9 @@ class GrinderNode {
   std::unique_ptr<Job> job_;
   Progress progress_;  ///< of the running job, or of the last one
   bool progress_made_ = false;
-  std::string journal_error_;
   std::optional<GoalHandle> planning_;
   bool planning_canceled_ = false;
   SetpointBatch batch_;
-  Timing timing_;
   std::uint64_t ticks_ = 0;
 };
 

@@ -1,0 +1,279 @@
+#include "flute_grinder/node/diagnostics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+constexpr double kLate = 1.5;  ///< periods after which a cycle counts as late
+constexpr double kPercent = 0.01;
+constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend, at most
+constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
+
+DiagnosticLevels readLevels(const ParameterReader& p, const std::string& figure, double largest) {
+  const std::string ns = "diagnostics/" + figure + "/";
+  const double warn = p.number(ns + "warn", 0, largest);
+  return {warn, p.number(ns + "error", warn, largest)};
+}
+
+/// Of a figure that is not to go above its levels. What is not a number is above all.
+unsigned char levelAbove(double value, const DiagnosticLevels& levels) {
+  if (!(value <= levels.error)) return DiagnosticStatus::ERROR;
+  return value <= levels.warn ? DiagnosticStatus::OK : DiagnosticStatus::WARN;
+}
+
+unsigned char levelBelow(double value, const DiagnosticLevels& levels) {
+  return levelAbove(-value, {-levels.warn, -levels.error});
+}
+
+/// Keeps the larger one; what is not a number stays.
+void keepLargest(double& largest, double value) {
+  if (!(value <= largest) && !std::isnan(largest)) largest = value;
+}
+
+bool powered(MachineState state) { return state != MachineState::kDisabled && state != MachineState::kFault; }
+
+std::string joint(int axis) { return kJointNames[static_cast<std::size_t>(axis)]; }
+
+template <typename... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream stream;
+  (stream << ... << parts);
+  return stream.str();
+}
+
+}  // namespace
+
+DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters) {
+  DiagnosticThresholds thresholds;
+  thresholds.late_cycles = readLevels(parameters, "late_cycles", 1);
+  thresholds.following_error = readLevels(parameters, "following_error", 1);
+  thresholds.limit_use = readLevels(parameters, "limit_use", 2);
+  const double warn = parameters.number("diagnostics/buffer_fill/warn", 0, 1);
+  thresholds.buffer_fill = {warn, parameters.number("diagnostics/buffer_fill/error", 0, warn)};
+  return thresholds;
+}
+
+Diagnostics::Diagnostics(const LoopConfig& config, const DiagnosticThresholds& thresholds,
+                         std::function<Scheduling()> scheduling)
+    : config_(config),
+      thresholds_(thresholds),
+      scheduling_(std::move(scheduling)),
+      limit_check_(config.machine.limits, config.machine.period) {}
+
+void Diagnostics::addTo(diagnostic_updater::Updater& updater) {
+  updater.add("Control loop", this, &Diagnostics::reportLoop);
+  updater.add("Drive link", this, &Diagnostics::reportDrive);
+  updater.add("Following error", this, &Diagnostics::reportFollowing);
+  updater.add("Limit margin", this, &Diagnostics::reportLimits);
+  updater.add("Buffer", this, &Diagnostics::reportBuffer);
+  updater.add("Journal", this, &Diagnostics::reportJournal);
+}
+
+void Diagnostics::setJournalError(const std::string& error) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  journal_error_ = error;
+}
+
+void Diagnostics::watch(const CycleRecord& record) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++loop_.cycles;
+  loop_.total += record.period;
+  keepLargest(loop_.longest, record.period);
+  if (!(record.period <= kLate * config_.machine.period)) ++loop_.late;
+
+  watchDrive(record);
+  const bool was_powered = powered(last_.state);
+  if (!was_powered && powered(record.state)) fullest_ = 0;
+  // The cycle that ends in a fault still shows what was amiss.
+  if (was_powered || powered(record.state)) {
+    for (int i = 0; i < kAxisCount; ++i) {
+      keepLargest(following_error_[i], std::abs(record.target[i] - record.position[i]));
+    }
+    watchBuffer(record.drive);
+  }
+  if (record.has_setpoint) watchSetpoint(record.setpoint);
+  if (was_powered && record.fault.kind == FaultKind::kLimit && record.state == MachineState::kFault) {
+    watchViolation(record.fault.violation);
+  }
+  last_ = record;
+}
+
+void Diagnostics::watchDrive(const CycleRecord& record) {
+  const DriveStatus& drive = record.drive;
+  feedback_age_ = drive.feedback_count == last_.drive.feedback_count ? feedback_age_ + record.period : 0;
+  keepLargest(drive_.feedback_age, feedback_age_);
+  drive_.emergency_stop |= drive.emergency_stop;
+  drive_.fault |= drive.fault;
+  if (record.interlock != Interlock::kNone) drive_.interlock = record.interlock;
+  if (record.state == MachineState::kFault) drive_.loop_fault = record.fault;
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (std::isfinite(drive_.position[i])) drive_.position[i] = record.position[i];
+  }
+}
+
+void Diagnostics::watchSetpoint(const Setpoint& setpoint) {
+  if (setpoint.cycle == 0 || setpoint.cycle != next_setpoint_) {
+    limit_check_.restart();
+    unknown_setpoints_ = setpoint.cycle == 0 ? 0 : kSetpointsOfPast;
+  }
+  next_setpoint_ = setpoint.cycle + 1;
+  static_cast<void>(limit_check_.check(setpoint));
+  if (unknown_setpoints_ > 0) {
+    --unknown_setpoints_;
+    return;
+  }
+  ++limits_.setpoints;
+  const AxisLimits& limits = config_.machine.limits;
+  for (int i = 0; i < kAxisCount; ++i) {
+    keepLargest(limits_.use[0][i], positionUse(i, setpoint.position[i]));
+    keepLargest(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
+    if (setpoint.cycle % 2 != 0) continue;  // within a pair the steps are the odd-even ones
+    keepLargest(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);
+    keepLargest(limits_.use[3][i], std::abs(limit_check_.jerk()[i]) / limits.max_jerk[i]);
+  }
+}
+
+void Diagnostics::watchViolation(const LimitViolation& v) {
+  ++limits_.setpoints;
+  const bool of_position = v.quantity == LimitedQuantity::kPosition || v.quantity == LimitedQuantity::kNotFinite;
+  const std::size_t quantity = of_position ? 0 : static_cast<std::size_t>(v.quantity);
+  keepLargest(limits_.use[quantity][v.axis], of_position ? positionUse(v.axis, v.value) : std::abs(v.value) / v.limit);
+}
+
+double Diagnostics::positionUse(int axis, double position) const {
+  const double min = config_.machine.limits.min_position[axis];
+  const double max = config_.machine.limits.max_position[axis];
+  return std::abs(2 * position - min - max) / (max - min);
+}
+
+void Diagnostics::watchBuffer(const DriveStatus& drive) {
+  fullest_ = std::max(fullest_, drive.commands_waiting);
+  buffer_.least = buffer_.watched ? std::min(buffer_.least, drive.commands_waiting) : drive.commands_waiting;
+  buffer_.watched = true;
+}
+
+void Diagnostics::reportLoop(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Scheduling granted = scheduling_();
+  const auto cycles = static_cast<double>(loop_.cycles);
+  const std::uint64_t lost = last_.records_lost - records_lost_;
+  status.summary(DiagnosticStatus::OK, "running");
+  if (loop_.cycles == 0) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "not running");
+  } else {
+    status.mergeSummary(levelAbove(static_cast<double>(loop_.late) / cycles, thresholds_.late_cycles),
+                        text(loop_.late, " of ", loop_.cycles, " cycles were late"));
+  }
+  if (lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(lost, " cycles went by unseen"));
+  if (!granted.realtime) status.mergeSummary(DiagnosticStatus::WARN, "no real-time scheduling");
+  if (!granted.memory_locked) status.mergeSummary(DiagnosticStatus::WARN, "memory is not locked");
+  status.add("State", toString(last_.state));
+  status.add("Nominal period [s]", config_.machine.period);
+  status.add("Mean period [s]", loop_.cycles > 0 ? loop_.total / cycles : 0);
+  status.add("Longest period [s]", loop_.longest);
+  status.add("Cycles", loop_.cycles);
+  status.add("Late cycles", loop_.late);
+  status.add("Records lost", last_.records_lost);
+  status.add("Real-time scheduling", granted.realtime);
+  status.add("Memory locked", granted.memory_locked);
+  records_lost_ = last_.records_lost;
+  loop_ = {};
+}
+
+void Diagnostics::reportDrive(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const FaultKind told = drive_.loop_fault.kind;
+  status.summary(DiagnosticStatus::OK, last_.drive.enabled ? "enabled" : "disabled");
+  if (told != FaultKind::kNone) status.mergeSummary(DiagnosticStatus::ERROR, drive_.loop_fault.text());
+  if (drive_.emergency_stop && told != FaultKind::kEmergencyStop) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "emergency stop");
+  }
+  if (drive_.fault && told != FaultKind::kDriveFault) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "the drive reports a fault");
+  }
+  if (!(drive_.feedback_age <= config_.feedback_timeout) && told != FaultKind::kStaleFeedback) {
+    status.mergeSummary(DiagnosticStatus::ERROR, text("no fresh positions for ", drive_.feedback_age, " s"));
+  }
+  for (int i = 0; i < kAxisCount; ++i) {
+    if (std::isfinite(drive_.position[i])) continue;
+    status.mergeSummary(DiagnosticStatus::ERROR, text(joint(i), " position is ", drive_.position[i]));
+  }
+  if (!last_.drive.homed) status.mergeSummary(DiagnosticStatus::WARN, "not homed");
+  if (drive_.interlock != Interlock::kNone) status.mergeSummary(DiagnosticStatus::WARN, toString(drive_.interlock));
+  status.add("Enabled", last_.drive.enabled);
+  status.add("Homed", last_.drive.homed);
+  status.add("Emergency stop", drive_.emergency_stop);
+  status.add("Drive fault", drive_.fault);
+  status.add("Longest feedback age [s]", drive_.feedback_age);
+  status.add("Allowed feedback age [s]", config_.feedback_timeout);
+  drive_ = {};
+}
+
+void Diagnostics::reportFollowing(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status.summary(DiagnosticStatus::OK, "within the thresholds");
+  for (int i = 0; i < kAxisCount; ++i) {
+    const double allowed = config_.following_error[i];
+    const double fraction = following_error_[i] / allowed;
+    const std::string unit = axisUnit(i);
+    status.mergeSummary(levelAbove(fraction, thresholds_.following_error),
+                        text(joint(i), " ", following_error_[i], " ", unit, " of ", allowed, " ", unit));
+    status.add(joint(i) + " largest [" + unit + "]", following_error_[i]);
+    status.add(joint(i) + " of the allowed [%]", fraction / kPercent);
+  }
+  following_error_.setZero();
+}
+
+void Diagnostics::reportLimits(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status.summary(DiagnosticStatus::OK, limits_.setpoints > 0 ? "within the thresholds" : "no setpoints");
+  status.add("Setpoints", limits_.setpoints);
+  for (std::size_t q = 0; q < kQuantityNames.size() && limits_.setpoints > 0; ++q) {
+    for (int i = 0; i < kAxisCount; ++i) {
+      const double use = limits_.use[q][i];
+      const std::string name = joint(i) + " " + kQuantityNames[q];
+      status.mergeSummary(levelAbove(use, thresholds_.limit_use),
+                          text(name, " at ", use / kPercent, " % of its limit"));
+      status.add(name + " margin [%]", (1 - use) / kPercent);
+    }
+  }
+  limits_ = {};
+}
+
+void Diagnostics::reportBuffer(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const std::uint64_t underruns = last_.drive.underruns - underruns_;
+  status.summary(DiagnosticStatus::OK, "filled");
+  if (fullest_ == 0) {
+    status.summary(DiagnosticStatus::OK, "the drive does not buffer");
+  } else if (!buffer_.watched) {
+    status.summary(DiagnosticStatus::OK, "no power");
+  } else {
+    const double fill = static_cast<double>(buffer_.least) / fullest_;
+    status.mergeSummary(levelBelow(fill, thresholds_.buffer_fill),
+                        text("down to ", buffer_.least, " of ", fullest_, " commands"));
+    status.add("Least fill [%]", fill / kPercent);
+  }
+  if (underruns > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(underruns, " underruns"));
+  status.add("Commands waiting", last_.drive.commands_waiting);
+  status.add("Underruns", last_.drive.underruns);
+  underruns_ = last_.drive.underruns;
+  buffer_ = {};
+}
+
+void Diagnostics::reportJournal(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (journal_error_.empty()) {
+    status.summary(DiagnosticStatus::OK, "kept");
+  } else {
+    status.summary(DiagnosticStatus::ERROR, journal_error_);
+  }
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,435 @@
+#include "flute_grinder/node/diagnostics.h"
+
+#include "../drive/fixtures.h"
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <cmath>
+#include <limits>
+
+namespace flute_grinder {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+using Report = void (Diagnostics::*)(Diagnostics::Status&);
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+DiagnosticThresholds thresholds() { return {{0.01, 0.25}, {0.5, 0.9}, {0.8, 1.000001}, {0.5, 0.2}}; }
+
+/// Made-up records of a powered machine, a millisecond each, and what the diagnostics say of them.
+class DiagnosticsTest : public ::testing::Test {
+ protected:
+  DiagnosticsTest() {
+    record_.period = 0.001;
+    record_.state = MachineState::kReady;
+    record_.drive.enabled = record_.drive.homed = true;
+  }
+
+  void watch(int cycles = 1) {
+    for (; cycles > 0; --cycles) {
+      ++record_.drive.feedback_count;
+      diagnostics_.watch(record_);
+    }
+  }
+
+  Diagnostics::Status ask(Report report) {
+    Diagnostics::Status status;
+    (diagnostics_.*report)(status);
+    return status;
+  }
+
+  static std::string value(const Diagnostics::Status& status, const std::string& key) {
+    for (const auto& item : status.values) {
+      if (item.key == key) return item.value;
+    }
+    return "no " + key;
+  }
+
+  /// Watches a setpoint at the positions, the next of its job.
+  void write(const Axes& position) {
+    record_.state = MachineState::kRunning;
+    record_.has_setpoint = true;
+    record_.setpoint.cycle = next_cycle_++;
+    record_.setpoint.position = position;
+    watch();
+    record_.has_setpoint = false;
+  }
+
+  LoopConfig config_ = testing::machineConfig();
+  Scheduling scheduling_{true, true};
+  Diagnostics diagnostics_{config_, thresholds(), [this] { return scheduling_; }};
+  CycleRecord record_;
+  std::uint64_t next_cycle_ = 0;
+};
+
+TEST_F(DiagnosticsTest, LoopThatHasNotRunIsAnError) {
+  const auto status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "not running");
+}
+
+TEST_F(DiagnosticsTest, LoopThatStopsIsAnError) {
+  watch(10);
+  EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::OK);
+  EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::ERROR);
+}
+
+TEST_F(DiagnosticsTest, LoopTellsItsPeriods) {
+  watch(3);
+  record_.period = 0.0012;
+  watch();
+  const auto status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "running");
+  EXPECT_EQ(value(status, "State"), "ready");
+  EXPECT_EQ(value(status, "Nominal period [s]"), "0.001");
+  EXPECT_EQ(value(status, "Mean period [s]"), "0.00105");
+  EXPECT_EQ(value(status, "Longest period [s]"), "0.0012");
+  EXPECT_EQ(value(status, "Late cycles"), "0");
+  EXPECT_EQ(value(status, "Cycles"), "4");
+}
+
+TEST_F(DiagnosticsTest, LateCyclesAreAWarningAndThenAnError) {
+  const auto late = [&](int of_hundred) {
+    record_.period = 0.0016;
+    watch(of_hundred);
+    record_.period = 0.0015;  // not late yet
+    watch(100 - of_hundred);
+    return ask(&Diagnostics::reportLoop);
+  };
+  EXPECT_EQ(late(1).level, DiagnosticStatus::OK);
+  const auto warning = late(2);
+  EXPECT_EQ(warning.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(warning.message, "2 of 100 cycles were late");
+  EXPECT_EQ(late(25).level, DiagnosticStatus::WARN);
+  EXPECT_EQ(late(26).level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(late(0).level, DiagnosticStatus::OK);
+}
+
+TEST_F(DiagnosticsTest, SchedulingThatWasNotGrantedIsAWarning) {
+  scheduling_ = {false, true};
+  watch();
+  auto status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "no real-time scheduling");
+  scheduling_ = {true, false};
+  watch();
+  status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "memory is not locked");
+  EXPECT_EQ(value(status, "Memory locked"), "False");
+}
+
+TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
+  record_.records_lost = 7;
+  watch();
+  const auto status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "7 cycles went by unseen");
+  watch();
+  const auto next = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(next.level, DiagnosticStatus::OK);
+  EXPECT_EQ(value(next, "Records lost"), "7");
+}
+
+TEST_F(DiagnosticsTest, DriveIsOkWhenHomed) {
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportDrive).message, "enabled");
+  record_.drive.enabled = false;
+  watch();
+  const auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "disabled");
+  EXPECT_EQ(value(status, "Enabled"), "False");
+}
+
+TEST_F(DiagnosticsTest, DriveThatIsNotHomedIsAWarning) {
+  record_.drive.homed = false;
+  watch();
+  const auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "not homed");
+}
+
+TEST_F(DiagnosticsTest, InterlockIsAWarning) {
+  record_.interlock = Interlock::kCoolant;
+  watch();
+  const auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "no coolant flows");
+}
+
+TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
+  record_.drive.emergency_stop = true;
+  watch();
+  record_.drive.emergency_stop = false;
+  watch(100);
+  auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "emergency stop");
+  EXPECT_EQ(value(status, "Emergency stop"), "True");
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportDrive).level, DiagnosticStatus::OK);
+}
+
+TEST_F(DiagnosticsTest, FaultIsToldOnceAndWithAllElse) {
+  record_.state = MachineState::kFault;
+  record_.fault.kind = FaultKind::kEmergencyStop;
+  record_.drive.emergency_stop = record_.drive.fault = true;
+  record_.drive.homed = false;
+  watch();
+  const auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "emergency stop; the drive reports a fault; not homed");
+}
+
+TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
+  watch();
+  diagnostics_.watch(record_);
+  diagnostics_.watch(record_);
+  watch();
+  auto status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);  // 2 ms of 2.5 ms
+  EXPECT_EQ(value(status, "Longest feedback age [s]"), "0.002");
+  EXPECT_EQ(value(status, "Allowed feedback age [s]"), "0.0025");
+  for (int i = 0; i < 3; ++i) diagnostics_.watch(record_);
+  status = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "no fresh positions for 0.003 s");
+}
+
+TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
+  record_.position[kZ] = kNan;
+  watch();
+  record_.position[kZ] = 0;
+  watch();
+  const auto drive = ask(&Diagnostics::reportDrive);
+  EXPECT_EQ(drive.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(drive.message, "axis_z position is nan");
+  const auto following = ask(&Diagnostics::reportFollowing);
+  EXPECT_EQ(following.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(value(following, "axis_z largest [m]"), "nan");
+}
+
+TEST_F(DiagnosticsTest, FollowingErrorIsTheLargestOfEachAxis) {
+  record_.target << 0.1, 0, 0, 3;
+  record_.position << 0.1004, 0, 0, 3;
+  watch();
+  record_.position << 0.1, 0.0002, 0, 2.975;
+  watch();
+  const auto status = ask(&Diagnostics::reportFollowing);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(value(status, "axis_x largest [m]"), "0.0004");
+  EXPECT_EQ(value(status, "axis_x of the allowed [%]"), "40");
+  EXPECT_EQ(value(status, "axis_y of the allowed [%]"), "20");
+  EXPECT_EQ(value(status, "axis_z of the allowed [%]"), "0");
+  EXPECT_EQ(value(status, "axis_a largest [rad]"), "0.025");
+}
+
+TEST_F(DiagnosticsTest, FollowingErrorIsAWarningAndThenAnError) {
+  record_.position << 0, 0.0006, 0, 0;
+  watch();
+  auto status = ask(&Diagnostics::reportFollowing);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "axis_y 0.0006 m of 0.001 m");
+  record_.position << 0, 0.0006, 0, -0.046;
+  watch();
+  status = ask(&Diagnostics::reportFollowing);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
+  record_.position.setZero();
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+}
+
+TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
+  watch();
+  record_.state = MachineState::kFault;
+  record_.position[kX] = 0.002;
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::ERROR);
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+  record_.state = MachineState::kDisabled;
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+}
+
+TEST_F(DiagnosticsTest, NoSetpointsLeaveNoMargin) {
+  watch();
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "no setpoints");
+}
+
+TEST_F(DiagnosticsTest, MarginOfPositionIsTheNearerLimits) {
+  // X from -0.1 to 0.3: 0.05 of half a range of 0.2 are left; Y from -0.02 to 0.15: 0.015 of 0.085.
+  write({-0.05, 0.135, 0.025, 0});
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(value(status, "axis_x position margin [%]"), "25");
+  EXPECT_NEAR(std::stod(value(status, "axis_y position margin [%]")), 100 * 0.015 / 0.085, 1e-4);
+  EXPECT_EQ(value(status, "axis_z position margin [%]"), "100");
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "axis_y position at 82.3529 % of its limit");
+}
+
+TEST_F(DiagnosticsTest, MarginOfMotionIsThatOfThePositionsWritten) {
+  // At 1 kHz: 0.15 of 0.2 m/s, and half of A's 12.566 rad/s; at 2 ms: 0.2 m/s^2 of 0.5, over it 5 m/s^3 of 10.
+  write({0.1, 0.065, 0.025, 0});
+  for (int i = 1; i <= 40; ++i) write({0.1 + 0.00015 * i, 0.065, 0.025, 0.006283 * i});
+  ask(&Diagnostics::reportLimits);
+  for (int i = 41; i <= 60; ++i) write({0.1 + 0.00015 * i, 0.065, 0.025, 0.006283 * i});
+  const auto even = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(even.level, DiagnosticStatus::OK);
+  EXPECT_EQ(value(even, "Setpoints"), "20");
+  EXPECT_NEAR(std::stod(value(even, "axis_x velocity margin [%]")), 25, 1e-3);
+  EXPECT_NEAR(std::stod(value(even, "axis_a velocity margin [%]")), 50, 1e-3);
+  EXPECT_NEAR(std::stod(value(even, "axis_x acceleration margin [%]")), 100, 1e-3);
+  EXPECT_NEAR(std::stod(value(even, "axis_y velocity margin [%]")), 100, 1e-9);
+
+  // Half a cycle pair's worth of 0.2 m/s^2 more.
+  const double x = 0.1 + 0.00015 * 60;
+  write({x + 0.00015 + 0.0000004, 0.065, 0.025, 0.006283 * 61});
+  write({x + 0.0003 + 0.0000008, 0.065, 0.025, 0.006283 * 62});
+  const auto bent = ask(&Diagnostics::reportLimits);
+  EXPECT_NEAR(std::stod(value(bent, "axis_x acceleration margin [%]")), 100 - 100 * 0.2 / 0.5, 1e-2);
+  // From none to 0.2 m/s^2 in 2 ms are 100 m/s^3.
+  EXPECT_NEAR(std::stod(value(bent, "axis_x jerk margin [%]")), 100 - 100 * 100 / 10, 1);
+  EXPECT_EQ(bent.level, DiagnosticStatus::ERROR);
+  EXPECT_CONTAINS(bent.message, "axis_x jerk at 1000 % of its limit");
+}
+
+TEST_F(DiagnosticsTest, UseOfALimitIsAWarning) {
+  write({0.1, 0.065, 0.025, 0});
+  write({0.1, 0.065 + 0.00009, 0.025, 0});
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "axis_y velocity at 90 % of its limit");
+}
+
+TEST_F(DiagnosticsTest, SetpointsAfterAGapAreNotComparedWithThoseBefore) {
+  write({0.1, 0.065, 0.025, 0});
+  ask(&Diagnostics::reportLimits);
+  next_cycle_ = 1001;
+  for (int i = 0; i < 30; ++i) write({0.2 + 0.00015 * i, 0.065, 0.025, 0});
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
+  EXPECT_NEAR(std::stod(value(status, "axis_x velocity margin [%]")), 25, 1e-3);
+  EXPECT_NEAR(std::stod(value(status, "axis_x jerk margin [%]")), 100, 1e-3);
+}
+
+TEST_F(DiagnosticsTest, NextJobBeginsAfresh) {
+  write({0.1, 0.065, 0.025, 0});
+  next_cycle_ = 0;
+  write({0.2, 0.065, 0.025, 0});
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
+  EXPECT_EQ(value(status, "axis_x velocity margin [%]"), "100");
+}
+
+TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
+  watch();
+  record_.state = MachineState::kFault;
+  record_.fault.kind = FaultKind::kLimit;
+  record_.fault.violation = {kA, LimitedQuantity::kVelocity, -25.132, 12.566, 8, 0, MoveKind::kStroke};
+  watch();
+  const auto status = ask(&Diagnostics::reportLimits);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "axis_a velocity at 200 % of its limit");
+  EXPECT_EQ(value(status, "axis_a velocity margin [%]"), "-100");
+  watch();
+  EXPECT_EQ(ask(&Diagnostics::reportLimits).message, "no setpoints");
+}
+
+TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
+  for (const double position : {0.35, kNan}) {
+    record_.state = MachineState::kReady;
+    watch();
+    record_.state = MachineState::kFault;
+    record_.fault.kind = FaultKind::kLimit;
+    const auto quantity = std::isnan(position) ? LimitedQuantity::kNotFinite : LimitedQuantity::kPosition;
+    record_.fault.violation = {kX, quantity, position, 0.3, 8, 0, MoveKind::kStroke};
+    watch();
+    const auto status = ask(&Diagnostics::reportLimits);
+    EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+    // 0.25 from the middle of -0.1 to 0.3, of 0.2.
+    EXPECT_EQ(status.message,
+              std::isnan(position) ? "axis_x position at nan % of its limit" : "axis_x position at 125 % of its limit");
+  }
+}
+
+TEST_F(DiagnosticsTest, DriveWithoutBufferIsToldSo) {
+  watch();
+  const auto status = ask(&Diagnostics::reportBuffer);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK);
+  EXPECT_EQ(status.message, "the drive does not buffer");
+}
+
+TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
+  const auto least = [&](std::uint32_t commands) {
+    record_.drive.commands_waiting = 50;
+    watch(3);
+    record_.drive.commands_waiting = commands;
+    watch();
+    record_.drive.commands_waiting = 49;
+    watch(3);
+    return ask(&Diagnostics::reportBuffer);
+  };
+  const auto good = least(25);
+  EXPECT_EQ(good.level, DiagnosticStatus::OK);
+  EXPECT_EQ(good.message, "filled");
+  EXPECT_EQ(value(good, "Least fill [%]"), "50");
+  EXPECT_EQ(value(good, "Commands waiting"), "49");
+  const auto warning = least(24);
+  EXPECT_EQ(warning.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(warning.message, "down to 24 of 50 commands");
+  EXPECT_EQ(least(10).level, DiagnosticStatus::WARN);
+  EXPECT_EQ(least(9).level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(least(49).level, DiagnosticStatus::OK);
+}
+
+TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
+  record_.drive.commands_waiting = 50;
+  watch();
+  ask(&Diagnostics::reportBuffer);
+  record_.state = MachineState::kDisabled;
+  watch();
+  record_.drive.commands_waiting = 0;
+  ask(&Diagnostics::reportBuffer);
+  watch();
+  const auto off = ask(&Diagnostics::reportBuffer);
+  EXPECT_EQ(off.level, DiagnosticStatus::OK);
+  EXPECT_EQ(off.message, "no power");
+  // How full it was before does not count.
+  record_.state = MachineState::kReady;
+  record_.drive.commands_waiting = 20;
+  watch();
+  EXPECT_EQ(value(ask(&Diagnostics::reportBuffer), "Least fill [%]"), "100");
+}
+
+TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
+  record_.drive.commands_waiting = 50;
+  record_.drive.underruns = 3;
+  watch();
+  const auto status = ask(&Diagnostics::reportBuffer);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "3 underruns");
+  watch();
+  const auto next = ask(&Diagnostics::reportBuffer);
+  EXPECT_EQ(next.level, DiagnosticStatus::OK);
+  EXPECT_EQ(value(next, "Underruns"), "3");
+}
+
+TEST_F(DiagnosticsTest, JournalTellsWhatIsAmiss) {
+  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+  diagnostics_.setJournalError("journal /x: No space left on device");
+  const auto status = ask(&Diagnostics::reportJournal);
+  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(status.message, "journal /x: No space left on device");
+  diagnostics_.setJournalError("");
+  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -68,6 +68,11 @@ std::string place(const Setpoint& p) {
   return text.str();
 }
 
+/// The journal's file, or, of a folder, the one in it that is named after the node.
+std::string journalPath(const std::string& parameter, const std::string& node) {
+  return parameter.back() == '/' ? parameter + node.substr(1) + ".journal" : parameter;
+}
+
 double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
 
 }  // namespace
@@ -85,7 +90,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   diagnostics_ = std::make_unique<Diagnostics>(config, readDiagnosticThresholds(parameters), [this] {
     return Scheduling{loop_->realtimeScheduling(), loop_->memoryLocked()};
   });
-  journal_ = std::make_unique<Journal>(parameters.text("journal"));
+  journal_ = std::make_unique<Journal>(journalPath(parameters.text("journal"), private_nh_.getNamespace()));
   readJournal();
   loadDrive(parameters);
   loop_ = std::make_unique<ControlLoop>(*hw_, config);

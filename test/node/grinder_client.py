@@ -289,14 +289,16 @@ class Run:
 class Grinder:
     """A client of the grinder's node that records all it publishes."""
 
-    def __init__(self, name='grinder', joint_states='/joint_states'):
+    def __init__(self, name='grinder', joint_states=None):
         self.name = name
+        # What stands beside the node, in the same namespace.
+        self.namespace = ('/' + name).rpartition('/')[0]
         self._changed = threading.Condition()
         self.states, self.batches, self.joints = [], [], []
         self._subscribers = [
             self._record('/%s/state' % name, GrinderState, self.states),
             self._record('/%s/setpoints' % name, SetpointBatch, self.batches),
-            self._record(joint_states, JointState, self.joints),
+            self._record(joint_states or self.namespace + '/joint_states', JointState, self.joints),
         ]
         self.client = actionlib.ActionClient('/%s/grind' % name, GrindAction)
         assert self.client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
@@ -390,7 +392,7 @@ class Grinder:
 
     def limits(self):
         """What the axes may do, from the robot description and the parameters; each a list in axis order."""
-        robot = xml.fromstring(rospy.get_param('/robot_description'))
+        robot = xml.fromstring(rospy.get_param(self.namespace + '/robot_description'))
         parameters = rospy.get_param('/%s/joint_limits' % self.name)
         limits = {'min_position': [], 'max_position': [], 'max_velocity': [], 'max_acceleration': [], 'max_jerk': []}
         for joint in JOINTS:

@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+"""Shows that two grinders in two namespaces under one master have nothing to do with one another: they run two jobs at
+once, each with the setpoints of its own plan, and have journals, transforms, faults and ends of their own."""
+
+import atexit
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import unittest
+import xmlrpc.client
+
+import rosgraph
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray
+from flute_grinder.msg import GrinderState, GrindResult
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
+
+import grinder_client as gc
+from grinder_client import MM
+
+NAMES = ('left/grinder', 'right/grinder')
+
+# The paper's cutter, and one of the other hand that is ground the other way.
+CHANGES = {'left/grinder': {'feed_mm_min': 400},
+           'right/grinder': {'feed_mm_min': 450, 'spiral_angle_deg': -40, 'direction': 'to_end', 'even_step': 'exact',
+                             'clearance_mm': 3, 'flute_length_mm': 25}}
+CLIENTS = {}
+
+
+def clients():
+    """The clients of both, ready at park."""
+    if not CLIENTS:
+        atexit.register(shutil.rmtree, rospy.get_param('/left/grinder/journal'), ignore_errors=True)
+        CLIENTS.update({name: gc.Grinder(name) for name in NAMES})
+    for client in CLIENTS.values():
+        client.make_ready_at_park()
+    return [CLIENTS[name] for name in NAMES]
+
+
+def read(path):
+    with open(path, 'rb') as file:
+        return file.read()
+
+
+class TestTwoJobsAtOnce(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.jobs = {name: gc.job_file(os.path.join(cls.folder, name.replace('/', '_') + '.yaml'), **changes)
+                    for name, changes in CHANGES.items()}
+        cls.left, cls.right = clients()
+        cls.transforms = {name: [] for name in NAMES}
+        subscribers = [rospy.Subscriber(name.replace('grinder', 'tf'), TFMessage, cls.transforms[name].append,
+                                        queue_size=10000) for name in NAMES]
+        gc.poll(lambda: all(s.get_num_connections() for s in subscribers), 'transforms')
+        cls.first_joints = {client.name: len(client.joints) for client in (cls.left, cls.right)}
+        runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--csv', cls.csv(name)],
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+                for name in NAMES]
+        cls.outputs = [run.communicate(timeout=2 * gc.PATIENCE) for run in runs]
+        cls.statuses = [run.returncode for run in runs]
+        for client in (cls.left, cls.right):
+            client.wait_rest()
+        for subscriber in subscribers:
+            subscriber.unregister()
+
+    @classmethod
+    def csv(cls, name, kind='streamed'):
+        return os.path.join(cls.folder, '%s_%s.csv' % (kind, name.replace('/', '_')))
+
+    def batches(self, client):
+        """Of the job run last."""
+        return [batch for batch in client.batches if batch.goal_id == client.batches[-1].goal_id]
+
+    def test_both_are_done(self):
+        self.assertEqual(self.statuses, [0, 0], self.outputs)
+
+    def test_they_ran_at_the_same_time(self):
+        spans = [(batches[0].header.stamp.to_sec(), batches[-1].end_stamp.to_sec())
+                 for batches in (self.batches(self.left), self.batches(self.right))]
+        together = min(end for _, end in spans) - max(begin for begin, _ in spans)
+        self.assertGreater(together, 0.5 * min(end - begin for begin, end in spans))
+
+    def test_each_got_the_setpoints_of_its_own_plan_to_the_last_bit(self):
+        for name in NAMES:
+            plan = gc.grind('plan', self.jobs[name], '--csv', self.csv(name, 'planned'))
+            self.assertEqual(plan.returncode, 0, plan.stderr)
+            self.assertTrue(read(self.csv(name)) == read(self.csv(name, 'planned')), name)
+        self.assertNotEqual(read(self.csv('left/grinder')), read(self.csv('right/grinder')))
+
+    def test_journals_are_apart(self):
+        folder = rospy.get_param('/left/grinder/journal')
+        self.assertEqual(rospy.get_param('/right/grinder/journal'), folder)
+        digests = []
+        for client in (self.left, self.right):
+            with open(folder + client.name + '.journal') as text:
+                journal = yaml.safe_load(text)
+            self.assertTrue(journal['finished'])
+            progress = client.fresh_state().progress
+            self.assertEqual((progress.job_digest, progress.finished), (journal['job_digest'], True))
+            digests.append(journal['job_digest'])
+        self.assertNotEqual(*digests)
+
+    def test_each_knows_its_own_job_alone(self):
+        own = gc.grind('--node', 'left/grinder', 'run', self.jobs['left/grinder'], '--continue')
+        self.assertEqual((own.returncode, own.stderr.strip()), (1, 'the job is finished: every pass of it is ground'))
+        other = gc.grind('--node', 'left/grinder', 'run', self.jobs['right/grinder'], '--continue')
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("the grinder's last job was another one", other.stderr)
+
+    def test_transforms_are_those_of_the_own_axes(self):
+        for client in (self.left, self.right):
+            # Of one time are the transforms and the positions from which they were made.
+            axes = {joint.header.stamp: dict(zip(joint.name, joint.position))
+                    for joint in client.joints[self.first_joints[client.name]:]}
+            seen = {}
+            for message in self.transforms[client.name]:
+                for transform in message.transforms:
+                    at = axes.get(transform.header.stamp)
+                    if at:
+                        seen.setdefault(transform.child_frame_id, []).append((transform, at))
+            self.assertGreater(len(seen['table']), 100)
+            for transform, at in seen['table']:
+                self.assertEqual(transform.header.frame_id, 'base')
+                self.assertAlmostEqual(transform.transform.translation.x, -at['axis_x'], delta=1e-12)
+            for transform, at in seen['cutter']:
+                self.assertEqual(transform.header.frame_id, 'table')
+                turned = transform.transform.rotation
+                angle = 2 * math.atan2(turned.x, turned.w)
+                self.assertAlmostEqual(math.remainder(angle + at['axis_a'], 2 * math.pi), 0, delta=1e-9)
+            self.assertGreater(max(at['axis_x'] for _, at in seen['table']), 20 * MM)
+
+    def test_nobody_tells_transforms_or_joint_states_for_all(self):
+        published, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
+        topics = {topic for topic, nodes in published}
+        self.assertEqual(topics & {'/tf', '/joint_states'}, set())
+        self.assertLessEqual({'/left/tf', '/right/tf', '/left/joint_states', '/right/joint_states'}, topics)
+
+    def test_path_is_shown_in_the_own_namespace_and_frame(self):
+        for client, sign in ((self.left, 1), (self.right, -1)):
+            markers = rospy.wait_for_message('/%s/tool_path' % client.name, MarkerArray, gc.PATIENCE).markers[1:]
+            self.assertEqual({m.header.frame_id for m in markers}, {'cutter'})
+            # A right-hand flute turns on with X, a left-hand one back.
+            first, second = markers[0].points[:2]
+            turn = math.remainder(math.atan2(second.z, second.y) - math.atan2(first.z, first.y), 2 * math.pi)
+            self.assertGreater(sign * turn * (second.x - first.x), 0)
+
+    def test_rviz_is_told_topics_of_its_own_namespace(self):
+        topics = re.findall(r'(?m)^ *(?:\w+ )?Topic: *(.*)$', read(gc.package_file('rviz/grinder.rviz')).decode())
+        self.assertTrue(topics)
+        self.assertEqual([topic for topic in topics if topic.startswith('/')], [])
+
+    def test_diagnostics_tell_them_apart(self):
+        names = set()
+
+        def both():
+            names.update(s.name for s in rospy.wait_for_message('/diagnostics', DiagnosticArray, gc.PATIENCE).status)
+            return {'left/grinder: Drive', 'right/grinder: Drive'} <= names
+
+        gc.poll(both, 'diagnostics of both')
+
+
+# Its stroke takes some seconds.
+LONG = gc.paper(feed=900 * gc.MM_MIN)
+
+
+class TestFaultOfOne(unittest.TestCase):
+    def test_emergency_stop_of_one_does_not_touch_the_other(self):
+        left, right = clients()
+        runs = [client.send(LONG) for client in (left, right)]
+        for run in runs:
+            run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
+        left.inject('emergency_stop')
+        runs[0].wait()
+        self.assertEqual((runs[0].status, runs[0].code), ('ABORTED', GrindResult.EMERGENCY_STOP))
+        self.assertFalse(runs[1].done)
+        self.assertEqual(right.fresh_state().state, GrinderState.RUNNING)
+        runs[1].wait_complete()
+        self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0))
+        self.assertTrue(gc.is_gapless(runs[1].setpoints))
+        self.assertEqual(runs[1].result.setpoints_written, runs[1].result.statistics.setpoints)
+        self.assertEqual(right.fresh_state().state, GrinderState.READY)
+        self.assertEqual(left.fresh_state().state, GrinderState.FAULT)
+
+    def test_override_and_hold_of_one_do_not_touch_the_other(self):
+        left, right = clients()
+        planned = right.plan(gc.goal_of(LONG)).statistics.setpoints
+        runs = [client.send(LONG) for client in (left, right)]
+        for run in runs:
+            run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
+        self.assertTrue(left.set_feed_override(0.5).success)
+        self.assertTrue(left.hold().success)
+        runs[1].wait_complete()
+        self.assertEqual(left.fresh_state().state, GrinderState.HELD)
+        self.assertEqual(left.fresh_state().override, 0.5)
+        self.assertEqual((runs[1].status, len(runs[1].setpoints)), ('SUCCEEDED', planned))
+        runs[0].cancel()
+        self.assertEqual(runs[0].wait().status, 'PREEMPTED')
+
+
+class TestEndOfOne(unittest.TestCase):
+    """With a launch of its own, in a namespace above."""
+
+    def setUp(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'two_grinders.launch', '__ns:=shop',
+                                   'journal:=%s/' % folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(launch.wait, gc.PATIENCE)
+        self.addCleanup(launch.send_signal, signal.SIGINT)
+
+    def test_one_that_dies_does_not_end_the_other(self):
+        left, right = (gc.Grinder('shop/' + name) for name in NAMES)
+        for client in (left, right):
+            self.addCleanup(client.close)
+            client.make_ready()
+        run = right.send(LONG)
+        run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
+        uri = rosgraph.Master(rospy.get_name()).lookupNode('/' + left.name)
+        os.kill(xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2], signal.SIGKILL)
+        left.wait_end_of_connections()
+        run.wait_complete()
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
+        self.assertEqual(right.fresh_state().state, GrinderState.READY)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_two_grinders')
+    rostest.rosrun('flute_grinder', 'two_grinders', '__main__')

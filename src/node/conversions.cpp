@@ -145,12 +145,13 @@ PlanStatistics fromMessage(const PathStatistics& m) {
   return s;
 }
 
-WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual) {
+WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual, double cycle_period) {
   WrittenSetpoint m;
   m.cycle = p.cycle;
   copy(p.position, m.position);
   copy(p.velocity, m.velocity);
   copy(actual, m.actual);
+  m.cycle_period = cycle_period;
   m.path_error = p.path_error;
   m.feed = p.feed;
   m.move = static_cast<std::uint8_t>(p.move);

@@ -348,29 +348,30 @@ void GrinderNode::follow(const CycleRecord& record) {
 }
 
 void GrinderNode::followJob(const CycleRecord& record) {
-  if (record.has_setpoint) job_->waiting.emplace_back(job_->cycle, record.setpoint);
+  if (record.has_setpoint) job_->waiting.push_back({job_->cycle, record.period, record.setpoint});
   // A drive may buffer commands: a setpoint is told with the positions of the cycle before the axes get it.
   auto& waiting = job_->waiting;
-  while (!waiting.empty() && waiting.front().first + record.drive.commands_waiting <= job_->cycle) {
-    job_->last = waiting.front().second;
+  while (!waiting.empty() && waiting.front().cycle + record.drive.commands_waiting <= job_->cycle) {
+    job_->last = waiting.front().setpoint;
     trackProgress(job_->last);
-    tell(job_->last, record);
+    tell(waiting.front(), record);
     waiting.pop_front();
   }
   ++job_->cycle;
   if (!record.job_ended) return;
   // Written, but the axes never got them.
-  for (const auto& never : waiting) tell(never.second, record);
+  for (const Waiting& never : waiting) tell(never, record);
   finishJob(record);
 }
 
-void GrinderNode::tell(const Setpoint& setpoint, const CycleRecord& record) {
+void GrinderNode::tell(const Waiting& written, const CycleRecord& record) {
+  const Setpoint& setpoint = written.setpoint;
   if (batch_.setpoints.empty()) {
     batch_.header.stamp = ros::Time(record.time);
     batch_.goal_id = job_->goal.getGoalID().id;
   }
   ++job_->written;
-  batch_.setpoints.push_back(toMessage(setpoint, record.position));
+  batch_.setpoints.push_back(toMessage(setpoint, record.position, written.period));
   batch_.end_stamp = ros::Time(record.time);
   job_->largest_error = std::max(job_->largest_error, std::abs(setpoint.path_error));
   job_->errors.add(setpoint);

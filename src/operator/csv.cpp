@@ -8,6 +8,7 @@
 namespace flute_grinder {
 
 using units::kMillimetre;
+using units::kMillimetrePerMinute;
 
 CsvFile::CsvFile(const std::string& path, const char* header) : path_(path), file_(std::fopen(path.c_str(), "w")) {
   if (!file_) throw FileError(path + ": cannot be written: " + std::strerror(errno));
@@ -26,10 +27,10 @@ void TableCsv::write(int number, const CurvePoint& point, double theory) {
 
 void SetpointCsv::write(const Setpoint& s) {
   const Axes& p = s.position;
-  std::fprintf(file(), "%llu,%.17g,%s,%d,%d,%s,%.17g,%.17g,%.17g,%.17g,%.17g\n",
+  std::fprintf(file(), "%llu,%.17g,%s,%d,%d,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n",
                static_cast<unsigned long long>(s.cycle), static_cast<double>(s.cycle) * period_, toString(s.move),
                s.tooth, s.pass, toString(s.step), p[kX] / kMillimetre, p[kY] / kMillimetre, p[kZ] / kMillimetre, p[kA],
-               s.path_error);
+               s.path_error, s.feed / kMillimetrePerMinute);
 }
 
 }  // namespace flute_grinder

@@ -4,6 +4,7 @@
 #include "flute_grinder/operator/csv.h"
 #include "flute_grinder/operator/offline.h"
 #include "flute_grinder/operator/online.h"
+#include "flute_grinder/operator/report.h"
 
 #include <ros/package.h>
 #include <ros/ros.h>
@@ -69,6 +70,24 @@ void addOverride(CLI::App& app, double& percent) {
   });
 }
 
+/// Carried out as soon as it is parsed.
+void addReport(CLI::App& app, ReportOptions& options) {
+  auto& command = *app.add_subcommand("report", "draw a table, a plan or a record as one HTML file");
+  command.add_option("FILE", options.file, "CSV file of table, plan or run, or a bag of 'roslaunch ... record:=true'")
+      ->required();
+  command.add_option("-o,--output", options.output, "HTML file to write")->required();
+  command.add_option("--job", options.job, "which of a bag's jobs, counted from 1 (default: the last)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--machine", options.parameters, "parameters of the machine (default: config/grinder.yaml)");
+  command.add_option("--urdf", options.urdf, "robot description (default: urdf/grinder.urdf)");
+  command.callback([&options] {
+    const std::string package = ros::package::getPath("flute_grinder");
+    if (options.parameters.empty()) options.parameters = package + "/config/grinder.yaml";
+    if (options.urdf.empty()) options.urdf = package + "/urdf/grinder.urdf";
+    writeReport(options);
+  });
+}
+
 /// What the command line asks for; called once it is parsed.
 int carryOut(const CLI::App& app, const TableOptions& table, PlanOptions& plan, const RunOptions& run, double percent) {
   if (app.got_subcommand("table")) return runTable(table);
@@ -99,6 +118,8 @@ int run(int argc, char** argv) {
   addTable(app, table);
   addPlan(app, plan);
   addRun(app, run);
+  ReportOptions report;
+  addReport(app, report);
   double percent = 100;
   addOverride(app, percent);
   app.add_subcommand("status", "print what the grinder is doing");

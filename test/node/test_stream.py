@@ -20,6 +20,8 @@ from grinder_client import (A, APPROACH, EVEN, INDEX, INFEED, MM, MM_MIN, MOVES,
 
 RUNS = {}
 
+COLUMNS = 'cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min'.split(',')
+
 
 def stream(feed_mm_min):
     """The paper's job at a feed, run once for all tests."""
@@ -252,13 +254,14 @@ class PaperJob:
         self.assertEqual(plan.returncode, 0, plan.stderr)
         with open(csv) as lines:
             rows = [line.rstrip('\n').split(',') for line in lines]
-        self.assertEqual(rows[0], 'cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad'.split(','))
+        self.assertEqual(rows[0], COLUMNS)
         self.assertEqual(len(rows) - 1, len(self.setpoints))
         for row, s in zip(rows[1:], self.setpoints):
             p = s.position
             words = [str(s.cycle), MOVES[s.move], str(s.tooth), str(s.pass_), STEPS[s.step]]
             self.assertEqual([row[0], row[2], row[3], row[4], row[5]], words)
-            numbers = [s.cycle * self.period, p[X] / 1e-3, p[Y] / 1e-3, p[Z] / 1e-3, p[A], s.path_error]
+            numbers = [s.cycle * self.period, p[X] / 1e-3, p[Y] / 1e-3, p[Z] / 1e-3, p[A], s.path_error,
+                       s.feed / MM_MIN]
             self.assertEqual([float(text).hex() for text in [row[1]] + row[6:]], [float(n).hex() for n in numbers])
 
 

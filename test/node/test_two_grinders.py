@@ -163,7 +163,7 @@ class TestTwoJobsAtOnce(unittest.TestCase):
 
         def both():
             names.update(s.name for s in rospy.wait_for_message('/diagnostics', DiagnosticArray, gc.PATIENCE).status)
-            return {'left/grinder: Drive', 'right/grinder: Drive'} <= names
+            return {'left/grinder: Drive link', 'right/grinder: Drive link'} <= names
 
         gc.poll(both, 'diagnostics of both')
 

@@ -28,7 +28,8 @@ PathStatistics toMessage(const PlanStatistics& statistics);
 PlanStatistics fromMessage(const PathStatistics& message);
 
 /// @param actual where the drive said the axes were when the setpoint was made [m], A [rad].
-WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual);
+/// @param cycle_period measured, from the control cycle before to the one that made the setpoint [s].
+WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual, double cycle_period);
 Setpoint fromMessage(const WrittenSetpoint& message);
 
 }  // namespace flute_grinder

@@ -22,7 +22,6 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <utility>
 
 namespace flute_grinder {
 
@@ -43,6 +42,13 @@ class GrinderNode {
   using Server = actionlib::ActionServer<GrindAction>;
   using GoalHandle = Server::GoalHandle;
 
+  /// A setpoint that is in the drive's buffer.
+  struct Waiting {
+    std::uint64_t cycle;  ///< that made it
+    double period;        ///< of that cycle, measured [s]
+    Setpoint setpoint;
+  };
+
   /// The job that moves the machine.
   struct Job {
     GoalHandle goal;
@@ -55,8 +61,8 @@ class GrinderNode {
     double largest_error = 0;  ///< since the last feedback [rad]
     std::uint64_t written = 0;
     bool canceled = false;
-    std::uint64_t cycle = 0;                                   ///< since the start
-    std::deque<std::pair<std::uint64_t, Setpoint>> waiting{};  ///< in the drive's buffer, with their cycles
+    std::uint64_t cycle = 0;  ///< since the start
+    std::deque<Waiting> waiting{};
   };
 
   /// A plan with what is to be shown of it.
@@ -84,7 +90,7 @@ class GrinderNode {
   bool refresh();
   void follow(const CycleRecord& record);
   void followJob(const CycleRecord& record);
-  void tell(const Setpoint& setpoint, const CycleRecord& record);
+  void tell(const Waiting& written, const CycleRecord& record);
   void trackProgress(const Setpoint& setpoint);
   std::string writeJournal();
   double plannedCycles() const;

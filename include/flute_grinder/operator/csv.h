@@ -45,12 +45,13 @@ class TableCsv : public CsvFile {
   void write(int number, const CurvePoint& point, double theory);
 };
 
-/// `cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad`, a line for each setpoint.
+/// `cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min`, a line for each setpoint.
 class SetpointCsv : public CsvFile {
  public:
   /// @param period control cycle [s].
   SetpointCsv(const std::string& path, double period)
-      : CsvFile(path, "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad"), period_(period) {}
+      : CsvFile(path, "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min"),
+        period_(period) {}
   void write(const Setpoint& setpoint);
 
  private:

@@ -1,0 +1,64 @@
+"""Draws a report; `grind report` starts it and gives it the limits, in SI units. Exit status 2 for a file that cannot be
+read or written."""
+
+import argparse
+import os
+import signal
+import sys
+from collections import namedtuple
+
+from record import SourceError
+
+Limits = namedtuple('Limits', 'speed acceleration following')
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog='grind report')
+    parser.add_argument('file')
+    parser.add_argument('--output', required=True)
+    parser.add_argument('--job', type=int, required=True)
+    for limit in ('velocity', 'acceleration', 'following-error'):
+        parser.add_argument('--max-' + limit, type=float, nargs=4, required=True)
+    return parser.parse_args()
+
+
+def read(path, job):
+    """The record of a file, by what the file begins with."""
+    with open(path, 'rb') as file:
+        is_bag = file.read(8) == b'#ROSBAG '
+    # ROS and matplotlib take their time to load.
+    if is_bag:
+        from read_bag import read_bag
+        return read_bag(path, job)
+    from read_csv import read_csv
+    return read_csv(path)
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    given = arguments()
+    try:
+        record = read(given.file, given.job)
+    except SourceError as error:
+        return '%s: %s' % (given.file, error)
+    except OSError as error:
+        return '%s: cannot be read: %s' % (given.file, error.strerror)
+    from figures import draw
+    from motion import KeyFigures
+    from page import page
+    limits = Limits(given.max_velocity, given.max_acceleration, given.max_following_error)
+    key = KeyFigures(record)
+    text = page(os.path.basename(given.file), record, key, limits, draw(record, key, limits))
+    try:
+        with open(given.output, 'w', encoding='utf-8') as file:
+            file.write(text)
+    except OSError as error:
+        return '%s: cannot be written: %s' % (given.output, error.strerror)
+    return None
+
+
+if __name__ == '__main__':
+    reason = main()
+    if reason:
+        print(reason, file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,44 @@
+"""What is drawn of millions of points: no more than the eye can tell apart."""
+
+import numpy as np
+
+COLUMNS = 900  # about the pixels across a figure
+
+
+class Envelope:
+    """Least and largest values in each of the columns that x falls into; of few points the points themselves."""
+
+    def __init__(self, low, high, points, curves=1):
+        self._low = low
+        self._width = (high - low) / COLUMNS or 1.0
+        self.is_exact = points <= 2 * COLUMNS
+        self._points = []
+        self._least = np.full((COLUMNS, curves), np.inf)
+        self._largest = np.full((COLUMNS, curves), -np.inf)
+
+    def add(self, x, y):
+        """Takes points: y has a column for each curve."""
+        y = y.reshape(len(x), -1)
+        if self.is_exact:
+            self._points.append((x, y))
+        elif len(x):
+            column = np.clip(((x - self._low) / self._width).astype('i2'), 0, COLUMNS - 1)
+            order = np.argsort(column, kind='stable')
+            columns, starts = np.unique(column[order], return_index=True)
+            for values, reduce in ((self._least, np.minimum), (self._largest, np.maximum)):
+                values[columns] = reduce(values[columns], reduce.reduceat(y[order], starts))
+
+    def line(self, gap):
+        """x and y of a line through all points, that breaks where x has a gap. In each column it goes from the least to the
+        largest value."""
+        x, y = self.points()
+        breaks = np.flatnonzero(np.diff(x) > max(gap, 0 if self.is_exact else 1.5 * self._width)) + 1
+        return np.insert(x, breaks, np.nan), np.insert(y, breaks, np.nan, axis=0)
+
+    def points(self):
+        """x and y of all points, or of the least and the largest in each column."""
+        if self.is_exact:
+            return np.concatenate([x for x, _ in self._points]), np.concatenate([y for _, y in self._points])
+        full = np.flatnonzero(np.isfinite(self._least[:, 0]))
+        x = self._low + (np.repeat(full, 2) + 0.5) * self._width
+        return x, np.stack([self._least[full], self._largest[full]], axis=1).reshape(len(x), -1)

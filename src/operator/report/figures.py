@@ -1,0 +1,209 @@
+"""The pictures of a report, as SVG. Each says by shape what it says by colour, so that it can be read in grey."""
+
+import io
+import math
+from collections import namedtuple
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+from envelope import Envelope
+from motion import LATE, motions
+from record import A, AXES, DEG, MM, MM_MIN, ODD, X
+
+ENLARGED = 10  # points at either end, as the rows of the paper's Table 1
+SHOWN = 200  # points of the whole curve
+
+Picture = namedtuple('Picture', 'name title caption svg')
+
+# A colour of its own for each use, of different lightness.
+THEORY, CURVE, LIMIT, ODD_STYLE, EVEN_STYLE = '#888888', '#1f4e8c', '#c03020', '#d96c00', '#1f4e8c'
+
+matplotlib.rcParams.update({
+    'axes.grid': True, 'axes.spines.right': False, 'axes.spines.top': False, 'axes.titlesize': 9, 'font.size': 9,
+    'grid.color': '#dddddd', 'grid.linewidth': 0.6, 'legend.frameon': False, 'lines.linewidth': 0.9,
+    'svg.hashsalt': 'grind report'})
+
+
+def picture(name, title, caption, figure):
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format='svg', metadata={'Date': None})
+    return Picture(name, title, caption, buffer.getvalue())
+
+
+def angle_unit(largest):
+    """The scale and the name of the unit in which an angle [rad] is a number of few digits."""
+    for scale, name in ((1, 'rad'), (1e-3, 'mrad'), (1e-6, 'µrad'), (1e-9, 'nrad')):
+        if largest >= scale:
+            return scale, name
+    return 1e-12, 'prad'
+
+
+def axis_units(per=''):
+    """For each axis the scale and the name of the operator's unit."""
+    return [(MM, 'mm' + per)] * 3 + [(DEG, 'deg' + per)]
+
+
+class Stroke:
+    """The stroke with the largest error: `whole` (thinned to some hundred points), `start` and `end` (its first and last
+    points), all in the order in which they are ground."""
+
+    def __init__(self, record):
+        self._find_worst(record)
+        self.count = sum(len(rows) for rows in self._parts(record))
+        # An odd number, so that odd and even points take turns.
+        self.every = math.ceil(self.count / SHOWN) // 2 * 2 + 1
+        whole, seen = [], 0
+        self.start = self.end = record.rows[:0]
+        for rows in self._parts(record):
+            whole.append(rows[(seen + np.arange(len(rows))) % self.every == 0])
+            seen += len(rows)
+            self.start = np.concatenate([self.start, rows])[:ENLARGED]
+            self.end = np.concatenate([self.end, rows])[-ENLARGED:]
+        self.whole = np.concatenate(whole)
+
+    def _find_worst(self, record):
+        largest = -1
+        for rows in record.stroke_blocks():
+            if len(rows) and np.abs(rows['error']).max() > largest:
+                worst = rows[np.argmax(np.abs(rows['error']))]
+                largest, self.tooth, self.pass_ = abs(worst['error']), worst['tooth'], worst['pass']
+
+    def _parts(self, record):
+        for rows in record.stroke_blocks():
+            yield rows[(rows['tooth'] == self.tooth) & (rows['pass'] == self.pass_)]
+
+
+def path_pictures(record):
+    """The curve with its odd and even points, as the paper's Figures 3 to 5."""
+    stroke = Stroke(record)
+    which = 'the table' if record.kind == 'table' else 'tooth %d, pass %d' % (stroke.tooth + 1, stroke.pass_ + 1)
+    whole = 'A in rad over X in mm for %s%s; the line is the theoretical curve, %s.' % (
+        which, '' if record.kind == 'table' else ', the stroke with the largest error',
+        'with all %d points' % stroke.count if stroke.every == 1
+        else 'with one in %d of its %d points' % (stroke.every, stroke.count))
+    enlarged = 'The %s %d points, A in rad over X in mm, in the order in which they are ground.'
+    return [
+        path_picture('path', 'The curve', whole, stroke.whole, (9, 4.2), 3),
+        path_picture('path-start', 'Its start, enlarged', enlarged % ('first', len(stroke.start)), stroke.start,
+                     (4.6, 3.8), 6),
+        path_picture('path-end', 'Its end, enlarged', enlarged % ('last', len(stroke.end)), stroke.end, (4.6, 3.8), 6)]
+
+
+def path_picture(name, title, caption, rows, size, marker):
+    figure = Figure(size, layout='constrained')
+    axes = figure.add_subplot(xlabel='X [mm]', ylabel='A [rad]')
+    x, a = rows['position'][:, X] / MM, rows['position'][:, A]
+    odd = rows['step'] == ODD
+    axes.plot(x, a + rows['error'], color=THEORY, zorder=1, label='theoretical curve')
+    axes.plot(x[odd], a[odd], 'o', color=ODD_STYLE, markersize=marker, markerfacecolor='none', label='odd points')
+    axes.plot(x[~odd], a[~odd], 's', color=EVEN_STYLE, markersize=0.8 * marker, label='even points')
+    axes.ticklabel_format(useOffset=False)
+    axes.locator_params('x', nbins=5 if size[0] < 6 else 9)
+    axes.legend()
+    return picture(name, title, caption, figure)
+
+
+def error_picture(record, key):
+    """The error over X, of odd and of even points."""
+    figure = Figure((9, 5), layout='constrained')
+    panels = figure.subplots(2, sharex=True)
+    for axes, is_odd, largest in ((panels[0], True, key.odd_error), (panels[1], False, key.even_error)):
+        scale, unit = angle_unit(largest)
+        envelope = Envelope(key.low_x, key.high_x, key.points)
+        for rows in record.stroke_blocks():
+            rows = rows[(rows['step'] == ODD) == is_odd]
+            envelope.add(rows['position'][:, X], rows['error'])
+        x, error = envelope.points()
+        if envelope.is_exact:
+            axes.plot(x / MM, error / scale, 'o' if is_odd else 's', markersize=3, color=ODD_STYLE if is_odd else EVEN_STYLE,
+                      markerfacecolor='none' if is_odd else None)
+        else:
+            # A bar in each column, from the least to the largest.
+            ends = np.arange(2, len(x), 2)
+            axes.plot(np.insert(x, ends, np.nan) / MM, np.insert(error[:, 0], ends, np.nan) / scale, linewidth=1.5,
+                      solid_capstyle='projecting', color=ODD_STYLE if is_odd else EVEN_STYLE)
+        axes.set(ylabel='error of A [%s]' % unit)
+        axes.set_title('%s points: largest %.4e rad' % ('odd' if is_odd else 'even', largest), loc='left')
+    panels[1].set_xlabel('X [mm]')
+    return picture('error', 'Error over X',
+                   'Theory less commanded position of A over X in mm, above at the odd points, below at the even points, '
+                   'each on a scale of its own.', figure)
+
+
+def feed_picture(record, key):
+    figure = Figure((9, 3), layout='constrained')
+    axes = figure.add_subplot(xlabel='time since the start of the job [s]', ylabel='feed [mm/min]')
+    envelope = Envelope(*time_range(record), key.points)
+    for rows in record.stroke_blocks():
+        envelope.add(rows['cycle'] * record.period, rows['feed'])
+    time, feed = envelope.line(1.5 * record.period)
+    axes.plot(time, feed / MM_MIN, color=CURVE)
+    axes.set_ylim(bottom=0)
+    return picture('feed', 'Feed', 'Feed along the cutting edge in mm/min over time in s, while a stroke is ground.', figure)
+
+
+def time_range(record):
+    return record.rows['cycle'][0] * record.period, record.rows['cycle'][-1] * record.period
+
+
+def motion_pictures(record, key, limits):
+    """Speeds, accelerations and, where the source has positions read from the drive, following errors of the axes."""
+    wanted = [
+        ('speed', 'Axis speeds', 'largest speed', '/s', limits.speed, key.speed,
+         'Differences of the commanded positions from cycle to cycle, in mm/s, A in deg/s, over time in s; dashed: the limits.'),
+        ('acceleration', 'Axis accelerations', 'largest acceleration', '/s²', limits.acceleration, key.acceleration,
+         'Second differences of the commanded positions between the ends of odd-even pairs, as the plan checks them, in mm/s², '
+         'A in deg/s², over time in s; dashed: the limits.')]
+    if record.kind == 'bag':
+        wanted.append(('following', 'Following error', 'largest following error', '', limits.following, key.following,
+                       'Commanded position of the cycle before less position as read, in mm, A in deg, over time in s; '
+                       'dashed: where the machine stops.'))
+    envelopes = {name: Envelope(*time_range(record), key.points, 4) for name, *_ in wanted}
+    for motion in motions(record):
+        for name, envelope in envelopes.items():
+            envelope.add(*getattr(motion, name))
+    return [motion_picture(envelopes[name], name, title, what, axis_units(per), limit, largest.values, caption, record.period)
+            for name, title, what, per, limit, largest, caption in wanted]
+
+
+def motion_picture(envelope, name, title, what, units, limits, largest, caption, period):
+    figure = Figure((9, 7.5), layout='constrained')
+    time, values = envelope.line(2.5 * period)
+    for axis, axes in enumerate(figure.subplots(4, sharex=True)):
+        scale, unit = units[axis]
+        axes.plot(time, values[:, axis] / scale, color=CURVE)
+        for sign in (-1, 1):
+            axes.axhline(sign * limits[axis] / scale, color=LIMIT, linestyle='--')
+        top = 1.1 * max(limits[axis], largest[axis]) / scale
+        axes.set(ylim=(-top, top), ylabel=unit)
+        axes.set_title('%s: %s %.4g %s, %.0f %% of the limit' % (
+            AXES[axis], what, largest[axis] / scale, unit, 100 * largest[axis] / limits[axis]), loc='left')
+    axes.set_xlabel('time since the start of the job [s]')
+    return picture(name, title, caption, figure)
+
+
+def timing_picture(record, key):
+    """A histogram of the periods of the control loop."""
+    figure = Figure((9, 3), layout='constrained')
+    axes = figure.add_subplot(xlabel='control cycle [ms]', ylabel='number of cycles', yscale='log')
+    edges = np.linspace(0, max(2 * record.period, key.longest_period), 201)
+    counts = sum(np.histogram(rows['cycle_period'], edges)[0] for rows in record.blocks())
+    axes.stairs(counts, edges / 1e-3, fill=True, color=CURVE)
+    axes.axvline(record.period / 1e-3, color='black', linestyle=':', label='nominal')
+    axes.axvline(LATE * record.period / 1e-3, color=LIMIT, linestyle='--', label='late from here on')
+    axes.set_ylim(bottom=0.5)
+    axes.legend()
+    return picture('timing', 'Loop timing',
+                   'Number of control cycles by their measured length in ms, on a logarithmic scale.', figure)
+
+
+def draw(record, key, limits):
+    """All pictures that a record allows, in the order of the report."""
+    pictures = path_pictures(record) + [error_picture(record, key)]
+    if record.kind != 'table':
+        pictures += [feed_picture(record, key), *motion_pictures(record, key, limits)]
+    if record.has_timing:
+        pictures.append(timing_picture(record, key))
+    return pictures

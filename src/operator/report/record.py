@@ -1,0 +1,92 @@
+"""What a report is drawn from: rows of setpoints, or of the points of a table, in a file of their own, since a day's job
+has millions of them."""
+
+import tempfile
+
+import numpy as np
+
+MM = 1e-3
+MM_MIN = 1e-3 / 60
+UM = 1e-6
+DEG = np.pi / 180
+
+AXES = 'XYZA'
+X, A = 0, 3
+MOVES = ['lift', 'index', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
+STEPS = ['none', 'odd', 'even']
+ODD, EVEN = 1, 2
+
+# SI units: m, A in rad; m/s. What a source does not have is 0.
+ROW = np.dtype([('cycle', 'i8'), ('position', 'f8', 4), ('error', 'f8'), ('feed', 'f8'), ('move', 'u1'), ('step', 'u1'),
+                ('tooth', 'u2'), ('pass', 'u2'), ('actual', 'f8', 4), ('cycle_period', 'f8')])
+
+BLOCK = 1 << 17  # rows that are looked at in one go
+
+
+class SourceError(Exception):
+    """A file that no report can be drawn from, with the reason."""
+
+
+class Record:
+    """The rows of one file, and what else is known of them.
+
+    kind: 'table', 'setpoints' (CSV) or 'bag'. period: of the control cycle [s], 0 for a table. has_timing: whether the
+    rows tell `actual` and `cycle_period`. facts: (name, text) pairs for the reader. max_deviation: [m], or None where it
+    is not known. states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
+
+    def __init__(self, kind):
+        self.kind = kind
+        self.period = 0.0
+        self.has_timing = False
+        self.facts = []
+        self.max_deviation = None
+        self.states = []
+        self.diagnostics = []
+        self._file = tempfile.TemporaryFile()
+        self._last_cycle = None
+        self.missing = 0
+
+    def restart(self):
+        """Forgets the rows."""
+        self._file.seek(0)
+        self._file.truncate()
+        self._last_cycle = None
+        self.missing = 0
+
+    def append(self, rows):
+        """Takes rows, whose cycles must ascend. @raise SourceError"""
+        cycles = rows['cycle']
+        if self._last_cycle is None:
+            # Cycle 0 is where a job starts.
+            self._last_cycle = -1
+        steps = np.diff(cycles, prepend=self._last_cycle)
+        if not (steps > 0).all():
+            bad = np.argmax(steps <= 0)
+            raise SourceError('cycle %d follows cycle %d; allowed: ascending cycles'
+                              % (cycles[bad], cycles[bad] - steps[bad]))
+        for name in ('position', 'error', 'feed', 'actual', 'cycle_period'):
+            finite = np.isfinite(rows[name]).reshape(len(rows), -1).all(axis=1)
+            if not finite.all():
+                raise SourceError('cycle %d: %s is not a finite number' % (cycles[np.argmin(finite)], name))
+        self.missing += int((steps - 1).sum())
+        self._last_cycle = int(cycles[-1])
+        rows.tofile(self._file)
+
+    def finish(self):
+        """Makes the rows readable. @raise SourceError where they are too few."""
+        self._file.flush()
+        count = self._file.tell() // ROW.itemsize
+        if count < 3:
+            raise SourceError('has %s; a report needs 3 or more points'
+                              % ('no points' if count == 0 else '%d point(s)' % count))
+        self.rows = np.memmap(self._file, ROW, 'r', shape=(count,))
+
+    def blocks(self):
+        """The rows, part by part."""
+        for start in range(0, len(self.rows), BLOCK):
+            yield self.rows[start:start + BLOCK]
+
+    def stroke_blocks(self):
+        """The points of the curve, part by part: rows with an odd or an even step."""
+        for rows in self.blocks():
+            yield rows[rows['step'] != 0]

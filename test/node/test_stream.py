@@ -220,7 +220,11 @@ class PaperJob:
 
     def test_drive_follows_the_setpoints(self):
         allowed = [rospy.get_param('/grinder/constraints/%s/trajectory' % joint) for joint in gc.JOINTS]
-        for before, setpoint in zip(self.setpoints, self.setpoints[1:]):
+        # A node that the host stalls reads the positions of a buffered drive once for several setpoints: they are of the last.
+        read = [(before, setpoint) for before, setpoint, after in zip(self.setpoints, self.setpoints[1:], self.setpoints[2:])
+                if setpoint.actual != after.actual]
+        self.assertGreater(len(read), len(self.setpoints) / 3)
+        for before, setpoint in read:
             for axis in range(4):
                 self.assertLessEqual(abs(before.position[axis] - setpoint.actual[axis]), allowed[axis])
 

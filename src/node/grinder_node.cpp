@@ -116,7 +116,12 @@ void GrinderNode::loadDrive(const ParameterReader& parameters) {
     throw MachineConfigError("parameter " + parameters.name("hardware/type") + " = " + type +
                              "; allowed: " + join(loader_->getDeclaredClasses()));
   }
-  hw_ = loader_->createUniqueInstance(type);
+  try {
+    hw_ = loader_->createUniqueInstance(type);
+  } catch (const pluginlib::PluginlibException& error) {
+    throw MachineConfigError("parameter " + parameters.name("hardware/type") + " = " + type + " cannot be loaded: " +
+                             error.what() + " What it is: " + loader_->getClassDescription(type));
+  }
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
   if (!hw_->init(private_nh_, hardware_nh)) throw MachineConfigError("the drive " + type + " could not be initialised");
 }

@@ -498,7 +498,7 @@ def machine():
 class NodeProcess:
     """A grinder's node with parameters of its own, and with a journal of its own unless the parameters name one."""
 
-    def __init__(self, name, parameters, arguments=()):
+    def __init__(self, name, parameters, arguments=(), environment=()):
         self.name = name
         self.folder = tempfile.mkdtemp()
         if rospy.has_param('/' + name):
@@ -511,7 +511,8 @@ class NodeProcess:
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen([program('grinder'), '__name:=' + name,
                                          'joint_states:=/%s/joint_states' % name, *arguments],
-                                        stdout=self.log, stderr=subprocess.STDOUT)
+                                        env=dict(os.environ, **dict(environment)), stdout=self.log,
+                                        stderr=subprocess.STDOUT)
 
     def client(self):
         return Grinder(self.name, '/%s/joint_states' % self.name)

@@ -209,6 +209,16 @@ class TestStartFailsClosed(unittest.TestCase):
         self.assertEqual(node.end(), 1, node.output)
         self.assertIn('parameter /nothing_here is missing; allowed: a URDF', node.output)
 
+    def test_drive_was_left_out_of_the_build(self):
+        parameters = gc.machine()
+        parameters['hardware']['type'] = 'flute_grinder/HalHardware'
+        # Where the node finds no library of a drive, as none is built where LinuxCNC is not installed.
+        node = gc.NodeProcess('doubtful', parameters, environment={'CMAKE_PREFIX_PATH': '/usr'})
+        self.addCleanup(node.close)
+        self.assertEqual(node.end(), 1, node.output)
+        self.assertIn('parameter /doubtful/hardware/type = flute_grinder/HalHardware cannot be loaded: ', node.output)
+        self.assertIn('Built where linuxcnc-uspace-dev is installed.', node.output)
+
     def test_same_node_starts_with_the_parameters_as_shipped(self):
         node = gc.NodeProcess('doubtful', gc.machine())
         self.addCleanup(node.close)

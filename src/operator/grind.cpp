@@ -77,7 +77,9 @@ void addReport(CLI::App& app, ReportOptions& options) {
       ->required();
   command.add_option("-o,--output", options.output, "HTML file to write")->required();
   command.add_option("--job", options.job, "which of a bag's jobs, counted from 1 (default: the last)")
-      ->check(CLI::PositiveNumber);
+      ->check([](const std::string& text) {
+        return std::strtol(text.c_str(), nullptr, 10) >= 1 ? "" : text + "; allowed: 1 or more";
+      });
   command.add_option("--machine", options.parameters, "parameters of the machine (default: config/grinder.yaml)");
   command.add_option("--urdf", options.urdf, "robot description (default: urdf/grinder.urdf)");
   command.callback([&options] {

@@ -42,7 +42,7 @@ def main():
     except SourceError as error:
         return '%s: %s' % (given.file, error)
     except OSError as error:
-        return '%s: cannot be read: %s' % (given.file, error.strerror)
+        return '%s: cannot be read: %s' % (given.file, error.strerror or error)
     from figures import draw
     from motion import KeyFigures
     from page import page
@@ -53,7 +53,7 @@ def main():
         with open(given.output, 'w', encoding='utf-8') as file:
             file.write(text)
     except OSError as error:
-        return '%s: cannot be written: %s' % (given.output, error.strerror)
+        return '%s: cannot be written: %s' % (given.output, error.strerror or error)
     return None
 
 

@@ -28,11 +28,11 @@ class Envelope:
             for values, reduce in ((self._least, np.minimum), (self._largest, np.maximum)):
                 values[columns] = reduce(values[columns], reduce.reduceat(y[order], starts))
 
-    def line(self, gap):
-        """x and y of a line through all points, that breaks where x has a gap. In each column it goes from the least to the
-        largest value."""
+    def line(self, gap, columns=1.5):
+        """x and y of a line through all points, that breaks where x has a gap that is larger than this, and where there are
+        columns than so many of them. In each column it goes from the least to the largest value."""
         x, y = self.points()
-        breaks = np.flatnonzero(np.diff(x) > max(gap, 0 if self.is_exact else 1.5 * self._width)) + 1
+        breaks = np.flatnonzero(np.diff(x) > max(gap, 0 if self.is_exact else columns * self._width)) + 1
         return np.insert(x, breaks, np.nan), np.insert(y, breaks, np.nan, axis=0)
 
     def points(self):

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from envelope import Envelope
 from motion import LATE, motions
-from record import A, AXES, DEG, MM, MM_MIN, ODD, X
+from record import A, AXES, DEG, MM, MM_MIN, EVEN, ODD, ROW, X
 
 ENLARGED = 10  # points at either end, as the rows of the paper's Table 1
 SHOWN = 200  # points of the whole curve
@@ -18,7 +18,9 @@ SHOWN = 200  # points of the whole curve
 Picture = namedtuple('Picture', 'name title caption svg')
 
 # A colour of its own for each use, of different lightness.
-THEORY, CURVE, LIMIT, ODD_STYLE, EVEN_STYLE = '#888888', '#1f4e8c', '#c03020', '#d96c00', '#1f4e8c'
+THEORY, CURVE, LIMIT = '#888888', '#1f4e8c', '#c03020'
+ODD_STYLE = {'marker': 'o', 'color': '#d96c00', 'markerfacecolor': 'none'}
+EVEN_STYLE = {'marker': 's', 'color': CURVE}
 
 matplotlib.rcParams.update({
     'axes.grid': True, 'axes.spines.right': False, 'axes.spines.top': False, 'axes.titlesize': 9, 'font.size': 9,
@@ -55,7 +57,7 @@ class Stroke:
         # An odd number, so that odd and even points take turns.
         self.every = math.ceil(self.count / SHOWN) // 2 * 2 + 1
         whole, seen = [], 0
-        self.start = self.end = record.rows[:0]
+        self.start = self.end = np.zeros(0, ROW)
         for rows in self._parts(record):
             whole.append(rows[(seen + np.arange(len(rows))) % self.every == 0])
             seen += len(rows)
@@ -97,35 +99,38 @@ def path_picture(name, title, caption, rows, size, marker):
     x, a = rows['position'][:, X] / MM, rows['position'][:, A]
     odd = rows['step'] == ODD
     axes.plot(x, a + rows['error'], color=THEORY, zorder=1, label='theoretical curve')
-    axes.plot(x[odd], a[odd], 'o', color=ODD_STYLE, markersize=marker, markerfacecolor='none', label='odd points')
-    axes.plot(x[~odd], a[~odd], 's', color=EVEN_STYLE, markersize=0.8 * marker, label='even points')
+    axes.plot(x[odd], a[odd], linestyle='', markersize=marker, label='odd points', **ODD_STYLE)
+    axes.plot(x[~odd], a[~odd], linestyle='', markersize=0.8 * marker, label='even points', **EVEN_STYLE)
     axes.ticklabel_format(useOffset=False)
     axes.locator_params('x', nbins=5 if size[0] < 6 else 9)
     axes.legend()
     return picture(name, title, caption, figure)
 
 
+def plot_over_x(axes, envelope, scale, style):
+    """Draws all points as markers, or many as a line that is as wide as they scatter."""
+    if envelope.is_exact:
+        x, y = envelope.points()
+        axes.plot(x / MM, y / scale, linestyle='', markersize=3, **style)
+    else:
+        x, y = envelope.line(0, columns=8)
+        axes.plot(x / MM, y / scale, color=style['color'])
+
+
 def error_picture(record, key):
     """The error over X, of odd and of even points."""
     figure = Figure((9, 5), layout='constrained')
     panels = figure.subplots(2, sharex=True)
-    for axes, is_odd, largest in ((panels[0], True, key.odd_error), (panels[1], False, key.even_error)):
+    for axes, name, step, style, largest in ((panels[0], 'odd', ODD, ODD_STYLE, key.odd_error),
+                                             (panels[1], 'even', EVEN, EVEN_STYLE, key.even_error)):
         scale, unit = angle_unit(largest)
         envelope = Envelope(key.low_x, key.high_x, key.points)
         for rows in record.stroke_blocks():
-            rows = rows[(rows['step'] == ODD) == is_odd]
+            rows = rows[rows['step'] == step]
             envelope.add(rows['position'][:, X], rows['error'])
-        x, error = envelope.points()
-        if envelope.is_exact:
-            axes.plot(x / MM, error / scale, 'o' if is_odd else 's', markersize=3, color=ODD_STYLE if is_odd else EVEN_STYLE,
-                      markerfacecolor='none' if is_odd else None)
-        else:
-            # A bar in each column, from the least to the largest.
-            ends = np.arange(2, len(x), 2)
-            axes.plot(np.insert(x, ends, np.nan) / MM, np.insert(error[:, 0], ends, np.nan) / scale, linewidth=1.5,
-                      solid_capstyle='projecting', color=ODD_STYLE if is_odd else EVEN_STYLE)
-        axes.set(ylabel='error of A [%s]' % unit)
-        axes.set_title('%s points: largest %.4e rad' % ('odd' if is_odd else 'even', largest), loc='left')
+        plot_over_x(axes, envelope, scale, style)
+        axes.set_ylabel('error of A [%s]' % unit)
+        axes.set_title('%s points: largest %.4e rad' % (name, largest), loc='left')
     panels[1].set_xlabel('X [mm]')
     return picture('error', 'Error over X',
                    'Theory less commanded position of A over X in mm, above at the odd points, below at the even points, '
@@ -134,18 +139,17 @@ def error_picture(record, key):
 
 def feed_picture(record, key):
     figure = Figure((9, 3), layout='constrained')
-    axes = figure.add_subplot(xlabel='time since the start of the job [s]', ylabel='feed [mm/min]')
-    envelope = Envelope(*time_range(record), key.points)
+    axes = figure.add_subplot(xlabel='X [mm]', ylabel='feed [mm/min]')
+    envelope = Envelope(key.low_x, key.high_x, key.points)
     for rows in record.stroke_blocks():
-        envelope.add(rows['cycle'] * record.period, rows['feed'])
-    time, feed = envelope.line(1.5 * record.period)
-    axes.plot(time, feed / MM_MIN, color=CURVE)
+        envelope.add(rows['position'][:, X], rows['feed'])
+    plot_over_x(axes, envelope, MM_MIN, EVEN_STYLE)
     axes.set_ylim(bottom=0)
-    return picture('feed', 'Feed', 'Feed along the cutting edge in mm/min over time in s, while a stroke is ground.', figure)
+    return picture('feed', 'Feed', 'Feed along the cutting edge in mm/min over X in mm, of all strokes.', figure)
 
 
 def time_range(record):
-    return record.rows['cycle'][0] * record.period, record.rows['cycle'][-1] * record.period
+    return record.first['cycle'] * record.period, record.last['cycle'] * record.period
 
 
 def motion_pictures(record, key, limits):
@@ -201,9 +205,13 @@ def timing_picture(record, key):
 
 def draw(record, key, limits):
     """All pictures that a record allows, in the order of the report."""
-    pictures = path_pictures(record) + [error_picture(record, key)]
+    pictures = []
+    if key.strokes > 0:
+        pictures += path_pictures(record) + [error_picture(record, key)]
+    if key.strokes > 0 and record.kind != 'table':
+        pictures.append(feed_picture(record, key))
     if record.kind != 'table':
-        pictures += [feed_picture(record, key), *motion_pictures(record, key, limits)]
+        pictures += motion_pictures(record, key, limits)
     if record.has_timing:
         pictures.append(timing_picture(record, key))
     return pictures

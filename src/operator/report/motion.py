@@ -33,11 +33,11 @@ class Motion:
 
 def motions(record):
     """The motion of a record, part by part."""
-    lead = np.repeat(record.rows[:1], 4)
+    lead = np.repeat(record.first, 4)
     # A job starts at rest; of one that was recorded from its middle nothing is known before.
     lead['cycle'] = np.arange(-4, 0)
     lead['actual'] = lead['position']
-    if record.rows['cycle'][0] != 0:
+    if record.first['cycle'] != 0:
         lead = np.zeros(0, ROW)
     for block in record.blocks():
         rows = np.concatenate([lead, block])
@@ -60,14 +60,14 @@ class KeyFigures:
     """The figures of all rows; largest absolute values, in SI."""
 
     def __init__(self, record):
-        self.points = len(record.rows)
+        self.points = record.count
         self.odd_error = self.even_error = self.feed = 0.0
         self.low_x, self.high_x = np.inf, -np.inf
         self._find_errors(record)
         self.speed, self.acceleration, self.following = Largest(), Largest(), Largest()
         if record.kind == 'table':
             return
-        self.duration = float(record.rows['cycle'][-1] - record.rows['cycle'][0]) * record.period
+        self.duration = float(record.last['cycle'] - record.first['cycle']) * record.period
         for motion in motions(record):
             self.speed.add(motion.speed[1])
             self.acceleration.add(motion.acceleration[1])
@@ -88,8 +88,12 @@ class KeyFigures:
         self.strokes = len(strokes)
 
     def _find_timing(self, record):
-        periods = [rows['cycle_period'] for rows in record.blocks()]
-        self.shortest_period = min(p.min() for p in periods)
-        self.longest_period = max(p.max() for p in periods)
-        self.mean_period = sum(p.sum() for p in periods) / self.points
-        self.late_cycles = sum(int((p > LATE * record.period).sum()) for p in periods)
+        self.shortest_period, self.longest_period = np.inf, 0.0
+        total = self.late_cycles = 0
+        for rows in record.blocks():
+            periods = rows['cycle_period']
+            self.shortest_period = min(self.shortest_period, periods.min())
+            self.longest_period = max(self.longest_period, periods.max())
+            self.late_cycles += int((periods > LATE * record.period).sum())
+            total += periods.sum()
+        self.mean_period = total / self.points

@@ -48,16 +48,18 @@ def table(rows, head=()):
 
 
 def key_figures(record, key):
-    rows = [('points', str(key.points))]
+    # As `grind table` and the paper count them: point 0 is where the curve starts.
+    rows = [('points', str(key.points - (record.kind == 'table')))]
     if record.kind != 'table':
         rows += [('duration', '%.3f s' % key.duration), ('control cycle', '%.6g ms' % (record.period / 1e-3)),
                  ('strokes', str(key.strokes))]
     if record.missing:
         rows.append(('missing', '%d setpoints are not in the file' % record.missing))
-    rows += [('largest odd error', '%.4e rad' % key.odd_error), ('largest even error', '%.4e rad' % key.even_error)]
+    if key.strokes > 0:
+        rows += [('largest odd error', '%.4e rad' % key.odd_error), ('largest even error', '%.4e rad' % key.even_error)]
     if record.max_deviation is not None:
         rows.append(('largest deviation', '%.3g µm at the cutter\'s surface, as planned' % (record.max_deviation / UM)))
-    if record.kind != 'table':
+    if key.strokes > 0 and record.kind != 'table':
         rows.append(('largest feed', '%.6f mm/min along the cutting edge' % (key.feed / MM_MIN)))
     if record.has_timing:
         rows += [('mean loop period', '%.6f ms' % (key.mean_period / 1e-3)),
@@ -95,9 +97,11 @@ def diagnostics_table(record):
     return table(rows)
 
 
-def left_out(record):
+def left_out(record, key):
     """What the source does not have, and why."""
     reasons = []
+    if key.strokes == 0:
+        reasons.append('Curve, error and feed: the job ended ahead of its first stroke.')
     if record.kind == 'table':
         reasons.append('Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.')
     if record.kind == 'setpoints':
@@ -128,7 +132,7 @@ def page(name, record, key, limits, pictures):
         parts += ['<h2>States</h2>', '<p>Time since the start of the job.</p>', state_table(record)]
     if record.diagnostics:
         parts += ['<h2>Diagnostics</h2>', '<p>The worst of each, in the whole bag.</p>', diagnostics_table(record)]
-    missing = left_out(record)
+    missing = left_out(record, key)
     if missing:
         parts += ['<h2>Left out</h2>', missing]
     return PAGE.format(title=html.escape('Report: ' + name), body='\n'.join(parts))

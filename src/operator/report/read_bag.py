@@ -94,7 +94,7 @@ class BagReader:
         if result:
             record.facts.append(('outcome', result.error_string or 'done'))
             record.max_deviation = result.statistics.max_deviation
-        end = self._start + (int(record.rows['cycle'][-1]) + 1) * record.period
+        end = self._start + (int(record.last['cycle']) + 1) * record.period
         record.states = [(stamp - self._start, state, reason) for stamp, state, reason in self._span(end)]
         record.diagnostics = [(name, *self._diagnostics[name]) for name in sorted(self._diagnostics)]
         return record

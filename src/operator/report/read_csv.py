@@ -7,7 +7,7 @@ import numpy as np
 from record import EVEN, MM, MM_MIN, MOVES, ODD, ROW, STEPS, BLOCK, Record, SourceError
 
 TABLE = [('point', 'i8'), ('x_mm', 'f8'), ('a_rad', 'f8'), ('a_theory_rad', 'f8'), ('error_rad', 'f8')]
-SETPOINTS = [('cycle', 'i8'), ('time_s', 'f8'), ('move', 'S8'), ('tooth', 'u2'), ('pass', 'u2'), ('step', 'S8'),
+SETPOINTS = [('cycle', 'i8'), ('time_s', 'f8'), ('move', 'S8'), ('tooth', 'i4'), ('pass', 'i4'), ('step', 'S8'),
              ('x_mm', 'f8'), ('y_mm', 'f8'), ('z_mm', 'f8'), ('a_rad', 'f8'), ('error_rad', 'f8'), ('feed_mm_min', 'f8')]
 
 
@@ -25,8 +25,8 @@ def read_csv(path):
             return read_rows(file, Record('setpoints'), SETPOINTS, from_setpoints)
     if not first:
         raise SourceError('is empty')
-    raise SourceError('its first line is "%.80s"; allowed: "%s", "%s", or a bag'
-                      % (first, header(TABLE), header(SETPOINTS)))
+    raise SourceError('its first line is %s; allowed: "%s", "%s", or a bag'
+                      % (ascii(first[:80]), header(TABLE), header(SETPOINTS)))
 
 
 def read_rows(file, record, columns, convert):
@@ -75,8 +75,9 @@ def from_table(table, _):
 
 def from_setpoints(table, record):
     rows = np.zeros(len(table), ROW)
-    for name in ('cycle', 'tooth', 'pass'):
-        rows[name] = table[name]
+    rows['cycle'] = table['cycle']
+    for name in ('tooth', 'pass'):
+        rows[name] = in_range(table, name, np.iinfo('u2').max)
     for axis, name in enumerate(('x_mm', 'y_mm', 'z_mm')):
         rows['position'][:, axis] = table[name] * MM
     rows['position'][:, 3] = table['a_rad']
@@ -88,6 +89,14 @@ def from_setpoints(table, record):
     if table['cycle'][-1] > 0:
         record.period = float(table['time_s'][-1] / table['cycle'][-1])
     return rows
+
+
+def in_range(table, column, largest):
+    good = (table[column] >= 0) & (table[column] <= largest)
+    if not good.all():
+        bad = np.argmin(good)
+        raise SourceError('cycle %d: %s = %d; allowed: 0 to %d' % (table['cycle'][bad], column, table[column][bad], largest))
+    return table[column]
 
 
 def indices(table, column, words):

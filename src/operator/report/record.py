@@ -73,18 +73,22 @@ class Record:
         rows.tofile(self._file)
 
     def finish(self):
-        """Makes the rows readable. @raise SourceError where they are too few."""
-        self._file.flush()
+        """Ends the rows: `count`, `first` and `last` are known then. @raise SourceError where they are too few."""
         count = self._file.tell() // ROW.itemsize
         if count < 3:
             raise SourceError('has %s; a report needs 3 or more points'
                               % ('no points' if count == 0 else '%d point(s)' % count))
-        self.rows = np.memmap(self._file, ROW, 'r', shape=(count,))
+        self.count = count
+        self.first, self.last = self._read(0, 1)[0], self._read(count - 1, 1)[0]
+
+    def _read(self, start, count):
+        self._file.seek(start * ROW.itemsize)
+        return np.fromfile(self._file, ROW, count)
 
     def blocks(self):
         """The rows, part by part."""
-        for start in range(0, len(self.rows), BLOCK):
-            yield self.rows[start:start + BLOCK]
+        for start in range(0, self.count, BLOCK):
+            yield self._read(start, BLOCK)
 
     def stroke_blocks(self):
         """The points of the curve, part by part: rows with an odd or an even step."""

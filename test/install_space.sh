@@ -28,6 +28,9 @@ roslaunch -p "$port" flute_grinder grinder.launch journal:="$staging/journal" >"
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
+rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$staging/table.csv" >/dev/null
+rosrun flute_grinder grind report "$staging/table.csv" -o "$staging/table.html"
+grep -q '3\.9785e-05 rad' "$staging/table.html"
 rosrun flute_grinder grind enable || { cat "$log"; exit 1; }
 rosrun flute_grinder grind run "$job" --dry-run
 rosrun flute_grinder grind status | grep -q '^state *ready'

@@ -223,6 +223,7 @@ COMMANDS = {
     'table': ['JOB', '--step-length', '--even-step', '--csv'],
     'plan': ['JOB', '--csv', '--machine', '--urdf'],
     'run': ['JOB', '--dry-run', '--continue', '--csv'],
+    'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
     'override': ['PERCENT', '0 to 120'],
     'status': [],
     'enable': ['power on'],
@@ -246,6 +247,8 @@ WRONG = [
     ('resume_with_more', ['resume', 'now']),
     ('retract_with_more', ['retract', 'now']),
     ('continue_without_job', ['run', '--continue']),
+    ('report_without_output', ['report', 'plan.csv']),
+    ('report_of_job_zero', ['report', 'record.bag', '-o', 'report.html', '--job', '0']),
 ]
 
 

@@ -23,8 +23,8 @@ ODD_STYLE = {'marker': 'o', 'color': '#d96c00', 'markerfacecolor': 'none'}
 EVEN_STYLE = {'marker': 's', 'color': CURVE}
 
 matplotlib.rcParams.update({
-    'axes.grid': True, 'axes.spines.right': False, 'axes.spines.top': False, 'axes.titlesize': 9, 'font.size': 9,
-    'grid.color': '#dddddd', 'grid.linewidth': 0.6, 'legend.frameon': False, 'lines.linewidth': 0.9,
+    'axes.axisbelow': True, 'axes.grid': True, 'axes.spines.right': False, 'axes.spines.top': False, 'axes.titlesize': 9,
+    'font.size': 9, 'grid.color': '#dddddd', 'grid.linewidth': 0.6, 'legend.frameon': False, 'lines.linewidth': 0.9,
     'svg.hashsalt': 'grind report'})
 
 

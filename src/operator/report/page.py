@@ -16,7 +16,7 @@ body {{ font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62
 h1 {{ font-size: 1.5em; }} h2 {{ font-size: 1.15em; margin-top: 2em; }}
 table {{ border-collapse: collapse; margin: .6em 0; }}
 th, td {{ border-bottom: 1px solid #ddd; padding: .2em 1.2em .2em 0; text-align: left; vertical-align: top; }}
-td.number {{ text-align: right; font-variant-numeric: tabular-nums; }}
+tr.figures :not(:first-child) {{ text-align: right; font-variant-numeric: tabular-nums; }}
 figure {{ margin: 1.5em 0; break-inside: avoid; }} figure.half {{ display: inline-block; width: 49%; margin: 0; }}
 figure img {{ width: 100%; }} figcaption {{ color: #444; font-size: .93em; }} figcaption b {{ color: #222; }}
 @media print {{ body {{ max-width: none; margin: 0; font-size: 10pt; }} }}
@@ -35,15 +35,13 @@ LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
 MOST_STATES = 100
 
 
-def cell(text, is_number=False):
-    return '<td%s>%s</td>' % (' class="number"' if is_number else '', html.escape(text))
-
-
 def table(rows, head=()):
     """Rows of texts; where there is a head, all but the first column are figures."""
-    lines = ['<tr>%s</tr>' % ''.join('<th>%s</th>' % html.escape(text) for text in head)] if head else []
+    row = '<tr class="figures">%s</tr>' if head else '<tr>%s</tr>'
+    lines = [row % ''.join('<th>%s</th>' % html.escape(text) for text in head)] if head else []
     for first, *others in rows:
-        lines.append('<tr><th>%s</th>%s</tr>' % (html.escape(first), ''.join(cell(t, bool(head)) for t in others)))
+        cells = ''.join('<td>%s</td>' % html.escape(text) for text in others)
+        lines.append(row % ('<th>%s</th>%s' % (html.escape(first), cells)))
     return '<table>\n%s\n</table>' % '\n'.join(lines)
 
 

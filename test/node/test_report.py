@@ -422,7 +422,8 @@ class TestBag(ReportCase):
         self.assertTrue(end - 0.001 <= times[2], times)
 
     def test_diagnostics(self):
-        self.assertIn(self.page.rows['recorded: Drive'][0], ('OK', 'WARN'))
+        self.assertEqual(self.page.rows['recorded: Drive link'][0], 'OK')
+        # What a host that stalls makes of it is not the report's matter.
         self.assertIn(self.page.rows['recorded: Control loop'][0], ('OK', 'WARN', 'ERROR'))
 
 

@@ -43,6 +43,7 @@ void writeReport(const ReportOptions& options) {
   append(arguments, "--max-following-error", config.following_error);
   arguments.insert(arguments.end(), {"--", options.file});
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   execv(argv[0], argv.data());

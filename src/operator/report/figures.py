@@ -212,6 +212,6 @@ def draw(record, key, limits):
         pictures.append(feed_picture(record, key))
     if record.kind != 'table':
         pictures += motion_pictures(record, key, limits)
-    if record.has_timing:
+    if record.kind == 'bag':
         pictures.append(timing_picture(record, key))
     return pictures

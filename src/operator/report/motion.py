@@ -72,7 +72,7 @@ class KeyFigures:
             self.speed.add(motion.speed[1])
             self.acceleration.add(motion.acceleration[1])
             self.following.add(motion.following[1])
-        if record.has_timing:
+        if record.kind == 'bag':
             self._find_timing(record)
 
     def _find_errors(self, record):

@@ -59,7 +59,7 @@ def key_figures(record, key):
         rows.append(('largest deviation', '%.3g µm at the cutter\'s surface, as planned' % (record.max_deviation / UM)))
     if key.strokes > 0 and record.kind != 'table':
         rows.append(('largest feed', '%.6f mm/min along the cutting edge' % (key.feed / MM_MIN)))
-    if record.has_timing:
+    if record.kind == 'bag':
         rows += [('mean loop period', '%.6f ms' % (key.mean_period / 1e-3)),
                  ('loop period', '%.3f to %.3f ms' % (key.shortest_period / 1e-3, key.longest_period / 1e-3)),
                  ('late cycles', '%d over 1.5 periods' % key.late_cycles)]
@@ -104,8 +104,6 @@ def left_out(record, key):
         reasons.append('Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.')
     if record.kind == 'setpoints':
         reasons.append('Following error and loop timing: a CSV file has what the axes were told alone; a bag has more.')
-    if record.kind == 'bag' and not record.has_timing:
-        reasons.append('Loop timing: this bag is of a grinder that did not yet tell it.')
     if record.max_deviation is None:
         reasons.append('Deviation at the cutter\'s surface: it takes the cutter\'s radius, which %s.' % (
             'is in the result of the job, and that is not in the bag' if record.kind == 'bag' else 'a CSV file does not have'))

@@ -61,10 +61,9 @@ class BagReader:
                 self._start = batch.header.stamp.to_sec() - batch.setpoints[0].cycle * batch.period
         if self._job not in (0, len(self._jobs)):
             return
-        self._record.has_timing = hasattr(batch.setpoints[0], 'cycle_period')
         self._record.append(np.array(
-            [(s.cycle, s.position, s.path_error, s.feed, s.move, s.step, s.tooth, s.pass_, s.actual,
-              getattr(s, 'cycle_period', 0)) for s in batch.setpoints], ROW))
+            [(s.cycle, s.position, s.path_error, s.feed, s.move, s.step, s.tooth, s.pass_, s.actual, s.cycle_period)
+             for s in batch.setpoints], ROW))
 
     def _take_state(self, message):
         state = (message.state_name, message.fault or message.hold_reason)

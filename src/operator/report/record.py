@@ -30,14 +30,13 @@ class SourceError(Exception):
 class Record:
     """The rows of one file, and what else is known of them.
 
-    kind: 'table', 'setpoints' (CSV) or 'bag'. period: of the control cycle [s], 0 for a table. has_timing: whether the
-    rows tell `actual` and `cycle_period`. facts: (name, text) pairs for the reader. max_deviation: [m], or None where it
-    is not known. states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
+    kind: 'table', 'setpoints' (CSV) or 'bag', whose rows alone tell `actual` and `cycle_period`. period: of the control
+    cycle [s], 0 for a table. facts: (name, text) pairs for the reader. max_deviation: [m], or None where it is not known.
+    states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
 
     def __init__(self, kind):
         self.kind = kind
         self.period = 0.0
-        self.has_timing = False
         self.facts = []
         self.max_deviation = None
         self.states = []

@@ -1,0 +1,162 @@
+"""A reader at the keyboard: types a page's commands in a scratch copy of the clone, with a home, a master and a screen of their
+own."""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import xmlrpc.client
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PATIENCE = 240
+# States that pass by themselves.
+PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing'}
+
+
+class Failure(Exception):
+    pass
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+def poll(condition, what, interval=0.1):
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            raise Failure('in vain waited for: ' + what)
+        time.sleep(interval)
+
+
+class Session:
+    def __init__(self, display):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.clone, self.home = self.folder / 'clone', self.folder / 'home'
+        self.home.mkdir()
+        self.clone.mkdir()
+        for entry in ROOT.iterdir():
+            if not entry.name.startswith('.'):
+                (self.clone / entry.name).symlink_to(entry)
+        (self.folder / 'cwd').write_text(str(self.clone))
+        (self.folder / 'env').write_text('')
+        self.master = 'http://127.0.0.1:%d' % free_port()
+        kept = {name: value for name, value in os.environ.items() if name.startswith('RTAPI_')}
+        self.environment = dict(kept, HOME=str(self.home), PATH='/usr/bin:/bin:/usr/sbin:/sbin', LANG='C.UTF-8', DISPLAY=display,
+                                LIBGL_ALWAYS_SOFTWARE='1', ROS_MASTER_URI=self.master, ROS_IP='127.0.0.1')
+        self.in_hal = 'RTAPI_FIFO_PATH' in kept or 'INSIDE_HAL' in os.environ
+        self.launched = []
+        self.outputs = {}
+
+    def _start(self, command, log, keep=False):
+        """A command in a shell that knows what those before it have set and, with `keep`, hands it on."""
+        script = 'cd "$(cat %(f)s/cwd)"; . %(f)s/env; %(c)s\n' % {'f': self.folder, 'c': command}
+        if keep:
+            script += 'status=$?; declare -px >%(f)s/env; pwd >%(f)s/cwd; exit $status\n' % {'f': self.folder}
+        else:
+            script = script.replace('; %s\n' % command, '; exec %s\n' % command)
+        with open(log, 'w') as output:
+            return subprocess.Popen(['bash', '-c', script], env=self.environment, stdin=subprocess.DEVNULL, stdout=output,
+                                    stderr=subprocess.STDOUT, start_new_session=True)
+
+    def _end(self, process, log, command, status):
+        try:
+            process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise Failure('%s: does not end\n%s' % (command, log.read_text()))
+        if process.returncode != status:
+            raise Failure('%s: status %d, not %d\n%s' % (command, process.returncode, status, log.read_text()))
+
+    def type(self, command, status=0):
+        """Types a command and waits for its end; what is launched goes on, and is waited for until its nodes are there."""
+        if re.match(r'roslaunch (?!--)', command):
+            return self.launch(command)
+        log = self.folder / 'output'
+        self._end(self._start(command, log, keep=True), log, command, status)
+        self.outputs[command] = log.read_text()
+        if self.in_hal and command.startswith('halcmd -f'):
+            # A host that stalls is not to end a test.
+            self.type('halcmd setp watchdog.timeout-0 1000')
+
+    def launch(self, command):
+        self.type(command.replace('roslaunch', 'roslaunch --nodes', 1))
+        nodes = self.outputs[command.replace('roslaunch', 'roslaunch --nodes', 1)].split()
+        if self.in_hal:
+            command += ' hal_config:=%s' % (ROOT / 'test/hal/patient.yaml')
+        log = self.folder / ('launched_%d' % len(self.launched))
+        process = self._start(command, log)
+        self.launched.append((command, process, log))
+
+        def there():
+            if process.poll() is not None:
+                raise Failure('%s: has ended\n%s' % (command, log.read_text()))
+            try:
+                master = xmlrpc.client.ServerProxy(self.master)
+                return all(master.lookupNode('/test', node)[0] == 1 for node in nodes)
+            except OSError:
+                return False
+
+        poll(there, 'nodes of ' + command)
+
+    def state(self, node):
+        self.type('rosrun flute_grinder grind %s status' % node)
+        return re.search(r'(?m)^state +(\w+)', self.outputs['rosrun flute_grinder grind %s status' % node]).group(1)
+
+    def type_while(self, other, commands):
+        """Types commands while another runs: once its job is under way, and each when the state before has passed."""
+        log = self.folder / 'other'
+        process = self._start(other, log)
+        node = ' '.join(re.findall(r'--node \S+', other))
+
+        def under_way():
+            if process.poll() is not None:
+                raise Failure('%s: has ended too early\n%s' % (other, log.read_text()))
+            return self.state(node) == 'running'
+
+        try:
+            poll(under_way, 'the job of ' + other)
+            for command in commands:
+                self.type(command)
+                poll(lambda: self.state(node) not in PASSING, 'the end of a passing state')
+            self._end(process, log, other, 0)
+            self.outputs[other] = log.read_text()
+        finally:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                process.wait()
+
+    def end_launched(self):
+        """Ctrl-C wherever something was launched, the last first."""
+        while self.launched:
+            command, process, log = self.launched.pop()
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+            self._end(process, log, command, 0)
+
+    def close(self):
+        for _, process, _ in self.launched:
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                process.wait()
+        shutil.rmtree(self.folder)
+
+
+def missing_line(expected, output):
+    """The first line that is expected and does not come in the output, in order; None if all do."""
+    lines = iter([' '.join(line.split()) for line in output.splitlines()])
+    for line in expected:
+        pattern = '.*'.join(re.escape(' '.join(part.split())) for part in line.split('...'))
+        if line.strip() != '...' and not any(re.fullmatch(pattern.replace('.*', r'\s?.*'), found) for found in lines):
+            return line
+    return None

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Runs every command that README.md and docs/*.md tell a reader to type, writes the files that they tell him to write, and
+compares what is printed, and all tables of figures, with what stands there. How a page is read is in pages.py.
+
+test_docs.py [PAGE...]: all pages unless some are named."""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import traceback
+
+import figures
+from pages import COMMAND, read_page
+from session import ROOT, Failure, Session, missing_line
+
+# What no test can run, and why. Each must stand in the documentation, and nothing else may be left out.
+NOT_RUN = {
+    'scripts/setup': 'installs packages; every test begins with it',
+    'scripts/test': 'runs this test',
+    'cmake --install build': 'writes to /opt; test/install_space.sh runs it',
+    'cmake build && cmake --build build': 'configures anew, for packages that were installed later',
+    'sudo apt-get install linux-image-rt-amd64': 'installs a kernel',
+    'uname -v': 'tells of the kernel that was booted',
+    'latency-histogram': 'is a window to look at for an hour',
+    'scripts/bench_hal': 'measures for minutes',
+    'kill -STOP': 'lacks the number of a process; test/hal/test_hal_stops.py does it',
+    'kill -KILL': 'lacks the number of a process; test/hal/test_hal_stops.py does it',
+    'rostopic echo /joint_states': 'prints until it is ended',
+    'halcmd show sig enabled': 'is read beside a machine; test/hal/test_hal_stops.py reads the signal',
+    'halcmd getp streamer.0.underruns': 'is read beside a machine; test/hal reads the pin',
+}
+IN_HAL = {'docs/shop-floor-pc.md'}
+# What a new user reads, so that nothing may have been typed before.
+FROM_THE_BEGINNING = {'README.md', 'docs/first-cutter.md'}
+PAGES = ['README.md'] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / 'docs').glob('*.md'))
+
+
+def run_commands(session, item):
+    commands = [command for command in item.lines if command not in NOT_RUN]
+    other = re.fullmatch('while (.*)', item.directive)
+    before = re.fullmatch('after (.*)', item.directive)
+    status = re.fullmatch(r'exits (\d)', item.directive)
+    if item.directive and not (other or before or status or item.directive == 'at the end'):
+        raise Failure('line %d: what is "%s"?' % (item.line, item.directive))
+    if other:
+        return session.type_while(other.group(1), commands)
+    for command in before.group(1).split('; ') if before else []:
+        session.type(command)
+    for i, command in enumerate(commands):
+        last = i == len(commands) - 1
+        session.type(command, int(status.group(1)) if status and last else 0)
+
+
+def check_output(session, item, last):
+    command = item.directive[len('output of '):] if item.directive.startswith('output of ') else last
+    if command not in session.outputs:
+        raise Failure('line %d: no output of %s' % (item.line, command))
+    line = missing_line(item.lines, session.outputs[command])
+    if line:
+        raise Failure('line %d: "%s" is not in the output of %s:\n%s'
+                      % (item.line, line.strip(), command, session.outputs[command]))
+
+
+def grind_job(command, job, *arguments):
+    """What a subcommand of grind says of a job that is given as text."""
+    with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
+        file.write(job)
+        file.flush()
+        return subprocess.run([ROOT / 'build/devel/lib/flute_grinder/grind', command, file.name, *arguments], check=True,
+                              env=dict(os.environ, ROS_PACKAGE_PATH=str(ROOT)), stdout=subprocess.PIPE,
+                              universal_newlines=True).stdout
+
+
+def do(session, item, last):
+    """Does what an item asks of the reader."""
+    if item.kind == 'file':
+        path = session.clone / item.path.replace('~', str(session.home))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text('\n'.join(item.lines) + '\n')
+    elif item.kind == 'commands':
+        run_commands(session, item)
+    elif item.kind == 'output' and last not in NOT_RUN:
+        check_output(session, item, last)
+    elif item.kind == 'figures':
+        found = figures.wrong(item, lambda path: (ROOT / path).read_text(), grind_job)
+        if found:
+            raise Failure('line %d: %s' % (item.line, '; '.join(found)))
+
+
+def run_page(page, display):
+    """Types a page from its begin to its end. @return what is wrong, empty if nothing is."""
+    if page in IN_HAL and 'INSIDE_HAL' not in os.environ:
+        done = subprocess.run([ROOT / 'test/hal/in_hal', sys.executable, __file__, page], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        return '' if done.returncode == 0 else done.stdout
+    session = Session(display)
+    try:
+        if page not in FROM_THE_BEGINNING:
+            session.type('source build/devel/setup.bash')
+        if page in IN_HAL:
+            session.type('halcmd stop; halrun -U')
+        items = read_page((ROOT / page).read_text())
+        last, at_end = '', []
+        for item in items:
+            if item.directive == 'at the end':
+                at_end.append(item)
+                continue
+            do(session, item, last)
+            last = item.lines[-1] if item.kind == 'commands' else last
+        session.end_launched()
+        for item in at_end:
+            do(session, item, last)
+    except Failure as failure:
+        return '%s: %s' % (page, failure)
+    except Exception:
+        return '%s: %s' % (page, traceback.format_exc())
+    finally:
+        session.close()
+    return ''
+
+
+def subcommand(command):
+    """Of a call of grind; None of another command."""
+    found = re.match(r'(?:rosrun flute_grinder )?grind(?: --node \S+)?(?: ([\w-]+))?', command)
+    return found and (found.group(1) or '')
+
+
+def check_coverage():
+    """What is neither run nor left out for a reason, and what is left out in vain. @return one text each."""
+    wrong, run, seen = [], set(), set()
+    items = [(page, item) for page in PAGES for item in read_page((ROOT / page).read_text())]
+    for _, item in items:
+        if item.kind == 'commands':
+            run |= set(item.lines)
+    subcommands = {subcommand(command) for command in run - set(NOT_RUN)} | {''}
+    for page, item in items:
+        place = '%s:%d: ' % (page, item.line)
+        if item.kind == 'commands':
+            seen |= set(item.lines)
+            wrong += [place + 'not a command: ' + line for line in item.lines if not COMMAND.match(line)]
+        if item.kind in ('text', 'output'):
+            wrong += [place + 'a command among what is not: ' + line for line in item.lines if COMMAND.match(line)]
+        if item.kind == 'mention':
+            command = item.lines[0]
+            seen.add(command)
+            known = subcommand(command) in subcommands if subcommand(command) is not None else any(
+                line.startswith(command) for line in run)
+            # A program may be named without being called, and so may a file of the package.
+            known = known or re.fullmatch('[a-z]+', command) or (ROOT / command).exists() and not os.access(ROOT / command, os.X_OK) or command in NOT_RUN
+            if not known:
+                wrong.append(place + '`%s` is run by no page' % command)
+    return wrong + ['NOT_RUN: %s is not in the documentation' % command for command in NOT_RUN if command not in seen]
+
+
+class Screen:
+    """A screen without a screen, for rviz."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self.server = subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1280x900x24', '-nolisten', 'tcp'],
+                                       pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as display:
+            return ':' + display.readline().strip()
+
+    def __exit__(self, *_):
+        self.server.terminate()
+        self.server.wait()
+
+
+def main():
+    pages = sys.argv[1:] or PAGES
+    wrong = check_coverage()
+    with Screen() as display, concurrent.futures.ThreadPoolExecutor(2) as pool:
+        wrong += filter(None, pool.map(lambda page: run_page(page, display), pages))
+    print('\n'.join(wrong))
+    print('%d pages, %d things wrong' % (len(pages), len(wrong)))
+    return 1 if wrong else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -39,8 +39,8 @@ def table(head, rows):
 
 
 def number(value):
-    """As the programs write it; 1e+09, not 1000000000.0."""
-    return value if isinstance(value, str) else '%g' % value
+    """As the programs write it, 1e+09 and not 1000000000.0; or the name of a parameter."""
+    return '`%s`' % value if isinstance(value, str) else '%g' % value
 
 
 def allowed(entry):

@@ -6,7 +6,7 @@ where `...` stands for anything. A fenced block below a line that ends in `path`
 a block says what a reader sees by themselves:
 
     <!-- test: while COMMAND -->      the block is typed while that command runs, which must end well
-    <!-- test: after COMMAND; ... --> these have been typed before
+    <!-- test: after Ctrl-C in COMMAND --> that command has been broken off in the midst of its job
     <!-- test: exits N -->            the last command of the block ends with this status
     <!-- test: at the end -->         the block is typed when what was launched has been ended
     <!-- test: output of COMMAND -->  the block is what that command has printed

@@ -53,8 +53,8 @@ class Session:
         self.master = 'http://127.0.0.1:%d' % free_port()
         kept = {name: value for name, value in os.environ.items() if name.startswith('RTAPI_')}
         self.environment = dict(kept, HOME=str(self.home), PATH='/usr/bin:/bin:/usr/sbin:/sbin', LANG='C.UTF-8', DISPLAY=display,
-                                LIBGL_ALWAYS_SOFTWARE='1', ROS_MASTER_URI=self.master, ROS_IP='127.0.0.1')
-        self.in_hal = 'RTAPI_FIFO_PATH' in kept or 'INSIDE_HAL' in os.environ
+                                LIBGL_ALWAYS_SOFTWARE='1', LP_NUM_THREADS='1', ROS_MASTER_URI=self.master, ROS_IP='127.0.0.1')
+        self.in_hal = 'INSIDE_HAL' in os.environ
         self.launched = []
         self.outputs = {}
 
@@ -109,27 +109,33 @@ class Session:
 
         poll(there, 'nodes of ' + command)
 
-    def state(self, node):
-        self.type('rosrun flute_grinder grind %s status' % node)
-        return re.search(r'(?m)^state +(\w+)', self.outputs['rosrun flute_grinder grind %s status' % node]).group(1)
-
-    def type_while(self, other, commands):
-        """Types commands while another runs: once its job is under way, and each when the state before has passed."""
+    def type_while(self, other, commands, broken_off=False):
+        """Types commands while another runs: once its job is under way, and each when the state before has passed. Then waits
+        for its end, or breaks it off."""
+        grind = ' '.join(['rosrun flute_grinder grind'] + re.findall(r'--node \S+', other))
         log = self.folder / 'other'
-        process = self._start(other, log)
-        node = ' '.join(re.findall(r'--node \S+', other))
+
+        def state():
+            self.type(grind + ' status')
+            return re.search(r'(?m)^state +(\w+)', self.outputs[grind + ' status']).group(1)
 
         def under_way():
             if process.poll() is not None:
                 raise Failure('%s: has ended too early\n%s' % (other, log.read_text()))
-            return self.state(node) == 'running'
+            return state() == 'running'
 
+        # The job is to last as long as the typing takes, however slow the host is.
+        self.type(grind + ' override 4')
+        process = self._start(other, log)
         try:
             poll(under_way, 'the job of ' + other)
             for command in commands:
                 self.type(command)
-                poll(lambda: self.state(node) not in PASSING, 'the end of a passing state')
-            self._end(process, log, other, 0)
+                poll(lambda: state() not in PASSING, 'the end of a passing state')
+            if broken_off:
+                process.send_signal(signal.SIGINT)
+            self.type(grind + ' override 100')
+            self._end(process, log, other, 1 if broken_off else 0)
             self.outputs[other] = log.read_text()
         finally:
             if process.poll() is None:

@@ -42,14 +42,14 @@ PAGES = ['README.md'] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / '
 def run_commands(session, item):
     commands = [command for command in item.lines if command not in NOT_RUN]
     other = re.fullmatch('while (.*)', item.directive)
-    before = re.fullmatch('after (.*)', item.directive)
+    broken_off = re.fullmatch('after Ctrl-C in (.*)', item.directive)
     status = re.fullmatch(r'exits (\d)', item.directive)
-    if item.directive and not (other or before or status or item.directive == 'at the end'):
+    if item.directive and not (other or broken_off or status or item.directive == 'at the end'):
         raise Failure('line %d: what is "%s"?' % (item.line, item.directive))
     if other:
         return session.type_while(other.group(1), commands)
-    for command in before.group(1).split('; ') if before else []:
-        session.type(command)
+    if broken_off:
+        session.type_while(broken_off.group(1), [], broken_off=True)
     for i, command in enumerate(commands):
         last = i == len(commands) - 1
         session.type(command, int(status.group(1)) if status and last else 0)

@@ -30,17 +30,23 @@ def steps(path):
     return [int(step) if step.isdigit() else step for step in re.findall(r'[^./\[\]]+', path)]
 
 
-def changed(tree, path, value):
+def value_at(tree, path):
+    for step in steps(path):
+        tree = tree[step]
+    return tree
+
+
+def changed(tree, path, new):
     """A copy of a tree of keys with another value at one, or without it."""
     tree = copy.deepcopy(tree)
     *parents, last = steps(path)
     at = tree
     for parent in parents:
         at = at.setdefault(parent, {}) if isinstance(at, dict) else at[parent]
-    if value is MISSING:
+    if new is MISSING:
         del at[last]
     else:
-        at[last] = value
+        at[last] = new
     return tree
 
 
@@ -160,12 +166,10 @@ class Parameters:
                 yield name.replace('<joint>', joint), entry
 
     def range(self, name, entry):
-        """The ends of a parameter's range, some of which are other parameters of the axis."""
-        ends = entry['range']
-        if isinstance(ends[0], str):
-            joint = self.machine['joint_limits'][name.split('/')[1]]
-            ends = [joint[end] for end in ends]
-        return ends
+        """The ends of a parameter's range, some of which are other parameters."""
+        joint = name.split('/')[1] if '/' in name else ''
+        return [value_at(self.machine, end.replace('<joint>', joint)) if isinstance(end, str) else end
+                for end in entry['range']]
 
     def test_every_one_is_missed(self):
         for name, entry in self.parameters():

@@ -100,10 +100,13 @@ def messages():
 
 
 def launch_arguments():
+    """Those that may be set; one with a value is the file's own."""
     rows = []
     for arg in xml.parse(ROOT / 'launch/grinder.launch').getroot().findall('arg'):
+        if 'default' not in arg.keys():
+            continue
         default = arg.get('default').replace('$(find flute_grinder)/', '')
-        rows.append(('`%s`' % arg.get('name'), '`%s`' % default, arg.get('doc')))
+        rows.append(('`%s`' % arg.get('name'), '`%s`' % default if default else '', arg.get('doc')))
     return ['', '## Launch arguments', '', 'Of `grinder.launch`.', *table(('argument', 'default', 'meaning'), rows)]
 
 

@@ -1,16 +1,16 @@
 """Reads a page of the documentation as what a reader is to type, and what they are to see.
 
 A block is indented by four spaces, or fenced. Within it, a paragraph that begins with a command (COMMAND) is commands, one a
-line; the paragraph that follows it in the same block is what they print: every line of it is looked for in the output, in order,
-where `...` stands for anything. A fenced block below a line that ends in `path`: is a file that the reader writes. A comment ahead of
+line; the paragraph that follows it in the same block is what the last one prints: every line of it is looked for in the output, in order, where
+`...` stands for anything. A fenced block below a line that ends in `path`: is a file that the reader writes. A comment ahead of
 a block says what a reader sees by themselves:
 
     <!-- test: while COMMAND -->      the block is typed while that command runs, which must end well
+    <!-- test: after Ctrl-C -->       what was launched has been ended
     <!-- test: after Ctrl-C in COMMAND --> that command has been broken off in the midst of its job
     <!-- test: exits N -->            the last command of the block ends with this status
-    <!-- test: at the end -->         the block is typed when what was launched has been ended
     <!-- test: output of COMMAND -->  the block is what that command has printed
-    <!-- figures: ... -->             the table below has figures of these programs, see figures.py
+    <!-- figures: ... -->             the table below has figures that grind has printed, see figures.py
 """
 
 import re

@@ -44,10 +44,12 @@ def run_commands(session, item):
     other = re.fullmatch('while (.*)', item.directive)
     broken_off = re.fullmatch('after Ctrl-C in (.*)', item.directive)
     status = re.fullmatch(r'exits (\d)', item.directive)
-    if item.directive and not (other or broken_off or status or item.directive == 'at the end'):
+    if item.directive and not (other or broken_off or status or item.directive == 'after Ctrl-C'):
         raise Failure('line %d: what is "%s"?' % (item.line, item.directive))
     if other:
         return session.type_while(other.group(1), commands)
+    if item.directive == 'after Ctrl-C':
+        session.end_launched()
     if broken_off:
         session.type_while(broken_off.group(1), [], broken_off=True)
     for i, command in enumerate(commands):
@@ -103,17 +105,11 @@ def run_page(page, display):
             session.type('source build/devel/setup.bash')
         if page in IN_HAL:
             session.type('halcmd stop; halrun -U')
-        items = read_page((ROOT / page).read_text())
-        last, at_end = '', []
-        for item in items:
-            if item.directive == 'at the end':
-                at_end.append(item)
-                continue
+        last = ''
+        for item in read_page((ROOT / page).read_text()):
             do(session, item, last)
             last = item.lines[-1] if item.kind == 'commands' else last
         session.end_launched()
-        for item in at_end:
-            do(session, item, last)
     except Failure as failure:
         return '%s: %s' % (page, failure)
     except Exception:
@@ -156,6 +152,27 @@ def check_coverage():
     return wrong + ['NOT_RUN: %s is not in the documentation' % command for command in NOT_RUN if command not in seen]
 
 
+def anchors(text):
+    """Of a page's headings, as GitHub names them."""
+    return {re.sub(r'[^\w -]', '', heading.lower()).replace(' ', '-') for heading in re.findall(r'(?m)^#+ (.*)$', text)}
+
+
+def check_links():
+    """Links and pictures that lead nowhere, one text each."""
+    wrong = []
+    for page in PAGES:
+        text = (ROOT / page).read_text()
+        for link in re.findall(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"', text):
+            link = ''.join(link)
+            path, _, anchor = link.partition('#')
+            file = (ROOT / page).parent / path if path else ROOT / page
+            if '://' in link:
+                continue
+            if not file.exists() or anchor and anchor not in anchors(file.read_text()):
+                wrong.append('%s: a link to %s' % (page, link))
+    return wrong
+
+
 class Screen:
     """A screen without a screen, for rviz."""
 
@@ -174,8 +191,8 @@ class Screen:
 
 def main():
     pages = sys.argv[1:] or PAGES
-    wrong = check_coverage()
-    with Screen() as display, concurrent.futures.ThreadPoolExecutor(2) as pool:
+    wrong = [] if sys.argv[1:] else check_coverage() + check_links()
+    with Screen() as display, concurrent.futures.ThreadPoolExecutor(3) as pool:
         wrong += filter(None, pool.map(lambda page: run_page(page, display), pages))
     print('\n'.join(wrong))
     print('%d pages, %d things wrong' % (len(pages), len(wrong)))

@@ -19,7 +19,7 @@ set +u
 source "$space/setup.bash"
 set -u
 [ "$(rospack find flute_grinder)" = "$space/share/flute_grinder" ]
-for file in urdf/grinder.urdf meshes/cutter.stl rviz/grinder.rviz config/grinder.yaml drive_plugins.xml; do
+for file in urdf/grinder.urdf meshes/cutter.stl rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml; do
   [ -f "share/flute_grinder/$file" ]
 done
 

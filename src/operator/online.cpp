@@ -7,6 +7,7 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/node/conversions.h"
+#include "flute_grinder/operator/continue_job.h"
 #include "flute_grinder/operator/csv.h"
 #include "flute_grinder/operator/offline.h"
 
@@ -110,18 +111,6 @@ std::optional<GrinderState> stateOf(ros::NodeHandle& nh) {
 }
 
 int noGrinder(const ros::NodeHandle& nh) { return fail("no grinder answers as " + nh.getNamespace()); }
-
-/// Has a goal begin where the journal says that the job was left. @return why it cannot be; empty if it can.
-std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal) {
-  if (progress.job_digest.empty()) return "there is no job to continue: the grinder's journal is empty";
-  if (progress.job_digest != jobDigest(job)) {
-    return "the grinder's last job was another one, or its file has changed since; run it from the beginning";
-  }
-  if (progress.finished) return "the job is finished: every pass of it is ground";
-  goal.first_tooth = progress.tooth;
-  goal.first_pass = progress.pass;
-  return "";
-}
 
 /// Shows the feedback: a bar that grows on a terminal, a line for each tenth and each state in a file.
 void showProgress(const GrindFeedback::ConstPtr& f) {

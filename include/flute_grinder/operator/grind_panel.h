@@ -1,0 +1,75 @@
+#pragma once
+
+#include "flute_grinder/operator/grinder_link.h"
+#include "flute_grinder/operator/job_box.h"
+#include "flute_grinder/operator/override_box.h"
+#include "flute_grinder/operator/readout.h"
+
+#include <rviz/panel.h>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QTimer>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+class QGridLayout;
+
+namespace flute_grinder {
+
+/// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
+/// where the table of the machine's states allows what it asks for, and none where the grinder does not answer; Start
+/// wants a job that was planned without a violation besides. Nothing here waits for the grinder.
+///
+/// Its configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
+class GrindPanel : public rviz::Panel {
+  Q_OBJECT
+
+ public:
+  explicit GrindPanel(QWidget* parent = nullptr);
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ private:
+  /// A goal that was sent from here and has not ended.
+  struct Sent {
+    std::string id;
+    GrindGoal goal;
+  };
+
+  void layOut();
+  void addButton(QGridLayout& layout, int row, int column, int columns, MachineEvent event, const QString& text,
+                 const QString& hint);
+  void setNode(const QString& node);
+  void refresh();
+  void refreshButtons(const std::optional<MachineState>& state);
+  void ask(MachineEvent event);
+  void start();
+  void plan(const GrindGoal& goal);
+  void dryRun(const GrindGoal& goal);
+  void send(const GrindGoal& goal);
+  void onResult(const std::string& id, const GrindResult& result);
+  void setFeedOverride(double fraction);
+  void say(const std::string& text);
+
+  QString node_;
+  std::unique_ptr<GrinderLink> link_;  ///< null where the name is none
+  bool planning_ = false;
+  std::optional<Sent> sent_;
+
+  StateBox* state_;
+  JobBox* job_;
+  std::map<MachineEvent, QPushButton*> buttons_;
+  OverrideBox* override_;
+  ProgressBox* progress_;
+  PositionBox* position_;
+  QPlainTextEdit* messages_;
+  QLineEdit* node_edit_;
+  QTimer refresh_timer_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Plan.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// A text of the node's, told in axes and units of the operator: "axis_x ... 0.0012 m" becomes "axis X ... 1.2 mm".
+/// Linear units become mm, mm/s, ...; radians become degrees.
+std::string inShopUnits(const std::string& text);
+
+/// A time, e.g. "7.0 s", "12:05 min" or "1:02:05 h". @param seconds not negative.
+std::string duration(double seconds);
+
+/// What the grinder is doing, why, and what to do about it.
+std::string describe(const GrinderState& state);
+
+/// What came of a plan: how long the job takes, what cuts its feed, or all that forbids it. A line for each.
+std::string describe(const Plan::Response& plan);
+
+}  // namespace flute_grinder

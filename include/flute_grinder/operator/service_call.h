@@ -1,0 +1,50 @@
+#pragma once
+
+#include <ros/serialized_message.h>
+#include <ros/service_server_link.h>
+#include <ros/steady_timer.h>
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+
+namespace flute_grinder {
+
+/// A service call in a thread of its own, which can be broken off. ros::ServiceClient waits for ever for a node that
+/// hangs, and must not be shut down by another thread while it does.
+class ServiceCall {
+ public:
+  /// Called in the thread of the call. @param answer null where none came.
+  using Done = std::function<void(ros::SerializedMessage* answer)>;
+
+  /// @param name resolved name of the service.
+  /// @param md5sum of its type.
+  /// @param timeout how long the answer is waited for, if breakOffWhenDue() is called now and then.
+  ServiceCall(std::string name, std::string md5sum, ros::SerializedMessage request, ros::WallDuration timeout,
+              Done done);
+  ServiceCall(const ServiceCall&) = delete;
+  ServiceCall& operator=(const ServiceCall&) = delete;
+  /// Breaks the call off if it still waits.
+  ~ServiceCall();
+
+  bool finished() const { return finished_; }
+  void breakOffWhenDue();
+
+ private:
+  void run();
+  void breakOff();
+
+  const std::string name_, md5sum_;
+  const ros::SerializedMessage request_;
+  const ros::SteadyTime due_;
+  const Done done_;
+  std::atomic<bool> finished_{false};
+  std::mutex mutex_;  ///< guards the next two
+  ros::ServiceServerLinkPtr link_;
+  bool broken_off_ = false;
+  std::thread thread_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,167 @@
+#include "flute_grinder/operator/grinder_link.h"
+
+#include "flute_grinder/GrindActionGoal.h"
+#include "flute_grinder/SetFeedOverride.h"
+
+#include <actionlib_msgs/GoalID.h>
+#include <std_srvs/Trigger.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+const ros::WallDuration kStale(1);  ///< state and positions come at 20 Hz and more
+
+// Longest time to an answer [s].
+constexpr double kRequestTimeout = 10;
+constexpr double kPlanTimeout = 60;
+
+const char* serviceOf(MachineEvent event) { return event == MachineEvent::kReset ? "reset_fault" : toString(event); }
+
+template <typename Message>
+bool isFresh(const std::optional<Message>& received) {
+  return received && ros::SteadyTime::now() - received->time <= kStale;
+}
+
+}  // namespace
+
+GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
+    : nh_(node), on_result_(std::move(on_result)), spinner_(1, &queue_) {
+  nh_.setCallbackQueue(&queue_);
+  ros::NodeHandle around(ros::names::parentNamespace(nh_.getNamespace()));
+  around.setCallbackQueue(&queue_);
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
+  subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
+  subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
+  subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
+  goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
+  cancels_ = nh_.advertise<actionlib_msgs::GoalID>("grind/cancel", 10);
+  spinner_.start();
+}
+
+GrinderLink::~GrinderLink() { spinner_.stop(); }
+
+GrinderView GrinderLink::view() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  GrinderView view;
+  if (isFresh(state_)) view.state = state_->message;
+  if (isFresh(position_)) view.position = position_->message;
+  if (feedback_) view.progress = feedback_->feedback;
+  return view;
+}
+
+void GrinderLink::onState(const GrinderState::ConstPtr& state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  state_ = Received<GrinderState>{*state, ros::SteadyTime::now()};
+}
+
+void GrinderLink::onFeedback(const GrindActionFeedback::ConstPtr& feedback) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  feedback_ = *feedback;
+}
+
+void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
+  const std::string& id = result->status.goal_id.id;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (id != sent_ && !(feedback_ && id == feedback_->status.goal_id.id)) return;
+  }
+  post([this, result] { on_result_(result->status.goal_id.id, result->result); });
+}
+
+void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
+  Axes position;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto& names = joints->name;
+    const auto joint = std::find(names.begin(), names.end(), kJointNames[static_cast<std::size_t>(axis)]);
+    const auto at = static_cast<std::size_t>(joint - names.begin());
+    if (joint == names.end() || at >= joints->position.size()) return;  // of another part of the machine
+    position[axis] = joints->position[at];
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  position_ = Received<Axes>{position, ros::SteadyTime::now()};
+}
+
+void GrinderLink::post(std::function<void()> answer) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  answers_.push_back(std::move(answer));
+}
+
+void GrinderLink::deliver() {
+  for (ServiceCall& call : calls_) call.breakOffWhenDue();
+  calls_.remove_if([](const ServiceCall& call) { return call.finished(); });
+  std::deque<std::function<void()>> answers;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answers.swap(answers_);
+  }
+  for (const auto& answer : answers) answer();
+}
+
+template <typename Service, typename OnResponse>
+void GrinderLink::call(const std::string& service, const typename Service::Request& request, double timeout,
+                       OnResponse on_response) {
+  const auto on_answer = [this, on_response](ros::SerializedMessage* answer) {
+    std::optional<typename Service::Response> response;
+    try {
+      if (answer) ros::serialization::deserializeMessage(*answer, response.emplace());
+    } catch (const ros::serialization::StreamOverrunException&) {
+      response.reset();  // cut off: no answer
+    }
+    post([on_response, response] { on_response(response); });
+  };
+  calls_.emplace_back(nh_.resolveName(service), ros::service_traits::md5sum<Service>(),
+                      ros::serialization::serializeMessage(request), ros::WallDuration(timeout), on_answer);
+}
+
+void GrinderLink::request(MachineEvent event, const OnAnswer& on_answer) {
+  call<std_srvs::Trigger>(serviceOf(event), {}, kRequestTimeout,
+                          [event, on_answer, silence = noAnswer()](const auto& response) {
+                            if (!response) return on_answer(toString(event) + (": " + silence));
+                            on_answer(response->success ? "" : response->message);
+                          });
+}
+
+void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
+  SetFeedOverride::Request request;
+  request.fraction = fraction;
+  call<SetFeedOverride>("set_feed_override", request, kRequestTimeout,
+                        [on_answer, silence = noAnswer()](const auto& response) {
+                          if (!response) return on_answer("feed override: " + silence);
+                          on_answer(response->success ? "" : response->message);
+                        });
+}
+
+void GrinderLink::plan(const GrindGoal& goal, const OnPlan& on_plan) {
+  Plan::Request request;
+  request.goal = goal;
+  call<Plan>("plan", request, kPlanTimeout, [on_plan, silence = noAnswer()](const auto& response) {
+    if (response) return on_plan(*response);
+    Plan::Response unknown;
+    unknown.valid = 0;
+    unknown.reasons.push_back(silence);
+    on_plan(unknown);
+  });
+}
+
+std::optional<std::string> GrinderLink::send(const GrindGoal& goal) {
+  if (goals_.getNumSubscribers() == 0) return std::nullopt;
+  GrindActionGoal message;
+  message.header.stamp = ros::Time::now();
+  message.goal_id = ids_.generateID();
+  message.goal = goal;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sent_ = message.goal_id.id;
+  }
+  goals_.publish(message);
+  return message.goal_id.id;
+}
+
+void GrinderLink::cancel() { cancels_.publish(actionlib_msgs::GoalID()); }
+
+}  // namespace flute_grinder

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <rviz/panel.h>
+#include <QLabel>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QtTest>
+#include <pluginlib/class_loader.hpp>
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+
+namespace flute_grinder {
+
+/// Much longer than anything takes, even on a host that stalls [ms].
+constexpr int kPatience = 60000;
+
+using Names = std::set<std::string>;
+
+/// The nine buttons that ask for a change of the machine's state.
+inline const Names kRequests{"enable", "disable", "home", "start", "hold", "resume", "retract", "cancel", "reset"};
+
+/// The panel as rviz makes it: from its plugin, and with a configuration.
+class Panel {
+ public:
+  /// @param node name of the grinder's node. @param job file, or empty.
+  explicit Panel(const QString& node, const QString& job = "");
+
+  rviz::Panel& widget() { return *panel_; }
+  template <typename Widget>
+  Widget& the(const char* name) {
+    auto* found = panel_->findChild<Widget*>(name);
+    if (!found) throw std::runtime_error(std::string("the panel has no ") + name);
+    return *found;
+  }
+  void click(const char* name) { QTest::mouseClick(&the<QPushButton>(name), Qt::LeftButton); }
+  std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
+  std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
+  bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
+  std::string state() { return label("state"); }
+  /// Those of the requests whose buttons are enabled.
+  Names enabledRequests();
+
+  /// Looks for what is wrong with the picture of the panel, and keeps it as build/screenshots/panel_NAME.png.
+  void picture(const std::string& name);
+
+ private:
+  std::unique_ptr<rviz::Panel> panel_;
+};
+
+/// Waits for a condition, and lets the panel live meanwhile.
+#define WAIT_FOR(condition) ASSERT_TRUE(QTest::qWaitFor([&] { return bool(condition); }, kPatience)) << #condition
+
+}  // namespace flute_grinder

@@ -1,0 +1,215 @@
+// The panel against the grinder's node with the simulated drive: an operator's day.
+
+#include "flute_grinder/InjectFault.h"
+#include "panel_fixture.h"
+
+#include <ros/package.h>
+#include <ros/ros.h>
+#include <QCheckBox>
+#include <QFile>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QProgressBar>
+#include <QTemporaryDir>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/";
+
+/// A copy of jobs/paper.yaml with other values.
+QString jobFile(const QTemporaryDir& folder, const QString& name,
+                const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
+  QFile original(kJobs + "paper.yaml");
+  EXPECT_TRUE(original.open(QFile::ReadOnly));
+  QByteArray text = original.readAll();
+  for (const auto& [from, to] : changes) {
+    EXPECT_EQ(text.count(from), 1) << from.toStdString();
+    text.replace(from, to);
+  }
+  QFile file(folder.filePath(name));
+  EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
+  return file.fileName();
+}
+
+class WithGrinder : public ::testing::Test {
+ protected:
+  void TearDown() override {
+    inject("none");
+    if (panel.enabled("cancel")) panel.click("cancel");
+    WAIT_FOR(!panel.enabled("cancel"));
+    if (panel.enabled("reset")) panel.click("reset");
+    WAIT_FOR(panel.enabled("disable"));
+    panel.click("disable");
+    WAIT_FOR(panel.state() == "Disabled");
+  }
+
+  void open(const QString& file) {
+    WAIT_FOR(panel.enabled("choose"));
+    panel.click("choose");
+    QFileDialog* dialog = nullptr;
+    WAIT_FOR(dialog = panel.widget().findChild<QFileDialog*>());
+    auto* name = dialog->findChild<QLineEdit*>("fileNameEdit");
+    ASSERT_TRUE(name);
+    name->setText(file);
+    QTest::keyClick(name, Qt::Key_Return);
+    WAIT_FOR(!panel.widget().findChild<QFileDialog*>());
+  }
+  void plan() {
+    WAIT_FOR(panel.enabled("plan"));
+    panel.click("plan");
+    WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
+  }
+  void enable() {
+    WAIT_FOR(panel.enabled("enable"));
+    panel.click("enable");
+    WAIT_FOR(panel.state() == "Ready");
+  }
+  void start() {
+    WAIT_FOR(panel.enabled("start"));
+    panel.click("start");
+    WAIT_FOR(panel.state() == "Running" && stroke() > 100);
+  }
+  int stroke() { return panel.the<QProgressBar>("stroke").value(); }
+  /// [mm], A [deg]
+  double position(char axis) {
+    const QStringList words =
+        panel.the<QLabel>((std::string("position_") + axis).c_str()).text().simplified().split(' ');
+    EXPECT_EQ(words.size(), 3);
+    return words.value(1).toDouble();
+  }
+  static void inject(const std::string& fault) {
+    InjectFault call;
+    call.request.fault = fault;
+    ASSERT_TRUE(ros::service::call("grinder/hardware/inject_fault", call) && call.response.success);
+  }
+
+  const QTemporaryDir folder;
+  // Long enough to press buttons.
+  const QString slow = jobFile(folder, "slow.yaml", {{"feed_mm_min: 600", "feed_mm_min: 300"}});
+  Panel panel{"grinder"};
+};
+
+TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
+  WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(panel.text("verdict"), "Open a job file first.");
+  EXPECT_FALSE(panel.enabled("plan"));
+  WAIT_FOR(panel.label("position_x") != "X         - mm");
+  EXPECT_NEAR(position('x'), -50, 0.01);
+  EXPECT_NEAR(position('y'), 50, 0.01);
+  open(slow);
+  EXPECT_EQ(panel.label("job_file"), "slow.yaml");
+  EXPECT_FALSE(panel.enabled("start"));
+  plan();
+  EXPECT_NE(panel.text("verdict").find("Feed 300.0 mm/min; no axis limits it."), std::string::npos);
+  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "reset"}));
+  enable();
+  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "home", "start"}));
+  panel.picture("planned");
+  start();
+  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"}));
+  EXPECT_EQ(panel.label("place"), "Tooth 1, pass 1");
+  WAIT_FOR(panel.label("feed") == "300 mm/min");
+  panel.picture("grinding");
+
+  panel.click("hold");
+  WAIT_FOR(panel.state() == "Held");
+  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "resume", "retract", "cancel"}));
+  const double x = position('x');
+  const double y = position('y');
+  EXPECT_TRUE(0 < x && x < 30) << x;
+  // On the cone of 5 deg, 0.5 mm deep.
+  EXPECT_NEAR(y, x * std::tan(5 * M_PI / 180) - 0.5, 0.01);
+  EXPECT_GT(position('a'), 10);
+  panel.picture("held_in_the_stroke");
+  panel.click("retract");
+  WAIT_FOR(panel.state() == "Retracted");
+  EXPECT_EQ(panel.enabledRequests(), (Names{"resume", "cancel"}));
+  EXPECT_NEAR(position('x'), x, 0.01);
+  EXPECT_GT(position('y'), y + 4);
+  panel.click("resume");
+  WAIT_FOR(panel.state() == "Running" && position('x') > x + 1);
+  WAIT_FOR(panel.text("messages").find("The job is done") != std::string::npos);
+  WAIT_FOR(panel.state() == "Ready" && panel.label("place") == "No job runs");
+  EXPECT_EQ(panel.the<QProgressBar>("job").text(), "Job 100 %");
+  EXPECT_FALSE(panel.enabled("start")) << "a plan is for one start";
+  WAIT_FOR(!panel.the<QCheckBox>("continue").isEnabled());
+  panel.picture("done");
+}
+
+TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
+  open(slow);
+  enable();
+  panel.click("dry_run");
+  WAIT_FOR(panel.enabled("start"));
+  EXPECT_NE(panel.text("messages").find("Planned and checked; nothing moved"), std::string::npos);
+  start();
+  panel.click("cancel");
+  WAIT_FOR(panel.text("messages").find("The job has ended: canceled; stopped on the path") != std::string::npos);
+  WAIT_FOR(panel.state() == "Ready");
+  auto& go_on = panel.the<QCheckBox>("continue");
+  WAIT_FOR(go_on.isEnabled());
+  EXPECT_EQ(go_on.text(), "Continue at tooth 1, pass 1");
+  EXPECT_FALSE(panel.enabled("start"));
+  QTest::mouseClick(&go_on, Qt::LeftButton, {}, QPoint(8, go_on.height() / 2));
+  EXPECT_TRUE(go_on.isChecked());
+  plan();
+  panel.picture("continue");
+  start();
+  inject("emergency_stop");
+  WAIT_FOR(panel.state() == "Fault");
+  EXPECT_EQ(panel.enabledRequests(), Names{"reset"});
+  EXPECT_NE(panel.label("meaning").find("Fault: emergency stop. The emergency stop is pressed."), std::string::npos);
+  WAIT_FOR(panel.text("messages").find("The job has ended: emergency stop") != std::string::npos);
+  panel.picture("emergency_stop");
+  panel.click("reset");
+  WAIT_FOR(panel.text("messages").find("Reset refused") != std::string::npos);
+  EXPECT_EQ(panel.state(), "Fault");
+  inject("none");
+  panel.click("reset");
+  WAIT_FOR(panel.state() == "Disabled");
+  enable();
+}
+
+TEST_F(WithGrinder, AJobOfSomebodyElseIsShown) {
+  enable();
+  // As by `grind run`: another client of the action.
+  Panel other("grinder", kJobs + "paper.yaml");
+  WAIT_FOR(other.enabled("plan"));
+  other.click("plan");
+  WAIT_FOR(other.enabled("start"));
+  other.click("start");
+  WAIT_FOR(panel.state() == "Running" && stroke() > 100);
+  panel.click("cancel");
+  WAIT_FOR(panel.text("messages").find("The job has ended: canceled") != std::string::npos);
+  WAIT_FOR(other.text("messages").find("The job has ended: canceled") != std::string::npos);
+}
+
+TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
+  WAIT_FOR(panel.state() == "Disabled");
+  open(jobFile(folder, "wrong.yaml", {{"spiral_angle_deg: 30", "spiral_angle_deg: 300"}}));
+  EXPECT_NE(panel.text("verdict").find("wrong.yaml:5"), std::string::npos) << panel.text("verdict");
+  EXPECT_NE(panel.text("verdict").find("spiral_angle_deg = 300"), std::string::npos) << panel.text("verdict");
+  EXPECT_EQ(panel.text("verdict").find(folder.path().toStdString()), std::string::npos) << panel.text("verdict");
+  panel.picture("wrong_job_file");
+  open(folder.filePath("slow.yaml"));
+  EXPECT_EQ(panel.text("verdict"), "Not planned yet.");
+}
+
+TEST_F(WithGrinder, AJobBeyondTheAxesIsRefused) {
+  // X reaches to 300 mm.
+  open(jobFile(folder, "long.yaml", {{"flute_length_mm: 30", "flute_length_mm: 320"}}));
+  enable();
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.text("verdict").find("Cannot be ground") == 0);
+  EXPECT_NE(panel.text("verdict").find("beyond its limit"), std::string::npos) << panel.text("verdict");
+  EXPECT_FALSE(panel.enabled("start"));
+}
+
+}  // namespace
+}  // namespace flute_grinder

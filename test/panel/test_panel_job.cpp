@@ -178,7 +178,7 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
 TEST_F(WithGrinder, AJobOfSomebodyElseIsShown) {
   enable();
   // As by `grind run`: another client of the action.
-  Panel other("grinder", kJobs + "paper.yaml");
+  Panel other("grinder", slow);
   WAIT_FOR(other.enabled("plan"));
   other.click("plan");
   WAIT_FOR(other.enabled("start"));

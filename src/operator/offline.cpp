@@ -3,11 +3,13 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/operator/csv.h"
+#include "flute_grinder/operator/json_output.h"
 #include "flute_grinder/operator/machine_file.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -15,60 +17,96 @@ namespace {
 
 using namespace units;
 
-/// Prints the rows of a table, and remembers the largest errors.
-class Table {
- public:
-  Table(const LogCurve& curve, const std::string& csv) : curve_(curve) {
-    if (!csv.empty()) csv_.emplace(csv);
-    std::printf("%6s  %12s  %10s  %10s  %12s\n", "point", "X mm", "A rad", "theory rad", "error 1e-4");
-  }
+/// A stroke of a curve with a fixed step length.
+struct Table {
+  struct Row {
+    CurvePoint point;
+    double theory = 0;  ///< of A [rad]
+    double error() const { return theory - point.a; }
+  };
+  std::vector<Row> rows;
+  double largest_odd_error = 0;   ///< [rad]
+  double largest_even_error = 0;  ///< [rad]
+  double largestError() const { return std::max(largest_odd_error, largest_even_error); }
 
-  void row(int number, const CurvePoint& point) {
-    const double theory = curve_.a(point.x);
-    const double error = theory - point.a;
-    std::printf("%6d  %12.4f  %10.4f  %10.4f  %12.4f\n", number, point.x / kMillimetre, point.a, theory, error / 1e-4);
-    if (csv_) csv_->write(number, point, theory);
-    double& largest = number % 2 == 1 ? largest_odd_ : largest_even_;
-    largest = std::max(largest, std::abs(error));
+  void add(const LogCurve& curve, const CurvePoint& point) {
+    double& largest = rows.size() % 2 == 1 ? largest_odd_error : largest_even_error;
+    rows.push_back({point, curve.a(point.x)});
+    largest = std::max(largest, std::abs(rows.back().error()));
   }
-
-  void finish(int points) {
-    std::printf("\n%d points\n", points);
-    std::printf("largest error          %.4e rad\n", std::max(largest_odd_, largest_even_));
-    std::printf("largest at odd points  %.4e rad\n", largest_odd_);
-    std::printf("largest at even points %.4e rad\n", largest_even_);
-    if (csv_) csv_->close();
-  }
-
- private:
-  LogCurve curve_;
-  std::optional<TableCsv> csv_;
-  double largest_odd_ = 0;
-  double largest_even_ = 0;
 };
+
+/// Interpolates from X = 0 until a pair ends at or past the flute's end; nothing if the steps are too long for the
+/// curve.
+std::optional<Table> interpolate(const GrindJob& job, EvenStepRule rule, double step_length_mm) {
+  const LogCurve curve{ConicalCutter(job.cutter)};
+  OddEvenInterpolator interpolator(curve, job.interpolation.rotary_scale, rule, 0);
+  Table table;
+  table.add(curve, interpolator.position());
+  while (interpolator.position().x < job.cutter.flute_length) {
+    const double x = interpolator.position().x;
+    const OddEvenPair pair = interpolator.next(step_length_mm * kMillimetre);
+    if (!(pair.even.x > x && curve.u(pair.odd.x) > 0 && curve.u(pair.even.x) > 0 && std::isfinite(pair.even.a))) {
+      std::fprintf(stderr, "--step-length %g mm is too long for this curve at X = %g mm\n", step_length_mm,
+                   x / kMillimetre);
+      return std::nullopt;
+    }
+    table.add(curve, pair.odd);
+    table.add(curve, pair.even);
+  }
+  return table;
+}
+
+void printText(const Table& table) {
+  std::printf("%6s  %12s  %10s  %10s  %12s\n", "point", "X mm", "A rad", "theory rad", "error 1e-4");
+  int number = 0;
+  for (const Table::Row& row : table.rows) {
+    std::printf("%6d  %12.4f  %10.4f  %10.4f  %12.4f\n", number++, row.point.x / kMillimetre, row.point.a, row.theory,
+                row.error() / 1e-4);
+  }
+  std::printf("\n%d points\n", number - 1);
+  std::printf("largest error          %.4e rad\n", table.largestError());
+  std::printf("largest at odd points  %.4e rad\n", table.largest_odd_error);
+  std::printf("largest at even points %.4e rad\n", table.largest_even_error);
+}
+
+Json toJson(const Table& table, EvenStepRule rule, double step_length_mm) {
+  Json points = Json::array();
+  for (const Table::Row& row : table.rows) {
+    points.push_back(Json{{"point", points.size()},
+                          {"x_mm", row.point.x / kMillimetre},
+                          {"a_rad", row.point.a},
+                          {"a_theory_rad", row.theory},
+                          {"error_rad", row.error()}});
+  }
+  return {{"step_length_mm", step_length_mm},
+          {"even_step", toString(rule)},
+          {"points", points},
+          {"largest_error_rad", table.largestError()},
+          {"largest_odd_error_rad", table.largest_odd_error},
+          {"largest_even_error_rad", table.largest_even_error}};
+}
+
+void writeCsv(const Table& table, const std::string& path) {
+  TableCsv csv(path);
+  int number = 0;
+  for (const Table::Row& row : table.rows) csv.write(number++, row.point, row.theory);
+  csv.close();
+}
 
 }  // namespace
 
 int runTable(const TableOptions& options) {
   const GrindJob job = readJobFile(options.job);
-  const LogCurve curve{ConicalCutter(job.cutter)};
-  OddEvenInterpolator interpolator(curve, job.interpolation.rotary_scale,
-                                   options.even_step.value_or(job.interpolation.even_step), 0);
-  Table table(curve, options.csv);
-  table.row(0, interpolator.position());
-  int points = 0;
-  while (interpolator.position().x < job.cutter.flute_length) {
-    const double x = interpolator.position().x;
-    const OddEvenPair pair = interpolator.next(options.step_length_mm * kMillimetre);
-    if (!(pair.even.x > x && curve.u(pair.odd.x) > 0 && curve.u(pair.even.x) > 0 && std::isfinite(pair.even.a))) {
-      std::fprintf(stderr, "--step-length %g mm is too long for this curve at X = %g mm\n", options.step_length_mm,
-                   x / kMillimetre);
-      return 1;
-    }
-    table.row(++points, pair.odd);
-    table.row(++points, pair.even);
+  const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
+  const auto table = interpolate(job, rule, options.step_length_mm);
+  if (!table) return 1;
+  if (!options.csv.empty()) writeCsv(*table, options.csv);
+  if (options.json) {
+    print(toJson(*table, rule, options.step_length_mm));
+  } else {
+    printText(*table);
   }
-  table.finish(points);
   return 0;
 }
 
@@ -113,7 +151,11 @@ int runPlan(const PlanOptions& options) {
   }
   const JobPlan plan = planJob(job, machine, machine.park, {}, visit, UnitSystem::kShop);
   if (csv) csv->close();
-  printStatistics(plan.statistics);
+  if (options.json) {
+    print(toJson(plan));
+  } else {
+    printStatistics(plan.statistics);
+  }
   for (const std::string& reason : plan.reasons) std::fprintf(stderr, "%s\n", reason.c_str());
   return plan.good() ? 0 : 1;
 }

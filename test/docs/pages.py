@@ -5,7 +5,7 @@ line; the paragraph that follows it in the same block is what the last one print
 `...` stands for anything. A fenced block below a line that ends in `path`: is a file that the reader writes. A comment ahead of
 a block says what a reader sees by themselves:
 
-    <!-- test: while COMMAND -->      the block is typed while that command runs, which must end well
+    <!-- test: while COMMAND -->      the block is typed while that command runs, which must end well unless the last cancels it
     <!-- test: after Ctrl-C -->       what was launched has been ended
     <!-- test: after Ctrl-C in COMMAND --> that command has been broken off in the midst of its job
     <!-- test: exits N -->            the last command of the block ends with this status

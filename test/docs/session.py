@@ -124,6 +124,7 @@ class Session:
                 raise Failure('%s: has ended too early\n%s' % (other, log.read_text()))
             return state() == 'running'
 
+        canceled = broken_off or commands[-1:] == [grind + ' cancel']
         # The job is to last as long as the typing takes, however slow the host is.
         self.type(grind + ' override 4')
         process = self._start(other, log)
@@ -135,7 +136,7 @@ class Session:
             if broken_off:
                 process.send_signal(signal.SIGINT)
             self.type(grind + ' override 100')
-            self._end(process, log, other, 1 if broken_off else 0)
+            self._end(process, log, other, 1 if canceled else 0)
             self.outputs[other] = log.read_text()
         finally:
             if process.poll() is None:

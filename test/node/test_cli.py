@@ -2,6 +2,7 @@
 """Shows what `grind` prints and with which status it exits, with the grinder and without: 0 done, 1 the machine or the
 job said no, 2 wrong usage or an unreadable file."""
 
+import json
 import os
 import re
 import shutil
@@ -15,7 +16,7 @@ import rostest
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
-from grinder_client import MM, STROKE, X, grinder
+from grinder_client import DEG, MM, MM_MIN, STROKE, X, grinder
 
 PAPER_JOB = gc.package_file('jobs/paper.yaml')
 
@@ -63,6 +64,16 @@ class CommandLine(unittest.TestCase):
         if status != 0:
             self.assertNotEqual(done.stderr.strip(), '', 'no reason is given')
         return done
+
+    def json(self, status, *arguments):
+        """What a command prints with --json, which must be nothing else."""
+        done = self.grind(status, *arguments, '--json')
+        return json.loads(done.stdout), done.stderr
+
+    def csv(self, path):
+        with open(path) as lines:
+            header, *rows = [line.rstrip('\n').split(',') for line in lines]
+        return [dict(zip(header, row)) for row in rows]
 
 
 class TestTable(CommandLine):
@@ -115,6 +126,25 @@ class TestTable(CommandLine):
         self.assertLess(even, 2e-15)
 
 
+    def test_json_has_every_bit(self):
+        for arguments, rule in (([], 'published'), (['--even-step', 'third_order'], 'third_order')):
+            told, _ = self.json(0, 'table', PAPER_JOB, '--step-length', '0.2', '--csv', self.path('table.csv'), *arguments)
+            self.assertEqual((told['step_length_mm'], told['even_step']), (0.2, rule))
+            rows = [{key: float(value) for key, value in row.items()} for row in self.csv(self.path('table.csv'))]
+            self.assertEqual(told['points'], rows)
+            odd = max(abs(row['error_rad']) for row in rows[1::2])
+            even = max(abs(row['error_rad']) for row in rows[::2])
+            self.assertEqual((told['largest_odd_error_rad'], told['largest_even_error_rad'], told['largest_error_rad']),
+                             (odd, even, max(odd, even)))
+            self.assertEqual(len(told), 6)
+
+    def test_steps_that_are_too_long_print_nothing(self):
+        job = gc.job_file(self.path('back.yaml'), cone_angle_deg=-3, end_diameter_mm=10)
+        done = self.grind(1, 'table', job, '--step-length', '100', '--json')
+        self.assertEqual(done.stdout, '')
+        self.assertRegex(done.stderr, r'^--step-length 100 mm is too long for this curve at X = 0 mm$')
+
+
 class TestPlan(CommandLine):
     def test_good_job(self):
         printed = self.grind(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
@@ -150,6 +180,46 @@ class TestPlan(CommandLine):
         self.assertRegex(reasons, r'(?m)^axis_x position 0\.301 m is 0\.001 m beyond its limit 0\.3 m \(stroke, ')
         self.assertRegex(reasons, r'(?m)^axis_a position 260\.67\d* rad is 135\.0\d* rad beyond its limit '
                                   r'125\.664 rad \(stroke, cycle \d+, X = 0\.301 m\)')
+
+    def test_json_of_a_good_job(self):
+        told, reasons = self.json(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
+        rows = self.csv(self.path('plan.csv'))
+        self.assertEqual((told['valid'], told['reasons'], reasons, told['feed_limits']), (True, [], '', []))
+        self.assertEqual((told['setpoints'], told['duration_s']), (len(rows), (len(rows) - 1) * 1e-3))
+        # A move has the cycles that end in it.
+        cycles = {move: sum(row['move'] == move for row in rows[1:]) for move in gc.MOVES}
+        self.assertEqual(sorted(told['move_durations']), sorted(move + '_s' for move in gc.MOVES))
+        for move, count in cycles.items():
+            self.assertAlmostEqual(told['move_durations'][move + '_s'], count * 1e-3, delta=1e-9)
+        for step in ('odd', 'even'):
+            self.assertEqual(told['largest_%s_error_rad' % step],
+                             max(abs(float(row['error_rad'])) for row in rows if row['step'] == step))
+        for key in ('smallest_feed_mm_min', 'largest_feed_mm_min'):
+            self.assertAlmostEqual(told[key], 600, delta=600e-6)
+        for axis, column, unit in (('x_mm', 'x_mm', 1), ('y_mm', 'y_mm', 1), ('z_mm', 'z_mm', 1), ('a_deg', 'a_rad', DEG)):
+            positions = [float(row[column]) / unit for row in rows]
+            fastest = max(abs(b - a) for a, b in zip(positions, positions[1:])) / 1e-3
+            self.assertAlmostEqual(told['largest_velocity'][axis + '_s'], fastest, delta=1e-8 * max(1, fastest))
+            ends = positions[:1] * 2 + positions[::2] + positions[-1:]
+            bend = max(abs(a - 2 * b + c) for a, b, c in zip(ends, ends[1:], ends[2:])) / 2e-3 ** 2
+            self.assertAlmostEqual(told['largest_acceleration'][axis + '_s2'], bend, delta=1e-5 * max(1, bend))
+            self.assertGreater(told['largest_jerk'][axis + '_s3'], 0)
+            ripple = max(abs(a - 2 * b + c) for a, b, c in zip(positions, positions[1:], positions[2:])) / 1e-3 ** 2
+            self.assertAlmostEqual(told['odd_even_ripple'][axis + '_s2'], ripple, delta=1e-5 * max(1, ripple))
+        self.assertEqual(len(told), 15)
+
+    def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
+        job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)
+        told, _ = self.json(0, 'plan', job)
+        self.assertTrue(told['feed_limits'])
+        lines = re.findall(r'(?m)^feed limited by +(.*), X (\S+) to (\S+) mm$', self.grind(0, 'plan', job).stdout)
+        self.assertEqual([(cut['cause'], '%.3f' % cut['from_x_mm'], '%.3f' % cut['to_x_mm'])
+                          for cut in told['feed_limits']], lines)
+        job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
+        told, reasons = self.json(1, 'plan', job)
+        self.assertFalse(told['valid'])
+        self.assertEqual(told['reasons'], reasons.rstrip('\n').split('\n'))
+        self.assertEqual(len(told['reasons']), 3)
 
     def test_missing_file(self):
         reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
@@ -213,6 +283,16 @@ class TestUsage(CommandLine):
         printed = self.grind(0, command, '--help').stdout
         for text in mentioned:
             self.assertIn(text, printed)
+        # It is right usage in the package's folder, whatever the machine says to it, which does not move without power.
+        grinder().take_faults_back()
+        grinder().disable()
+        example, = re.findall(r'\nExample:\n  rosrun flute_grinder grind (%s.*)\n' % command, printed)
+        os.symlink(gc.package_file('jobs'), self.path('jobs'))
+        if command == 'report':
+            self.grind(0, 'plan', PAPER_JOB, '--csv', self.path('setpoints.csv'))
+        done = subprocess.run([gc.program('grind'), *example.split()], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=gc.PATIENCE, cwd=self.folder)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
 
     def check_wrong(self, *arguments):
         self.grind(2, *arguments)
@@ -220,19 +300,21 @@ class TestUsage(CommandLine):
 
 # Every command, and what its help must mention.
 COMMANDS = {
-    'table': ['JOB', '--step-length', '--even-step', '--csv'],
-    'plan': ['JOB', '--csv', '--machine', '--urdf'],
+    'table': ['JOB', '--step-length', '--even-step', 'published|third_order|exact', '--csv', '--json'],
+    'plan': ['JOB', '--csv', '--machine', '--urdf', '--json'],
     'run': ['JOB', '--dry-run', '--continue', '--csv'],
     'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
     'override': ['PERCENT', '0 to 120'],
-    'status': [],
+    'status': ['--json'],
     'enable': ['power on'],
     'disable': ['power off'],
     'home': ['reference'],
     'hold': ['stop on the path'],
     'resume': ['hold', 'retract'],
     'retract': ['lift'],
+    'cancel': ['end the job'],
     'reset': ['fault'],
+    'completion': ['bash'],
 }
 
 # Name, arguments that are wrong.
@@ -249,6 +331,8 @@ WRONG = [
     ('continue_without_job', ['run', '--continue']),
     ('report_without_output', ['report', 'plan.csv']),
     ('report_of_job_zero', ['report', 'record.bag', '-o', 'report.html', '--job', '0']),
+    ('cancel_with_more', ['cancel', 'now']),
+    ('completion_of_another_shell', ['completion', 'fish']),
 ]
 
 
@@ -277,6 +361,20 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'emergency stop +released\n')
         self.assertNotIn('fault ', printed)
 
+    def test_status_as_json(self):
+        run = grinder().run(gc.SHORT)
+        self.assertEqual(run.status, 'SUCCEEDED')
+        told, _ = self.json(0, 'status')
+        digest = told['last_job'].pop('digest')
+        self.assertRegex(digest, '^[0-9a-f]{64}$')
+        self.assertEqual(digest, grinder().fresh_state().progress.job_digest)
+        x = told['last_job'].pop('x_mm')
+        self.assertEqual(x, grinder().fresh_state().progress.x / MM)
+        self.assertEqual(told, {
+            'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
+            'coolant_on': False, 'emergency_stop': False, 'feed_mm_min': 0, 'override_percent': 100, 'tooth': None,
+            'pass': None, 'hold_reason': '', 'fault': '', 'last_job': {'finished': True, 'tooth': 1, 'pass': 1}})
+
     def test_disable_and_enable(self):
         self.grind(0, 'disable')
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
@@ -292,6 +390,8 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'state +fault\n')
         self.assertRegex(printed, r'emergency stop +pressed\n')
         self.assertRegex(printed, r'fault +emergency stop\n')
+        told, _ = self.json(0, 'status')
+        self.assertEqual((told['fault'], told['emergency_stop'], told['enabled']), ('emergency stop', True, False))
         self.assertRegex(self.grind(1, 'enable').stderr,
                          r'^enable refused: the machine is in state fault; allowed: reset')
         self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the emergency stop is pressed')
@@ -371,12 +471,17 @@ class TestMachine(CommandLine):
         self.assertEqual(process.returncode, 0, shown)
         self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
         for state in ('running', 'held', 'retracted'):
-            self.assertIn('  %s  tooth 1  pass 1  X ' % state, shown)
+            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, shown)
 
     def test_status_tells_why_the_job_is_held(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        told, _ = self.json(0, 'status')
+        self.assertEqual((told['state'], told['tooth'], told['pass'], told['last_job']['finished'], told['coolant_on']),
+                         ('running', 1, 1, False, True))
+        self.assertIn(told['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
         grinder().inject('coolant_lost')
         grinder().wait_state(GrinderState.RETRACTED)
+        self.assertEqual(self.json(0, 'status')[0]['hold_reason'], 'no coolant flows')
         printed = self.grind(0, 'status').stdout
         self.assertRegex(printed, r'(?m)^state +retracted$')
         self.assertRegex(printed, r'(?m)^coolant +off$')
@@ -436,23 +541,21 @@ class TestMachine(CommandLine):
         grinder().wait_for(past, 'the stroke')
 
     def test_interrupt_cancels_the_run(self):
-        for with_signal in (signal.SIGINT, signal.SIGTERM):
-            grinder().make_ready()
-            batches = len(grinder().batches)
-            process = self.start_run()
-            self.wait_in_stroke(batches)
-            process.send_signal(with_signal)
-            printed, reason = process.communicate(timeout=gc.PATIENCE)
-            self.assertEqual(process.returncode, 1, reason)
-            self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
-            self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
-            self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-            setpoints = [s for batch in grinder().batches[batches:] for s in batch.setpoints]
-            self.assertTrue(gc.is_gapless(setpoints))
-            self.assertEqual(setpoints[-1].move, STROKE)
-            self.assertLess(setpoints[-1].position[X], 30 * MM)
-            self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
-            self.assertEqual(len(grinder().positions_over(0.1)) > 5 and len(set(grinder().positions_over(0.1))), 1)
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        process.send_signal(signal.SIGINT)
+        printed, reason = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 1, reason)
+        self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
+        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        setpoints = [s for batch in grinder().batches[batches:] for s in batch.setpoints]
+        self.assertTrue(gc.is_gapless(setpoints))
+        self.assertEqual(setpoints[-1].move, STROKE)
+        self.assertLess(setpoints[-1].position[X], 30 * MM)
+        self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(len(grinder().positions_over(0.1)) > 5 and len(set(grinder().positions_over(0.1))), 1)
 
 
 if __name__ == '__main__':

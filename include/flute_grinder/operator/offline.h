@@ -15,6 +15,7 @@ struct TableOptions {
   double step_length_mm = 0;
   std::optional<EvenStepRule> even_step;  ///< in place of the job's
   std::string csv;                        ///< file, or empty
+  bool json = false;
 };
 
 /// Arguments of `grind plan`.
@@ -23,6 +24,7 @@ struct PlanOptions {
   std::string csv;         ///< file, or empty
   std::string parameters;  ///< YAML of the machine
   std::string urdf;
+  bool json = false;
 };
 
 /// Interpolates a job's curve with a fixed step length, as the paper's Table 1. @return the exit status.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ros/node_handle.h>
+
 #include <string>
 
 namespace flute_grinder {
@@ -16,17 +18,26 @@ struct RunOptions {
 /// Waits for the ROS master, which may be only just coming up. @return whether it answers.
 bool awaitMaster();
 
+/// Prints why not. @return the exit status for that.
+int fail(const std::string& text);
+/// Prints that there is no grinder in a namespace. @return the exit status for that.
+int noGrinder(const ros::NodeHandle& nh);
+
 /// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop. @return the exit
 /// status.
 int runJob(const RunOptions& options);
 
-/// Prints what the grinder is doing. @return the exit status.
-int printStatus(const std::string& node);
+/// Stops the job that runs, whoever has started it, and waits for the stop. @return the exit status.
+int cancelJob(const std::string& node);
+
+/// Prints what the grinder is doing. @param json in JSON. @return the exit status.
+int printStatus(const std::string& node, bool json);
 
 /// Calls one of the grinder's services without arguments. @return the exit status.
 int callTrigger(const std::string& node, const std::string& service);
 
-/// Homes the axes, and waits until that is over. @return the exit status.
+/// Homes the axes, and waits until that is over; Ctrl-C breaks it off by switching the power off. @return the exit
+/// status.
 int home(const std::string& node);
 
 /// Sets the feed override. @param percent 0 to 120. @return the exit status.

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/core/job_plan.h"
+
+#include <nlohmann/json.hpp>
+
+namespace flute_grinder {
+
+/// What `--json` prints: keys in a fixed order, with the operator's unit in the name; numbers with all their bits.
+using Json = nlohmann::ordered_json;
+
+/// Of `grind plan`: whether the job can be ground, why not, and its figures.
+Json toJson(const JobPlan& plan);
+
+/// Of `grind status`. Teeth and passes count from 1, as on the operator's screens.
+Json toJson(const GrinderState& state);
+
+/// Prints it to stdout.
+void print(const Json& json);
+
+}  // namespace flute_grinder

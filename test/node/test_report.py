@@ -417,9 +417,8 @@ class TestBag(ReportCase):
         self.assertEqual([name for _, name in states], ['starting', 'running', 'ready'])
         times = [float(time) for time, _ in states]
         self.assertLess(times[0], times[1])
-        # The state is told once in 50 ms.
-        end = len(self.setpoints) * self.batches[0].period
-        self.assertTrue(end - 0.001 <= times[2], times)
+        # A loop that was late catches up, so that a job takes a few cycles more or less than it has.
+        self.assertLessEqual((self.batches[-1].end_stamp - self.batches[0].header.stamp).to_sec() - 0.001, times[2])
 
     def test_diagnostics(self):
         self.assertEqual(self.page.rows['recorded: Drive link'][0], 'OK')

@@ -41,7 +41,7 @@ class BagReader:
                        if kind in (BATCH, STATE, RESULT) and name.startswith(node) or kind == DIAGNOSTICS]
         self._job = job
         self._jobs = []  # goal ids
-        self._start = None  # when cycle 0 was [s]
+        self._start = self._end = None  # when cycle 0 and the last one were [s]
         self._states = []
         self._results = {}
         self._diagnostics = {}
@@ -61,6 +61,7 @@ class BagReader:
                 self._start = batch.header.stamp.to_sec() - batch.setpoints[0].cycle * batch.period
         if self._job not in (0, len(self._jobs)):
             return
+        self._end = batch.end_stamp.to_sec()
         self._record.append(np.array(
             [(s.cycle, s.position, s.path_error, s.feed, s.move, s.step, s.tooth, s.pass_, s.actual, s.cycle_period)
              for s in batch.setpoints], ROW))
@@ -93,14 +94,13 @@ class BagReader:
         if result:
             record.facts.append(('outcome', result.error_string or 'done'))
             record.max_deviation = result.statistics.max_deviation
-        end = self._start + (int(record.last['cycle']) + 1) * record.period
-        record.states = [(stamp - self._start, state, reason) for stamp, state, reason in self._span(end)]
+        record.states = [(stamp - self._start, state, reason) for stamp, state, reason in self._span()]
         record.diagnostics = [(name, *self._diagnostics[name]) for name in sorted(self._diagnostics)]
         return record
 
-    def _span(self, end):
+    def _span(self):
         """The states from that in which the job began to that after its end."""
         before = [s for s in self._states if s[0] <= self._start]
-        during = [s for s in self._states if self._start < s[0] <= end]
-        after = [s for s in self._states if s[0] > end]
+        during = [s for s in self._states if self._start < s[0] < self._end]
+        after = [s for s in self._states if s[0] >= self._end]
         return before[-1:] + during + after[:1]

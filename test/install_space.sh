@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The installed package works without the source and the build: programs, launch file, plugin, meshes.
+# The installed package works without the source and the build: programs, launch file, plugin.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 staging=$(mktemp -d)
@@ -19,7 +19,7 @@ set +u
 source "$space/setup.bash"
 set -u
 [ "$(rospack find flute_grinder)" = "$space/share/flute_grinder" ]
-for file in urdf/grinder.urdf meshes/cutter.stl rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml; do
+for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml; do
   [ -f "share/flute_grinder/$file" ]
 done
 

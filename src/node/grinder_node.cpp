@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kTickPeriod = 0.01;             ///< of joint states [s]
 constexpr std::uint64_t kTicksPerBatch = 5;      ///< setpoints, state and feedback
+constexpr std::uint64_t kTicksPerScene = 10;     ///< what rviz shows of a job
 constexpr std::uint64_t kTicksPerJournal = 100;  ///< within a pass
 
 int errorCode(PlanFault fault) {
@@ -130,8 +131,7 @@ void GrinderNode::advertise() {
   joint_states_ = nh_.advertise<sensor_msgs::JointState>("joint_states", 10);
   state_ = private_nh_.advertise<GrinderState>("state", 10, true);
   setpoints_ = private_nh_.advertise<SetpointBatch>("setpoints", 1000);
-  tool_path_ = private_nh_.advertise<visualization_msgs::MarkerArray>("tool_path", 1, true);
-  path_error_ = private_nh_.advertise<visualization_msgs::MarkerArray>("path_error", 1, true);
+  scene_ = std::make_unique<Scene>(private_nh_);
 
   diagnostic_updater_ = std::make_unique<diagnostic_updater::Updater>(nh_, private_nh_);
   diagnostic_updater_->setHardwareID(private_nh_.param<std::string>("hardware/type", ""));
@@ -213,9 +213,9 @@ void GrinderNode::onGoal(GoalHandle goal) {
     }
     if (!preview.plan.good()) return reject(goal, errorCode(preview.plan.fault), join(preview.plan.reasons));
     goal.setAccepted();
+    show(preview);
     if (!request->dry_run) startJob(goal, preview.plan);
   }
-  show(preview);
   if (request->dry_run) {
     goal.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", preview.plan.statistics));
   }
@@ -225,15 +225,15 @@ GrinderNode::Preview GrinderNode::makePreview(const GrindGoal& goal, const Axes&
   const GrindJob job = jobFromGoal(goal);
   Preview preview;
   if (validate(job).empty()) preview.errors.emplace(ConicalCutter(job.cutter));
-  preview.plan = planJob(job, loop_->config().machine, start, {goal.first_tooth, goal.first_pass},
-                         [&](const Setpoint& p) { preview.errors->add(p); });
+  preview.first = {goal.first_tooth, goal.first_pass};
+  // Every stroke of a job has the same errors.
+  preview.plan = planJob(job, loop_->config().machine, start, preview.first, [&](const Setpoint& p) {
+    if (p.tooth == preview.first.tooth && p.pass == preview.first.pass) preview.errors->add(p);
+  });
   return preview;
 }
 
-void GrinderNode::show(const Preview& preview) {
-  tool_path_.publish(toolPathMarkers(*preview.plan.program));
-  path_error_.publish(preview.errors->markers());
-}
+void GrinderNode::show(const Preview& preview) { scene_->show(*preview.plan.program, preview.first, *preview.errors); }
 
 void GrinderNode::startJob(GoalHandle& goal, JobPlan& plan) {
   const GrindJob& job = plan.program->job();
@@ -247,8 +247,7 @@ void GrinderNode::startJob(GoalHandle& goal, JobPlan& plan) {
     at_start.tooth = request->first_tooth;
     at_start.pass = request->first_pass;
     job_ = std::make_unique<Job>(Job{goal, std::make_unique<SetpointStream>(*plan.program), plan.statistics,
-                                     std::move(plan.move_ends), passOrder(job),
-                                     PathErrorMarkers(plan.program->cutter()), at_start});
+                                     std::move(plan.move_ends), passOrder(job), at_start});
     const RequestReply reply = loop_->request(MachineEvent::kStart, job_->stream.get());
     if (reply.accepted) return;
     // A loop that has not answered may yet begin to use the stream.
@@ -309,7 +308,9 @@ bool GrinderNode::onPlan(Plan::Request& request, Plan::Response& response) {
   response.statistics = toMessage(preview.plan.statistics);
   response.duration = preview.plan.statistics.duration;
   response.reasons = preview.plan.reasons;
-  if (preview.plan.good()) show(preview);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  // What is shown while a job runs is that job.
+  if (preview.plan.good() && !job_) show(preview);
   return true;
 }
 
@@ -325,6 +326,7 @@ void GrinderNode::tick() {
       publishState();
       publishFeedback();
     }
+    if (ticks_ % kTicksPerScene == 0 && job_) scene_->update(toString(record_.state));
   }
   diagnostic_updater_->update();
 }
@@ -359,6 +361,7 @@ void GrinderNode::followJob(const CycleRecord& record) {
   while (!waiting.empty() && waiting.front().cycle + record.drive.commands_waiting <= job_->cycle) {
     job_->last = waiting.front().setpoint;
     trackProgress(job_->last);
+    scene_->follow(job_->last, record.position);
     tell(waiting.front(), record);
     waiting.pop_front();
   }
@@ -379,7 +382,6 @@ void GrinderNode::tell(const Waiting& written, const CycleRecord& record) {
   batch_.setpoints.push_back(toMessage(setpoint, record.position, written.period));
   batch_.end_stamp = ros::Time(record.time);
   job_->largest_error = std::max(job_->largest_error, std::abs(setpoint.path_error));
-  job_->errors.add(setpoint);
 }
 
 void GrinderNode::trackProgress(const Setpoint& p) {
@@ -419,7 +421,7 @@ void GrinderNode::finishJob(const CycleRecord& record) {
   if (progress_made_) writeJournal();
   publishBatch();
   publishFeedback();
-  path_error_.publish(job_->errors.markers());
+  scene_->end(toString(record.state));
   const std::unique_ptr<Job> job = std::move(job_);
   publishState();
   if (record.fault.kind != FaultKind::kNone) {
@@ -442,6 +444,10 @@ void GrinderNode::publishJointStates() {
     message.position.push_back(record_.position[i]);
     message.velocity.push_back(record_.velocity[i]);
   }
+  // Not of the drive, but robot_state_publisher takes all joints from here.
+  message.name.insert(message.name.end(), {"wheel_swivel", "y_zero"});
+  message.position.insert(message.position.end(), {scene_->setup().wheel_swivel, scene_->setup().y_zero});
+  message.velocity.insert(message.velocity.end(), {0, 0});
   joint_states_.publish(message);
 }
 

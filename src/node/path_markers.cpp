@@ -1,7 +1,6 @@
 #include "flute_grinder/node/path_markers.h"
 
-#include "flute_grinder/core/log_curve.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/node/board.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,63 +13,21 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kPathTolerance = 1e-7;      ///< between the strip shown and the helix [m]
-constexpr double kPathWidth = 0.25e-3;       ///< [m]
-constexpr double kErrorLineWidth = 0.05e-3;  ///< [m]
-constexpr double kLongestErrorLine = 3e-3;   ///< [m]
-constexpr std::size_t kMostErrorPoints = 2000;
-constexpr int kScaleSteps = 32;
+constexpr const char* kFrame = "cutter";
+constexpr double kPathTolerance = 1e-7;     ///< between the strip shown and the helix [m]
+constexpr double kPathWidth = 0.3e-3;       ///< as all widths, of cutters that are not small [m]
+constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
+constexpr double kArrowWidth = 0.06e-3;     ///< [m]
+constexpr double kLongestArrow = 3e-3;      ///< [m]
+constexpr double kNoError = 1e-12;          ///< what is smaller is rounding [m]
+constexpr std::size_t kMostArrows = 200;
+constexpr std::size_t kMostExecutedPoints = 2000;
 
-geometry_msgs::Point point(double x, double y, double z) {
-  geometry_msgs::Point p;
-  p.x = x;
-  p.y = y;
-  p.z = z;
-  return p;
-}
+/// Where the wheel touches the cutter, at the radius r.
+geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
 
-std_msgs::ColorRGBA colour(double r, double g, double b) {
-  std_msgs::ColorRGBA c;
-  c.r = static_cast<float>(r);
-  c.g = static_cast<float>(g);
-  c.b = static_cast<float>(b);
-  c.a = 1;
-  return c;
-}
-
-/// From blue over green and yellow to red.
-std_msgs::ColorRGBA heat(double fraction) {
-  const double f = std::clamp(fraction, 0.0, 1.0);
-  return colour(std::clamp(4 * f - 1.5, 0.1, 1.0), std::clamp(1.6 - std::abs(4 * f - 2), 0.1, 1.0),
-                std::clamp(1.5 - 3 * f, 0.1, 1.0));
-}
-
-Marker marker(const char* ns, int id, int type, const char* frame) {
-  Marker m;
-  m.header.frame_id = frame;
-  m.ns = ns;
-  m.id = id;
-  m.type = type;
-  m.action = Marker::ADD;
-  m.pose.orientation.w = 1;
-  m.color = colour(1, 1, 1);
-  m.frame_locked = true;
-  return m;
-}
-
-MarkerArray startOver() {
-  MarkerArray array;
-  Marker m;
-  m.action = Marker::DELETEALL;
-  array.markers.push_back(m);
-  return array;
-}
-
-/// Where the wheel touches the cutter's surface.
-geometry_msgs::Point onSurface(const ConicalCutter& cutter, double x, double a) {
-  const double r = cutter.radius(x);
-  return point(x, r * std::cos(a), r * std::sin(a));
-}
+/// How much finer lines are drawn on a small cutter, so that they do not cover it.
+double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
 
 /// The largest axial distance between points of the strip that keeps within kPathTolerance of the helix: its chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
@@ -81,44 +38,11 @@ double pathStep(const GrindProgram& program) {
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
-void appendStrip(MarkerArray& array, const GrindProgram& program, double tooth_angle) {
-  const LogCurve curve(program.cutter());
-  const double from = program.strokeFrom();
-  const double to = program.strokeTo();
-  const auto steps = static_cast<std::size_t>(std::ceil(std::abs(to - from) / pathStep(program)));
-  for (std::size_t first = 0; first < steps; first += kMaxMarkerPoints - 1) {
-    Marker m = marker("tool_path", static_cast<int>(array.markers.size()), Marker::LINE_STRIP, "cutter");
-    m.scale.x = kPathWidth;
-    m.color = colour(1.0, 0.6, 0.1);
-    const std::size_t last = std::min(steps, first + kMaxMarkerPoints - 1);
-    for (std::size_t i = first; i <= last; ++i) {
-      const double x = from + (to - from) * (static_cast<double>(i) / static_cast<double>(steps));
-      m.points.push_back(onSurface(program.cutter(), x, tooth_angle + curve.a(x)));
-    }
-    array.markers.push_back(m);
-  }
-}
-
 /// The next lower of 1, 2, 5, 10, ...
-double roundFactor(double value) {
+double roundDown(double value) {
   const double decade = std::pow(10, std::floor(std::log10(value)));
   const double mantissa = value / decade;
   return (mantissa >= 5 ? 5 : mantissa >= 2 ? 2 : 1) * decade;
-}
-
-/// A length from picometres up, in the unit that suits it.
-std::string lengthText(double metres) {
-  struct Unit {
-    double size;
-    const char* name;
-  };
-  Unit unit{1e-12, "pm"};
-  for (const Unit& larger : {Unit{1e-9, "nm"}, Unit{1e-6, "um"}, Unit{1e-3, "mm"}}) {
-    if (metres >= larger.size) unit = larger;
-  }
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %s", metres / unit.size, unit.name);
-  return text;
 }
 
 /// 1, 2 or 5 times a power of ten, as short as it can be.
@@ -133,49 +57,136 @@ std::string factorText(double factor) {
   return text;
 }
 
-Marker label(int id, double x, double y, double z, const std::string& text) {
-  Marker m = marker("path_error", id, Marker::TEXT_VIEW_FACING, "table");
-  m.pose.position = point(x, y, z);
-  m.scale.z = 2.2e-3;
-  m.text = text;
-  return m;
-}
-
-/// The colour scale, standing in the table's frame above the cutter.
-void appendScale(MarkerArray& array, const ConicalCutter& cutter, double largest, double factor) {
-  const double length = cutter.geometry().flute_length;
-  const double z = cutter.radius(cutter.tanCone() < 0 ? 0 : length) + 12e-3;
-  Marker bar = marker("path_error", static_cast<int>(array.markers.size()), Marker::LINE_LIST, "table");
-  bar.scale.x = 1.5e-3;
-  for (int i = 0; i < kScaleSteps; ++i) {
-    for (const int end : {i, i + 1}) {
-      bar.points.push_back(point(length * end / kScaleSteps, 0, z));
-      bar.colors.push_back(heat((i + 0.5) / kScaleSteps));
-    }
-  }
-  array.markers.push_back(bar);
-  const auto add = [&](double x, double up, const std::string& text) {
-    array.markers.push_back(label(static_cast<int>(array.markers.size()), x, 0, z + up, text));
-  };
-  add(0, -3e-3, "0");
-  add(length, -3e-3, lengthText(largest));
-  add(length / 2, 6e-3, "path error, drawn " + factorText(factor) + " times larger");
-}
-
 }  // namespace
 
-MarkerArray toolPathMarkers(const GrindProgram& program) {
+ToolPath::ToolPath(const GrindProgram& program)
+    : cutter_(program.cutter()),
+      curve_(cutter_),
+      from_(program.strokeFrom()),
+      to_(program.strokeTo()),
+      steps_(static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program)))),
+      measured_(steps_ + 1, -1) {
+  for (const double angle : program.job().tooth_angles) flutes_.push_back({angle, {}});
+}
+
+double ToolPath::x(std::size_t i) const {
+  return from_ + (to_ - from_) * (static_cast<double>(i) / static_cast<double>(steps_));
+}
+
+bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
+  const std::optional<std::size_t> before = active_;
+  if (p.move != MoveKind::kRetract && p.move != MoveKind::kReturn && p.move != MoveKind::kLift) active_ = p.tooth;
+  if (p.move != MoveKind::kStroke) return active_ != before;
+  if (p.step != StepKind::kNone) measure(p, actual);
+  if (p.progress < 1) return active_ != before;
+  finishPass(flutes_[p.tooth]);
+  leave();
+  return true;
+}
+
+void ToolPath::measure(const Setpoint& p, const Axes& actual) {
+  const double around = flutes_[p.tooth].angle + curve_.a(actual[kX]) - actual[kA];
+  const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
+  const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
+  float& largest = measured_[static_cast<std::size_t>(std::lround(std::clamp(at, 0.0, static_cast<double>(steps_))))];
+  largest = std::max(largest, static_cast<float>(error));
+  largest_ = std::max(largest_, error);
+}
+
+void ToolPath::finishPass(Flute& flute) {
+  // Where the stroke goes faster than a point a cycle, a point has what was measured next to it.
+  for (std::size_t i = 1; i <= steps_; ++i) {
+    if (measured_[i] < 0) measured_[i] = measured_[i - 1];
+  }
+  for (std::size_t i = steps_; i-- > 0;) {
+    if (measured_[i] < 0) measured_[i] = measured_[i + 1];
+  }
+  flute.errors = measured_;
+}
+
+void ToolPath::leave() {
+  active_.reset();
+  std::fill(measured_.begin(), measured_.end(), -1);
+}
+
+double ToolPath::scaleEnd() const {
+  float largest = 0;
+  for (const Flute& flute : flutes_) {
+    for (const float error : flute.errors) largest = std::max(largest, error);
+  }
+  return largest;
+}
+
+void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth, double scale_end) const {
+  const Flute& flute = flutes_[tooth];
+  const bool active = active_ == tooth;
+  for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
+    Marker& m = append(array, "tool_path", Marker::LINE_STRIP, kFrame);
+    m.scale.x = kPathWidth * fineness(cutter_);
+    m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
+    const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
+    for (std::size_t i = first; i <= last; ++i) {
+      m.points.push_back(atRadius(x(i), cutter_.radius(x(i)), flute.angle + curve_.a(x(i))));
+      if (!active && !flute.errors.empty()) m.colors.push_back(heat(scale_end > 0 ? flute.errors[i] / scale_end : 0));
+    }
+  }
+}
+
+MarkerArray ToolPath::markers() const {
   MarkerArray array = startOver();
-  for (const double angle : program.job().tooth_angles) appendStrip(array, program, angle);
+  const double scale_end = scaleEnd();
+  for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth, scale_end);
+  if (scale_end > 0) board::appendScale(array, board::Side::kLeft, "measured error of the flutes", scale_end);
   return array;
+}
+
+ExecutedPath::ExecutedPath(const GrindProgram& program) : cutter_(program.cutter()) {
+  const std::vector<double> depths = passDepths(program.job().process);
+  for (const Move& move : program.moves()) {
+    // The plunge takes up the wheel's wear beside the pass' depth.
+    const double infeed = program.cutter().y(move.to[kX]) - move.to[kY];
+    wear_of_move_.push_back(infeed - depths[move.pass]);
+  }
+}
+
+void ExecutedPath::follow(const Setpoint& p, const Axes& actual) {
+  if (p.move != MoveKind::kStroke) return;
+  if (move_ != p.move_index) {
+    move_ = p.move_index;
+    points_.clear();
+    taken_ = 0;
+    every_ = 1;
+  }
+  last_ = atRadius(actual[kX], cutter_.radius(0) + actual[kY] + wear_of_move_[p.move_index], actual[kA]);
+  if (taken_++ % every_ != 0) return;
+  points_.push_back(last_);
+  if (points_.size() < kMostExecutedPoints) return;
+  for (std::size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
+  points_.resize(points_.size() / 2);
+  every_ *= 2;
+}
+
+void ExecutedPath::append(MarkerArray& array) const {
+  if (points_.empty()) return;
+  Marker& m = flute_grinder::append(array, "executed_path", Marker::LINE_STRIP, kFrame);
+  m.scale.x = kExecutedWidth * fineness(cutter_);
+  m.color = colour(0.3, 1, 1);
+  m.points = points_;
+  m.points.push_back(last_);
 }
 
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone) return;
+  if (move_ != p.move_index) {
+    *this = PathErrorMarkers(cutter_);
+    move_ = p.move_index;
+  }
   if (p.step == StepKind::kOdd) ++pairs_;
+  const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+  largest_ = std::max(largest_, std::abs(deviation));
   if ((pairs_ - 1) % every_ != 0) return;
-  points_.push_back({p.position[kX], p.position[kA], p.path_error});
-  if (points_.size() >= kMostErrorPoints) thinOut();
+  points_.push_back({p.position[kX], p.position[kA], deviation});
+  if (points_.size() >= kMostArrows && p.step == StepKind::kEven) thinOut();
 }
 
 void PathErrorMarkers::thinOut() {
@@ -192,33 +203,28 @@ void PathErrorMarkers::thinOut() {
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = startOver();
   if (points_.empty()) return array;
+  // A path without an error, of a cylinder, does not come down to rounding.
+  const double largest = std::max(largest_, kNoError);
+  const double factor = roundDown(kLongestArrow * fineness(cutter_) / largest);
 
-  const double normal_part = cutter_.cosHelixToGeneratrix();
-  double largest = 0;
-  for (const Point& p : points_) largest = std::max(largest, std::abs(p.error) * cutter_.radius(p.x) * normal_part);
-  const double factor = largest > 0 ? roundFactor(kLongestErrorLine / largest) : 1;
-
-  Marker lines = marker("path_error", static_cast<int>(array.markers.size()), Marker::LINE_LIST, "cutter");
-  lines.scale.x = kErrorLineWidth;
+  Marker& arrows = append(array, "path_error", Marker::LINE_LIST, kFrame);
+  arrows.scale.x = kArrowWidth * fineness(cutter_);
   // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
-  const double around = normal_part;
+  const double around = cutter_.cosHelixToGeneratrix();
   const double along = std::copysign(std::sqrt(1 - around * around), cutter_.tanSpiral());
   const double cos_cone = 1 / std::hypot(1, cutter_.tanCone());
   const double sin_cone = cutter_.tanCone() * cos_cone;
   for (const Point& p : points_) {
-    const double deviation = -p.error * cutter_.radius(p.x) * normal_part;  // of what is commanded from the theory
-    const double offset = factor * deviation;
-    geometry_msgs::Point end = onSurface(cutter_, p.x, p.a);
-    lines.points.push_back(end);
-    end.x -= offset * along * cos_cone;
-    end.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));
-    end.z += offset * (around * std::cos(p.a) - along * sin_cone * std::sin(p.a));
-    lines.points.push_back(end);
-    const auto c = heat(largest > 0 ? std::abs(deviation) / largest : 0);
-    lines.colors.insert(lines.colors.end(), 2, c);
+    const double offset = factor * p.deviation;
+    const geometry_msgs::Point from = atRadius(p.x, cutter_.radius(p.x), p.a);
+    geometry_msgs::Point to = from;
+    to.x -= offset * along * cos_cone;
+    to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));
+    to.z += offset * (around * std::cos(p.a) - along * sin_cone * std::sin(p.a));
+    arrows.points.insert(arrows.points.end(), {from, to});
+    arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / largest));
   }
-  array.markers.push_back(lines);
-  appendScale(array, cutter_, largest, factor);
+  board::appendScale(array, board::Side::kRight, "path error, drawn " + factorText(factor) + " times larger", largest);
   return array;
 }
 

@@ -432,7 +432,7 @@ class TestMarkers(unittest.TestCase):
         factor = float(title.split(' times')[0].split()[-1])
         errors = {s.position[X]: s.path_error for s in self.setpoints if s.move == STROKE}
         lines = self.error_lines()
-        self.assertGreater(len(lines), 500)
+        self.assertGreaterEqual(len(lines), 90)
         for start, end in lines:
             a = math.atan2(start.z, start.y)
             line = (end.x - start.x, end.y - start.y, end.z - start.z)

@@ -9,7 +9,7 @@
 #include "flute_grinder/drive/machine_config.h"
 #include "flute_grinder/node/diagnostics.h"
 #include "flute_grinder/node/journal.h"
-#include "flute_grinder/node/path_markers.h"
+#include "flute_grinder/node/scene.h"
 
 #include <actionlib/server/action_server.h>
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -56,9 +56,8 @@ class GrinderNode {
     PlanStatistics statistics;
     std::vector<std::uint64_t> move_ends;  ///< as planned
     std::vector<ToothPass> passes;         ///< in order
-    PathErrorMarkers errors;
-    Setpoint last;             ///< of those that the axes have got
-    double largest_error = 0;  ///< since the last feedback [rad]
+    Setpoint last;                         ///< of those that the axes have got
+    double largest_error = 0;              ///< since the last feedback [rad]
     std::uint64_t written = 0;
     bool canceled = false;
     std::uint64_t cycle = 0;  ///< since the start
@@ -68,7 +67,8 @@ class GrinderNode {
   /// A plan with what is to be shown of it.
   struct Preview {
     JobPlan plan;
-    std::optional<PathErrorMarkers> errors;  ///< of a job whose figures are allowed
+    ToothPass first;                         ///< to grind
+    std::optional<PathErrorMarkers> errors;  ///< of its first stroke; of a job whose figures are allowed
   };
 
   void loadDrive(const ParameterReader& parameters);
@@ -111,7 +111,7 @@ class GrinderNode {
 
   std::unique_ptr<Server> server_;
   std::vector<ros::ServiceServer> services_;
-  ros::Publisher joint_states_, state_, setpoints_, tool_path_, path_error_;
+  ros::Publisher joint_states_, state_, setpoints_;
   std::unique_ptr<diagnostic_updater::Updater> diagnostic_updater_;
   ros::SteadyTimer timer_;
 
@@ -119,6 +119,7 @@ class GrinderNode {
   CycleRecord record_;  ///< the newest
   std::uint64_t records_ = 0;
   std::unique_ptr<Job> job_;
+  std::unique_ptr<Scene> scene_;
   Progress progress_;  ///< of the running job, or of the last one
   bool progress_made_ = false;
   std::optional<GoalHandle> planning_;

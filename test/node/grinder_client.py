@@ -211,6 +211,11 @@ def poll(condition, what, timeout=PATIENCE, interval=0.005):
         time.sleep(interval)
 
 
+def axes_of(joint_state):
+    """The positions of the axes, X, Y, Z, A."""
+    return tuple(joint_state.position[joint_state.name.index(name)] for name in JOINTS)
+
+
 class Run:
     """One goal, from sending it to its end, with all that came of it."""
 
@@ -425,8 +430,7 @@ class Grinder:
 
     def positions(self):
         """Of all axes, as told last."""
-        joint = self.joints[-1]
-        return [joint.position[joint.name.index(name)] for name in JOINTS]
+        return list(axes_of(self.joints[-1]))
 
     def wait_rest(self):
         """Waits until the positions told no longer change, and returns them."""
@@ -445,7 +449,7 @@ class Grinder:
         self.wait_for(lambda: len(self.joints) > first + 1 and
                       (self.joints[-1].header.stamp - self.joints[first].header.stamp).to_sec() >= seconds,
                       'joint states')
-        return [tuple(joint.position) for joint in self.joints[first:]]
+        return [axes_of(joint) for joint in self.joints[first:]]
 
     def make_ready(self):
         """Takes the machine from any state to ready, homed and at rest."""

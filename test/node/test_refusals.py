@@ -151,7 +151,7 @@ class TestBadGoals(unittest.TestCase):
             gc.Run(grinder(), gc.goal_of(dict(gc.PAPER, **changes), **fields)).wait()
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), self.batches)
-        self.assertEqual({tuple(joint.position) for joint in grinder().joints[self.joints:]}, {tuple(self.rest)})
+        self.assertEqual({gc.axes_of(joint) for joint in grinder().joints[self.joints:]}, {tuple(self.rest)})
 
     def test_all_that_is_wrong_is_told_at_once(self):
         run = grinder().send(gc.paper(feed=NAN, flute_length=-1.0, tooth_angles=[], order=9)).wait()

@@ -284,7 +284,7 @@ class JobOfTheFolder(WholeTool):
         cls.service = g.plan(goal)
         cls.dry_run = g.send(cls.job, dry_run=True).wait()
         cls.state = g.fresh_state()
-        cls.positions = {tuple(joint.position) for joint in g.joints[joints:]}
+        cls.positions = {gc.axes_of(joint) for joint in g.joints[joints:]}
         cls.new_batches = len(g.batches) - cls.batches
 
     def test_plan_says_yes(self):

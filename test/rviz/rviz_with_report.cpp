@@ -1,26 +1,32 @@
 /// @file
-/// rviz as it is, and one service beside it: `~report` tells how many frames it has drawn and what its displays say of
-/// themselves.
+/// rviz as it is, and one service beside it: `~report` tells how many frames it has drawn, where its window and the
+/// screen are, and what its displays say of themselves.
 
-#include <QApplication>
 #include <ros/ros.h>
 #include <rviz/display_group.h>
 #include <rviz/properties/status_property.h>
+#include <rviz/render_panel.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
 #include <rviz/visualizer_app.h>
 #include <std_srvs/Trigger.h>
+#include <QApplication>
+#include <QScreen>
 
 #include <algorithm>
 #include <sstream>
 
 namespace {
 
-rviz::VisualizationManager* manager() {
+rviz::VisualizationFrame* window() {
   for (QWidget* widget : QApplication::topLevelWidgets()) {
-    if (auto* frame = dynamic_cast<rviz::VisualizationFrame*>(widget)) return frame->getManager();
+    if (auto* frame = dynamic_cast<rviz::VisualizationFrame*>(widget)) return frame;
   }
   return nullptr;
+}
+
+void writeRectangle(const char* name, const QRect& r, std::ostream& text) {
+  text << name << " " << r.x() << " " << r.y() << " " << r.width() << " " << r.height() << "\n";
 }
 
 /// A line "status level path: text" for each status at or below a property: level 0 is OK, 1 a warning, 2 an error.
@@ -36,12 +42,17 @@ void writeStatus(rviz::Property& property, const std::string& path, std::ostream
 
 /// Called in the thread of the windows, where rviz takes its messages.
 bool report(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
-  rviz::VisualizationManager* shown = manager();
-  response.success = shown != nullptr;
-  if (shown == nullptr) return true;
+  rviz::VisualizationFrame* frame = window();
+  response.success = frame != nullptr;
+  if (frame == nullptr) return true;
+  rviz::VisualizationManager& manager = *frame->getManager();
+  const QWidget& view = *manager.getRenderPanel();
   std::ostringstream text;
-  text << "frames " << shown->getFrameCount() << "\n";
-  writeStatus(*shown->getRootDisplayGroup(), "", text);
+  text << "frames " << manager.getFrameCount() << "\n";
+  writeRectangle("screen", QGuiApplication::primaryScreen()->geometry(), text);
+  writeRectangle("window", frame->frameGeometry(), text);
+  writeRectangle("view", QRect(view.mapToGlobal(QPoint(0, 0)), view.size()), text);
+  writeStatus(*manager.getRootDisplayGroup(), "", text);
   response.message = text.str();
   return true;
 }

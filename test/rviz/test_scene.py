@@ -1,0 +1,551 @@
+#!/usr/bin/env python3
+"""Shows what rviz shows: the machine, the job's blank and wheel where the axes have them, its flutes as they are planned,
+ground and measured, the executed path and the texts. By the markers and frames, in figures, and by pictures of rviz's
+window ahead of a job, in its midst and after it, which are kept in build/screenshots."""
+
+import functools
+import math
+import os
+import re
+import sys
+import threading
+import unittest
+
+import numpy
+import rospy
+import rostest
+import yaml
+from PIL import ImageGrab
+from std_srvs.srv import Trigger
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import Marker, MarkerArray
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder  # noqa: E402
+
+# Unequal teeth in two passes, over soon, with all that moves the wheel: cone, rake, wear.
+TEETH = [0, 88 * DEG, 180 * DEG, 268 * DEG]
+JOB = gc.paper(end_diameter=12 * MM, spiral_angle=38 * DEG, flute_length=26 * MM, tooth_angles=TEETH, feed=3000 * MM_MIN,
+               infeed=0.3 * MM, wheel_width=10 * MM, wheel_wear=0.02 * MM, wheel_wear_per_pass=0.001 * MM,
+               even_step=1)
+HELIX = gc.Helix(JOB)
+DEPTHS = [0.3 * MM, 0.5 * MM]
+PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
+TOPICS = ['scene', 'tool_path', 'executed_path', 'path_error']
+
+BOARD = (13, 15, 20)
+
+
+class Rviz:
+    """What rviz has got, and what it shows."""
+
+    def __init__(self):
+        self._lock = threading.Lock()
+        self.messages = {topic: [] for topic in TOPICS}
+        self.frames = {}
+        self._subscribers = [rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
+                             for topic in TOPICS]
+        self._subscribers.append(rospy.Subscriber('/tf', TFMessage, self._on_frames))
+        rospy.wait_for_service('/rviz/report', gc.PATIENCE)
+        self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
+
+    def _on_frames(self, message):
+        for transform in message.transforms:
+            self.frames[transform.child_frame_id] = (transform.header.frame_id, matrix(transform.transform))
+
+    def report(self):
+        """What rviz says of itself: frames drawn, rectangles, and the displays' statuses that are not OK."""
+        lines = self._report().message.splitlines()
+        words = [line.split() for line in lines]
+        report = {w[0]: [int(n) for n in w[1:]] for w in words if w[0] in ('screen', 'window', 'view')}
+        report['frames'] = int(words[0][1])
+        statuses = [line for line in lines if line.startswith('status ')]
+        report['statuses'] = len(statuses)
+        report['not OK'] = [line for line in statuses if not line.startswith('status 0 ')]
+        return report
+
+    def settle(self):
+        """Waits until what was sent is shown: rviz takes messages before each frame."""
+        frames = self.report()['frames']
+        gc.poll(lambda: self.report()['frames'] >= frames + 10, 'frames of rviz')
+
+    def picture(self, name, shows=lambda picture: True):
+        """Takes a picture as soon as it shows what is wanted, and keeps it as a file."""
+        self.settle()
+        taken = Picture(name)
+        try:
+            gc.poll(lambda: taken.take() or shows(taken), 'a picture "%s" of what is wanted' % name)
+        finally:
+            taken.save()
+        taken.report = self.report()
+        return taken
+
+    def last(self, topic):
+        return list(self.messages[topic][-1].markers)
+
+    def in_frame(self, frame):
+        """The transform from a frame to `base`."""
+        whole = numpy.identity(4)
+        while frame != 'base':
+            frame, step = self.frames[frame]
+            whole = step @ whole
+        return whole
+
+
+class Picture:
+    """rviz's window."""
+
+    def __init__(self, name):
+        self.name = name
+        self.image = self.pixels = None
+
+    def take(self):
+        self.image = ImageGrab.grab(xdisplay=os.environ['DISPLAY'])
+        self.pixels = numpy.asarray(self.image.convert('RGB')).astype(int)
+
+    def save(self):
+        os.makedirs(PICTURES, exist_ok=True)
+        self.image.save(os.path.join(PICTURES, self.name + '.png'), optimize=True)
+
+    def has_board(self):
+        return (abs(self.pixels - numpy.array(BOARD)).max(axis=2) <= 3).sum() > 50000
+
+    def share(self, places, looks):
+        """At which share of some places (column, row) something looks so, or next to them."""
+        found = 0
+        for i, (column, row) in enumerate(numpy.rint(places).astype(int)):
+            near = self.pixels[row - 2:row + 3, column - 2:column + 3].reshape(-1, 3)
+            found += any(looks(i, *pixel) for pixel in near)
+        return found / len(places)
+
+
+class Camera:
+    """The view of rviz/grinder.rviz: where a point of the frame `table` is seen in the window."""
+
+    def __init__(self, view):
+        with open(gc.package_file('rviz/grinder.rviz')) as text:
+            current = yaml.safe_load(text)['Visualization Manager']['Views']['Current']
+        assert (current['Class'], current['Target Frame']) == ('rviz/Orbit', 'table')
+        yaw, pitch = current['Yaw'], current['Pitch']
+        self.toward = numpy.array([math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), math.sin(pitch)])
+        self.right = numpy.array([-math.sin(yaw), math.cos(yaw), 0])
+        self.up = numpy.cross(self.toward, self.right)
+        focal = current['Focal Point']
+        self.at = numpy.array([focal[axis] for axis in 'XYZ']) + current['Distance'] * self.toward
+        left, top, width, height = view
+        self.centre = numpy.array([left + width / 2, top + height / 2])
+        self.scale = height / 2 / math.tan(current['Field of View'] / 2)
+
+    def see(self, points):
+        """Columns and rows of points."""
+        way = points - self.at
+        depth = -way @ self.toward
+        return self.centre + self.scale * numpy.stack([way @ self.right, -(way @ self.up)], axis=1) / depth[:, None]
+
+
+# What a pixel may look like. The blank is blue, and dims what is behind its surface.
+def light_grey(_, r, g, b):
+    return min(r, g, b) > 120 and max(r, g, b) - min(r, g, b) < 40
+
+
+def magenta(_, r, g, b):
+    return r > g + 50 and b > g + 50
+
+
+def cyan(_, r, g, b):
+    return g > r + 60 and b > r + 60 and abs(g - b) < 50
+
+
+def matrix(transform):
+    """Of a Transform, or of a Pose."""
+    t = getattr(transform, 'translation', None) or transform.position
+    q = getattr(transform, 'rotation', None) or transform.orientation
+    x, y, z, w = q.x, q.y, q.z, q.w
+    return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), t.x],
+                        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w), t.y],
+                        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y), t.z],
+                        [0, 0, 0, 1]])
+
+
+def points_of(marker):
+    """In the marker's frame, one row each."""
+    points = numpy.array([(p.x, p.y, p.z, 1) for p in marker.points])
+    return (matrix(marker.pose) @ points.T).T[:, :3]
+
+
+def of_namespace(markers, ns):
+    return [m for m in markers if m.action == Marker.ADD and m.ns == ns]
+
+
+def text_line(markers):
+    line, = [m.text for m in of_namespace(markers, 'text')]
+    return re.sub(' +', ' ', line)
+
+
+def colours(marker):
+    """Those of its points; of the whole marker if it has one."""
+    return {(round(c.r, 3), round(c.g, 3), round(c.b, 3)) for c in marker.colors or [marker.color]}
+
+
+def flutes(markers):
+    """What each flute looks like: planned, active or measured."""
+    looks = []
+    for marker in of_namespace(markers, 'tool_path'):
+        if marker.colors:
+            looks.append('measured')
+        else:
+            looks.append({(0.72, 0.72, 0.72): 'planned', (1.0, 0.2, 0.9): 'active'}[colours(marker).pop()])
+    return looks
+
+
+def measured(setpoints):
+    """The error of every setpoint of a stroke: X, and the distance from the helix on the cutter's surface."""
+    return [(s.actual[X], abs(TEETH[s.tooth] + HELIX.a(s.actual[X]) - s.actual[A])
+             * HELIX.radius(s.actual[X]) * HELIX.normal) for s in setpoints if s.move == STROKE and s.step]
+
+
+class Story:
+    """A job from before its plan to after its end, with what rviz was told and what it showed."""
+
+    def __init__(self):
+        self.rviz, g = Rviz(), grinder()
+        g.make_ready_at_park()
+        self.before_plan = {topic: len(messages) for topic, messages in self.rviz.messages.items()}
+        self.machine = self.rviz.picture('machine')
+        self.planned = {}
+        for path in ('left_hand_d8_t3', 'micro_d05_t2', 'finishing_d20_t8', 'roughing_d10_t4', 'unequal_d12_t4'):
+            job = gc.job_from_file(gc.package_file('jobs/%s.yaml' % path))
+            assert g.send(job, dry_run=True).wait().status == 'SUCCEEDED'
+            self.planned[path] = self.rviz.picture('planned_' + path, Picture.has_board)
+        self.plan_and_hold(g)
+        g.resume()
+        self.run.wait_complete()
+        g.fresh_state()
+        self.after = self.snapshot('after')
+        self.cancel_and_continue(g)
+
+    def snapshot(self, name):
+        """The picture with the markers, frames and positions that belong to it."""
+        picture = self.rviz.picture(name, Picture.has_board)
+        picture.markers = {topic: self.rviz.last(topic) for topic in TOPICS}
+        picture.to_base = {frame: self.rviz.in_frame(frame) for frame in ('cutter', 'wheel', 'table')}
+        picture.positions = grinder().positions()
+        return picture
+
+    def plan_and_hold(self, g):
+        assert g.send(JOB, dry_run=True).wait().status == 'SUCCEEDED'
+        self.before = self.snapshot('before')
+        self.run = g.send(JOB)
+        self.run.wait_past(lambda s: (s.tooth, s.pass_, s.move) == (1, 1, STROKE) and s.position[X] > 3 * MM,
+                           'the second tooth')
+        assert g.hold().success
+        g.wait_for(lambda: g.states[-1].state_name == 'held', 'held')
+        g.wait_rest()
+        gc.poll(lambda: text_line(self.rviz.last('executed_path')).startswith('held'), 'the text line')
+        self.during = self.snapshot('during')
+        self.setpoints_when_held = self.run.setpoints
+        scenes = len(self.rviz.messages['scene'])
+        assert g.plan(gc.goal_of(gc.PAPER)).valid
+        g.fresh_state()
+        self.scenes_by_plan = len(self.rviz.messages['scene']) - scenes
+
+    def cancel_and_continue(self, g):
+        run = g.send(JOB)
+        run.wait_past(lambda s: (s.tooth, s.pass_, s.move) == (2, 0, STROKE), 'the third tooth')
+        run.cancel()
+        run.wait_complete()
+        g.fresh_state()
+        self.canceled = self.rviz.last('tool_path')
+        assert g.send(JOB, first_tooth=2, dry_run=True).wait().status == 'SUCCEEDED'
+        g.fresh_state()
+        self.to_continue = self.rviz.last('tool_path')
+        assert g.run(JOB, first_tooth=2).status == 'SUCCEEDED'
+        g.fresh_state()
+        self.continued = self.rviz.last('tool_path')
+        assert g.send(JOB, dry_run=True).wait().status == 'SUCCEEDED'
+        g.fresh_state()
+        self.planned_again = self.rviz.last('tool_path')
+
+
+@functools.lru_cache(maxsize=None)
+def story():
+    """The one story, for all tests; what went wrong with it is told once more to each."""
+    try:
+        return Story()
+    except Exception as error:
+        return Failure(error)
+
+
+class Failure:
+    """A story that could not be told to its end."""
+
+    def __init__(self, error):
+        self._error = error
+
+    def __getattr__(self, name):
+        raise self._error
+
+
+class TestFrames(unittest.TestCase):
+    """Where things are, in figures, while the job is held in the midst of a stroke."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.held = story().during
+        cls.at = cls.held.positions
+        cls.markers = cls.held.markers
+        cls.path = points_of(of_namespace(cls.markers['tool_path'], 'tool_path')[1])
+        # On the helix of the tooth, where the axes are.
+        a = TEETH[1] + HELIX.a(cls.at[X])
+        r = HELIX.radius(cls.at[X])
+        cls.place = numpy.array([cls.at[X], r * math.cos(a), r * math.sin(a), 1])
+        cls.wear = 0.02 * MM + 3 * 0.001 * MM
+        cls.wheel = of_namespace(cls.markers['scene'], 'wheel')
+        rim = numpy.vstack([points_of(m) for m in cls.wheel])
+        cls.wheel_radius = numpy.hypot(rim[:, 0], rim[:, 1]).max()
+        cls.half_width = abs(rim[:, 2]).max()
+
+    def in_wheel(self, points):
+        """Points of the frame `cutter` in that of the wheel, whose Z is its axis."""
+        to_wheel = numpy.linalg.inv(self.held.to_base['wheel']) @ self.held.to_base['cutter']
+        return (to_wheel @ numpy.atleast_2d(points).T).T
+
+    def test_held_in_the_stroke(self):
+        self.assertTrue(3 * MM < self.at[X] < 20 * MM)
+
+    def test_cutter_moves_with_x_and_turns_with_a(self):
+        turned = self.held.to_base['cutter']
+        c, s = math.cos(self.at[A]), math.sin(self.at[A])
+        expected = [[1, 0, 0, -self.at[X]], [0, c, s, 0], [0, -s, c, 0], [0, 0, 0, 1]]
+        self.assertLess(abs(turned - numpy.array(expected)).max(), 1e-6)
+
+    def test_blank_has_the_true_size(self):
+        flute, shank = of_namespace(self.markers['scene'], 'blank')
+        self.assertEqual({flute.header.frame_id, shank.header.frame_id}, {'cutter'})
+        points = points_of(flute)
+        radii = numpy.hypot(points[:, 1], points[:, 2])
+        self.assertEqual((points[:, 0].min(), points[:, 0].max()), (0, 26 * MM))
+        for x, r in zip(points[:, 0], radii):
+            if r > 0:
+                self.assertAlmostEqual(r, HELIX.radius(x), delta=1e-12)
+        points = points_of(shank)
+        self.assertEqual(points[:, 0].min(), 26 * MM)
+        self.assertAlmostEqual(numpy.hypot(points[:, 1], points[:, 2]).max(), HELIX.radius(27 * MM), delta=1e-12)
+
+    def test_path_lies_on_the_blank_where_the_axes_are(self):
+        nearest = abs(self.path[:, 0] - self.at[X]).argmin()
+        self.assertLess(numpy.linalg.norm(self.path[nearest] - self.place[:3]), 0.2 * MM)
+
+    def test_wheel_has_the_true_size(self):
+        self.assertEqual({m.header.frame_id for m in self.wheel}, {'wheel'})
+        self.assertAlmostEqual(self.wheel_radius, 50 * MM - 0.02 * MM, delta=1e-9)
+        self.assertAlmostEqual(self.half_width, 5 * MM, delta=1e-9)
+
+    def test_wheel_touches_the_cutter_where_the_path_says(self):
+        x, y, z, _ = self.in_wheel(self.place)[0]
+        # The wheel is in the work by the pass' depth; it is worn by more than it was when the job began.
+        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius - DEPTHS[1], delta=4 * UM)
+        # Z keeps the rake angle: the place is that much below the wheel's middle.
+        self.assertAlmostEqual(abs(z), HELIX.z(self.at[X]) * math.cos(38 * DEG), delta=2 * UM)
+        self.assertLess(abs(z), self.half_width)
+
+    def test_wheel_is_swivelled_along_the_helix(self):
+        a = TEETH[1] + HELIX.a(self.at[X])
+        tangent = numpy.array([1, HELIX.tan_cone * math.cos(a) - HELIX.tan_spiral * math.sin(a),
+                               HELIX.tan_cone * math.sin(a) + HELIX.tan_spiral * math.cos(a), 0])
+        direction = self.in_wheel(tangent / numpy.linalg.norm(tangent))[0]
+        self.assertAlmostEqual(direction[2], 0, delta=1e-4)
+        self.assertGreater(direction[0], 0.99)
+
+    def executed(self):
+        marker, = of_namespace(self.markers['executed_path'], 'executed_path')
+        self.assertEqual((marker.type, marker.header.frame_id), (Marker.LINE_STRIP, 'cutter'))
+        return points_of(marker)
+
+    def test_executed_path_is_that_of_this_stroke(self):
+        points = self.executed()
+        self.assertLessEqual(len(points), 2001)
+        self.assertAlmostEqual(points[0, 0], -1 * MM, delta=0.05 * MM)
+        self.assertAlmostEqual(points[-1, 0], self.at[X], delta=1 * UM)
+        for x, y, z in points:
+            self.assertAlmostEqual(math.hypot(y, z), HELIX.radius(x) - DEPTHS[1], delta=2 * UM)
+            angle = math.remainder(math.atan2(z, y) - TEETH[1] - HELIX.a(x), 2 * math.pi)
+            self.assertAlmostEqual(angle, 0, delta=1e-4)
+
+    def test_executed_path_ends_at_the_wheel(self):
+        x, y, z, _ = self.in_wheel(numpy.append(self.executed()[-1], 1))[0]
+        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius, delta=4 * UM)
+
+
+class TestFlutes(unittest.TestCase):
+    """How the flutes look in the course of the job."""
+
+    def test_planned_ahead_of_the_job(self):
+        self.assertEqual(flutes(story().before.markers['tool_path']), ['planned'] * 4)
+
+    def test_finished_active_and_planned_within_it(self):
+        self.assertEqual(flutes(story().during.markers['tool_path']), ['measured', 'active', 'planned', 'planned'])
+
+    def test_all_finished_after_it(self):
+        self.assertEqual(flutes(story().after.markers['tool_path']), ['measured'] * 4)
+
+    def test_canceled_job_keeps_what_was_finished(self):
+        self.assertEqual(flutes(story().canceled), ['measured', 'measured', 'planned', 'planned'])
+
+    def test_continued_job_keeps_it_too(self):
+        self.assertEqual(flutes(story().to_continue), ['measured', 'measured', 'planned', 'planned'])
+        self.assertEqual(flutes(story().continued), ['measured'] * 4)
+        first, again = [of_namespace(markers, 'tool_path')[0] for markers in (story().canceled, story().to_continue)]
+        self.assertEqual(first.colors, again.colors)
+
+    def test_job_planned_from_its_begin_is_all_planned(self):
+        self.assertEqual(flutes(story().planned_again), ['planned'] * 4)
+
+    def test_plan_of_another_job_does_not_change_what_is_shown_of_the_running_one(self):
+        self.assertEqual(story().scenes_by_plan, 0)
+
+    def largest_of(self, setpoints, tooth):
+        """The largest error of a tooth's last pass, and where it was."""
+        return max((error, x) for x, error in measured([s for s in setpoints if (s.tooth, s.pass_) == (tooth, 1)]))
+
+    def scale_end(self, markers):
+        texts = [m.text for m in of_namespace(markers, 'text')]
+        return float(next(text for text in texts if text.endswith(' um')).split()[0]) * UM
+
+    def test_colours_are_those_of_the_measured_errors(self):
+        markers = story().after.markers['tool_path']
+        largest = [self.largest_of(story().run.setpoints, tooth) for tooth in range(4)]
+        end = max(largest)[0]
+        self.assertGreater(end, 0)
+        self.assertAlmostEqual(self.scale_end(markers), end, delta=0.01 * end)
+        for marker, (error, x) in zip(of_namespace(markers, 'tool_path'), largest):
+            self.assertEqual(len(marker.colors), len(marker.points))
+            colour = marker.colors[abs(points_of(marker)[:, 0] - x).argmin()]
+            # Blue, green, yellow, red: the red grows and the green falls from the middle on.
+            fraction = error / end
+            self.assertGreater(fraction, 0.4)
+            self.assertAlmostEqual(colour.r, min(4 * fraction - 1.5, 1), delta=0.01)
+            self.assertAlmostEqual(colour.g, max(0.1, min(1.6 - abs(4 * fraction - 2), 1)), delta=0.01)
+
+    def test_text_tells_tooth_pass_feed_and_largest_error(self):
+        line = text_line(story().during.markers['executed_path'])
+        largest = max(error for _, error in measured(story().setpoints_when_held))
+        match = re.fullmatch(r'held tooth 2/4 pass 2/2 feed (\d+) mm/min largest error (\S+) um', line)
+        self.assertTrue(match, line)
+        self.assertAlmostEqual(float(match.group(2)) * UM, largest, delta=0.01 * largest)
+
+    def test_text_tells_the_plan(self):
+        self.assertEqual(text_line(story().before.markers['executed_path']),
+                         'planned teeth 4 passes 2 feed 3000 mm/min')
+
+
+class TestPictures(unittest.TestCase):
+    """What is to be seen in rviz's window, and that nothing is amiss with it."""
+
+    def all_pictures(self):
+        return [story().machine, *story().planned.values(), story().before, story().during, story().after]
+
+    def test_no_display_has_anything_to_complain_of(self):
+        for picture in self.all_pictures():
+            self.assertGreater(picture.report['statuses'], 10)
+            self.assertEqual(picture.report['not OK'], [], picture.name)
+
+    def test_window_fits_the_screen(self):
+        for picture in self.all_pictures():
+            left, top, width, height = picture.report['window']
+            self.assertEqual(picture.report['screen'], [0, 0, 1280, 900])
+            self.assertEqual(picture.image.size, (1280, 900))
+            self.assertTrue(left >= 0 and top >= 0 and left + width <= 1280 and top + height <= 900)
+
+    def test_nothing_is_shown_of_a_job_before_a_plan(self):
+        self.assertEqual(story().before_plan, dict.fromkeys(TOPICS, 0))
+        self.assertFalse(story().machine.has_board())
+
+    def seen(self, moment, points, front_only=True):
+        """Columns and rows of points of the frame `cutter`, and which of them are meant: those on the near side."""
+        camera = Camera(moment.report['view'])
+        to_table = numpy.linalg.inv(moment.to_base['table']) @ moment.to_base['cutter']
+        points = (to_table @ numpy.column_stack([points, numpy.ones(len(points))]).T).T[:, :3]
+        near = (points[:, 1:] @ camera.toward[1:] > 2 * MM) & (points[:, 0] < 26 * MM) & (points[:, 0] > 0)
+        chosen = numpy.nonzero(near | (not front_only))[0]
+        return camera.see(points[chosen]), chosen
+
+    def share_of_flutes(self, moment, teeth, looks):
+        markers = of_namespace(moment.markers['tool_path'], 'tool_path')
+        places = numpy.vstack([self.seen(moment, points_of(markers[tooth]))[0] for tooth in teeth])
+        self.assertGreater(len(places), 30)
+        return moment.share(places, looks)
+
+    def test_planned_flutes_are_seen_grey_on_the_blank(self):
+        self.assertGreater(self.share_of_flutes(story().before, range(4), light_grey), 0.9)
+        self.assertLess(self.share_of_flutes(story().before, range(4), magenta), 0.05)
+
+    def test_flute_being_ground_is_seen_bright(self):
+        self.assertGreater(self.share_of_flutes(story().during, [1], magenta), 0.9)
+        self.assertGreater(self.share_of_flutes(story().during, [2, 3], light_grey), 0.9)
+        self.assertLess(self.share_of_flutes(story().during, [2, 3], magenta), 0.1)
+
+    def test_executed_path_is_seen(self):
+        marker, = of_namespace(story().during.markers['executed_path'], 'executed_path')
+        places, _ = self.seen(story().during, points_of(marker), front_only=False)
+        self.assertGreater(story().during.share(places, cyan), 0.8)
+        self.assertLess(story().before.share(places, cyan), 0.1)
+
+    def test_finished_flutes_are_seen_in_the_colours_of_their_errors(self):
+        seen = 0
+        for marker in of_namespace(story().after.markers['tool_path'], 'tool_path'):
+            places, chosen = self.seen(story().after, points_of(marker))
+            colours = [255 * numpy.array([marker.colors[i].r, marker.colors[i].g, marker.colors[i].b]) for i in chosen]
+
+            def like_its_colour(i, *pixel):
+                return abs(colours[i] - pixel).max() < 90
+
+            self.assertGreater(story().after.share(places, like_its_colour), 0.7)
+            self.assertLess(story().before.share(places, like_its_colour), 0.3)
+            seen += len(places)
+        self.assertGreater(seen, 100)
+
+    def test_board_is_whole_in_the_view(self):
+        board, = of_namespace(story().before.markers['scene'], 'board')
+        points = points_of(board)
+        middle = points.mean(axis=0)
+        for picture in self.all_pictures()[1:]:
+            left, top, width, height = picture.report['view']
+            # Just within its corners, where the picture must have it, and so must the view.
+            for column, row in Camera(picture.report['view']).see(middle + 0.98 * (points - middle)):
+                self.assertTrue(left < column < left + width and top < row < top + height)
+                self.assertLessEqual(abs(picture.pixels[int(row), int(column)] - numpy.array(BOARD)).max(), 3)
+
+    def test_texts_lie_on_the_board_and_none_on_another(self):
+        for moment in (story().before, story().during, story().after):
+            board, = of_namespace(moment.markers['scene'], 'board')
+            corners = points_of(board)
+            origin, right, up = corners[0], corners[1] - corners[0], corners[2] - corners[1]
+            boxes = []
+            for marker in sum((of_namespace(markers, 'text') for markers in moment.markers.values()), []):
+                self.assertEqual(marker.header.frame_id, board.header.frame_id)
+                p = marker.pose.position
+                at = numpy.array([p.x, p.y, p.z]) - origin
+                middle = [at @ right / numpy.linalg.norm(right), at @ up / numpy.linalg.norm(up)]
+                # A letter is on the average less than 0.53 of its height wide.
+                half = [0.265 * marker.scale.z * len(marker.text), 0.5 * marker.scale.z]
+                boxes.append((marker.text, middle, half))
+            for i, (text, middle, half) in enumerate(boxes):
+                for k, size in enumerate((numpy.linalg.norm(right), numpy.linalg.norm(up))):
+                    self.assertTrue(half[k] <= middle[k] <= size - half[k], text)
+                for other, other_middle, other_half in boxes[:i]:
+                    apart = [abs(middle[k] - other_middle[k]) - half[k] - other_half[k] for k in (0, 1)]
+                    self.assertGreater(max(apart), 0, (text, other))
+
+    def test_no_marker_has_more_points_than_rviz_stands(self):
+        for messages in story().rviz.messages.values():
+            for message in messages:
+                for marker in message.markers:
+                    self.assertLessEqual(len(marker.points), 16384)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_scene')
+    rostest.rosrun('flute_grinder', 'scene', '__main__')

@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
-"""How many frames a second rviz draws of the machine alone, and of a job of 10 teeth and 20 passes planned and running.
-`scripts/bench_rviz` runs it on a screen of its own, drawn by software."""
+"""How many frames a second rviz draws of the machine alone, and of a job of 10 teeth and 20 passes planned and running, and
+what a frame costs on all cores together. `scripts/bench_rviz` runs it on a screen of its own, drawn by software."""
 
 import math
+import os
 import sys
 import time
+import xmlrpc.client
 
+import rosgraph
 import rospkg
 import rospy
 from std_srvs.srv import Trigger
@@ -19,19 +22,31 @@ JOB = gc.paper(end_diameter=6 * MM, cone_angle=0, spiral_angle=45 * DEG, flute_l
                tooth_angles=[i * 2 * math.pi / 10 for i in range(10)], depth=2 * MM, infeed=0.1 * MM, even_step=1)
 
 
+def processor_time(pid):
+    """Of a process with all its threads [s]."""
+    with open('/proc/%d/stat' % pid) as text:
+        fields = text.read().rpartition(')')[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
 def main():
     seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10
     rospy.init_node('bench_rviz')
     rospy.wait_for_service('/rviz/report', gc.PATIENCE)
     report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
 
-    def measure(what):
-        def frames():
-            return int(report().message.split()[1])
+    node = rosgraph.Master(rospy.get_name()).lookupNode('/rviz')
+    pid = xmlrpc.client.ServerProxy(node).getPid(rospy.get_name())[2]
 
-        first, begin = frames(), time.monotonic()
+    def now():
+        return int(report().message.split()[1]), time.monotonic(), processor_time(pid)
+
+    def measure(what):
+        before = now()
         rospy.sleep(seconds)
-        print('%-16s %5.1f frames/s' % (what, (frames() - first) / (time.monotonic() - begin)), flush=True)
+        frames, wall, processor = [b - a for a, b in zip(before, now())]
+        print('%-16s %5.1f frames/s %5.1f ms of processor time each' % (what, frames / wall, 1e3 * processor / frames),
+              flush=True)
 
     grinder = gc.Grinder()
     grinder.make_ready()

@@ -18,8 +18,8 @@ using visualization_msgs::MarkerArray;
 constexpr double kBlankLength = 0.066;             ///< from the small end into the collet [m]
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it does not change fast
 
-/// The blank before it is ground: the cone over the whole stroke, and a shank of the diameter there. Translucent, so
-/// that the executed path shows, which lies below its surface.
+/// The blank before it is ground: the cone over the whole stroke, and a shank of the diameter there. The cone is
+/// translucent, so that the executed path shows, which lies below its surface.
 void appendBlank(MarkerArray& array, const GrindProgram& program) {
   const ConicalCutter& cutter = program.cutter();
   const double flute = cutter.geometry().flute_length;
@@ -32,7 +32,8 @@ void appendBlank(MarkerArray& array, const GrindProgram& program) {
     m.colors.assign(m.points.size(), colour);
   };
   add({{0, 0}, at(0), at(flute)}, colour(0.20, 0.32, 0.52, 0.65));
-  add({at(flute), at(cone), {shank, cutter.radius(cone)}, {shank, 0}}, colour(0.42, 0.44, 0.48, 0.65));
+  add({at(flute), at(cone)}, colour(0.42, 0.44, 0.48, 0.65));
+  appendSolid(array, "blank", "cutter", {{cone, 0}, at(cone), {shank, cutter.radius(cone)}}, colour(0.74, 0.75, 0.77));
 }
 
 /// The wheel as the job begins. It turns about the frame's Z.

@@ -32,6 +32,7 @@ JOB = gc.paper(end_diameter=12 * MM, spiral_angle=38 * DEG, flute_length=26 * MM
                even_step=1)
 HELIX = gc.Helix(JOB)
 DEPTHS = [0.3 * MM, 0.5 * MM]
+HELD = 2  # the tooth in whose last pass the job is held
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
 TOPICS = ['scene', 'tool_path', 'executed_path', 'path_error']
 
@@ -238,8 +239,8 @@ class Story:
         assert g.send(JOB, dry_run=True).wait().status == 'SUCCEEDED'
         self.before = self.snapshot('before')
         self.run = g.send(JOB)
-        self.run.wait_past(lambda s: (s.tooth, s.pass_, s.move) == (1, 1, STROKE) and s.position[X] > 3 * MM,
-                           'the second tooth')
+        self.run.wait_past(lambda s: (s.tooth, s.pass_, s.move) == (HELD, 1, STROKE) and s.position[X] > 3 * MM,
+                           'the third tooth')
         assert g.hold().success
         g.wait_for(lambda: g.states[-1].state_name == 'held', 'held')
         g.wait_rest()
@@ -296,12 +297,11 @@ class TestFrames(unittest.TestCase):
         cls.held = story().during
         cls.at = cls.held.positions
         cls.markers = cls.held.markers
-        cls.path = points_of(of_namespace(cls.markers['tool_path'], 'tool_path')[1])
+        cls.path = points_of(of_namespace(cls.markers['tool_path'], 'tool_path')[HELD])
         # On the helix of the tooth, where the axes are.
-        a = TEETH[1] + HELIX.a(cls.at[X])
+        a = TEETH[HELD] + HELIX.a(cls.at[X])
         r = HELIX.radius(cls.at[X])
         cls.place = numpy.array([cls.at[X], r * math.cos(a), r * math.sin(a), 1])
-        cls.wear = 0.02 * MM + 3 * 0.001 * MM
         cls.wheel = of_namespace(cls.markers['scene'], 'wheel')
         rim = numpy.vstack([points_of(m) for m in cls.wheel])
         cls.wheel_radius = numpy.hypot(rim[:, 0], rim[:, 1]).max()
@@ -322,16 +322,17 @@ class TestFrames(unittest.TestCase):
         self.assertLess(abs(turned - numpy.array(expected)).max(), 1e-6)
 
     def test_blank_has_the_true_size(self):
-        flute, shank = of_namespace(self.markers['scene'], 'blank')
-        self.assertEqual({flute.header.frame_id, shank.header.frame_id}, {'cutter'})
+        flute, end, shank = of_namespace(self.markers['scene'], 'blank')
+        self.assertEqual({m.header.frame_id for m in (flute, end, shank)}, {'cutter'})
         points = points_of(flute)
         radii = numpy.hypot(points[:, 1], points[:, 2])
         self.assertEqual((points[:, 0].min(), points[:, 0].max()), (0, 26 * MM))
         for x, r in zip(points[:, 0], radii):
             if r > 0:
                 self.assertAlmostEqual(r, HELIX.radius(x), delta=1e-12)
+        for marker, start in ((end, 26 * MM), (shank, 27 * MM)):
+            self.assertAlmostEqual(points_of(marker)[:, 0].min(), start, delta=1e-12)
         points = points_of(shank)
-        self.assertEqual(points[:, 0].min(), 26 * MM)
         self.assertAlmostEqual(numpy.hypot(points[:, 1], points[:, 2]).max(), HELIX.radius(27 * MM), delta=1e-12)
 
     def test_path_lies_on_the_blank_where_the_axes_are(self):
@@ -346,13 +347,13 @@ class TestFrames(unittest.TestCase):
     def test_wheel_touches_the_cutter_where_the_path_says(self):
         x, y, z, _ = self.in_wheel(self.place)[0]
         # The wheel is in the work by the pass' depth; it is worn by more than it was when the job began.
-        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius - DEPTHS[1], delta=4 * UM)
+        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius - DEPTHS[1], delta=6 * UM)
         # Z keeps the rake angle: the place is that much below the wheel's middle.
         self.assertAlmostEqual(abs(z), HELIX.z(self.at[X]) * math.cos(38 * DEG), delta=2 * UM)
         self.assertLess(abs(z), self.half_width)
 
     def test_wheel_is_swivelled_along_the_helix(self):
-        a = TEETH[1] + HELIX.a(self.at[X])
+        a = TEETH[HELD] + HELIX.a(self.at[X])
         tangent = numpy.array([1, HELIX.tan_cone * math.cos(a) - HELIX.tan_spiral * math.sin(a),
                                HELIX.tan_cone * math.sin(a) + HELIX.tan_spiral * math.cos(a), 0])
         direction = self.in_wheel(tangent / numpy.linalg.norm(tangent))[0]
@@ -371,12 +372,12 @@ class TestFrames(unittest.TestCase):
         self.assertAlmostEqual(points[-1, 0], self.at[X], delta=1 * UM)
         for x, y, z in points:
             self.assertAlmostEqual(math.hypot(y, z), HELIX.radius(x) - DEPTHS[1], delta=2 * UM)
-            angle = math.remainder(math.atan2(z, y) - TEETH[1] - HELIX.a(x), 2 * math.pi)
+            angle = math.remainder(math.atan2(z, y) - TEETH[HELD] - HELIX.a(x), 2 * math.pi)
             self.assertAlmostEqual(angle, 0, delta=1e-4)
 
     def test_executed_path_ends_at_the_wheel(self):
         x, y, z, _ = self.in_wheel(numpy.append(self.executed()[-1], 1))[0]
-        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius, delta=4 * UM)
+        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius, delta=6 * UM)
 
 
 class TestFlutes(unittest.TestCase):
@@ -386,7 +387,7 @@ class TestFlutes(unittest.TestCase):
         self.assertEqual(flutes(story().before.markers['tool_path']), ['planned'] * 4)
 
     def test_finished_active_and_planned_within_it(self):
-        self.assertEqual(flutes(story().during.markers['tool_path']), ['measured', 'active', 'planned', 'planned'])
+        self.assertEqual(flutes(story().during.markers['tool_path']), ['measured', 'measured', 'active', 'planned'])
 
     def test_all_finished_after_it(self):
         self.assertEqual(flutes(story().after.markers['tool_path']), ['measured'] * 4)
@@ -432,7 +433,7 @@ class TestFlutes(unittest.TestCase):
     def test_text_tells_tooth_pass_feed_and_largest_error(self):
         line = text_line(story().during.markers['executed_path'])
         largest = max(error for _, error in measured(story().setpoints_when_held))
-        match = re.fullmatch(r'held tooth 2/4 pass 2/2 feed (\d+) mm/min largest error (\S+) um', line)
+        match = re.fullmatch(r'held tooth 3/4 pass 2/2 feed (\d+) mm/min largest error (\S+) um', line)
         self.assertTrue(match, line)
         self.assertAlmostEqual(float(match.group(2)) * UM, largest, delta=0.01 * largest)
 
@@ -483,9 +484,9 @@ class TestPictures(unittest.TestCase):
         self.assertLess(self.share_of_flutes(story().before, range(4), magenta), 0.05)
 
     def test_flute_being_ground_is_seen_bright(self):
-        self.assertGreater(self.share_of_flutes(story().during, [1], magenta), 0.9)
-        self.assertGreater(self.share_of_flutes(story().during, [2, 3], light_grey), 0.9)
-        self.assertLess(self.share_of_flutes(story().during, [2, 3], magenta), 0.1)
+        self.assertGreater(self.share_of_flutes(story().during, [HELD], magenta), 0.9)
+        self.assertGreater(self.share_of_flutes(story().during, [3], light_grey), 0.9)
+        self.assertLess(self.share_of_flutes(story().during, [3], magenta), 0.1)
 
     def test_executed_path_is_seen(self):
         marker, = of_namespace(story().during.markers['executed_path'], 'executed_path')
@@ -503,7 +504,7 @@ class TestPictures(unittest.TestCase):
                 return abs(colours[i] - pixel).max() < 90
 
             self.assertGreater(story().after.share(places, like_its_colour), 0.7)
-            self.assertLess(story().before.share(places, like_its_colour), 0.3)
+            self.assertLess(story().before.share(places, like_its_colour), 0.5)
             seen += len(places)
         self.assertGreater(seen, 100)
 

@@ -146,7 +146,8 @@ class TestTwoJobsAtOnce(unittest.TestCase):
 
     def test_path_is_shown_in_the_own_namespace_and_frame(self):
         for client, sign in ((self.left, 1), (self.right, -1)):
-            markers = rospy.wait_for_message('/%s/tool_path' % client.name, MarkerArray, gc.PATIENCE).markers[1:]
+            shown = rospy.wait_for_message('/%s/tool_path' % client.name, MarkerArray, gc.PATIENCE).markers
+            markers = [m for m in shown if m.ns == 'tool_path']
             self.assertEqual({m.header.frame_id for m in markers}, {'cutter'})
             # A right-hand flute turns on with X, a left-hand one back.
             first, second = markers[0].points[:2]

@@ -12,10 +12,10 @@ using visualization_msgs::MarkerArray;
 
 constexpr const char* kFrame = "table";
 constexpr double kYaw = 4.85, kPitch = 0.6;  ///< of the camera as seen from the board [rad]
-constexpr double kCentreX = 0.013, kCentreY = -0.022, kCentreZ = -0.0245;  ///< [m]
-constexpr double kHalfWidth = 0.05, kHalfHeight = 0.0095;                  ///< [m]
-constexpr double kTextHeight = 2.1e-3, kFigureHeight = 1.8e-3;             ///< [m]
-constexpr double kScaleLength = 0.034, kScaleWidth = 1.5e-3;               ///< [m]
+constexpr double kCentreX = 0.0158, kCentreY = -0.022, kCentreZ = -0.0245;  ///< [m]
+constexpr double kHalfWidth = 0.0475, kHalfHeight = 0.0095;                 ///< [m]
+constexpr double kTextHeight = 2.1e-3, kFigureHeight = 1.8e-3;              ///< [m]
+constexpr double kScaleLength = 0.034, kScaleWidth = 1.5e-3;                ///< [m]
 constexpr int kScaleSteps = 32;
 
 /// A place on the board: to the right, up, and toward the camera [m].

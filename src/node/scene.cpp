@@ -61,7 +61,7 @@ MarkerArray sceneMarkers(const GrindProgram& program) {
 
 std::string plannedText(const GrindJob& job) {
   char text[96];
-  std::snprintf(text, sizeof text, "planned     teeth %zu     passes %zu     feed %.4g mm/min", job.tooth_angles.size(),
+  std::snprintf(text, sizeof text, "planned   teeth %zu   passes %zu   feed %.4g mm/min", job.tooth_angles.size(),
                 passDepths(job.process).size(), job.process.feed / units::kMillimetrePerMinute);
   return text;
 }
@@ -120,8 +120,8 @@ std::string Scene::runText(const char* state) const {
   const Setpoint& p = shown_->last;
   char text[160];
   // People count teeth and passes from 1.
-  std::snprintf(text, sizeof text, "%s     tooth %d/%zu     pass %d/%zu     feed %.0f mm/min     largest error %s",
-                state, p.tooth + 1, shown_->job.tooth_angles.size(), p.pass + 1, shown_->passes,
+  std::snprintf(text, sizeof text, "%s   tooth %d/%zu   pass %d/%zu   feed %.0f mm/min   largest error %s", state,
+                p.tooth + 1, shown_->job.tooth_angles.size(), p.pass + 1, shown_->passes,
                 p.feed / units::kMillimetrePerMinute, board::micrometres(shown_->tool_path.largestMeasured()).c_str());
   return text;
 }

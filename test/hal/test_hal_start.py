@@ -5,6 +5,7 @@ that a start that fails leaves HAL as it was."""
 import ctypes
 import os
 import signal
+import subprocess
 import tempfile
 import unittest
 
@@ -54,10 +55,12 @@ class TestRefusals(unittest.TestCase):
 
     @unittest.skipUnless(os.getuid() == 0, 'only root may become somebody else')
     def test_no_permission(self):
+        somebody = ('setpriv', '--reuid=65533', '--regid=65533', '--clear-groups')
+        if subprocess.call([*somebody, 'test', '-r', gc.program('grinder')]) != 0:
+            self.skipTest('others may not read this folder')
         with tempfile.TemporaryDirectory() as home:
             os.chmod(home, 0o777)
-            self.check("no permission to use LinuxCNC's HAL as user 65533",
-                       prefix=('env', 'HOME=' + home, 'setpriv', '--reuid=65533', '--regid=65533', '--clear-groups'))
+            self.check("no permission to use LinuxCNC's HAL as user 65533", prefix=('env', 'HOME=' + home, *somebody))
 
     def test_no_streamer_of_that_number(self):
         self.check("HAL's streamer.1 is not there (No such file or directory); load it: loadrt streamer cfg=ffffu",

@@ -1,5 +1,5 @@
-"""A reader at the keyboard: types a page's commands in a scratch copy of the clone, with a home, a master and a screen of their
-own."""
+"""A reader at the keyboard: types a page's commands in a scratch copy of the clone, with a home and a master of their own, before
+the screen that DISPLAY names."""
 
 import os
 import pathlib
@@ -40,7 +40,7 @@ def poll(condition, what, interval=0.1):
 
 
 class Session:
-    def __init__(self, display):
+    def __init__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.clone, self.home = self.folder / 'clone', self.folder / 'home'
         self.home.mkdir()
@@ -52,8 +52,9 @@ class Session:
         (self.folder / 'env').write_text('')
         self.master = 'http://127.0.0.1:%d' % free_port()
         kept = {name: value for name, value in os.environ.items() if name.startswith('RTAPI_')}
-        self.environment = dict(kept, HOME=str(self.home), PATH='/usr/bin:/bin:/usr/sbin:/sbin', LANG='C.UTF-8', DISPLAY=display,
-                                LIBGL_ALWAYS_SOFTWARE='1', LP_NUM_THREADS='1', ROS_MASTER_URI=self.master, ROS_IP='127.0.0.1')
+        self.environment = dict(kept, HOME=str(self.home), PATH='/usr/bin:/bin:/usr/sbin:/sbin', LANG='C.UTF-8',
+                                DISPLAY=os.environ['DISPLAY'], LIBGL_ALWAYS_SOFTWARE='1', LP_NUM_THREADS='1',
+                                ROS_MASTER_URI=self.master, ROS_IP='127.0.0.1')
         self.in_hal = 'INSIDE_HAL' in os.environ
         self.launched = []
         self.outputs = {}

@@ -2,7 +2,7 @@
 """Runs every command that README.md and docs/*.md tell a reader to type, writes the files that they tell him to write, and
 compares what is printed, and all tables of figures, with what stands there. How a page is read is in pages.py.
 
-test_docs.py [PAGE...]: all pages unless some are named."""
+test/rviz/on_screen test/docs/test_docs.py [PAGE...]: all pages unless some are named."""
 
 import concurrent.futures
 import os
@@ -95,13 +95,13 @@ def do(session, item, last):
             raise Failure('line %d: %s' % (item.line, '; '.join(found)))
 
 
-def run_page(page, display):
+def run_page(page):
     """Types a page from its begin to its end. @return what is wrong, empty if nothing is."""
     if page in IN_HAL and 'INSIDE_HAL' not in os.environ:
         done = subprocess.run([ROOT / 'test/hal/in_hal', sys.executable, __file__, page], stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
         return '' if done.returncode == 0 else done.stdout
-    session = Session(display)
+    session = Session()
     try:
         if page not in FROM_THE_BEGINNING:
             session.type('source build/devel/setup.bash')
@@ -175,27 +175,11 @@ def check_links():
     return wrong
 
 
-class Screen:
-    """A screen without a screen, for rviz."""
-
-    def __enter__(self):
-        read, write = os.pipe()
-        self.server = subprocess.Popen(['Xvfb', '-displayfd', str(write), '-screen', '0', '1280x900x24', '-nolisten', 'tcp'],
-                                       pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        os.close(write)
-        with os.fdopen(read) as display:
-            return ':' + display.readline().strip()
-
-    def __exit__(self, *_):
-        self.server.terminate()
-        self.server.wait()
-
-
 def main():
     pages = sys.argv[1:] or PAGES
     wrong = [] if sys.argv[1:] else check_coverage() + check_links()
-    with Screen() as display, concurrent.futures.ThreadPoolExecutor(3) as pool:
-        wrong += filter(None, pool.map(lambda page: run_page(page, display), pages))
+    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+        wrong += filter(None, pool.map(run_page, pages))
     print('\n'.join(wrong))
     print('%d pages, %d things wrong' % (len(pages), len(wrong)))
     return 1 if wrong else 0

@@ -13,8 +13,7 @@ struct ReportOptions {
   std::string urdf;
 };
 
-/// Writes a report: gives this process to the program in Python that draws it, and returns only where that cannot be
-/// started.
+/// Writes a report: gives this process to the program in Python that draws it.
 /// @throw FileError or MachineConfigError for a machine that cannot be read, FileError if there is no such program.
 [[noreturn]] void writeReport(const ReportOptions& options);
 

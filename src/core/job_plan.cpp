@@ -160,7 +160,7 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
 }  // namespace
 
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
-                const std::function<void(const Setpoint&)>& visit, UnitSystem units) {
+                const std::function<void(const Setpoint&)>& visit, UnitSystem units, const PlanWatch&) {
   JobPlan plan;
   for (const JobError& error : validate(job, units)) plan.reasons.push_back(error.text());
   if (!plan.reasons.empty()) {

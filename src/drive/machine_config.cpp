@@ -159,6 +159,9 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.enable_timeout = p.number("enable_timeout", 0, 60);
   config.homing_timeout = p.number("homing_timeout", 0, 3600);
   config.spindle_timeout = p.number("spindle_timeout", 0, 600);
+  config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
+  config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
+  config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
   return config;
 }

@@ -87,6 +87,7 @@ const char* toString(MachineState state) noexcept {
     case S::kResuming: return "resuming";
     case S::kCanceling: return "canceling";
     case S::kFault: return "fault";
+    case S::kLifting: return "lifting";
   }
   return "unknown";
 }
@@ -100,6 +101,7 @@ const char* toString(MachineEvent event) noexcept {
     case E::kHold: return "hold";
     case E::kResume: return "resume";
     case E::kRetract: return "retract";
+    case E::kLift: return "lift";
     case E::kCancel: return "cancel";
     case E::kReset: return "reset";
     case E::kDone: return "done";

@@ -26,6 +26,8 @@ int errorCode(PlanFault fault) {
     case PlanFault::kInvalidJob: return GrindResult::INVALID_GOAL;
     case PlanFault::kLimit: return GrindResult::LIMIT_VIOLATED;
     case PlanFault::kTolerance: return GrindResult::PATH_TOLERANCE_VIOLATED;
+    case PlanFault::kTooLong: return GrindResult::INVALID_GOAL;
+    case PlanFault::kGivenUp: return GrindResult::CANCELED;
   }
   return GrindResult::INVALID_GOAL;
 }

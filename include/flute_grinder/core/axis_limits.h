@@ -16,8 +16,9 @@ struct AxisLimits {
 /// What a job must know of the machine that is to run it.
 struct Machine {
   AxisLimits limits;
-  double period = 0;         ///< control cycle T [s]
-  Axes park = Axes::Zero();  ///< where a job ends, clear of the work [m], A [rad]
+  double period = 0;                ///< control cycle T [s]
+  Axes park = Axes::Zero();         ///< where a job ends, clear of the work [m], A [rad]
+  double max_job_duration = 86400;  ///< longest job that is planned [s]
 };
 
 }  // namespace flute_grinder

@@ -29,7 +29,19 @@ struct PlanStatistics {
 };
 
 /// Why a plan is refused.
-enum class PlanFault { kNone, kInvalidJob, kLimit, kTolerance };
+enum class PlanFault {
+  kNone,
+  kInvalidJob,
+  kLimit,
+  kTolerance,
+  kTooLong,  ///< longer than Machine::max_job_duration
+  kGivenUp,  ///< by the watch
+};
+
+/// Watches a plan that is being made, every millisecond or so.
+/// @param done part of the job that is generated and checked, 0..1.
+/// @return false to give the plan up.
+using PlanWatch = std::function<bool(double done)>;
 
 /// A job that was generated and checked as a whole.
 struct JobPlan {
@@ -49,7 +61,9 @@ struct JobPlan {
 /// @param first first pass to grind.
 /// @param visit called with every setpoint, if given.
 /// @param units of the texts about the job's figures.
+/// @param watch may give the plan up, if given.
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
-                const std::function<void(const Setpoint&)>& visit = {}, UnitSystem units = UnitSystem::kSi);
+                const std::function<void(const Setpoint&)>& visit = {}, UnitSystem units = UnitSystem::kSi,
+                const PlanWatch& watch = {});
 
 }  // namespace flute_grinder

@@ -25,6 +25,8 @@ struct LoopConfig {
   double enable_timeout = 0;            ///< longest time from the enable command to power [s]
   double homing_timeout = 0;            ///< longest time that homing may take [s]
   double spindle_timeout = 0;           ///< longest time until spindle and coolant are ready for a job [s]
+  double late_slow_down = 2;  ///< period from which on a cycle is late and the speed is taken up anew [periods]
+  double late_fault = 10;     ///< period from which on the machine stops [periods]
 };
 
 /// What must be so for the wheel to be at the work.

@@ -20,6 +20,7 @@ enum class MachineState : std::uint8_t {
   kResuming,    ///< on the way back to the place where the path was left
   kCanceling,   ///< stopping on the path, to end the job
   kFault,       ///< power off after a fault, until reset
+  kLifting,     ///< lifting the wheel off the work, without a job
 };
 
 /// What may change the state: requests from outside, and what the loop sees by itself.
@@ -31,6 +32,7 @@ enum class MachineEvent : std::uint8_t {
   kHold,
   kResume,
   kRetract,
+  kLift,
   kCancel,
   kReset,
   kDone,    ///< what the state waited for has come: the reference, spindle and coolant, the path

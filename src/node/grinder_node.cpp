@@ -93,7 +93,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   diagnostics_ = std::make_unique<Diagnostics>(config, readDiagnosticThresholds(parameters), [this] {
     return Scheduling{loop_->realtimeScheduling(), loop_->memoryLocked()};
   });
-  journal_ = std::make_unique<Journal>(journalPath(parameters.text("journal"), private_nh_.getNamespace()));
+  journal_ = std::make_unique<Journal>(journalPath(parameters.text("journal"), private_nh_.getNamespace()),
+                                       private_nh_.getNamespace());
   readJournal();
   loadDrive(parameters);
   loop_ = std::make_unique<ControlLoop>(*hw_, config);
@@ -241,7 +242,13 @@ void GrinderNode::startJob(GoalHandle& goal, JobPlan& plan) {
   const GrindJob& job = plan.program->job();
   const auto request = goal.getGoal();
   const Progress before = progress_;
-  progress_ = {jobDigest(job), false, {request->first_tooth, request->first_pass}, plan.program->strokeFrom()};
+  progress_ = Progress();
+  progress_.job_digest = jobDigest(job);
+  progress_.job_name = request->job_name;
+  progress_.cutter = job.cutter;
+  progress_.tooth_angles = job.tooth_angles;
+  progress_.next = {request->first_tooth, request->first_pass};
+  progress_.x = plan.program->strokeFrom();
   std::string refusal = writeJournal();
   if (refusal.empty()) {
     Setpoint at_start;

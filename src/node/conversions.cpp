@@ -1,10 +1,10 @@
 #include "flute_grinder/node/conversions.h"
 
-#include <openssl/evp.h>
+#include "flute_grinder/node/sha256.h"
+
 #include <ros/serialization.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 namespace flute_grinder {
@@ -90,17 +90,7 @@ std::string jobDigest(const GrindJob& job) {
   append(goal.cutter);
   append(goal.process);
   append(goal.interpolation);
-
-  std::array<std::uint8_t, 32> digest{};
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("the job's digest cannot be computed");
-  }
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    constexpr const char* digits = "0123456789abcdef";
-    text += {digits[byte >> 4], digits[byte & 15]};
-  }
-  return text;
+  return sha256Hex(bytes.data(), bytes.size());
 }
 
 PathStatistics toMessage(const PlanStatistics& s) {

@@ -131,6 +131,15 @@ const char* toString(StrokeDirection direction) noexcept {
   return direction == StrokeDirection::kFromEnd ? "from_end" : "to_end";
 }
 
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
+  char text[200];
+  std::snprintf(text, sizeof text, "D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s",
+                cutter.end_diameter / units::kMillimetre, cutter.cone_angle / units::kDegree,
+                cutter.spiral_angle / units::kDegree, cutter.rake_angle / units::kDegree, teeth,
+                teeth == 1 ? "tooth" : "teeth");
+  return text;
+}
+
 std::string JobField::format(double value, UnitSystem system) const {
   return system == UnitSystem::kSi ? number(value) + " " + si_unit : number(value / shop_scale) + " " + shop_unit;
 }

@@ -3,6 +3,7 @@
 #include "flute_grinder/node/conversions.h"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 namespace flute_grinder {
@@ -10,6 +11,21 @@ namespace flute_grinder {
 namespace {
 
 const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
+
+/// A job for people, who count teeth and passes from 1.
+std::string describe(const Progress& p) {
+  std::ostringstream text;
+  text << (p.job_name.empty() ? "a job without a name" : p.job_name) << " ("
+       << toolText(p.cutter, p.tooth_angles.size()) << "), tooth " << p.next.tooth + 1 << ", pass " << p.next.pass + 1;
+  return text.str();
+}
+
+/// Where a job takes the wheel.
+Wheel wheelOf(const GrindProgram& program) {
+  double lowest = program.clearanceHeight();
+  for (const Move& move : program.moves()) lowest = std::min(lowest, move.to[kY]);
+  return {true, program.clearanceHeight(), program.clearanceHeight() - lowest};
+}
 
 bool same(const ToothPass& a, const ToothPass& b) { return a.tooth == b.tooth && a.pass == b.pass; }
 
@@ -40,7 +56,6 @@ void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, c
   progress_.x = program.strokeFrom();
   // Until the job has ended: after a crash only the drive's positions could tell that the wheel was out of the work.
   progress_.wheel = wheelOf(program);
-  progress_.wheel.in_work = true;
   write();
 }
 

@@ -52,12 +52,7 @@ GrindJob jobFromGoal(const GrindGoal& goal) {
 
 GrindGoal goalFromJob(const GrindJob& job) {
   GrindGoal goal;
-  goal.cutter.end_diameter = job.cutter.end_diameter;
-  goal.cutter.cone_angle = job.cutter.cone_angle;
-  goal.cutter.spiral_angle = job.cutter.spiral_angle;
-  goal.cutter.rake_angle = job.cutter.rake_angle;
-  goal.cutter.flute_length = job.cutter.flute_length;
-  goal.cutter.tooth_angles = job.tooth_angles;
+  goal.cutter = toMessage(job.cutter, job.tooth_angles);
   goal.process.feed = job.process.feed;
   goal.process.depth = job.process.depth;
   goal.process.infeed = job.process.infeed;
@@ -76,6 +71,17 @@ GrindGoal goalFromJob(const GrindJob& job) {
   goal.interpolation.tolerance = job.interpolation.tolerance;
   goal.interpolation.rotary_scale = job.interpolation.rotary_scale;
   return goal;
+}
+
+Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles) {
+  Cutter m;
+  m.end_diameter = cutter.end_diameter;
+  m.cone_angle = cutter.cone_angle;
+  m.spiral_angle = cutter.spiral_angle;
+  m.rake_angle = cutter.rake_angle;
+  m.flute_length = cutter.flute_length;
+  m.tooth_angles = tooth_angles;
+  return m;
 }
 
 std::string jobDigest(const GrindJob& job) {

@@ -32,6 +32,18 @@ double strokeFraction(const Setpoint& p, const GrindProgram& program) {
   return fraction(p.position[kX] - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
 }
 
+JobProgress toMessage(const Progress& progress) {
+  JobProgress m;
+  m.job_digest = progress.job_digest;
+  m.job_name = progress.job_name;
+  m.cutter = flute_grinder::toMessage(progress.cutter, progress.tooth_angles);
+  m.finished = static_cast<std::uint8_t>(progress.finished);
+  m.tooth = static_cast<std::uint16_t>(progress.next.tooth);
+  m.pass = static_cast<std::uint16_t>(progress.next.pass);
+  m.x = progress.x;
+  return m;
+}
+
 }  // namespace
 
 Teller::Teller(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,

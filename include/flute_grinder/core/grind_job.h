@@ -94,6 +94,9 @@ struct JobField {
 /// Every number of a job but the teeth and the count of spark-out passes.
 const std::vector<JobField>& jobFields();
 
+/// The tool for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
+
 constexpr int kMaxTeeth = 64;
 constexpr int kMaxSparkOut = 100;
 constexpr int kMaxPasses = 10000;

@@ -42,6 +42,7 @@ int errorCode(FaultKind fault) {
     case FaultKind::kDriveFault:
     case FaultKind::kPowerLost:
     case FaultKind::kUnderrun:
+    case FaultKind::kLate:
     case FaultKind::kHoming:
     case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
     case FaultKind::kInterlock: return GrindResult::NOT_READY;
@@ -99,7 +100,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   loop_ = std::make_unique<ControlLoop>(*hw_, config);
   batch_.period = config.machine.period;
   advertise();
-  loop_->start();
+  loop_->startThread();
   server_->start();
 }
 
@@ -175,8 +176,8 @@ void GrinderNode::shutDown() {
     takeRecords();
     moving = job_ != nullptr;
   }
-  loop_->request(MachineEvent::kDisable);
-  loop_->stop();
+  ask(MachineEvent::kDisable);
+  loop_->stopThread();
 }
 
 void GrinderNode::reject(GoalHandle& goal, int code, const std::string& text) {
@@ -250,7 +251,7 @@ void GrinderNode::startJob(GoalHandle& goal, JobPlan& plan) {
     at_start.pass = request->first_pass;
     job_ = std::make_unique<Job>(Job{goal, std::make_unique<SetpointStream>(*plan.program), plan.statistics,
                                      std::move(plan.move_ends), passOrder(job), at_start});
-    const RequestReply reply = loop_->request(MachineEvent::kStart, job_->stream.get());
+    const RequestReply reply = askToStart(job_->stream.get());
     if (reply.accepted) return;
     // A loop that has not answered may yet begin to use the stream.
     if (!reply.answered) static_cast<void>(job_->stream.release());
@@ -271,14 +272,29 @@ void GrinderNode::onCancel(const GoalHandle& goal) {
 }
 
 void GrinderNode::cancelJob() {
-  const RequestReply reply = loop_->request(MachineEvent::kCancel);
+  const RequestReply reply = ask(MachineEvent::kCancel);
   // A cancel that comes once more, after the stop, is refused.
   if (reply.accepted) job_->canceled = true;
   if (!reply.accepted) ROS_WARN_STREAM(reply.text);
 }
 
+RequestReply GrinderNode::ask(MachineEvent event) {
+  const std::lock_guard<std::mutex> lock(request_mutex_);
+  return isStop(event) ? loop_->stop(event) : loop_->request(event);
+}
+
+RequestReply GrinderNode::askToStart(SetpointStream* stream) {
+  loop_->postStart(stream);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  while (std::chrono::steady_clock::now() < deadline) {
+    if (const auto reply = loop_->startReply()) return *reply;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return {false, "the control loop does not answer", false};
+}
+
 bool GrinderNode::onRequest(MachineEvent event, std_srvs::Trigger::Response& response) {
-  const RequestReply reply = loop_->request(event);
+  const RequestReply reply = ask(event);
   response.success = reply.accepted;
   response.message = reply.text;
   if (!reply.accepted) ROS_WARN_STREAM(reply.text);

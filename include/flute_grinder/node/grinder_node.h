@@ -81,6 +81,8 @@ class GrinderNode {
   void show(const Preview& preview);
   void startJob(GoalHandle& goal, JobPlan& plan);
   void cancelJob();
+  RequestReply ask(MachineEvent event);
+  RequestReply askToStart(SetpointStream* stream);
   bool onRequest(MachineEvent event, std_srvs::Trigger::Response& response);
   bool onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response);
   bool onPlan(Plan::Request& request, Plan::Response& response);
@@ -115,6 +117,7 @@ class GrinderNode {
   std::unique_ptr<diagnostic_updater::Updater> diagnostic_updater_;
   ros::SteadyTimer timer_;
 
+  std::mutex request_mutex_;
   std::mutex mutex_;    ///< guards all below
   CycleRecord record_;  ///< the newest
   std::uint64_t records_ = 0;

@@ -39,6 +39,13 @@ bool FeedLaw::setTarget(double target) noexcept {
   return true;
 }
 
+void FeedLaw::slowDown(double factor) noexcept {
+  if (!(factor > 0 && factor < 1) || resting()) return;
+  speed_ *= factor;
+  acceleration_ *= factor * factor;
+  plan();
+}
+
 void FeedLaw::advance(double dt) noexcept {
   time_ += dt;
   if (resting()) {

@@ -89,6 +89,8 @@ bool SetpointStream::finished() const noexcept {
 }
 
 bool SetpointStream::beginPair() noexcept {
+  law_.slowDown(slow_down_);
+  slow_down_ = 1;
   law_.setTarget(targetSpeed());
   while (law_.resting()) {
     if (holding_ || !law_.finished() || !beginNext()) return false;

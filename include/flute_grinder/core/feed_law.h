@@ -33,6 +33,12 @@ class FeedLaw {
   /// @return whether the target was taken.
   bool setTarget(double target) noexcept;
 
+  /// Goes on as a film of the same motion does that is shown more slowly: the axes stood where it went on. Speed and
+  /// acceleration are those of the film, so that the way left suffices for a stop as it did before, also in the midst
+  /// of a braking; the speed is then taken up anew.
+  /// @param factor of the time, above 0, below 1; others are not taken.
+  void slowDown(double factor) noexcept;
+
   /// Lets `dt` [s] pass, not negative.
   void advance(double dt) noexcept;
 

@@ -29,6 +29,15 @@ class SetpointStream {
   /// Stops on the path, as soon as the limits allow. Real-time safe.
   void hold() noexcept { holding_ = true; }
 
+  /// Whether hold() is in force.
+  bool holding() const noexcept { return holding_; }
+
+  /// Takes the speed up anew, for axes that stood for a while where they were to move on. Real-time safe.
+  /// @param factor of the speed to go on with, above 0, below 1; others are not taken.
+  void slowDown(double factor) noexcept {
+    if (factor > 0 && factor < slow_down_) slow_down_ = factor;
+  }
+
   /// Goes on after hold(), from where the axes rest, or after retract(): a stroke is entered again ahead of the place
   /// where it was left, by the way that it takes to reach feed. Real-time safe.
   void resume() noexcept;
@@ -66,6 +75,7 @@ class SetpointStream {
   LogCurve curve_;
   double period_;
   double override_ = 1;
+  double slow_down_ = 1;  ///< of the next pair
   bool holding_ = false;
   bool stay_lifted_ = false;
 

@@ -26,6 +26,7 @@ int errorCode(FaultKind fault) {
     case FaultKind::kDriveFault:
     case FaultKind::kPowerLost:
     case FaultKind::kUnderrun:
+    case FaultKind::kLate:
     case FaultKind::kHoming:
     case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
     case FaultKind::kInterlock: return GrindResult::NOT_READY;

@@ -162,12 +162,14 @@ void GoalDesk::startWhenEntered() {
   goal_->number = loop_.status().jobs_started + 1;
   teller_.follow(goal_->number, goal_->handle.getGoalID(), goal_->preview);
   SetpointStream* stream = goal_->preview->stream.get();
+  bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    loop_.postStart(stream);
-    if (held) loop_.postStop(MachineEvent::kHold);
+    posted = loop_.postStart(stream);
+    if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   goal_->phase = Phase::kStarting;
-  if (!started) refuseStart("");
+  if (!started) return refuseStart("");
+  if (!posted) refuseStart("the control loop has not answered the start of the job before");
 }
 
 void GoalDesk::awaitStart() {

@@ -68,7 +68,7 @@ std::string plannedText(const GrindJob& job) {
 
 }  // namespace
 
-Scene::Scene(ros::NodeHandle& private_nh)
+Scene::Scene(ros::NodeHandle private_nh)
     : scene_(private_nh.advertise<MarkerArray>("scene", 1, true)),
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),

@@ -546,6 +546,9 @@ class NodeProcess:
             raise
 
     def close(self):
+        """Ends the process and forgets it; once more does nothing."""
+        if self.log.closed:
+            return
         if self.process.poll() is None:
             self.end(signal.SIGTERM)
         self.log.close()

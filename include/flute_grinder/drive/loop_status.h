@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/grind_program.h"
 #include "flute_grinder/core/setpoint.h"
 #include "flute_grinder/drive/loop_fault.h"
 #include "flute_grinder/drive/machine_state.h"
@@ -27,6 +28,9 @@ struct Wheel {
   double clear_y = 0;  ///< Y at which it is clear of the last job's work [m]
   double lift = 0;     ///< from the deepest place of that job to there [m]
 };
+
+/// How the wheel gets clear of a program's work, out of which it still is.
+Wheel wheelOf(const GrindProgram& program);
 
 /// How a job ended.
 enum class JobEnd : std::uint8_t {

@@ -8,6 +8,7 @@
 #include "flute_grinder/node/scene.h"
 #include "flute_grinder/node/served_queue.h"
 
+#include <actionlib_msgs/GoalID.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 

@@ -365,6 +365,9 @@ class Grinder:
     def retract(self):
         return self._call('retract', Trigger)
 
+    def lift(self):
+        return self._call('lift', Trigger)
+
     def reset(self):
         return self._call('reset_fault', Trigger)
 
@@ -486,6 +489,7 @@ def grinder():
     if not NODE:
         NODE.append(Grinder())
         atexit.register(remove_file, rospy.get_param('/grinder/journal'))
+        atexit.register(remove_file, rospy.get_param('/grinder/journal') + '.lock')
     return NODE[0]
 
 

@@ -22,6 +22,7 @@ constexpr Transition kTransitions[]{
     {S::kReady, E::kDisable, S::kDisabled},
     {S::kReady, E::kHome, S::kHoming},
     {S::kReady, E::kStart, S::kStarting},
+    {S::kReady, E::kLift, S::kLifting},
     {S::kReady, E::kFault, S::kFault},
 
     {S::kHoming, E::kDisable, S::kDisabled},

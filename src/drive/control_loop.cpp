@@ -38,13 +38,6 @@ RequestReply await(MachineEvent event, double timeout, const Poll& poll) {
   return {false, std::string(toString(event)) + ": the control loop does not answer", false};
 }
 
-/// How the wheel gets clear of a program's work.
-Wheel wheelOf(const GrindProgram& program) {
-  double deepest = program.clearanceHeight();
-  for (const Move& move : program.moves()) deepest = std::min(deepest, move.to[kY]);
-  return {false, program.clearanceHeight(), program.clearanceHeight() - deepest};
-}
-
 }  // namespace
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -20,13 +20,6 @@ std::string describe(const Progress& p) {
   return text.str();
 }
 
-/// Where a job takes the wheel.
-Wheel wheelOf(const GrindProgram& program) {
-  double lowest = program.clearanceHeight();
-  for (const Move& move : program.moves()) lowest = std::min(lowest, move.to[kY]);
-  return {true, program.clearanceHeight(), program.clearanceHeight() - lowest};
-}
-
 bool same(const ToothPass& a, const ToothPass& b) { return a.tooth == b.tooth && a.pass == b.pass; }
 
 }  // namespace
@@ -56,6 +49,7 @@ void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, c
   progress_.x = program.strokeFrom();
   // Until the job has ended: after a crash only the drive's positions could tell that the wheel was out of the work.
   progress_.wheel = wheelOf(program);
+  progress_.wheel.in_work = true;
   write();
 }
 

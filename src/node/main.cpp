@@ -1,4 +1,5 @@
 #include "flute_grinder/node/grinder_node.h"
+#include "flute_grinder/node/master_watch.h"
 #include "flute_grinder/node/output.h"
 
 #include <ros/ros.h>
@@ -6,6 +7,8 @@
 #include <csignal>
 #include <ctime>
 #include <exception>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -15,6 +18,16 @@ void waitForEnd(const sigset_t& signals) {
   while (ros::ok()) {
     if (sigtimedwait(&signals, nullptr, &interval) > 0) return;
   }
+}
+
+/// Of the node and its drive.
+std::vector<std::string> services() {
+  std::vector<std::string> names;
+  for (const char* name : {"enable", "disable", "home", "hold", "resume", "retract", "lift", "reset_fault",
+                           "set_feed_override", "plan", "hardware/inject_fault"}) {
+    names.push_back(ros::names::resolve(std::string("~") + name));
+  }
+  return names;
 }
 
 }  // namespace
@@ -32,6 +45,7 @@ int main(int argc, char** argv) {
   const ros::NodeHandle nh;
   try {
     flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
+    const flute_grinder::MasterWatch master_watch(services());
     ros::AsyncSpinner spinner(1);  // of the drive's callbacks; all others have threads of their own
     spinner.start();
     waitForEnd(signals);

@@ -15,12 +15,26 @@ namespace {
 constexpr int kRefreshInterval = 50;  ///< as often as the grinder tells its state [ms]
 constexpr int kMessages = 200;        ///< that are kept
 
+/// One for the process, however many panels there are.
+std::shared_ptr<MasterWatch> masterWatch() {
+  static std::weak_ptr<MasterWatch> the;
+  auto watch = the.lock();
+  if (!watch) the = watch = std::make_shared<MasterWatch>();
+  return watch;
+}
+
+/// Goes by a connection that outlives the master.
+bool isStop(MachineEvent event) {
+  return event == MachineEvent::kHold || event == MachineEvent::kCancel || event == MachineEvent::kDisable;
+}
+
 bool jobRuns(const std::optional<MachineState>& state) { return state && after(*state, MachineEvent::kCancel); }
 
 }  // namespace
 
 GrindPanel::GrindPanel(QWidget* parent)
     : rviz::Panel(parent),
+      master_watch_(masterWatch()),
       state_(new StateBox),
       job_(new JobBox),
       override_(new OverrideBox),
@@ -35,6 +49,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   layOut();
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
+  connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
   connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
   connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
@@ -55,9 +70,10 @@ void GrindPanel::layOut() {
   addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Take a fault back; the power stays off");
   addButton(*buttons, 1, 0, 6, MachineEvent::kStart, "Start", "Grind the planned job");
   addButton(*buttons, 1, 6, 6, MachineEvent::kHold, "Hold", "Stop on the path; the wheel turns on");
-  addButton(*buttons, 2, 0, 4, MachineEvent::kRetract, "Retract", "Lift the held wheel off the work");
-  addButton(*buttons, 2, 4, 4, MachineEvent::kResume, "Resume", "Go on where the job was held");
-  addButton(*buttons, 2, 8, 4, MachineEvent::kCancel, "Cancel", "Stop on the path and end the job");
+  addButton(*buttons, 2, 0, 3, MachineEvent::kRetract, "Retract", "Lift the held wheel off the work");
+  addButton(*buttons, 2, 3, 3, MachineEvent::kResume, "Resume", "Go on where the job was held");
+  addButton(*buttons, 2, 6, 3, MachineEvent::kCancel, "Cancel", "Stop on the path, lift the wheel and end the job");
+  addButton(*buttons, 2, 9, 3, MachineEvent::kLift, "Lift", "Lift the wheel off the work, without a job");
   for (const MachineEvent event : {MachineEvent::kStart, MachineEvent::kHold}) {
     QFont bold = font();
     bold.setBold(true);
@@ -113,53 +129,71 @@ void GrindPanel::setNode(const QString& node) {
   job_->forgetPlan();  // it is another machine's
   override_->reset();
   link_.reset();
+  name_.clear();
   try {
     if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
-    link_ = std::make_unique<GrinderLink>(
-        node.toStdString(), [this](const std::string& id, const GrindResult& result) { onResult(id, result); });
+    name_ = ros::names::resolve(node.toStdString());
   } catch (const ros::InvalidNameException& error) {
     say(std::string("grinder's node: ") + error.what());
   }
   refresh();
 }
 
+void GrindPanel::connectLink() {
+  // Without a master it would wait for one.
+  if (name_.empty() || master_watch_->master() == Master::kMissing) return;
+  link_ = std::make_unique<GrinderLink>(
+      name_, [this](const std::string& id, const GrindResult& result) { onResult(id, result); });
+}
+
 void GrindPanel::refresh() {
   GrinderView view;
+  if (!link_) connectLink();
   if (link_) {
     link_->deliver();
     view = link_->view();
   }
+  const Master master = master_watch_->master();
   std::optional<MachineState> state;
   if (view.state) state = static_cast<MachineState>(view.state->state);
   if (!state && sent_) {  // a grinder that is gone will not tell its end
     sent_.reset();
     job_->forgetPlan();
   }
-  state_->show(view, link_ ? QString::fromStdString(link_->name()) : node_);
-  job_->refresh(view.state, state && !jobRuns(state) && !planning_ && !sent_);
-  refreshButtons(state);
+  state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
+  const bool idle = state && !jobRuns(state) && !planning_ && !sent_ && !view.planned;
+  job_->refresh(view.state, idle && master == Master::kAnswers);
+  for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
+  override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
   progress_->show(view, jobRuns(state));
   position_->show(view);
 }
 
-void GrindPanel::refreshButtons(const std::optional<MachineState>& state) {
-  for (const auto& [event, button] : buttons_) {
-    const bool wanted = event != MachineEvent::kStart || job_->planned();
-    button->setEnabled(state && after(*state, event) && wanted);
+bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
+  if (!view.state) return false;
+  const bool planned = event == MachineEvent::kCancel && (sent_ || view.planned);
+  if (!planned && !after(static_cast<MachineState>(view.state->state), event)) return false;
+  if (isStop(event)) return true;
+  if (master_watch_->master() == Master::kMissing) return false;
+  switch (event) {
+    case MachineEvent::kHome: return !view.state->wheel_in_work;
+    case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
+    case MachineEvent::kLift: return view.state->wheel_in_work != 0;
+    default: return true;
   }
 }
 
 void GrindPanel::ask(MachineEvent event) {
-  if (event == MachineEvent::kStart) return start();
-  if (event == MachineEvent::kCancel) return link_->cancel();
+  if (event == MachineEvent::kStart) return job_->start();
+  if (isStop(event)) return stop(event);
   link_->request(event, [this](const std::string& refusal) {
     if (!refusal.empty()) say(refusal);
   });
 }
 
-void GrindPanel::start() {
-  if (const auto goal = job_->takePlanned()) send(*goal);
+void GrindPanel::stop(MachineEvent event) {
+  if (!link_->stop(event)) say(toString(event) + (" was not sent: the grinder " + name_) + " is not connected");
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {
@@ -180,7 +214,7 @@ void GrindPanel::dryRun(const GrindGoal& goal) {
 void GrindPanel::send(const GrindGoal& goal) {
   const auto id = link_->send(goal);
   if (id) sent_ = Sent{*id, goal};
-  if (!id) say("the job was not sent: no answer from the grinder " + link_->name());
+  if (!id) say("the job was not sent: no answer from the grinder " + name_);
 }
 
 void GrindPanel::onResult(const std::string& id, const GrindResult& result) {

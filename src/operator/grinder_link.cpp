@@ -2,8 +2,8 @@
 
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/Stop.h"
 
-#include <actionlib_msgs/GoalID.h>
 #include <std_srvs/Trigger.h>
 
 #include <algorithm>
@@ -14,6 +14,8 @@ namespace flute_grinder {
 namespace {
 
 const ros::WallDuration kStale(1);  ///< state and positions come at 20 Hz and more
+
+constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
 
 // Longest time to an answer [s].
 constexpr double kRequestTimeout = 10;
@@ -39,7 +41,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
   subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
   subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
   goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
-  cancels_ = nh_.advertise<actionlib_msgs::GoalID>("grind/cancel", 10);
+  stops_ = nh_.advertise<Stop>("stop", 10);
   spinner_.start();
 }
 
@@ -50,7 +52,8 @@ GrinderView GrinderLink::view() const {
   GrinderView view;
   if (isFresh(state_)) view.state = state_->message;
   if (isFresh(position_)) view.position = position_->message;
-  if (feedback_) view.progress = feedback_->feedback;
+  if (feedback_) view.progress = feedback_->message.feedback;
+  if (isFresh(feedback_) && view.progress->state == kPlanning) view.planned = view.progress->planned;
   return view;
 }
 
@@ -61,14 +64,16 @@ void GrinderLink::onState(const GrinderState::ConstPtr& state) {
 
 void GrinderLink::onFeedback(const GrindActionFeedback::ConstPtr& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  feedback_ = *feedback;
+  feedback_ = Received<GrindActionFeedback>{*feedback, ros::SteadyTime::now()};
 }
 
 void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
   const std::string& id = result->status.goal_id.id;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (id != sent_ && !(feedback_ && id == feedback_->status.goal_id.id)) return;
+    const bool shown = feedback_ && id == feedback_->message.status.goal_id.id;
+    if (id != sent_ && !shown) return;
+    if (shown) feedback_->message.feedback.state.clear();  // it is planned no more
   }
   post([this, result] { on_result_(result->status.goal_id.id, result->result); });
 }
@@ -162,6 +167,14 @@ std::optional<std::string> GrinderLink::send(const GrindGoal& goal) {
   return message.goal_id.id;
 }
 
-void GrinderLink::cancel() { cancels_.publish(actionlib_msgs::GoalID()); }
+bool GrinderLink::stop(MachineEvent event) {
+  if (stops_.getNumSubscribers() == 0) return false;
+  Stop message;
+  message.request = event == MachineEvent::kHold     ? Stop::HOLD
+                    : event == MachineEvent::kCancel ? Stop::CANCEL
+                                                     : Stop::DISABLE;
+  stops_.publish(message);
+  return true;
+}
 
 }  // namespace flute_grinder

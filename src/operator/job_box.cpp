@@ -36,7 +36,9 @@ JobBox::JobBox(QWidget* parent)
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
-      verdict_(textView("verdict", 5)) {
+      verdict_(textView("verdict", 5)),
+      question_(new DiscardQuestion),
+      answer_(new QStackedWidget) {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
@@ -50,7 +52,9 @@ JobBox::JobBox(QWidget* parent)
   layout->addLayout(file);
   layout->addWidget(continue_);
   layout->addLayout(plan);
-  layout->addWidget(verdict_);
+  answer_->addWidget(verdict_);
+  answer_->addWidget(question_);
+  layout->addWidget(answer_);
 
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::forgetPlan);
@@ -60,6 +64,8 @@ JobBox::JobBox(QWidget* parent)
   connect(dry_run_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
   });
+  connect(question_, &DiscardQuestion::discarded, this, [this] { startPlanned(true); });
+  connect(question_, &DiscardQuestion::kept, this, &JobBox::keepUnfinished);
   setFile("");
 }
 
@@ -103,10 +109,16 @@ void JobBox::forgetPlan() {
   showVerdict(file_.isEmpty() ? "Open a job file first." : "Not planned yet.", true);
 }
 
+GrindGoal JobBox::goal() const {
+  GrindGoal goal = goalFromJob(*job_);
+  goal.job_name = QFileInfo(file_).fileName().toStdString();
+  return goal;
+}
+
 std::optional<GrindGoal> JobBox::goalNow() {
   if (!job_) return std::nullopt;
   if (continue_->isChecked()) return where_left_;
-  return goalFromJob(*job_);
+  return goal();
 }
 
 std::optional<GrindGoal> JobBox::beginPlan() {
@@ -124,6 +136,30 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
   showVerdict(QString::fromStdString(describe(plan)), plan.valid != 0);
 }
 
+void JobBox::start() {
+  if (!planned_) return;
+  if (!discardsUnfinished(*planned_, progress_)) return startPlanned(false);
+  question_->ask(progress_, where_left_.has_value());
+  answer_->setCurrentWidget(question_);
+}
+
+void JobBox::startPlanned(bool discard) {
+  answer_->setCurrentWidget(verdict_);
+  auto goal = takePlanned();
+  if (!goal) return;
+  goal->discard = static_cast<std::uint8_t>(discard);
+  Q_EMIT startWanted(*goal);
+}
+
+void JobBox::keepUnfinished() {
+  answer_->setCurrentWidget(verdict_);
+  if (!where_left_) return;
+  continue_->setChecked(true);
+  if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
+}
+
+/// The goal that was planned. Reads the file once more; nothing, and the reason shown, if it is not what was planned
+/// any more.
 std::optional<GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
@@ -134,6 +170,7 @@ std::optional<GrindGoal> JobBox::takePlanned() {
 
 void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
   refreshContinue(state);
+  if (!idle || !planned_ || !discardsUnfinished(*planned_, progress_)) answer_->setCurrentWidget(verdict_);
   choose_->setEnabled(idle);
   continue_->setEnabled(idle && where_left_);
   plan_->setEnabled(idle && !file_.isEmpty());
@@ -142,10 +179,11 @@ void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
 
 void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   if (!state) return;
+  progress_ = state->progress;
   where_left_.reset();
   if (job_) {
-    GrindGoal goal = goalFromJob(*job_);
-    if (continueFrom(state->progress, *job_, goal).empty()) where_left_ = goal;
+    GrindGoal left = goal();
+    if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
   if (continue_->isChecked() && planned_ && planned_ != where_left_) forgetPlan();
   if (!where_left_) {
@@ -157,6 +195,9 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
       QString("Continue at tooth %1, pass %2").arg(where_left_->first_tooth + 1).arg(where_left_->first_pass + 1));
 }
 
-void JobBox::showVerdict(const QString& text, bool good) { showText(*verdict_, text, good); }
+void JobBox::showVerdict(const QString& text, bool good) {
+  showText(*verdict_, text, good);
+  answer_->setCurrentWidget(verdict_);
+}
 
 }  // namespace flute_grinder

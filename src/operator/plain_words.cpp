@@ -35,8 +35,17 @@ const char* sentence(MachineState state) {
     case MachineState::kResuming: return "The wheel goes back to the place where it left the path.";
     case MachineState::kCanceling: return "The axes stop on the path; the job ends there.";
     case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
+    case MachineState::kLifting: return "The wheel is lifted off the work, without a job.";
   }
   return "The grinder is in a state that this panel does not know.";
+}
+
+const char* wheelInWork(MachineState state) {
+  switch (state) {
+    case MachineState::kFault: return "The wheel is in the work: reset, enable, then lift it.";
+    case MachineState::kDisabled: return "The wheel is in the work: enable, then lift it.";
+    default: return "The wheel is in the work: lift it.";
+  }
 }
 
 std::string feedText(const PathStatistics& s) {
@@ -89,11 +98,21 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + inShopUnits(state.fault) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + inShopUnits(state.hold_reason) + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
+  const bool lifts_it = machine == MachineState::kLifting || after(machine, MachineEvent::kCancel);
+  if (state.wheel_in_work && !lifts_it) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)
     return text + "The feed override is 0 %: the axes rest.";
   return text + sentence(machine);
+}
+
+std::string describe(const JobProgress& progress) {
+  const Cutter& c = progress.cutter;
+  const std::string name = progress.job_name.empty() ? "a job without a name" : progress.job_name;
+  return name + format(" (end mill %.6g mm, cone %.6g deg, spiral %.6g deg, teeth: %zu), at tooth %d, pass %d",
+                       c.end_diameter / kMillimetre, c.cone_angle / kDegree, c.spiral_angle / kDegree,
+                       c.tooth_angles.size(), progress.tooth + 1, progress.pass + 1);
 }
 
 std::string describe(const Plan::Response& plan) {

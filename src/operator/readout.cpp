@@ -22,9 +22,10 @@ constexpr const char* kAmber = "#9a5b00";
 constexpr const char* kRed = "#b00020";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest in the midst of a job, or are about to.
-const char* colourOf(MachineState state) {
-  switch (state) {
-    case MachineState::kReady: return kGreen;
+const char* colourOf(const GrinderState& grinder) {
+  switch (static_cast<MachineState>(grinder.state)) {
+    case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
+    case MachineState::kLifting:
     case MachineState::kHoming:
     case MachineState::kStarting:
     case MachineState::kRunning:
@@ -57,7 +58,10 @@ void setFraction(QProgressBar& bar, double fraction) {
 
 }  // namespace
 
-StateBox::StateBox(QWidget* parent) : QWidget(parent), name_(new QLabel), meaning_(new QLabel) {
+StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
+  node_->setObjectName("grinder");
+  node_->setAlignment(Qt::AlignCenter);
+  node_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   name_->setObjectName("state");
   name_->setAlignment(Qt::AlignCenter);
   QFont font = name_->font();
@@ -71,26 +75,36 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), name_(new QLabel), meanin
   meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(node_);
   layout->addWidget(name_);
   layout->addWidget(meaning_);
 }
 
-void StateBox::setName(const QString& name, const char* colour) {
-  if (name == name_->text()) return;
-  name_->setText(name);
-  name_->setStyleSheet(QString("background: %1; color: white; padding: 4px; border-radius: 4px;").arg(colour));
+void StateBox::setNode(const QString& node) {
+  node_->setText(node_->fontMetrics().elidedText(node, Qt::ElideMiddle, node_->width()));
+  node_->setToolTip(node);
 }
 
-void StateBox::show(const GrinderView& view, const QString& node) {
+void StateBox::setName(const QString& name, const QString& colour) {
+  const QString style = QString("background: %1; color: white; padding: 4px; border-radius: 4px;").arg(colour);
+  name_->setText(name);
+  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // which is costly
+}
+
+void StateBox::show(const GrinderView& view, const QString& node, Master master) {
+  setNode(node);
   if (!view.state) {
     setName("No answer", kGrey);
-    meaning_->setText("No answer from the grinder " + node + ". Does its node run?");
+    meaning_->setText(master == Master::kMissing
+                          ? "No ROS master answers, and nothing comes from the grinder " + node + "."
+                          : "No grinder answers as " + node + ". Does its node run?");
     return;
   }
   QString name = QString::fromStdString(view.state->state_name);
   if (!name.isEmpty()) name[0] = name[0].toUpper();
-  setName(name, colourOf(static_cast<MachineState>(view.state->state)));
-  meaning_->setText(QString::fromStdString(describe(*view.state)));
+  setName(name, colourOf(*view.state));
+  const QString alone = "No ROS master answers; Hold, Cancel and Disable work without. ";
+  meaning_->setText((master == Master::kMissing ? alone : "") + QString::fromStdString(describe(*view.state)));
 }
 
 ProgressBox::ProgressBox(QWidget* parent)
@@ -112,6 +126,7 @@ ProgressBox::ProgressBox(QWidget* parent)
 }
 
 void ProgressBox::show(const GrinderView& view, bool job_runs) {
+  if (view.planned) return showPlanning(*view.planned);
   stroke_->setEnabled(job_runs);
   job_->setEnabled(job_runs);
   if (view.progress) {
@@ -131,6 +146,16 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   const bool at_feed = !view.state || view.state->override == 1;
   job_->setFormat(QString(kJobDone) + ", " + QString::fromStdString(duration(f.remaining_time)) +
                   (at_feed ? " left" : " left at 100 % feed"));
+}
+
+void ProgressBox::showPlanning(double planned) {
+  place_->setText("A job is planned");
+  feed_->clear();
+  stroke_->setEnabled(false);
+  setFraction(*stroke_, 0);
+  job_->setEnabled(true);
+  setFraction(*job_, planned);
+  job_->setFormat("Planning %p %");
 }
 
 PositionBox::PositionBox(QWidget* parent) : QWidget(parent) {

@@ -20,8 +20,9 @@ constexpr int kPatience = 60000;
 
 using Names = std::set<std::string>;
 
-/// The nine buttons that ask for a change of the machine's state.
-inline const Names kRequests{"enable", "disable", "home", "start", "hold", "resume", "retract", "cancel", "reset"};
+/// The ten buttons that ask for a change of the machine's state.
+inline const Names kRequests{"enable", "disable", "home", "start",  "hold",
+                             "resume", "retract", "lift", "cancel", "reset"};
 
 /// The panel as rviz makes it: from its plugin, and with a configuration.
 class Panel {

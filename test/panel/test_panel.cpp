@@ -1,17 +1,12 @@
 // The panel against a grinder of the test's own, which can be put into every state, and stay silent.
 
-#include "flute_grinder/GrindActionFeedback.h"
-#include "flute_grinder/GrindActionGoal.h"
-#include "flute_grinder/GrinderState.h"
-#include "flute_grinder/Plan.h"
-#include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/node/conversions.h"
 #include "panel_fixture.h"
+#include "stage.h"
 
-#include <actionlib_msgs/GoalID.h>
 #include <ros/package.h>
 #include <ros/ros.h>
-#include <sensor_msgs/JointState.h>
-#include <std_srvs/Trigger.h>
 #include <QAbstractSlider>
 #include <QApplication>
 #include <QFile>
@@ -20,7 +15,6 @@
 #include <QTemporaryDir>
 
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -28,93 +22,6 @@ namespace flute_grinder {
 namespace {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
-
-/// A grinder that is and does what a test wants.
-class Stage {
- public:
-  Stage() : nh_("cell/stage") {
-    state_topic_ = nh_.advertise<GrinderState>("state", 10, true);
-    feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
-    joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
-    services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
-    services_.push_back(nh_.advertiseService("hold", &Stage::onHold, this));
-    services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
-    goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
-    cancels_ = nh_.subscribe("grind/cancel", 10, &Stage::onCancel, this);
-    state.homed = 1;
-    state.override = 1;
-    timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { tell(); });
-  }
-  ~Stage() { release(); }
-
-  void be(std::uint8_t number, const std::string& name) {
-    change([&] { state.state = number, state.state_name = name; });
-  }
-  /// Changes what is public below, while it is not read.
-  template <typename Change>
-  void change(Change how) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    how();
-  }
-  template <typename Get>
-  auto get(Get what) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return what();
-  }
-  /// Lets a hold that hangs come to its end.
-  void release() {
-    change([&] { hold_hangs = false; });
-  }
-
-  GrinderState state;
-  GrindFeedback progress;
-  sensor_msgs::JointState joints;
-  bool silent = false;
-  bool hold_hangs = false;
-  int holds = 0;
-  std::vector<double> overrides;
-  std::vector<GrindActionGoal> goals;
-  std::vector<actionlib_msgs::GoalID> cancels;
-  Plan::Response plan;
-
- private:
-  void tell() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (silent) return;
-    state_topic_.publish(state);
-    GrindActionFeedback feedback;
-    feedback.feedback = progress;
-    feedback_.publish(feedback);
-    joint_states_.publish(joints);
-  }
-  bool onPlan(Plan::Request&, Plan::Response& response) {
-    change([&] { response = plan; });
-    return true;
-  }
-  bool onHold(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&) {
-    change([&] { ++holds; });
-    while (get([&] { return hold_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
-    return true;
-  }
-  bool onOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
-    change([&] { overrides.push_back(request.fraction), state.override = request.fraction; });
-    response.success = 1;
-    return true;
-  }
-  void onGoal(const GrindActionGoal::ConstPtr& goal) {
-    change([&] { goals.push_back(*goal); });
-  }
-  void onCancel(const actionlib_msgs::GoalID::ConstPtr& id) {
-    change([&] { cancels.push_back(*id); });
-  }
-
-  std::mutex mutex_;
-  ros::NodeHandle nh_;
-  ros::Publisher state_topic_, feedback_, joint_states_;
-  std::vector<ros::ServiceServer> services_;
-  ros::Subscriber goals_, cancels_;
-  ros::SteadyTimer timer_;
-};
 
 class OnStage : public ::testing::Test {
  protected:
@@ -141,6 +48,7 @@ const std::vector<Row> kStates{
     {GrinderState::RESUMING, "resuming", {"hold", "cancel"}, "goes back"},
     {GrinderState::CANCELING, "canceling", {"cancel"}, "the job ends"},
     {GrinderState::FAULT, "fault", {"reset"}, "following error 1.2 mm"},
+    {GrinderState::LIFTING, "lifting", {}, "without a job"},
 };
 
 TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
@@ -166,6 +74,7 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     name[0] = static_cast<char>(name[0] - 'a' + 'A');
     WAIT_FOR(panel.state() == name);
     EXPECT_EQ(panel.enabledRequests(), row.allowed);
+    EXPECT_EQ(panel.label("grinder"), "/cell/stage");
     EXPECT_NE(panel.label("meaning").find(row.meaning), std::string::npos) << panel.label("meaning");
     const bool in_job = row.allowed.count("cancel") == 1;
     for (const char* of_a_new_job : {"choose", "plan", "dry_run"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
@@ -196,7 +105,7 @@ TEST_F(OnStage, SilenceDisablesEveryButton) {
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_EQ(panel.enabledRequests(), Names());
   for (const char* name : {"choose", "plan", "dry_run", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
-  EXPECT_NE(panel.label("meaning").find("/cell/stage"), std::string::npos);
+  EXPECT_EQ(panel.label("meaning"), "No grinder answers as /cell/stage. Does its node run?");
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;
   panel.picture("no_answer");
   stage.change([&] { stage.silent = false; });
@@ -206,40 +115,200 @@ TEST_F(OnStage, SilenceDisablesEveryButton) {
 
 TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsTold) {
   Panel panel("cell/stage");
-  stage.change([&] { stage.hold_hangs = true; });
-  stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.enabled("hold"));
+  stage.change([&] { stage.resume_hangs = true; });
+  stage.be(GrinderState::HELD, "held");
+  WAIT_FOR(panel.enabled("resume"));
+  panel.click("resume");
+  WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
+  stage.be(GrinderState::RESUMING, "resuming");
+  WAIT_FOR(panel.state() == "Resuming");
   panel.click("hold");
-  WAIT_FOR(stage.get([&] { return stage.holds; }) == 1);
-  stage.be(GrinderState::HOLDING, "holding");
-  WAIT_FOR(panel.state() == "Holding");
   panel.click("cancel");
-  WAIT_FOR(stage.get([&] { return stage.cancels.size(); }) == 1);
+  WAIT_FOR(stage.get([&] { return stage.stops.size(); }) == 2);
   EXPECT_EQ(panel.text("messages"), "");
-  WAIT_FOR(panel.text("messages").find("Hold: no answer from the grinder /cell/stage") != std::string::npos);
+  WAIT_FOR(panel.text("messages").find("Resume: no answer from the grinder /cell/stage") != std::string::npos);
 }
 
 TEST_F(OnStage, APanelMayBeClosedWhileARequestHangs) {
   {
     Panel panel("cell/stage");
-    stage.change([&] { stage.hold_hangs = true; });
-    stage.be(GrinderState::RUNNING, "running");
-    WAIT_FOR(panel.enabled("hold"));
-    panel.click("hold");
-    WAIT_FOR(stage.get([&] { return stage.holds; }) == 1);
+    stage.change([&] { stage.resume_hangs = true; });
+    stage.be(GrinderState::HELD, "held");
+    WAIT_FOR(panel.enabled("resume"));
+    panel.click("resume");
+    WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
   }
-  EXPECT_TRUE(stage.get([&] { return stage.hold_hangs; })) << "it did not wait for the answer";
+  EXPECT_TRUE(stage.get([&] { return stage.resume_hangs; })) << "it did not wait for the answer";
 }
 
-TEST_F(OnStage, CancelIsForWhateverGoalRuns) {
+TEST_F(OnStage, StopsGoByTheirTopic) {
   Panel panel("cell/stage");
   stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.enabled("cancel"));
+  WAIT_FOR(panel.enabled("hold"));
+  panel.click("hold");
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
   panel.click("cancel");
-  WAIT_FOR(stage.get([&] { return stage.cancels.size(); }) == 1);
-  const auto cancel = stage.get([&] { return stage.cancels[0]; });
-  EXPECT_EQ(cancel.id, "");
-  EXPECT_EQ(cancel.stamp, ros::Time());
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL}));
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("disable"));
+  panel.click("disable");
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL, Stop::DISABLE}));
+  EXPECT_EQ(panel.text("messages"), "");
+}
+
+TEST_F(OnStage, AStopThatNobodyHearsIsTold) {
+  Panel panel("cell/stage");
+  stage.stopListening();
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.enabled("hold"));
+  // Its connection, if it was made before, ends when the other side finds out.
+  WAIT_FOR((panel.click("hold"), panel.text("messages") != ""));
+  EXPECT_NE(panel.text("messages").find("Hold was not sent: the grinder /cell/stage is not connected"),
+            std::string::npos)
+      << panel.text("messages");
+}
+
+TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] { stage.plan.valid = 1; });
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.enabled("start"));
+  EXPECT_FALSE(panel.enabled("lift"));
+  stage.change([&] { stage.state.wheel_in_work = 1; });
+  WAIT_FOR(panel.enabled("lift"));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "lift"}));
+  EXPECT_EQ(panel.label("meaning"), "The wheel is in the work: lift it.");
+  panel.picture("wheel_in_work");
+  panel.click("lift");
+  WAIT_FOR(stage.get([&] { return stage.lifts; }) == 1);
+  stage.change([&] { stage.state.fault = "emergency stop"; });
+  stage.be(GrinderState::FAULT, "fault");
+  WAIT_FOR(panel.label("meaning") == "Fault: emergency stop. The wheel is in the work: reset, enable, then lift it.");
+  stage.change([&] { stage.state.fault = ""; });
+  stage.be(GrinderState::DISABLED, "disabled");
+  WAIT_FOR(panel.label("meaning") == "The wheel is in the work: enable, then lift it.");
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("meaning") == "The job moves the axes.");
+}
+
+TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("plan"));
+  EXPECT_FALSE(panel.enabled("cancel"));
+  stage.change([&] {
+    stage.goal_id = "somebody's";
+    stage.progress.state = "planning";
+    stage.progress.planned = 0.43;
+  });
+  WAIT_FOR(panel.the<QProgressBar>("job").text() == "Planning 43 %");
+  EXPECT_TRUE(panel.enabled("job"));
+  EXPECT_TRUE(panel.enabled("cancel"));
+  EXPECT_FALSE(panel.enabled("plan")) << "the grinder would be busy";
+  panel.picture("planning");
+  panel.click("cancel");
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::CANCEL});
+  stage.change([&] { stage.progress.state = "ready"; });
+  WAIT_FOR(!panel.enabled("cancel"));
+  EXPECT_EQ(panel.label("place"), "No job runs");
+}
+
+TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("dry_run"));
+  panel.click("dry_run");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
+  EXPECT_EQ(stage.get([&] { return stage.goals[0].goal.job_name; }), "paper.yaml");
+  WAIT_FOR(panel.enabled("cancel"));
+  GrindResult canceled;
+  canceled.error_code = GrindResult::CANCELED;
+  canceled.error_string = "canceled";
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), canceled);
+  WAIT_FOR(!panel.enabled("cancel"));
+}
+
+/// With a job of the grinder's journal that is not finished.
+class AfterAJobWasLeft : public OnStage {
+ protected:
+  void SetUp() override {
+    stage.be(GrinderState::READY, "ready");
+    stage.change([&] {
+      stage.plan.valid = 1;
+      JobProgress& left = stage.state.progress;
+      left.job_digest = std::string(64, 'a');
+      left.job_name = "published.yaml";
+      left.cutter = goalFromJob(readJobFile(kPaper.toStdString())).cutter;
+      left.tooth = 1;
+      left.pass = 2;
+    });
+  }
+  void planAndStart(Panel& panel) {
+    WAIT_FOR(panel.enabled("plan"));
+    panel.click("plan");
+    WAIT_FOR(panel.enabled("start"));
+    panel.click("start");
+  }
+  std::size_t goals() {
+    return stage.get([&] { return stage.goals.size(); });
+  }
+  GrindGoal goal() {
+    return stage.get([&] { return stage.goals.at(0).goal; });
+  }
+  void leavePaper() {
+    stage.change([&] {
+      stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString()));
+      stage.state.progress.job_name = "paper.yaml";
+    });
+  }
+};
+
+TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
+  Panel panel("cell/stage", kPaper);
+  planAndStart(panel);
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  EXPECT_EQ(panel.label("unfinished_job"),
+            "Not finished: published.yaml (end mill 10 mm, cone 5 deg, spiral 30 deg, teeth: 1), at tooth 2, pass 3. "
+            "Once this job starts it cannot be continued.");
+  EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Keep it");
+  panel.picture("discard_question");
+  panel.click("keep");
+  WAIT_FOR(!panel.the<QPushButton>("discard").isVisible());
+  panel.click("start");
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  EXPECT_EQ(goals(), 0U);
+  panel.click("discard");
+  WAIT_FOR(goals() == 1);
+  EXPECT_TRUE(goal().discard);
+  EXPECT_EQ(goal().job_name, "paper.yaml");
+  EXPECT_FALSE(panel.the<QPushButton>("discard").isVisible());
+}
+
+TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
+  leavePaper();
+  Panel panel("cell/stage", kPaper);
+  planAndStart(panel);
+  WAIT_FOR(panel.the<QPushButton>("keep").isVisible());
+  EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Continue it");
+  panel.click("keep");
+  WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
+  EXPECT_EQ(goals(), 0U);
+  panel.click("start");
+  WAIT_FOR(goals() == 1);
+  EXPECT_FALSE(goal().discard);
+  EXPECT_EQ(goal().first_tooth, 1);
+  EXPECT_EQ(goal().first_pass, 2);
+}
+
+TEST_F(AfterAJobWasLeft, NothingIsAskedOnceItIsFinished) {
+  leavePaper();
+  stage.change([&] { stage.state.progress.finished = 1; });
+  Panel panel("cell/stage", kPaper);
+  planAndStart(panel);
+  WAIT_FOR(goals() == 1);
+  EXPECT_FALSE(goal().discard);
 }
 
 TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {

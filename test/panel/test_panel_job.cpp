@@ -1,10 +1,13 @@
 // The panel against the grinder's node with the simulated drive: an operator's day.
 
 #include "flute_grinder/InjectFault.h"
+#include "flute_grinder/Stop.h"
 #include "panel_fixture.h"
 
+#include <actionlib_msgs/GoalID.h>
 #include <ros/package.h>
 #include <ros/ros.h>
+#include <std_srvs/Trigger.h>
 #include <QCheckBox>
 #include <QFile>
 #include <QFileDialog>
@@ -35,6 +38,27 @@ QString jobFile(const QTemporaryDir& folder, const QString& name,
   EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
   return file.fileName();
 }
+
+/// Does what `~stop` asks for by the grinder's services and its action.
+class StopsByServices {
+ public:
+  StopsByServices() {
+    cancels_ = nh_.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
+    stops_ = nh_.subscribe("stop", 10, &StopsByServices::onStop, this);
+  }
+
+ private:
+  void onStop(const Stop::ConstPtr& stop) {
+    std_srvs::Trigger call;
+    if (stop->request == Stop::HOLD) ros::service::call(nh_.resolveName("hold"), call);
+    if (stop->request == Stop::DISABLE) ros::service::call(nh_.resolveName("disable"), call);
+    if (stop->request == Stop::CANCEL) cancels_.publish(actionlib_msgs::GoalID());
+  }
+
+  ros::NodeHandle nh_{"grinder"};
+  ros::Publisher cancels_;
+  ros::Subscriber stops_;
+};
 
 class WithGrinder : public ::testing::Test {
  protected:
@@ -89,6 +113,7 @@ class WithGrinder : public ::testing::Test {
   }
 
   const QTemporaryDir folder;
+  const StopsByServices stops;
   // Long enough to press buttons.
   const QString slow = jobFile(folder, "slow.yaml", {{"feed_mm_min: 600", "feed_mm_min: 300"}});
   Panel panel{"grinder"};

@@ -29,7 +29,7 @@ struct Wheel {
   double lift = 0;     ///< from the deepest place of that job to there [m]
 };
 
-/// How the wheel gets clear of a program's work, out of which it still is.
+/// How the wheel gets clear of a program's work, in which it does not stand yet.
 Wheel wheelOf(const GrindProgram& program);
 
 /// How a job ended.

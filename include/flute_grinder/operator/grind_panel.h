@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/node/master_watch.h"
 #include "flute_grinder/operator/grinder_link.h"
 #include "flute_grinder/operator/job_box.h"
 #include "flute_grinder/operator/override_box.h"
@@ -22,7 +23,8 @@ namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
 /// where the table of the machine's states allows what it asks for, and none where the grinder does not answer; Start
-/// wants a job that was planned without a violation besides. Nothing here waits for the grinder.
+/// wants a job that was planned without a violation besides. Without a ROS master the stops alone are left. Nothing
+/// here waits for the grinder or the master, and both are found again when they come back.
 ///
 /// Its configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {
@@ -46,9 +48,10 @@ class GrindPanel : public rviz::Panel {
                  const QString& hint);
   void setNode(const QString& node);
   void refresh();
-  void refreshButtons(const std::optional<MachineState>& state);
+  void connectLink();
+  bool allowed(MachineEvent event, const GrinderView& view) const;
   void ask(MachineEvent event);
-  void start();
+  void stop(MachineEvent event);
   void plan(const GrindGoal& goal);
   void dryRun(const GrindGoal& goal);
   void send(const GrindGoal& goal);
@@ -56,8 +59,10 @@ class GrindPanel : public rviz::Panel {
   void setFeedOverride(double fraction);
   void say(const std::string& text);
 
-  QString node_;
-  std::unique_ptr<GrinderLink> link_;  ///< null where the name is none
+  const std::shared_ptr<MasterWatch> master_watch_;
+  QString node_;                       ///< as it was given
+  std::string name_;                   ///< resolved; empty where it is none
+  std::unique_ptr<GrinderLink> link_;  ///< null where the name is none, or no master has answered since it was given
   bool planning_ = false;
   std::optional<Sent> sent_;
 

@@ -26,7 +26,8 @@ namespace flute_grinder {
 struct GrinderView {
   std::optional<GrinderState> state;      ///< nothing where the grinder has not told it for a second
   std::optional<GrindFeedback> progress;  ///< of the job that runs, whoever has sent it, or of the last one
-  std::optional<Axes> position;  ///< as the drive reads it [m], A [rad]; nothing where it has not come for a second
+  std::optional<double> planned;  ///< part of a goal that is planned and checked, 0..1; nothing where none is planned
+  std::optional<Axes> position;   ///< as the drive reads it [m], A [rad]; nothing where it has not come for a second
 };
 
 /// A grinder's node as a screen needs it: what it tells, and requests to it. No function waits; answers come by
@@ -54,7 +55,7 @@ class GrinderLink {
   /// Calls the functions whose answers have come, and those whose answers are overdue. To be called often.
   void deliver();
 
-  /// Asks for any change of the state but start and cancel.
+  /// Asks for any change of the state but a start and the stops.
   void request(MachineEvent event, const OnAnswer& on_answer);
   /// @param fraction of the job's feed.
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
@@ -63,8 +64,11 @@ class GrinderLink {
 
   /// Sends a job. @return the goal's id; nothing where no grinder listens.
   std::optional<std::string> send(const GrindGoal& goal);
-  /// Cancels the job that runs, whoever has sent it.
-  void cancel();
+  /// Holds or cancels the job that runs or is planned, whoever has sent it, or switches the power off. It goes by a
+  /// connection that outlives the ROS master, and has no answer: what comes of it is told by the state.
+  /// @param event kHold, kCancel or kDisable.
+  /// @return whether a grinder listens; else nothing was sent.
+  bool stop(MachineEvent event);
 
  private:
   /// A message with the time when it came.
@@ -92,11 +96,11 @@ class GrinderLink {
   mutable std::mutex mutex_;  ///< guards what the callbacks bring
   std::optional<Received<GrinderState>> state_;
   std::optional<Received<Axes>> position_;
-  std::optional<GrindActionFeedback> feedback_;
+  std::optional<Received<GrindActionFeedback>> feedback_;
   std::string sent_;  ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;
 
-  ros::Publisher goals_, cancels_;
+  ros::Publisher goals_, stops_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;
   std::list<ServiceCall> calls_;  ///< last, so that none answers any more when the rest goes

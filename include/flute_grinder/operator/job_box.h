@@ -4,19 +4,21 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/operator/discard_question.h"
 
 #include <QCheckBox>
 #include <QGroupBox>
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QPushButton>
+#include <QStackedWidget>
 
 #include <optional>
 
 namespace flute_grinder {
 
-/// The part of the panel where a job is chosen and planned. It gives a goal away only as it was planned without a
-/// violation.
+/// The part of the panel where a job is chosen, planned and started. It gives a goal away only as it was planned
+/// without a violation, and asks before a job is given up that was not finished.
 class JobBox : public QGroupBox {
   Q_OBJECT
 
@@ -38,18 +40,23 @@ class JobBox : public QGroupBox {
   void forgetPlan();
 
   bool planned() const { return planned_.has_value(); }
-  /// The goal that was planned, for one start: the next wants a plan from where the axes stand then. Reads the file
-  /// once more; nothing, and the reason shown, if it is not what was planned any more.
-  std::optional<GrindGoal> takePlanned();
+  /// Starts what was planned, or asks first. A plan is for one start: the next wants one from where the axes stand
+  /// then.
+  void start();
 
  Q_SIGNALS:
   void fileChosen();
   void planWanted(const flute_grinder::GrindGoal& goal);
   void dryRunWanted(const flute_grinder::GrindGoal& goal);
+  void startWanted(const flute_grinder::GrindGoal& goal);
 
  private:
   void choose();
   void read();
+  std::optional<GrindGoal> takePlanned();
+  void startPlanned(bool discard);
+  void keepUnfinished();
+  GrindGoal goal() const;
   std::optional<GrindGoal> goalNow();
   std::optional<GrindGoal> beginPlan();
   void refreshContinue(const std::optional<GrinderState>& state);
@@ -59,12 +66,15 @@ class JobBox : public QGroupBox {
   std::optional<GrindJob> job_;          ///< of the file, if that is good
   std::optional<GrindGoal> planned_;     ///< without a violation
   std::optional<GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
+  JobProgress progress_;                 ///< as the grinder told it last
   QLabel* name_;
   QPushButton* choose_;
   QCheckBox* continue_;
   QPushButton* plan_;
   QPushButton* dry_run_;
   QPlainTextEdit* verdict_;
+  DiscardQuestion* question_;
+  QStackedWidget* answer_;  ///< verdict or question
 };
 
 }  // namespace flute_grinder

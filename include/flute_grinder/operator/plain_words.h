@@ -17,6 +17,9 @@ std::string duration(double seconds);
 /// What the grinder is doing, why, and what to do about it.
 std::string describe(const GrinderState& state);
 
+/// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
+std::string describe(const JobProgress& progress);
+
 /// What came of a plan: how long the job takes, what cuts its feed, or all that forbids it. A line for each.
 std::string describe(const Plan::Response& plan);
 

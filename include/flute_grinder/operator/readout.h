@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/node/master_watch.h"
 #include "flute_grinder/operator/grinder_link.h"
 
 #include <QLabel>
@@ -10,17 +11,21 @@
 
 namespace flute_grinder {
 
-/// The state at the panel's head: its name on a colour, and a sentence that says what it means.
+/// The panel's head: the grinder's name, its state on a colour, and a sentence that says what that means, or who of
+/// grinder and ROS master is missing.
 class StateBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit StateBox(QWidget* parent = nullptr);
-  void show(const GrinderView& view, const QString& node);
+  /// @param node resolved name of the grinder.
+  void show(const GrinderView& view, const QString& node, Master master);
 
  private:
-  void setName(const QString& name, const char* colour);
+  void setNode(const QString& node);
+  void setName(const QString& name, const QString& colour);
 
+  QLabel* node_;
   QLabel* name_;
   QLabel* meaning_;
 };
@@ -31,10 +36,12 @@ class ProgressBox : public QWidget {
 
  public:
   explicit ProgressBox(QWidget* parent = nullptr);
-  /// @param job_runs else it is the last job's, and grey.
+  /// @param job_runs else it is the last job's, and grey; or of a job that is being planned.
   void show(const GrinderView& view, bool job_runs);
 
  private:
+  void showPlanning(double planned);
+
   QLabel* place_;
   QLabel* feed_;
   QProgressBar* stroke_;

@@ -1,0 +1,127 @@
+#pragma once
+
+#include "flute_grinder/GrindActionFeedback.h"
+#include "flute_grinder/GrindActionGoal.h"
+#include "flute_grinder/GrindActionResult.h"
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Plan.h"
+#include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/Stop.h"
+
+#include <ros/ros.h>
+#include <sensor_msgs/JointState.h>
+#include <std_srvs/Trigger.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A grinder that is and does what a test wants.
+class Stage {
+ public:
+  Stage() : nh_("cell/stage") {
+    state_topic_ = nh_.advertise<GrinderState>("state", 10, true);
+    feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
+    results_ = nh_.advertise<GrindActionResult>("grind/result", 10);
+    joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
+    services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
+    services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
+    services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
+    services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
+    goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
+    stops_ = nh_.subscribe("stop", 10, &Stage::onStop, this);
+    state.homed = 1;
+    state.override = 1;
+    timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { tell(); });
+  }
+  ~Stage() { release(); }
+
+  void be(std::uint8_t number, const std::string& name) {
+    change([&] { state.state = number, state.state_name = name; });
+  }
+  /// Changes what is public below, while it is not read.
+  template <typename Change>
+  void change(Change how) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    how();
+  }
+  template <typename Get>
+  auto get(Get what) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return what();
+  }
+  /// Lets a call that hangs come to its end.
+  void release() {
+    change([&] { resume_hangs = false; });
+  }
+  /// Tells the end of a goal.
+  void end(const std::string& goal_id, const GrindResult& result) {
+    GrindActionResult message;
+    message.status.goal_id.id = goal_id;
+    message.result = result;
+    results_.publish(message);
+  }
+  /// Listens to no stop any more.
+  void stopListening() { stops_.shutdown(); }
+
+  GrinderState state;
+  GrindFeedback progress;
+  sensor_msgs::JointState joints;
+  bool silent = false;
+  bool resume_hangs = false;
+  int resumes = 0;
+  int lifts = 0;
+  std::vector<double> overrides;
+  std::vector<GrindActionGoal> goals;
+  std::vector<int> stops;
+  std::string goal_id;  ///< of the progress
+  Plan::Response plan;
+
+ private:
+  void tell() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (silent) return;
+    state_topic_.publish(state);
+    GrindActionFeedback feedback;
+    feedback.feedback = progress;
+    feedback.status.goal_id.id = goal_id;
+    feedback_.publish(feedback);
+    joint_states_.publish(joints);
+  }
+  bool onPlan(Plan::Request&, Plan::Response& response) {
+    change([&] { response = plan; });
+    return true;
+  }
+  bool onResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&) {
+    change([&] { ++resumes; });
+    while (get([&] { return resume_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
+    return true;
+  }
+  bool onLift(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] { ++lifts; });
+    response.success = 1;
+    return true;
+  }
+  bool onOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
+    change([&] { overrides.push_back(request.fraction), state.override = request.fraction; });
+    response.success = 1;
+    return true;
+  }
+  void onGoal(const GrindActionGoal::ConstPtr& goal) {
+    change([&] { goals.push_back(*goal); });
+  }
+  void onStop(const Stop::ConstPtr& stop) {
+    change([&] { stops.push_back(stop->request); });
+  }
+
+  std::mutex mutex_;
+  ros::NodeHandle nh_;
+  ros::Publisher state_topic_, feedback_, results_, joint_states_;
+  std::vector<ros::ServiceServer> services_;
+  ros::Subscriber goals_, stops_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace flute_grinder

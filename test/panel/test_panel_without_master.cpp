@@ -1,0 +1,195 @@
+// The panel while ROS master and grinder are killed and started again. Both are the test's own: the master on a port
+// that was free, the grinder another process of this program.
+
+#include "flute_grinder/node/master_watch.h"
+#include "panel_fixture.h"
+#include "stage.h"
+
+#include <arpa/inet.h>
+#include <ros/master.h>
+#include <ros/ros.h>
+#include <sys/socket.h>
+#include <QApplication>
+#include <QLineEdit>
+#include <QProcess>
+
+#include <cstring>
+
+namespace flute_grinder {
+namespace {
+
+constexpr const char* kGrinder = "--grinder";  ///< argument of the grinder's process
+
+/// A grinder that does what `~stop` and `~resume` ask for, and begins as running.
+int runGrinder() {
+  Stage stage;
+  const MasterWatch master_watch({"/cell/stage/resume"});
+  stage.be(GrinderState::RUNNING, "running");
+  std::size_t done = 0;
+  int resumed = 0;
+  for (ros::WallRate rate(100); ros::ok(); rate.sleep()) {
+    for (const int resumes = stage.get([&] { return stage.resumes; }); resumed < resumes; ++resumed) {
+      stage.be(GrinderState::RUNNING, "running");
+    }
+    const auto stops = stage.get([&] { return stage.stops; });
+    for (; done < stops.size(); ++done) {
+      if (stops[done] == Stop::HOLD) stage.be(GrinderState::HELD, "held");
+      if (stops[done] == Stop::CANCEL) stage.be(GrinderState::READY, "ready");
+      if (stops[done] == Stop::DISABLE) stage.be(GrinderState::DISABLED, "disabled");
+    }
+  }
+  return 0;
+}
+
+QString freePort() {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t length = sizeof address;
+  const int probe = socket(AF_INET, SOCK_STREAM, 0);
+  EXPECT_EQ(bind(probe, reinterpret_cast<sockaddr*>(&address), length), 0);
+  EXPECT_EQ(getsockname(probe, reinterpret_cast<sockaddr*>(&address), &length), 0);
+  close(probe);
+  return QString::number(ntohs(address.sin_port));
+}
+
+/// A process that can be killed and started again; killed at the end.
+class Mortal {
+ public:
+  Mortal(QString program, QStringList arguments) : program_(std::move(program)), arguments_(std::move(arguments)) {
+    process_.setProcessChannelMode(QProcess::ForwardedErrorChannel);
+    process_.setStandardOutputFile(QProcess::nullDevice());
+  }
+  ~Mortal() { kill(); }
+  void start() {
+    process_.start(program_, arguments_);
+    ASSERT_TRUE(process_.waitForStarted());
+  }
+  void kill() {
+    process_.kill();
+    process_.waitForFinished();
+  }
+
+ private:
+  QString program_;
+  QStringList arguments_;
+  QProcess process_;
+};
+
+Mortal& master() {
+  static Mortal the("rosmaster", {"--core", "-p", QString::fromLocal8Bit(qgetenv("ROS_MASTER_URI")).section(':', 2)});
+  return the;
+}
+
+class WithoutMaster : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    grinder.start();
+    WAIT_FOR(panel.state() == "Running");
+    WAIT_FOR(panel.enabledRequests() == (Names{"hold", "cancel"}));
+  }
+  void TearDown() override {
+    grinder.kill();
+    if (!ros::master::check()) master().start();
+    WAIT_FOR(ros::master::check());
+    WAIT_FOR(panel.label("meaning") == kNoGrinder);
+  }
+  void loseMaster() {
+    master().kill();
+    WAIT_FOR(panel.label("meaning").find("No ROS master answers; Hold, Cancel and Disable work without.") == 0);
+  }
+  void findBoth() {
+    WAIT_FOR(panel.enabled("hold"));
+    WAIT_FOR(panel.label("meaning") == "The job moves the axes.");
+    panel.click("hold");
+    WAIT_FOR(panel.enabled("resume"));
+    panel.click("resume");  // by a service, which only the master can find
+    WAIT_FOR(panel.state() == "Running");
+    EXPECT_EQ(panel.text("messages"), "");
+  }
+
+  const std::string kNoGrinder = "No grinder answers as /cell/stage. Does its node run?";
+  Mortal grinder{QCoreApplication::applicationFilePath(), {kGrinder}};
+  Panel panel{"cell/stage"};
+};
+
+TEST_F(WithoutMaster, StopsReachTheGrinder) {
+  loseMaster();
+  EXPECT_EQ(panel.label("grinder"), "/cell/stage");
+  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"}));
+  EXPECT_FALSE(panel.enabled("override"));
+  panel.picture("no_master");
+  panel.click("hold");
+  WAIT_FOR(panel.state() == "Held");
+  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"})) << "resume and retract want a master";
+  panel.click("cancel");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(panel.enabledRequests(), Names{"disable"});
+  panel.click("disable");
+  WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(panel.text("messages"), "");
+}
+
+TEST_F(WithoutMaster, AGrinderThatIsStartedAgainIsFound) {
+  grinder.kill();
+  WAIT_FOR(panel.label("meaning") == kNoGrinder);
+  EXPECT_EQ(panel.state(), "No answer");
+  EXPECT_EQ(panel.enabledRequests(), Names());
+  grinder.start();
+  findBoth();
+}
+
+TEST_F(WithoutMaster, AMasterThatIsStartedAgainIsFound) {
+  loseMaster();
+  master().start();
+  WAIT_FOR(panel.label("meaning").find("master") == std::string::npos);
+  EXPECT_EQ(panel.state(), "Running") << "the connections are the old ones";
+  // The next grinder is found by the panel only if the new master knows the panel.
+  grinder.kill();
+  WAIT_FOR(panel.label("meaning") == kNoGrinder);
+  grinder.start();
+  findBoth();
+}
+
+TEST_F(WithoutMaster, BothAreFoundAfterBothWereLost) {
+  loseMaster();
+  grinder.kill();
+  WAIT_FOR(panel.label("meaning") == "No ROS master answers, and nothing comes from the grinder /cell/stage.");
+  EXPECT_EQ(panel.state(), "No answer");
+  panel.picture("no_master_no_grinder");
+  master().start();
+  WAIT_FOR(panel.label("meaning") == kNoGrinder);
+  grinder.start();
+  findBoth();
+}
+
+TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
+  loseMaster();
+  auto& node = panel.the<QLineEdit>("node");
+  for (const char* name : {"nobody", "/cell/stage"}) {
+    node.clear();
+    QTest::keyClicks(&node, name);
+    QTest::keyClick(&node, Qt::Key_Return);  // it would wait here for ever
+    EXPECT_EQ(panel.state(), "No answer");
+  }
+  EXPECT_EQ(panel.label("grinder"), "/cell/stage");
+  master().start();
+  findBoth();
+}
+
+}  // namespace
+}  // namespace flute_grinder
+
+int main(int argc, char** argv) {
+  using namespace flute_grinder;
+  const bool is_grinder = argc > 1 && std::strcmp(argv[1], kGrinder) == 0;
+  if (!is_grinder) qputenv("ROS_MASTER_URI", ("http://127.0.0.1:" + freePort()).toLocal8Bit());
+  ::testing::InitGoogleTest(&argc, argv);
+  const QApplication application(argc, argv);
+  if (!is_grinder) master().start();
+  ros::init(argc, argv, is_grinder ? "stage" : "test_panel_without_master");
+  const ros::NodeHandle keeps_ros_up;
+  ros::AsyncSpinner spinner(4);
+  spinner.start();
+  return is_grinder ? runGrinder() : RUN_ALL_TESTS();
+}

@@ -28,6 +28,10 @@ class FeedLaw {
   /// @throw std::invalid_argument unless limits, distance and target are as stated and finite.
   FeedLaw(const MotionLimits& limits, double distance, double target);
 
+  /// Starts over, as the constructor does, but without an exception. Real-time safe.
+  /// @return false, and nothing is changed, unless limits, distance and target are as the constructor wants them.
+  bool begin(const MotionLimits& limits, double distance, double target) noexcept;
+
   /// Changes the speed to go toward, from this moment on; a target of 0 stops as soon as the limits allow, short of the
   /// distance's end. A target above the limit, or one that is not a number, is not taken.
   /// @return whether the target was taken.

@@ -577,6 +577,7 @@ class TestSlowDisk(JournalTest):
         self.seconds = os.path.join(self.folder, 'seconds')
         library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libslow_fsync.so')
         self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
+        self.addCleanup(self.slow_down, 0)
         run = self.hold_in_stroke_of(0, 1)
         journal = self.wait_left(run)
         gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place told')

@@ -218,13 +218,15 @@ TEST_F(JournalFileTest, PathsThatCannotBeUsedAreToldByReadAndWrite) {
 }
 
 TEST_F(JournalFileTest, ForbiddenFoldersAreToldByReadAndWrite) {
-  std::filesystem::create_directory(folder_ + "/forbidden");
-  std::filesystem::permissions(folder_ + "/forbidden", std::filesystem::perms::none);
+  const std::string forbidden = folder_ + "/forbidden";
+  std::filesystem::create_directory(forbidden);
+  std::filesystem::permissions(forbidden, std::filesystem::perms::none);
   // Root may write everywhere; nobody may not.
-  const bool root = geteuid() == 0;
-  if (root) ASSERT_EQ(seteuid(65534), 0);
-  expectUnusable(folder_ + "/forbidden/journal");
-  if (root) ASSERT_EQ(seteuid(0), 0);
+  const uid_t user = geteuid();
+  ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
+  expectUnusable(forbidden + "/journal");
+  ASSERT_EQ(seteuid(user), 0);
+  std::filesystem::permissions(forbidden, std::filesystem::perms::owner_all);
 }
 
 TEST_F(JournalFileTest, APathThatCanBeUsedAgainIsUsed) {

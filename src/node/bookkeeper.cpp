@@ -28,7 +28,8 @@ Bookkeeper::Bookkeeper(JournalKeeper& keeper) : keeper_(keeper), progress_(keepe
 
 std::string Bookkeeper::objection(const std::string& digest, const ToothPass& first) const {
   if (progress_.job_digest.empty() || progress_.finished) return "";
-  if (digest == progress_.job_digest && same(first, progress_.next)) return "";
+  const bool from_the_beginning = first.tooth == 0 && first.pass == 0;
+  if (digest == progress_.job_digest && (!from_the_beginning || same(first, progress_.next))) return "";
   return "the journal keeps a job that is not finished: " + describe(progress_) +
          "; continue it, or send the goal with discard to forget it";
 }
@@ -72,7 +73,9 @@ void Bookkeeper::follow(const LoopStatus& status) {
     progress_.wheel = status.wheel;
     write();
   }
-  if (place_changed_ && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
+  // An entry that has failed is made once more: the disk may have room again.
+  const bool due = place_changed_ || (order_ > 0 && settled() && !error().empty());
+  if (due && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
 }
 
 void Bookkeeper::takePlace(const LoopStatus& status) {

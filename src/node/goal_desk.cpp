@@ -10,6 +10,7 @@ namespace flute_grinder {
 
 namespace {
 
+constexpr std::size_t kLongestName = 255;         ///< of a job
 constexpr double kPollPeriod = 0.002;             ///< [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< of the feedback while a goal is planned
 /// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
@@ -63,6 +64,11 @@ void GoalDesk::onGoal(GoalHandle handle) {
     return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
   }
   const auto goal = handle.getGoal();
+  if (goal->job_name.size() > kLongestName) {
+    return reject(handle, GrindResult::INVALID_GOAL,
+                  "job_name has " + std::to_string(goal->job_name.size()) + " characters; allowed: up to " +
+                      std::to_string(kLongestName));
+  }
   const GrindJob job = jobFromGoal(*goal);
   const std::string digest = jobDigest(job);
   if (!goal->dry_run) {

@@ -279,11 +279,24 @@ class CycleAllocatesNothing : public ::testing::Test {
     for (int i = 0; i < cycles; ++i) cycle();
   }
 
+  /// Asks by the event's own road. All that a thread calls but cannot wait for is counted too.
   bool accepted(MachineEvent event, SetpointStream* stream = nullptr) {
-    loop_->post(event, stream);
+    std::uint32_t ticket = 0;
+    used_ += heapUse([&] {
+      if (stream) {
+        loop_->postStart(stream);
+      } else if (isStop(event)) {
+        ticket = loop_->postAskedStop(event);
+      } else {
+        loop_->post(event);
+      }
+    });
     for (int i = 0; i < 10; ++i) {
       cycle();
-      if (const auto answer = loop_->reply()) return answer->accepted;
+      const auto answer = stream          ? loop_->startReply()
+                          : isStop(event) ? loop_->stopReply(event, ticket)
+                                          : loop_->reply();
+      if (answer) return answer->accepted;
     }
     ADD_FAILURE() << "no answer";
     return false;
@@ -461,6 +474,10 @@ TEST_F(CycleAllocatesNothing, OverEveryFaultAndItsReset) {
     run(2);
     ASSERT_TRUE(accepted(MachineEvent::kReset));
     run(2);
+    ASSERT_TRUE(accepted(MachineEvent::kEnable));
+    ASSERT_TRUE(accepted(MachineEvent::kLift));
+    EXPECT_EQ(record_.state, MachineState::kLifting);
+    ASSERT_TRUE(reaches(MachineState::kReady));
   }
   expectNone(used_);
 }

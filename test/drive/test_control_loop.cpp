@@ -2,8 +2,14 @@
 
 #include "fixtures.h"
 
+#include <pthread.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <fstream>
 #include <limits>
 #include <thread>
 
@@ -1192,6 +1198,79 @@ TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
   loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
   EXPECT_TRUE(sameBits(toAxes(drive_.written), machineConfig().machine.park)) << "stopping moved an axis";
+}
+
+TEST_F(ControlLoopThread, TellsTheComputersTime) {
+  ros::Time::setNow(ros::Time(5));  // as of a simulation
+  const double before = ros::WallTime::now().toSec();
+  loop_->startThread();
+  CycleRecord record;
+  const bool popped = popInTime(record);
+  loop_->stopThread();
+  ros::Time::init();
+  ASSERT_TRUE(popped);
+  EXPECT_GE(record.time, before - 1e-3);
+  EXPECT_LE(record.time, ros::WallTime::now().toSec());
+  EXPECT_GE(loop_->status().time, record.time);
+}
+
+TEST_F(ControlLoopThread, TakesNoSignal) {
+  std::atomic<int> open{-1};
+  drive_.on_read = [&](FakeDrive&) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+    int count = 0;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGALRM, SIGUSR1}) {
+      count += sigismember(&blocked, signal) == 0;
+    }
+    open = count;
+  };
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  loop_->stopThread();
+  EXPECT_EQ(open, 0);
+}
+
+/// Resident memory [bytes].
+std::size_t resident() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, pages = 0;
+  statm >> size >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
+  loop_->startThread();
+  if (!loop_->memoryLocked()) GTEST_SKIP() << "the system does not grant locked memory";
+  constexpr std::size_t claim = std::size_t{1} << 28;
+  const std::size_t before = resident();
+  const std::unique_ptr<char[]> memory(new char[claim]);
+  EXPECT_LT(resident(), before + claim / 4);
+  memory[claim / 2] = 1;
+}
+
+TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {
+  loop_->startThread();
+  EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
+  const RequestReply answer = loop_->stop(E::kCancel);
+  EXPECT_TRUE(answer.answered);
+  EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");
+  EXPECT_GT(loop_->status().cycles, 0u);
+}
+
+TEST_F(ControlLoopThread, RefusesOnEachRoadWhatBelongsOnAnother) {
+  EXPECT_EQ(loop_->stop(E::kEnable).text, "enable refused: allowed: hold, cancel, disable");
+  for (const E event : {E::kHold, E::kStart, E::kFault}) {
+    EXPECT_CONTAINS(loop_->request(event).text, "allowed: enable, home, resume, retract, lift, reset");
+  }
+}
+
+TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
+  const RequestReply answer = loop_->stop(E::kHold);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_FALSE(answer.answered);
+  EXPECT_EQ(answer.text, "hold: the control loop does not answer");
 }
 
 TEST_F(ControlLoopThread, StopEndsTheCycles) {

@@ -190,9 +190,11 @@ void ControlLoop::watchWheel() {
     now_.place = got.place;
     now_.strokes_ended_at = got.strokes_ended_at;
     wheel.in_work = record_.target[kY] < wheel.clear_y;
-  } else if (state_ != MachineState::kLifting && record_.drive.homed && feedback_age_ <= config_.feedback_timeout &&
-             record_.position[kY] >= wheel.clear_y) {
-    wheel.in_work = false;
+  } else if (state_ != MachineState::kLifting) {
+    // By the drive or by hand.
+    const bool knows = record_.drive.homed && feedback_age_ <= config_.feedback_timeout;
+    const double y = record_.position[kY];
+    if (knows && std::isfinite(y) && y >= wheel.clear_y) wheel.in_work = false;
   }
 }
 
@@ -535,7 +537,8 @@ void ControlLoop::advanceJob() {
   checkInterlocks();
   stream_->setFeedOverride(feed_override_);
   Setpoint setpoint;
-  const bool moves = stream_->next(setpoint);
+  bool moves = stream_->next(setpoint);
+  if (!moves && liftsOff()) moves = stream_->next(setpoint);
   if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
   if (!moves) return restJob();
   write(setpoint);
@@ -573,7 +576,7 @@ void ControlLoop::restJob() {
   const bool got_all = axesGotAll();
   const bool on_the_way = state_ == MachineState::kRunning || state_ == MachineState::kResuming;
   if (on_the_way && !stream_->finished()) return;  // the feed override is 0
-  if (liftsOff() || !got_all) return;
+  if (!got_all) return;
   if (on_the_way) {
     endJob(JobEnd::kDone);
   } else if (state_ == MachineState::kCanceling) {

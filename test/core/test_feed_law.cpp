@@ -456,6 +456,66 @@ RC_GTEST_PROP(FeedLawProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
   assertFinished(law, m);
 }
 
+RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRestAtTheEnd, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1), factor(0.01, 0.99);
+  const double from = *uniform(0, 1) * law.timeLeft();  // the final braking has its share
+  const double chance = *logUniform(0.01, 1);
+  int left = *whole(1, 20);
+  std::vector<Sample> samples{sampleOf(law)};
+  for (int i = 0; i < 200000 && !law.resting(); ++i) {
+    if (left > 0 && i * m.dt >= from && fraction(random) < chance) {
+      --left;
+      checkBounds(m, samples);
+      const double f = factor(random);
+      const Sample before = samples.back();
+      law.slowDown(f);
+      RC_ASSERT(law.position() == before.position);
+      RC_ASSERT(law.speed() == f * before.speed);
+      RC_ASSERT(law.acceleration() == f * f * before.acceleration);
+      samples = {sampleOf(law)};
+      // There is always a stop within the way left.
+      FeedLaw stop = law;
+      stop.setTarget(0);
+      checkBounds(m, run(stop, m.dt, 100000, [](int) {}));
+      RC_ASSERT(stop.resting());
+    }
+    law.advance(m.dt);
+    samples.push_back(sampleOf(law));
+  }
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+TEST(FeedLaw, SlowedDownItTakesUpItsSpeedAnew) {
+  const MotionLimits limits{1, 2, 8};
+  FeedLaw law(limits, 10, 1);
+  law.advance(2);
+  ASSERT_TRUE(law.cruising());
+  law.slowDown(0.25);
+  EXPECT_EQ(law.speed(), 0.25);
+  // 0.75 more, within 0.75/a + a/j.
+  law.advance(0.75 / 2 + 0.25 + 1e-9);
+  EXPECT_TRUE(law.cruising());
+  EXPECT_EQ(law.speed(), 1);
+}
+
+TEST(FeedLaw, WhatIsNoFactorDoesNotSlowItDown) {
+  for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
+    FeedLaw law({1, 2, 8}, 10, 1);
+    law.advance(2);
+    const double left = law.timeLeft();
+    law.slowDown(factor);
+    EXPECT_EQ(law.speed(), 1) << factor;
+    EXPECT_EQ(law.timeLeft(), left) << factor;
+  }
+  FeedLaw resting;
+  resting.slowDown(0.5);
+  EXPECT_TRUE(resting.finished());
+}
+
 RC_GTEST_PROP(FeedLawProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
   const Motion m = Motion::draw();
   FeedLaw law(m.limits, m.distance, m.limits.velocity);

@@ -1,5 +1,7 @@
 #include "flute_grinder/core/setpoint_stream.h"
 
+#include "flute_grinder/core/limit_check.h"
+
 #include "generators.h"
 #include "reference.h"
 
@@ -847,6 +849,60 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, (
   RC_ASSERT(ride.requests_in_strokes >= 4);
   RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
   RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");      // and none needs a rest to be gone on from
+}
+
+/// Slowed down at random moments, held and brought up again now and then.
+RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxesThatStood, ()) {
+  const Work work = *testing::work(kCycles);
+  SetpointStream stream(work.program());
+  LimitCheck check(work.machine.limits, work.machine.period);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
+  const double share = *testing::logUniform(1e-3, 0.3);
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  for (int cycle = 0; cycle < 100000 && !stream.finished(); ++cycle) {
+    const bool calm = cycle > 2000;
+    if (!setpoints.empty() && !calm && chance(random) < share) {
+      const double factor = 1 / periods(random);
+      stream.slowDown(factor);
+      check.slowDown(factor);
+    }
+    if (!calm && chance(random) < share / 10) stream.hold();
+    if (!stream.next(p)) {
+      stream.resume();
+      continue;
+    }
+    setpoints.push_back(p);
+    const auto violation = check.check(p);
+    RC_ASSERT(!violation || violation->quantity == LimitedQuantity::kPosition);
+  }
+  RC_ASSERT(stream.finished());
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+}
+
+TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
+  GrindJob job = paperJob();
+  Axes start = plainMachine().park;
+  SetpointStream stream(GrindProgram(job, plainMachine(), start));
+  SetpointStream undisturbed(stream.program());
+  Setpoint p, q;
+  const auto step = [&] {
+    ASSERT_TRUE(stream.next(p));
+    ASSERT_TRUE(undisturbed.next(q));
+  };
+  while (!(p.at_feed && p.step == StepKind::kOdd)) step();
+  const Axes even_before = p.position;
+  stream.slowDown(0.2);
+  step();
+  EXPECT_TRUE((p.position == q.position).all()) << "its second step is made as planned";
+  const double x = p.position[kX];
+  const double full = 2 * (x - even_before[kX]);
+  step();
+  step();
+  // Then a fifth, and what the jerk adds in two cycles.
+  EXPECT_NEAR(p.position[kX] - x, full / 5, 0.02 * full);
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstruction, ()) {

@@ -243,6 +243,25 @@ TEST(FeedLaw, RefusesBadArguments) {
   }
 }
 
+TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
+  FeedLaw law({2, 1, 1}, 10, 2);
+  law.advance(1);
+  const double position = law.position();
+  EXPECT_FALSE(law.begin({2, 1, kNan}, 10, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, kInf, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, 10, 3));
+  EXPECT_EQ(law.position(), position);
+  ASSERT_TRUE(law.begin({1, 1, 1}, 5, 1));
+  FeedLaw made({1, 1, 1}, 5, 1);
+  EXPECT_EQ(law.timeLeft(), made.timeLeft());
+  for (int i = 0; i < 90; ++i) {
+    law.advance(0.1);
+    made.advance(0.1);
+    ASSERT_EQ(law.position(), made.position());
+  }
+  EXPECT_EQ(law.position(), 5);
+}
+
 TEST(FeedLaw, NamesTheBadArgument) {
   const auto text = [](const std::function<void()>& make) -> std::string {
     try {

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -1412,7 +1413,7 @@ RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAsk
   Work work = *testing::work(kCycles);
   work.machine.limits.max_velocity.setConstant(1e3);
   work.machine.limits.max_acceleration.setConstant(1e6);
-  work.machine.limits.max_jerk.setConstant(1e10);
+  work.machine.limits.max_jerk.setConstant(1e9);
   work.job.interpolation.tolerance = 1e-3;
   SetpointStream stream(work.program());
   RC_PRE(stream.program().schedule().cuts().empty());
@@ -1498,6 +1499,42 @@ TEST(SetpointStream, TellsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
+}
+
+// planJob() refuses every program that comes to this: a tooth that is nowhere.
+TEST(SetpointStream, ThatCannotGoOnGivesWhatEveryCheckRefuses) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {std::numeric_limits<double>::quiet_NaN()};
+  const Machine machine = plainMachine();
+  SetpointStream stream(GrindProgram(job, machine, machine.park));
+  LimitCheck check(machine.limits, machine.period);
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_FALSE(check.check(p));
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(stream.next(p));
+    stream.hold();
+    stream.retract();
+    stream.resume();
+    const auto violation = check.check(p);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
+    ASSERT_FALSE(stream.finished());
+  }
+}
+
+TEST(SetpointStream, SharesItsProgram) {
+  const Machine machine = plainMachine();
+  const auto program = std::make_shared<const GrindProgram>(paperJob(), machine, machine.park);
+  SetpointStream shared(program);
+  SetpointStream owned(*program);
+  EXPECT_EQ(&shared.program(), program.get());
+  Setpoint p, q;
+  while (shared.next(p)) {
+    ASSERT_TRUE(owned.next(q));
+    ASSERT_TRUE((p.position == q.position).all());
+  }
+  EXPECT_FALSE(owned.next(q));
 }
 
 }  // namespace

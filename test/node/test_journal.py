@@ -208,8 +208,8 @@ class TestContinue(JournalTest):
         self.start_ready()
         self.check_told(journal)
         self.assertRegex(self.grind(0, 'status').stdout,
-                         r'(?m)^last job +%s, tooth 2, pass 1 not finished, X %.3f mm$'
-                         % (journal['job_digest'][:12], at.position[X] / MM))
+                         r'(?m)^last job +without a name: D .*; tooth 2, pass 1 not finished, X %.3f mm \(%s\)$'
+                         % (at.position[X] / MM, journal['job_digest'][:12]))
         self.assertEqual(self.client.batches, [])
         self.grind(0, 'run', self.job_path, '--continue')
         self.client.fresh_state()

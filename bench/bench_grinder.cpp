@@ -123,21 +123,22 @@ void cycle(benchmark::State& state) {
   std::unique_ptr<SetpointStream> stream;
   CycleRecord record;
 
-  const auto request = [&](MachineEvent event, SetpointStream* job) {
-    loop->post(event, job);
+  const auto accepted = [&](const auto& reply) {
     for (int i = 0; i < 5; ++i) {
       loop->cycle(time, period);
-      if (const auto reply = loop->reply()) return reply->accepted;
+      if (const auto answer = reply()) return answer->accepted;
     }
     return false;
   };
-  if (!request(MachineEvent::kEnable, nullptr)) state.SkipWithError("the drive could not be enabled");
+  loop->post(MachineEvent::kEnable);
+  if (!accepted([&] { return loop->reply(); })) state.SkipWithError("the drive could not be enabled");
   bool moving = false;
   for (auto _ : state) {
     if (!moving) {
       state.PauseTiming();
       stream = std::make_unique<SetpointStream>(program);
-      moving = request(MachineEvent::kStart, stream.get());
+      loop->postStart(stream.get());
+      moving = accepted([&] { return loop->startReply(); });
       if (!moving) state.SkipWithError("the job could not be started");
       state.ResumeTiming();
     }

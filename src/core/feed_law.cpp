@@ -9,24 +9,44 @@ namespace flute_grinder {
 
 namespace {
 
-void require(bool good, const char* name, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "feed law: " << name << " = " << value << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
+/// What a motion begins with, and whether it may.
+struct Figure {
+  bool good;
+  const char* name;
+  double value;
+  const char* allowed;
+};
+
+std::array<Figure, 5> figures(const MotionLimits& limits, double distance, double target) noexcept {
+  const auto limit = [](const char* name, double v) {
+    return Figure{v > 0 && std::isfinite(v), name, v, "finite and positive"};
+  };
+  return {limit("velocity limit", limits.velocity), limit("acceleration limit", limits.acceleration),
+          limit("jerk limit", limits.jerk),
+          Figure{distance >= 0 && std::isfinite(distance), "distance", distance, "finite, not negative"},
+          Figure{target >= 0 && target <= limits.velocity, "target speed", target, "0 to the velocity limit"}};
 }
 
 }  // namespace
 
-FeedLaw::FeedLaw(const MotionLimits& limits, double distance, double target)
-    : limits_(limits), distance_(distance), target_(target) {
-  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
-  require(positive(limits.velocity), "velocity limit", limits.velocity, "finite and positive");
-  require(positive(limits.acceleration), "acceleration limit", limits.acceleration, "finite and positive");
-  require(positive(limits.jerk), "jerk limit", limits.jerk, "finite and positive");
-  require(distance >= 0 && std::isfinite(distance), "distance", distance, "finite, not negative");
-  require(target >= 0 && target <= limits.velocity, "target speed", target, "0 to the velocity limit");
+FeedLaw::FeedLaw(const MotionLimits& limits, double distance, double target) {
+  if (begin(limits, distance, target)) return;
+  const auto all = figures(limits, distance, target);
+  const Figure& bad = *std::find_if(all.begin(), all.end(), [](const Figure& f) { return !f.good; });
+  std::ostringstream text;
+  text << "feed law: " << bad.name << " = " << bad.value << "; allowed: " << bad.allowed;
+  throw std::invalid_argument(text.str());
+}
+
+bool FeedLaw::begin(const MotionLimits& limits, double distance, double target) noexcept {
+  const auto all = figures(limits, distance, target);
+  if (!std::all_of(all.begin(), all.end(), [](const Figure& f) { return f.good; })) return false;
+  *this = FeedLaw();
+  limits_ = limits;
+  distance_ = distance;
+  target_ = target;
   plan();
+  return true;
 }
 
 bool FeedLaw::setTarget(double target) noexcept {
@@ -37,6 +57,13 @@ bool FeedLaw::setTarget(double target) noexcept {
   const bool final_braking = !resting() && segment_ >= final_braking_;
   if (!final_braking) plan();
   return true;
+}
+
+void FeedLaw::slowDown(double factor) noexcept {
+  if (!(factor > 0 && factor < 1) || resting()) return;
+  speed_ *= factor;
+  acceleration_ *= factor * factor;
+  plan();
 }
 
 void FeedLaw::advance(double dt) noexcept {

@@ -10,6 +10,9 @@ namespace flute_grinder {
 
 namespace {
 
+/// Longest step of a pair, of the way to the cone's apex: the steps' expansions hold for small parts of it only.
+constexpr double kLongestStep = 0.125;
+
 /// How much the limits of X, Y and Z leave for X, which they all follow in proportion.
 struct ForX {
   double limit;
@@ -62,7 +65,8 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
 
   // The steps of a pair differ from their mean speed by b v T/u at the most, and must obey the velocity limits too.
   const double turning = std::min(kMaxFeedOverride * wanted, velocity.limit) / u_thin;
-  const double ripple = 1 + b * std::min(turning, limits.max_velocity[kA] / k) * machine.period;
+  const double longest = kLongestStep / (b * machine.period);
+  const double ripple = 1 + b * std::min({turning, limits.max_velocity[kA] / k, longest}) * machine.period;
 
   Bound even;  // of X, wherever it is
   // The odd points' deviation grows toward the thin end; the leading order is taken back by the next one.
@@ -81,6 +85,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   per_radius.add(limits.max_velocity[kA] / k / ripple, "axis_a velocity");
   per_radius.add(std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), "axis_a acceleration");
   per_radius.add(std::cbrt(limits.max_jerk[kA] / (20 * k * b * b)), "axis_a jerk");
+  per_radius.add(longest, "control rate");
 
   if (!(per_radius.value < feed_speed_ / u_thin)) {
     speed_ = std::min({kMaxFeedOverride * wanted, even.value, per_radius.value * u_thin});

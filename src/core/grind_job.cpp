@@ -27,11 +27,6 @@ JobField degrees(const char* path, const char* file_key, double min, double max,
   return {path, file_key, "rad", "deg", units::kDegree, min, max, at};
 }
 
-const JobField& field(const std::string& path) {
-  const auto& fields = jobFields();
-  return *std::find_if(fields.begin(), fields.end(), [&](const JobField& f) { return f.path == path; });
-}
-
 /// Collects errors, told in one system of units.
 class Checker {
  public:
@@ -48,7 +43,7 @@ class Checker {
 
   /// The field must be less than `limit` for the reason given.
   void below(const char* name, double limit, const char* why) {
-    const JobField& f = field(name);
+    const JobField& f = jobField(name);
     const double value = f.get(job_);
     if (!(value < limit)) {
       errors_.push_back({f.name(units_), f.format(value, units_), "less than " + f.format(limit, units_) + ", " + why});
@@ -105,10 +100,12 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   }
   checker.below("process.depth", std::min(radius(0), radius(c.flute_length)), "the cutter's smallest radius");
   checker.below("process.wheel_wear", p.wheel_diameter / 2, "the wheel's radius");
-  checker.require(p.finish_infeed <= p.depth, field("process.finish_infeed"),
-                  "up to the depth, " + field("process.depth").format(p.depth, checker.units()));
-  checker.require(p.depth / p.infeed + p.spark_out + 2 <= kMaxPasses, field("process.infeed"),
-                  "enough for the depth in " + std::to_string(kMaxPasses) + " passes");
+  checker.require(p.finish_infeed <= p.depth, jobField("process.finish_infeed"),
+                  "up to the depth, " + jobField("process.depth").format(p.depth, checker.units()));
+  const int allowed_passes = std::min(kMaxPasses, kMaxPassesOfAll / static_cast<int>(job.tooth_angles.size()));
+  checker.require(p.depth / p.infeed + p.spark_out + 2 <= allowed_passes, jobField("process.infeed"),
+                  "enough for the depth in " + std::to_string(allowed_passes) + " passes per tooth, " +
+                      std::to_string(kMaxPassesOfAll) + " of all teeth");
   if (!checker.good()) return;
   const auto passes = static_cast<double>(job.tooth_angles.size() * passDepths(p).size());
   checker.below("process.wheel_wear_per_pass", (p.wheel_diameter / 2 - p.wheel_wear) / passes,
@@ -129,6 +126,15 @@ const char* toString(GrindOrder order) noexcept {
 
 const char* toString(StrokeDirection direction) noexcept {
   return direction == StrokeDirection::kFromEnd ? "from_end" : "to_end";
+}
+
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
+  char text[200];
+  std::snprintf(text, sizeof text, "D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s",
+                cutter.end_diameter / units::kMillimetre, cutter.cone_angle / units::kDegree,
+                cutter.spiral_angle / units::kDegree, cutter.rake_angle / units::kDegree, teeth,
+                teeth == 1 ? "tooth" : "teeth");
+  return text;
 }
 
 std::string JobField::format(double value, UnitSystem system) const {
@@ -177,6 +183,11 @@ const std::vector<JobField>& jobFields() {
        units::kMillimetrePerRadian, 1e-3, 1000, [](Job& j) -> double& { return j.interpolation.rotary_scale; }},
   };
   return fields;
+}
+
+const JobField& jobField(const std::string& path) {
+  const auto& fields = jobFields();
+  return *std::find_if(fields.begin(), fields.end(), [&](const JobField& f) { return f.path == path; });
 }
 
 std::vector<JobError> validate(const GrindJob& job, UnitSystem units) {

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace flute_grinder {
 
 namespace {
+
+constexpr double kShortestPeriod = 1e-6;  ///< of the control cycle [s]
 
 FeedSchedule::Stroke strokeOf(const GrindJob& job) {
   FeedSchedule::Stroke stroke;
@@ -24,30 +27,31 @@ FeedSchedule::Stroke strokeOf(const GrindJob& job) {
 /// @throw std::invalid_argument unless the machine and the place where the axes stand are fit for motion.
 const Machine& checked(const Machine& machine, const Axes& start) {
   const AxisLimits& l = machine.limits;
-  const auto positive = [](const Axes& values) { return (values > 0).all() && values.isFinite().all(); };
-  if (!(machine.period > 0 && machine.period <= 1))
-    throw std::invalid_argument("machine: control period must be 0 to 1 s");
-  if (!(positive(l.max_velocity) && positive(l.max_acceleration) && positive(l.max_jerk))) {
-    throw std::invalid_argument("machine: velocity, acceleration and jerk limits must be finite and positive");
-  }
-  if (!((l.min_position < l.max_position).all() && l.min_position.isFinite().all() &&
-        l.max_position.isFinite().all())) {
-    throw std::invalid_argument("machine: position limits must be finite, the lower below the upper");
-  }
-  if (!(start.isFinite().all() && machine.park.isFinite().all())) {
-    throw std::invalid_argument("machine: start and park position must be finite");
-  }
+  const auto require = [](bool good, const char* what) {
+    if (!good) throw std::invalid_argument(std::string("machine: ") + what);
+  };
+  const auto place = [](const Axes& values) { return (values.abs() <= kLargestFigure).all(); };
+  const auto limit = [&](const Axes& values) { return (values >= kSmallestFigure).all() && place(values); };
+  require(machine.period >= kShortestPeriod && machine.period <= 1, "control period must be 1e-6 to 1 s");
+  require(limit(l.max_velocity) && limit(l.max_acceleration) && limit(l.max_jerk),
+          "velocity, acceleration and jerk limits must be 1e-9 to 1e9, in SI units");
+  require(place(l.min_position) && place(l.max_position) && (l.min_position < l.max_position).all(),
+          "position limits must be within -1e9 to 1e9, the lower below the upper");
+  require(place(start) && place(machine.park), "start and park position must be within -1e9 to 1e9");
+  require(machine.max_job_duration > 0 && machine.max_job_duration <= kLargestFigure,
+          "max_job_duration must be more than 0, up to 1e9 s");
   return machine;
 }
 
 void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cutter) {
-  const double rate = std::min(schedule.rate(0), schedule.rate(schedule.length()));
-  const double feed = schedule.feedSpeed() * rate * cutter.edgePerTravel();
+  const double slowest = schedule.rate(0) < schedule.rate(schedule.length()) ? 0 : schedule.length();
+  const double feed = schedule.feedSpeed() * schedule.rate(slowest) * cutter.edgePerTravel();
   if (feed >= kMinFeed * (1 - 1e-9)) return;
   std::ostringstream text;
   text << "process.feed: " << (schedule.cuts().empty() ? "it" : schedule.cuts().back().cause) << " allows " << feed
-       << " m/s (" << feed / units::kMillimetrePerMinute << " mm/min); the slowest feed is " << kMinFeed << " m/s ("
-       << kMinFeed / units::kMillimetrePerMinute << " mm/min)";
+       << " m/s (" << feed / units::kMillimetrePerMinute << " mm/min) at X = " << schedule.x(slowest)
+       << " m, where the radius is " << cutter.radius(schedule.x(slowest)) << " m; the slowest feed is " << kMinFeed
+       << " m/s (" << kMinFeed / units::kMillimetrePerMinute << " mm/min)";
   throw std::invalid_argument(text.str());
 }
 
@@ -82,6 +86,8 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   }
 
   const std::vector<double> depths = passDepths(job.process);
+  constexpr std::ptrdiff_t moves_per_pass = 6;
+  moves_.reserve(static_cast<std::size_t>((order.end() - begin) * moves_per_pass + 2));
   Axes at = start;
   // The wheel may stand in another cutter's flute, after a job that did not end: only the park position clears them
   // all.

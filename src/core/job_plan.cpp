@@ -132,7 +132,71 @@ double overrideFactor(const GrindProgram& program) {
   return std::pow(schedule.limits().velocity / schedule.feedSpeed(), 2);
 }
 
-void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(const Setpoint&)>& visit) {
+/// Why a job takes too long, and what can be done about it.
+std::string tooLongText(const GrindJob& job, const Machine& machine, const std::string& takes, UnitSystem units) {
+  const JobField& feed = jobField("process.feed");
+  const JobField& infeed = jobField("process.infeed");
+  std::ostringstream text;
+  text << "max_job_duration = " << machine.max_job_duration << " s: the job takes " << takes << ", with "
+       << job.tooth_angles.size() << " teeth, " << passDepths(job.process).size() << " passes, "
+       << feed.text(job, units) << " and " << infeed.text(job, units) << "; raise " << feed.name(units) << " or "
+       << infeed.name(units) << ", or the parameter";
+  return text.str();
+}
+
+void refuse(JobPlan& plan, PlanFault fault, std::string reason) {
+  plan.fault = fault;
+  plan.reasons.push_back(std::move(reason));
+}
+
+/// The least that plunges and strokes take at the job's feed [s].
+double leastDuration(const GrindJob& job, const ToothPass& first) {
+  const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
+  const double way = job.process.clearance + travel * ConicalCutter(job.cutter).edgePerTravel();
+  const auto teeth = static_cast<double>(job.tooth_angles.size());
+  const auto passes = static_cast<double>(passDepths(job.process).size());
+  const double before = job.process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
+                                                                     : first.pass * teeth + first.tooth;
+  return std::max(0.0, teeth * passes - before) * way / job.process.feed;
+}
+
+/// Looks up from the setpoints now and then: is the job too long, and is the plan still wanted?
+class Supervisor {
+ public:
+  Supervisor(const PlanWatch& watch, UnitSystem units, JobPlan& plan)
+      : watch_(watch),
+        units_(units),
+        plan_(plan),
+        last_(static_cast<std::uint64_t>(plan.program->machine().max_job_duration / plan.program->machine().period)) {}
+
+  /// @return whether to go on beyond a setpoint.
+  bool goOn(const Setpoint& p) { return p.cycle < next_look_ || look(p); }
+
+ private:
+  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< some tenths of a millisecond
+
+  bool look(const Setpoint& p) {
+    const GrindProgram& program = *plan_.program;
+    if (p.cycle > last_) {
+      refuse(plan_, PlanFault::kTooLong, tooLongText(program.job(), program.machine(), "longer", units_));
+      return false;
+    }
+    next_look_ = std::min(p.cycle + kSetpointsPerLook, last_ + 1);
+    const double done = (p.move_index + p.progress) / static_cast<double>(program.moves().size());
+    if (!watch_ || watch_(done)) return true;
+    refuse(plan_, PlanFault::kGivenUp, "given up while it was planned");
+    return false;
+  }
+
+  const PlanWatch& watch_;
+  UnitSystem units_;
+  JobPlan& plan_;
+  std::uint64_t last_;  ///< cycle that the job may take
+  std::uint64_t next_look_ = 0;
+};
+
+void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(const Setpoint&)>& visit,
+                Supervisor& supervisor) {
   const GrindProgram& program = stream.program();
   const double tolerance = program.job().interpolation.tolerance;
   const double factor = overrideFactor(program);
@@ -142,12 +206,16 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
   plan.move_ends.assign(program.moves().size(), 0);
   Setpoint p;
   while (stream.next(p)) {
-    if (check.check(p)) std::for_each(check.begin(), check.end(), [&](const auto& v) { objections.add(v); });
+    if (check.check(p)) {
+      std::for_each(check.begin(), check.end(), [&](const auto& v) { objections.add(v); });
+      if (!p.position.isFinite().all()) break;
+    }
     statistician.add(p, check);
     plan.move_ends[p.move_index] = p.cycle;
     if (visit) visit(p);
     const double deviation = statistician.deviation() * factor;
     if (p.step != StepKind::kNone && !(deviation <= tolerance)) objections.addDeviation(p, deviation);
+    if (!supervisor.goOn(p)) break;
   }
   // A move of no length has no setpoints of its own.
   for (std::size_t i = 1; i < plan.move_ends.size(); ++i) {
@@ -160,23 +228,30 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
 }  // namespace
 
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
-                const std::function<void(const Setpoint&)>& visit, UnitSystem units, const PlanWatch&) {
+                const std::function<void(const Setpoint&)>& visit, UnitSystem units, const PlanWatch& watch) {
   JobPlan plan;
   for (const JobError& error : validate(job, units)) plan.reasons.push_back(error.text());
   if (!plan.reasons.empty()) {
     plan.fault = PlanFault::kInvalidJob;
     return plan;
   }
+  const double least = leastDuration(job, first);
+  if (least > machine.max_job_duration) {
+    std::ostringstream takes;
+    takes << least << " s or more";
+    refuse(plan, PlanFault::kTooLong, tooLongText(job, machine, takes.str(), units));
+    return plan;
+  }
   try {
-    plan.program = std::make_unique<GrindProgram>(job, machine, start, first);
+    plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
   } catch (const std::invalid_argument& error) {
-    plan.fault = PlanFault::kInvalidJob;
-    plan.reasons.emplace_back(error.what());
+    refuse(plan, PlanFault::kInvalidJob, error.what());
     return plan;
   }
   plan.statistics.feed_cuts = plan.program->schedule().cuts();
-  SetpointStream stream(*plan.program);
-  runThrough(stream, plan, visit);
+  SetpointStream stream(plan.program);
+  Supervisor supervisor(watch, units, plan);
+  runThrough(stream, plan, visit, supervisor);
   return plan;
 }
 

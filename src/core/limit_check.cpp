@@ -35,6 +35,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
     largest_ = Axes::Zero();
     for (Axes& end : ends_) end = p;
   }
+  if (slow_down_ < 1 && setpoint.cycle % 2 == 1) slowPastDown();
   largest_ = largest_.max(p.abs());
   velocity_ = (p - last_) * inverse_period_;
   last_ = p;
@@ -47,6 +48,16 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
   if (setpoint.cycle % 2 == 0) checkPairEnd(setpoint);
   if (violation_count_ == 0) return std::nullopt;
   return violations_[0];
+}
+
+void LimitCheck::slowPastDown() noexcept {
+  // On the parabola through the last pair ends, one and two pairs back.
+  const double f = slow_down_;
+  const Axes change = ends_[0] - ends_[1];
+  const Axes bend = change - (ends_[1] - ends_[2]);
+  ends_[1] = ends_[0] - f * change - f * (1 - f) / 2 * bend;
+  ends_[2] = ends_[0] - 2 * f * change - f * (1 - 2 * f) * bend;
+  slow_down_ = 1;
 }
 
 void LimitCheck::checkPosition(const Setpoint& setpoint) noexcept {

@@ -1,6 +1,7 @@
 #include "flute_grinder/core/setpoint_stream.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace flute_grinder {
@@ -23,13 +24,18 @@ bool goesAtFeed(MoveKind kind) noexcept { return kind == MoveKind::kInfeed || ki
 }  // namespace
 
 SetpointStream::SetpointStream(GrindProgram program)
+    : SetpointStream(std::make_shared<const GrindProgram>(std::move(program))) {}
+
+SetpointStream::SetpointStream(std::shared_ptr<const GrindProgram> program)
     : program_(std::move(program)),
-      curve_(program_.cutter()),
-      period_(program_.machine().period),
-      interpolator_(curve_, program_.job().interpolation.rotary_scale, program_.job().interpolation.even_step,
-                    program_.strokeFrom()) {
-  const Move& first = program_.moves().front();
-  current_.position = program_.start();
+      cutter_(program_->cutter()),
+      schedule_(program_->schedule()),
+      curve_(cutter_),
+      period_(program_->machine().period),
+      interpolator_(curve_, program_->job().interpolation.rotary_scale, program_->job().interpolation.even_step,
+                    program_->strokeFrom()) {
+  const Move& first = program_->moves().front();
+  current_.position = program_->start();
   current_.move = first.kind;
   current_.tooth = first.tooth;
   current_.pass = first.pass;
@@ -44,10 +50,12 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   if (!mid_pair_ && !beginPair()) return false;
 
   const Axes before = current_.position;
-  if (current_.move == MoveKind::kStroke) {
+  if (lost_) {
+    current_.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else if (current_.move == MoveKind::kStroke) {
     if (mid_pair_) {
       strokePoint(even_point_, StepKind::kEven);
-      current_.progress = strokeParameter() / program_.schedule().length();
+      current_.progress = strokeParameter() / schedule_.length();
     } else {
       strokePair();
     }
@@ -71,37 +79,39 @@ void SetpointStream::resume() noexcept {
 }
 
 void SetpointStream::retract() noexcept {
-  if (mid_pair_ || !law_.resting() || finished()) return;
+  if (mid_pair_ || lost_ || !law_.resting() || finished()) return;
   holding_ = false;
   stay_lifted_ = true;
   if (leg_ == Leg::kLift) return;
   if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
-    reentry_ = std::max(0.0, strokeParameter() - program_.schedule().runUp());
+    reentry_ = std::max(0.0, strokeParameter() - schedule_.runUp());
   }
   leg_ = Leg::kLift;
   Axes lifted = current_.position;
-  lifted[kY] = std::max(lifted[kY], program_.clearanceHeight());
+  lifted[kY] = std::max(lifted[kY], program_->clearanceHeight());
   beginStraight(MoveKind::kLift, lifted);
 }
 
 bool SetpointStream::finished() const noexcept {
-  return onPath() && next_move_ == program_.moves().size() && law_.finished() && !mid_pair_;
+  return !lost_ && onPath() && next_move_ == program_->moves().size() && law_.finished() && !mid_pair_;
 }
 
 bool SetpointStream::beginPair() noexcept {
+  law_.slowDown(slow_down_);
+  slow_down_ = 1;
   law_.setTarget(targetSpeed());
-  while (law_.resting()) {
+  while (!lost_ && law_.resting()) {
     if (holding_ || !law_.finished() || !beginNext()) return false;
   }
   return true;
 }
 
 bool SetpointStream::beginNext() noexcept {
-  const bool left_stroke = next_move_ > 0 && program_.moves()[next_move_ - 1].kind == MoveKind::kStroke;
+  const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
   switch (leg_) {
     case Leg::kPath:
-      if (next_move_ == program_.moves().size()) return false;
-      beginMove(program_.moves()[next_move_++]);
+      if (next_move_ == program_->moves().size()) return false;
+      beginMove(program_->moves()[next_move_++]);
       return true;
     case Leg::kLift:
       if (stay_lifted_) return false;
@@ -112,12 +122,12 @@ bool SetpointStream::beginNext() noexcept {
       }
       // A straight move is begun again: from above it goes where it was to go.
       leg_ = Leg::kPath;
-      if (next_move_ > 0) beginMove(program_.moves()[next_move_ - 1]);
+      if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
       return true;
     case Leg::kBack: {
       leg_ = Leg::kPlunge;
       Axes on_path = current_.position;
-      on_path[kY] = program_.cutter().y(on_path[kX]) + y_offset_;
+      on_path[kY] = cutter_.y(on_path[kX]) + y_offset_;
       beginStraight(MoveKind::kInfeed, on_path);
       return true;
     }
@@ -135,15 +145,15 @@ void SetpointStream::beginMove(const Move& move) noexcept {
   current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
   current_.progress = 0;
   if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
-  y_offset_ = current_.position[kY] - program_.cutter().y(program_.strokeFrom());
-  a_offset_ = program_.job().tooth_angles[move.tooth];
+  y_offset_ = current_.position[kY] - cutter_.y(program_->strokeFrom());
+  a_offset_ = program_->job().tooth_angles[move.tooth];
   beginStroke(0);
 }
 
 void SetpointStream::beginReturn() noexcept {
-  const double x = program_.schedule().x(reentry_);
+  const double x = schedule_.x(reentry_);
   Axes above;
-  above << x, current_.position[kY], program_.cutter().z(x), a_offset_ + curve_.a(x);
+  above << x, current_.position[kY], cutter_.z(x), a_offset_ + curve_.a(x);
   beginStraight(MoveKind::kPosition, above);
 }
 
@@ -162,27 +172,26 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
     law_ = FeedLaw();
     return;
   }
-  MotionLimits limits = limitsAlong(way_, program_.machine().limits);
+  MotionLimits limits = limitsAlong(way_, program_->machine().limits);
   double speed = limits.velocity;
   if (goesAtFeed(kind)) {
-    speed = std::min(speed, program_.job().process.feed / linear_way_);
+    speed = std::min(speed, program_->job().process.feed / linear_way_);
     limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
   }
   beginLaw(limits, 1, speed);
 }
 
 void SetpointStream::beginStroke(double s) noexcept {
-  const FeedSchedule& schedule = program_.schedule();
-  const GrindInterpolation& settings = program_.job().interpolation;
+  const GrindInterpolation& settings = program_->job().interpolation;
   current_.move = MoveKind::kStroke;
   stroke_from_ = s;
-  interpolator_ = OddEvenInterpolator(curve_, settings.rotary_scale, settings.even_step, schedule.x(s));
-  beginLaw(schedule.limits(), schedule.length() - s, schedule.feedSpeed());
+  interpolator_ = OddEvenInterpolator(curve_, settings.rotary_scale, settings.even_step, schedule_.x(s));
+  beginLaw(schedule_.limits(), schedule_.length() - s, schedule_.feedSpeed());
 }
 
 void SetpointStream::beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept {
   feed_speed_ = feed_speed;
-  law_ = FeedLaw(limits, distance, 0);
+  if (!law_.begin(limits, distance, 0)) lost_ = true;
   law_.setTarget(targetSpeed());
 }
 
@@ -192,7 +201,7 @@ double SetpointStream::targetSpeed() const noexcept {
 }
 
 double SetpointStream::strokeParameter() const noexcept {
-  return law_.finished() ? program_.schedule().length() : stroke_from_ + law_.position();
+  return law_.finished() ? schedule_.length() : stroke_from_ + law_.position();
 }
 
 void SetpointStream::straightStep() noexcept {
@@ -207,22 +216,20 @@ void SetpointStream::straightStep() noexcept {
 }
 
 void SetpointStream::strokePair() noexcept {
-  const FeedSchedule& schedule = program_.schedule();
-  const auto steady = [&] { return law_.cruising() && schedule.rate(stroke_from_ + law_.position()) == 1; };
+  const auto steady = [&] { return law_.cruising() && schedule_.rate(stroke_from_ + law_.position()) == 1; };
   const bool was_steady = steady();
   law_.advance(2 * period_);
   const double s = strokeParameter();
-  const double dx = schedule.x(s) - interpolator_.position().x;
+  const double dx = schedule_.x(s) - interpolator_.position().x;
   const OddEvenPair pair = interpolator_.advance(dx);
-  current_.feed = law_.speed() * schedule.rate(s) * program_.cutter().edgePerTravel();
+  current_.feed = law_.speed() * schedule_.rate(s) * cutter_.edgePerTravel();
   current_.at_feed = was_steady && steady();
   even_point_ = pair.even;
   strokePoint(pair.odd, StepKind::kOdd);
 }
 
 void SetpointStream::strokePoint(const CurvePoint& point, StepKind step) noexcept {
-  const ConicalCutter& cutter = program_.cutter();
-  current_.position << point.x, cutter.y(point.x) + y_offset_, cutter.z(point.x), a_offset_ + point.a;
+  current_.position << point.x, cutter_.y(point.x) + y_offset_, cutter_.z(point.x), a_offset_ + point.a;
   current_.path_error = curve_.a(point.x) - point.a;
   current_.step = step;
 }

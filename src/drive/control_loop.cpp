@@ -1,14 +1,11 @@
 #include "flute_grinder/drive/control_loop.h"
 
-#include <pthread.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
-#include <unistd.h>
+#include "flute_grinder/drive/realtime.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <sstream>
+#include <string>
 
 namespace flute_grinder {
 
@@ -16,18 +13,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Above every ordinary thread, below the kernel's own.
-constexpr int kRealtimePriority = 80;
-
-/// How long a request waits for the loop beyond what it may take by itself.
+/// How long a request waits for the loop beyond what it may take by itself [s].
 constexpr double kAnswerTimeout = 2;
-
-/// Locks the process in memory where that has no limit: with one, memory could run out later, in the midst of a job.
-bool lockMemory() {
-  rlimit limit{};
-  const bool unlimited = geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
-  return unlimited && mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
-}
+/// How long a stop waits for its answer [s].
+constexpr double kStopTimeout = 0.1;
 
 template <typename Interface>
 Interface& require(RobotHW& hw, const char* name) {
@@ -36,78 +25,54 @@ Interface& require(RobotHW& hw, const char* name) {
   return *interface;
 }
 
+/// Looks for an answer until there is one.
+/// @param poll gives the answer, or nothing yet.
+/// @param timeout [s].
+template <typename Poll>
+RequestReply await(MachineEvent event, double timeout, const Poll& poll) {
+  const auto deadline = Clock::now() + std::chrono::duration<double>(timeout);
+  while (Clock::now() < deadline) {
+    if (const std::optional<RequestReply> answer = poll()) return *answer;
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  return {false, std::string(toString(event)) + ": the control loop does not answer", false};
+}
+
 }  // namespace
 
-const char* toString(Interlock interlock) noexcept {
-  switch (interlock) {
-    case Interlock::kNone: return "";
-    case Interlock::kNotHomed: return "the axes are not homed";
-    case Interlock::kSpindle: return "the spindle is not at speed";
-    case Interlock::kCoolant: return "no coolant flows";
-    case Interlock::kProbe: return "the measuring probe is in the way";
-  }
-  return "unknown";
-}
+// ---------------------------------------------------------------------------------------------------------------------
+// For the other threads
 
-std::string LoopFault::text() const {
-  const std::string unit = std::string(" ") + axisUnit(axis);
-  const char* joint = kJointNames[static_cast<std::size_t>(axis)];
-  std::ostringstream text;
-  switch (kind) {
-    case FaultKind::kNone: break;
-    case FaultKind::kEmergencyStop: text << "emergency stop"; break;
-    case FaultKind::kDriveFault: text << "the drive reports a fault"; break;
-    case FaultKind::kPowerLost: text << "the drive has switched its power off"; break;
-    case FaultKind::kStaleFeedback:
-      text << "no fresh positions from the drive for " << value << " s, allowed " << limit << " s";
-      break;
-    case FaultKind::kInvalidFeedback: text << joint << " position from the drive is " << value; break;
-    case FaultKind::kFollowingError:
-      text << joint << " following error " << value << unit << " is beyond its limit " << limit << unit;
-      break;
-    case FaultKind::kUnderrun:
-      text << "the axes found no setpoint in " << value << " servo cycles, after setpoint " << cycle;
-      break;
-    case FaultKind::kLimit: text << violation.text(); break;
-    case FaultKind::kHoming:
-      text << "the drive has not found its reference after " << value << " s, allowed " << limit << " s";
-      break;
-    case FaultKind::kInterlock:
-      text << toString(interlock) << ' ' << value << " s after the job was started, allowed " << limit << " s";
-      break;
-  }
-  return text.str();
-}
-
-ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config)
-    : hw_(hw), config_(config), limit_check_(config.machine.limits, config.machine.period) {
+ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel)
+    : hw_(hw), config_(config), lift_(config.machine), limit_check_(config.machine.limits, config.machine.period) {
   require<JointStateInterface>(hw, "JointStateInterface");
   auto& joints = require<PositionJointInterface>(hw, "PositionJointInterface");
   for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i] = joints.getHandle(kJointNames[i]);
   drive_ = require<DriveInterface>(hw, "DriveInterface").getHandle("drive");
+  now_.wheel = wheel;
+  status_.store(now_);
 }
 
-ControlLoop::~ControlLoop() { stop(); }
+ControlLoop::~ControlLoop() { stopThread(); }
 
-void ControlLoop::start() {
+void ControlLoop::startThread() {
   running_ = true;
   memory_locked_ = lockMemory();
   thread_ = std::thread([this] { run(); });
 }
 
-void ControlLoop::stop() {
+void ControlLoop::stopThread() {
   if (!thread_.joinable()) return;
   running_ = false;
   thread_.join();
 }
 
 void ControlLoop::run() {
-  sched_param parameters{};
-  parameters.sched_priority = kRealtimePriority;
-  realtime_scheduling_ = pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
-
+  realtime_scheduling_ = becomeRealtime();
   const ros::Duration nominal(config_.machine.period);
-  const ros::Time start_time = ros::Time::now();
+  // The computer's clock, since that of ROS may stand at 0 until a simulation tells the time.
+  const ros::WallTime wall = ros::WallTime::now();
+  const ros::Time start_time(wall.sec, wall.nsec);
   const Clock::time_point start = Clock::now();
   Clock::time_point last = start;
   const auto nanoseconds = [](Clock::duration d) {
@@ -124,20 +89,45 @@ void ControlLoop::run() {
   hw_.write(start_time + nanoseconds(last - start), nominal);
 }
 
-RequestReply ControlLoop::request(MachineEvent event, SetpointStream* stream) {
-  const std::lock_guard<std::mutex> lock(request_mutex_);
-  const auto deadline = Clock::now() + std::chrono::duration<double>(kAnswerTimeout + config_.enable_timeout);
-  bool posted = false;
-  while (Clock::now() < deadline) {
-    if (!posted) posted = post(event, stream);
-    if (posted) {
-      if (auto answer = reply()) return *answer;
-    } else {
-      reply();  // a late answer to a request that was given up
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(100));
+RequestReply ControlLoop::request(MachineEvent event) {
+  if (!isRequest(event) || isStop(event) || event == MachineEvent::kStart) {
+    return {false, std::string(toString(event)) + " refused: allowed: enable, home, resume, retract, lift, reset",
+            true};
   }
-  return {false, std::string(toString(event)) + ": the control loop does not answer", false};
+  bool posted = false;
+  return await(event, kAnswerTimeout + config_.enable_timeout, [&]() -> std::optional<RequestReply> {
+    // The slot may still hold a request that was given up.
+    if (posted) return reply();
+    posted = post(event);
+    return std::nullopt;
+  });
+}
+
+RequestReply ControlLoop::stop(MachineEvent event) {
+  if (!isStop(event)) {
+    return {false, std::string(toString(event)) + " refused: allowed: hold, cancel, disable", true};
+  }
+  const std::uint32_t ticket = postAskedStop(event);
+  return await(event, kStopTimeout, [&] { return stopReply(event, ticket); });
+}
+
+bool ControlLoop::postStart(SetpointStream* stream) noexcept {
+  return starts_.post(Start{stream, wheelOf(stream->program())});
+}
+
+std::optional<RequestReply> ControlLoop::startReply() {
+  if (const auto answer = starts_.reply()) return answer->reply();
+  return std::nullopt;
+}
+
+std::optional<RequestReply> ControlLoop::reply() {
+  if (const auto answer = requests_.reply()) return answer->reply();
+  return std::nullopt;
+}
+
+std::optional<RequestReply> ControlLoop::stopReply(MachineEvent event, std::uint32_t ticket) const {
+  if (const auto answer = stops_.reply(event, ticket)) return answer->reply();
+  return std::nullopt;
 }
 
 bool ControlLoop::setFeedOverride(double fraction) {
@@ -146,63 +136,27 @@ bool ControlLoop::setFeedOverride(double fraction) {
   return true;
 }
 
-bool ControlLoop::post(MachineEvent event, SetpointStream* stream) {
-  if (awaiting_answer_ || !commands_.push(Command{event, stream})) return false;
-  awaiting_answer_ = true;
-  return true;
-}
-
-std::optional<RequestReply> ControlLoop::reply() {
-  Answer answer;
-  if (!answers_.pop(answer)) return std::nullopt;
-  awaiting_answer_ = false;
-  if (answer.refusal == Refusal::kNone) return RequestReply{true, "", true};
-  std::string text = std::string(toString(answer.event)) + " refused: ";
-  switch (answer.refusal) {
-    case Refusal::kNone: break;
-    case Refusal::kState:
-      text +=
-          std::string("the machine is in state ") + toString(answer.state) + "; allowed: " + allowedIn(answer.state);
-      break;
-    case Refusal::kEmergencyStop: text += "the emergency stop is pressed; release it first"; break;
-    case Refusal::kDriveFault: text += "the drive reports a fault; reset it first"; break;
-    case Refusal::kInterlock: text += toString(answer.interlock); break;
-    case Refusal::kNoPower: text += "the drive did not switch its power on in time"; break;
-    case Refusal::kMoved: text += "the axes do not stand where the job was planned to start; plan it again"; break;
-    case Refusal::kFeedback: text += "the drive gives no valid, fresh positions"; break;
-  }
-  return RequestReply{false, text, true};
-}
+// ---------------------------------------------------------------------------------------------------------------------
+// The cycle
 
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   hw_.read(time, period);
   record_.time = time.toSec();
   record_.period = period.toSec();
+  moving_ = record_.has_setpoint && (record_.setpoint.velocity != 0).any();
   record_.has_setpoint = false;
+  record_.job = now_.jobs_started;
   drive_command_.reset = false;
 
   observe();
   if (powered()) checkDrive();
-  takeCommand();
-  if (state_ == MachineState::kDisabled) awaitPower();
+  takeRequests();
+  awaitPower();
   if (state_ == MachineState::kHoming) awaitHoming();
-  if (stream_) advanceJob();
+  advance();
 
-  drive_command_.home = state_ == MachineState::kHoming;
-  drive_command_.spindle = drive_command_.coolant = stream_ != nullptr;
-  for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
-  drive_.setCommand(drive_command_);
-  hw_.write(time, period);
-  remember();
-
-  record_.command = command_;
-  record_.state = state_;
-  record_.feed_override = feed_override_;
-  if (records_.push(record_)) {
-    record_.job_ended = false;
-  } else {
-    ++record_.records_lost;  // the end of a job is told by the next that is taken
-  }
+  writeDrive(time, period);
+  tell();
 }
 
 bool ControlLoop::powered() const { return state_ != MachineState::kDisabled && state_ != MachineState::kFault; }
@@ -221,22 +175,196 @@ void ControlLoop::observe() {
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
   if (follows && record_.position.isFinite().all()) {
     command_ = record_.position;
-    written_count_ = 0;
+    history_.clear();
   }
-  record_.target = commandInEffect();
+  record_.target = history_.empty() ? command_ : history_.inEffect(record_.drive.commands_waiting).command;
+  watchWheel();
 }
 
-void ControlLoop::remember() {
-  written_[next_written_] = command_;
-  next_written_ = (next_written_ + 1) % written_.size();
-  written_count_ = std::min(written_count_ + 1, written_.size());
+void ControlLoop::watchWheel() {
+  Wheel& wheel = now_.wheel;
+  if (stream_) {
+    const JobTrack& got = history_.inEffect(record_.drive.commands_waiting).track;
+    // What waits in the drive may be of the job before.
+    if (got.job != now_.jobs_started || got.setpoints == 0) return;
+    now_.place = got.place;
+    now_.strokes_ended_at = got.strokes_ended_at;
+    wheel.in_work = record_.target[kY] < wheel.clear_y;
+  } else if (state_ != MachineState::kLifting && record_.drive.homed && feedback_age_ <= config_.feedback_timeout &&
+             record_.position[kY] >= wheel.clear_y) {
+    wheel.in_work = false;
+  }
 }
 
-const Axes& ControlLoop::commandInEffect() const {
-  if (written_count_ == 0) return command_;
-  const std::size_t back = 1 + std::min<std::size_t>(record_.drive.commands_waiting, written_count_ - 1);
-  return written_[(next_written_ + written_.size() - back) % written_.size()];
+void ControlLoop::advance() {
+  takeUpSpeed();
+  if (stream_) {
+    advanceJob();
+  } else if (state_ == MachineState::kLifting) {
+    advanceLift();
+  }
 }
+
+void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period) {
+  drive_command_.home = state_ == MachineState::kHoming;
+  drive_command_.spindle = drive_command_.coolant = stream_ != nullptr;
+  for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
+  drive_.setCommand(drive_command_);
+  hw_.write(time, period);
+  history_.add({command_, written_});
+}
+
+void ControlLoop::tell() {
+  record_.command = command_;
+  record_.state = state_;
+  record_.feed_override = feed_override_;
+  record_.wheel_in_work = now_.wheel.in_work;
+  if (records_.push(record_)) {
+    record_.job_ended = false;
+  } else {
+    ++record_.records_lost;  // the end of a job is told by the next that is taken
+  }
+
+  ++now_.cycles;
+  now_.time = record_.time;
+  now_.state = state_;
+  now_.homed = record_.drive.homed;
+  std::copy(command_.data(), command_.data() + kAxisCount, now_.command.begin());
+  now_.feed_override = record_.feed_override;
+  now_.setpoints_written = written_.setpoints;
+  status_.store(now_);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Requests
+
+void ControlLoop::takeRequests() {
+  // First looked at, last carried out: whoever stops has stopped all that was asked for before.
+  const StopRoad::Taken stops = stops_.take();
+  if (const auto job = starts_.take()) starts_.answer(answerTo(MachineEvent::kStart, start(*job)));
+  if (const auto event = requests_.take()) takeRequest(*event);
+  for (const MachineEvent stop : StopRoad::kStops) {
+    if (!stops.has(stop)) continue;
+    const Answer answer = answerTo(stop, carryOut(stop));
+    if (stops.asked(stop)) stops_.answer(answer);
+  }
+}
+
+void ControlLoop::takeRequest(MachineEvent event) {
+  const bool other = !isRequest(event) || isStop(event) || event == MachineEvent::kStart;
+  const Refusal refusal = other ? Refusal::kState : carryOut(event);
+  // Power takes its time: awaitPower() answers.
+  if (!awaiting_power_) requests_.answer(answerTo(event, refusal));
+}
+
+Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
+  return {event, state_, refusal, openInterlock(), liftTarget(), config_.machine.limits.max_position[kY]};
+}
+
+Refusal ControlLoop::carryOut(MachineEvent event) {
+  if (!after(state_, event)) return Refusal::kState;
+  if (isStop(event)) return stopMotion(event);
+  switch (event) {
+    case MachineEvent::kEnable: return enable();
+    case MachineEvent::kLift: return lift();
+    case MachineEvent::kHome:
+      if (now_.wheel.in_work) return Refusal::kInWork;
+      homing_seen_ = false;
+      waited_ = 0;
+      break;
+    case MachineEvent::kResume:
+      // What a job waits for before it begins may still come.
+      if (state_ != MachineState::kStarting && openInterlock() != Interlock::kNone) return Refusal::kInterlock;
+      record_.interlock = Interlock::kNone;
+      stream_->resume();
+      break;
+    case MachineEvent::kRetract: stream_->retract(); break;
+    case MachineEvent::kReset:
+      if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
+      drive_command_.reset = true;
+      record_.fault = LoopFault{};
+      break;
+    default: return Refusal::kState;
+  }
+  apply(event);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::stopMotion(MachineEvent event) {
+  const bool off = event == MachineEvent::kDisable;
+  if (stream_) {
+    power_off_next_ |= off;
+    // A wheel that is being lifted goes on to where a canceled job is to leave it.
+    const bool lifting = state_ == MachineState::kCanceling || state_ == MachineState::kRetracting;
+    if (event == MachineEvent::kHold || !lifting) stream_->hold();
+  } else if (state_ == MachineState::kLifting) {
+    power_off_next_ |= off;
+    lift_.hold();
+  } else if (state_ == MachineState::kFault) {
+    return Refusal::kNone;
+  } else {
+    switchOff();
+    return Refusal::kNone;
+  }
+  apply(event);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::enable() {
+  const Refusal refusal = obstacleToPower();
+  if (refusal != Refusal::kNone || powered()) return refusal;
+  drive_command_.enable = true;
+  awaiting_power_ = true;
+  waited_ = 0;
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::obstacleToPower() const {
+  if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
+  if (record_.drive.fault) return Refusal::kDriveFault;
+  if (!record_.position.isFinite().all() || !(feedback_age_ <= config_.feedback_timeout)) return Refusal::kFeedback;
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::start(const Start& job) {
+  if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
+  if (now_.wheel.in_work) return Refusal::kInWork;
+  if (!record_.drive.homed) return Refusal::kInterlock;
+  if (!(job.stream->program().start() == command_).all()) return Refusal::kMoved;
+  stream_ = job.stream;
+  limit_check_.restart();
+  record_.fault = LoopFault{};
+  record_.interlock = Interlock::kNone;
+  record_.job_ended = false;  // of a job before, whose record was lost
+  written_ = JobTrack{};
+  written_.job = record_.job = ++now_.jobs_started;
+  now_.end = JobEnd::kNone;
+  now_.fault = LoopFault{};
+  now_.place = Place{};
+  now_.strokes_ended_at = 0;
+  now_.wheel = job.wheel;
+  waited_ = 0;
+  lifting_off_ = power_off_next_ = false;
+  apply(MachineEvent::kStart);
+  return Refusal::kNone;
+}
+
+double ControlLoop::liftTarget() const {
+  return record_.drive.homed ? now_.wheel.clear_y : command_[kY] + now_.wheel.lift;
+}
+
+Refusal ControlLoop::lift() {
+  if (!now_.wheel.in_work) return Refusal::kNotInWork;
+  if (!(liftTarget() <= config_.machine.limits.max_position[kY])) return Refusal::kLiftTooFar;
+  lift_.begin(command_, liftTarget());
+  limit_check_.restart();
+  power_off_next_ = false;
+  apply(MachineEvent::kLift);
+  return Refusal::kNone;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Checks
 
 void ControlLoop::checkDrive() {
   LoopFault fault;
@@ -244,11 +372,18 @@ void ControlLoop::checkDrive() {
     fault.kind = FaultKind::kEmergencyStop;
     return fail(fault);
   }
-  // Ahead of what the drive does about it.
+  // Ahead of what the drive does about them.
   if (record_.drive.underruns != underruns_before_) {
     fault.kind = FaultKind::kUnderrun;
     fault.value = static_cast<double>(record_.drive.underruns - underruns_before_);
     fault.cycle = record_.setpoint.cycle;
+    return fail(fault);
+  }
+  const double longest = config_.late_fault * config_.machine.period;
+  if (axesWaited() && !(record_.period <= longest)) {
+    fault.kind = FaultKind::kLate;
+    fault.value = record_.period;
+    fault.limit = longest;
     return fail(fault);
   }
   if (record_.drive.fault) {
@@ -259,13 +394,18 @@ void ControlLoop::checkDrive() {
     fault.kind = FaultKind::kPowerLost;
     return fail(fault);
   }
-  if (!(feedback_age_ <= config_.feedback_timeout)) {
-    fault.kind = FaultKind::kStaleFeedback;
-    fault.value = feedback_age_;
-    fault.limit = config_.feedback_timeout;
-    return fail(fault);
-  }
-  checkPositions();
+  checkFeedback();
+}
+
+bool ControlLoop::axesWaited() const { return moving_ && record_.drive.commands_waiting == 0; }
+
+void ControlLoop::checkFeedback() {
+  if (feedback_age_ <= config_.feedback_timeout) return checkPositions();
+  LoopFault fault;
+  fault.kind = FaultKind::kStaleFeedback;
+  fault.value = feedback_age_;
+  fault.limit = config_.feedback_timeout;
+  fail(fault);
 }
 
 void ControlLoop::checkPositions() {
@@ -285,121 +425,6 @@ void ControlLoop::checkPositions() {
       return fail(fault);
     }
   }
-}
-
-void ControlLoop::takeCommand() {
-  Command command;
-  if (pending_ || !commands_.pop(command)) return;
-  pending_ = command;
-  const bool complete = isRequest(command.event) && (command.stream || command.event != MachineEvent::kStart);
-  if (!complete || !after(state_, command.event)) return answer(Refusal::kState);
-  const Refusal refusal = carryOut(command);
-  // Power takes its time: awaitPower() answers.
-  if (refusal == Refusal::kNone && command.event == MachineEvent::kEnable && !powered()) return;
-  answer(refusal);
-}
-
-ControlLoop::Refusal ControlLoop::carryOut(const Command& command) {
-  switch (command.event) {
-    case MachineEvent::kEnable: {
-      const Refusal refusal = obstacleToPower();
-      if (refusal != Refusal::kNone) return refusal;
-      drive_command_.enable = true;
-      waited_ = 0;
-      return Refusal::kNone;
-    }
-    case MachineEvent::kHome:
-      homing_seen_ = false;
-      waited_ = 0;
-      break;
-    case MachineEvent::kStart: return start(command.stream);
-    case MachineEvent::kHold:
-    case MachineEvent::kCancel: stream_->hold(); break;
-    case MachineEvent::kResume:
-      if (openInterlock() != Interlock::kNone) return Refusal::kInterlock;
-      record_.interlock = Interlock::kNone;
-      stream_->resume();
-      break;
-    case MachineEvent::kRetract: stream_->retract(); break;
-    case MachineEvent::kReset:
-      if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
-      drive_command_.reset = true;
-      record_.fault = LoopFault{};
-      break;
-    case MachineEvent::kDisable: drive_command_.enable = false; break;
-    case MachineEvent::kDone:
-    case MachineEvent::kAtRest:
-    case MachineEvent::kFault: break;
-  }
-  apply(command.event);
-  return Refusal::kNone;
-}
-
-ControlLoop::Refusal ControlLoop::obstacleToPower() const {
-  if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
-  if (record_.drive.fault) return Refusal::kDriveFault;
-  if (!record_.position.isFinite().all() || !(feedback_age_ <= config_.feedback_timeout)) return Refusal::kFeedback;
-  return Refusal::kNone;
-}
-
-ControlLoop::Refusal ControlLoop::start(SetpointStream* stream) {
-  if (!record_.drive.homed) return Refusal::kInterlock;
-  if (!(stream->program().start() == command_).all()) return Refusal::kMoved;
-  stream_ = stream;
-  limit_check_.restart();
-  record_.fault = LoopFault{};
-  record_.interlock = Interlock::kNone;
-  waited_ = 0;
-  apply(MachineEvent::kStart);
-  return Refusal::kNone;
-}
-
-void ControlLoop::answer(Refusal refusal) {
-  answers_.push(Answer{pending_->event, state_, refusal, openInterlock()});
-  pending_.reset();
-}
-
-void ControlLoop::awaitPower() {
-  if (!pending_ || pending_->event != MachineEvent::kEnable) return;
-  waited_ += record_.period;
-  const Refusal refusal = obstacleToPower();
-  if (refusal != Refusal::kNone) {
-    drive_command_.enable = false;
-    answer(refusal);
-  } else if (record_.drive.enabled) {
-    underruns_before_ = record_.drive.underruns;
-    apply(MachineEvent::kEnable);
-    answer(Refusal::kNone);
-  } else if (!(waited_ <= config_.enable_timeout)) {
-    drive_command_.enable = false;
-    answer(Refusal::kNoPower);
-  }
-}
-
-void ControlLoop::awaitHoming() {
-  waited_ += record_.period;
-  homing_seen_ |= record_.drive.homing;
-  const bool over = homing_seen_ && !record_.drive.homing;
-  if (over && record_.drive.homed) return apply(MachineEvent::kDone);
-  if (!over && waited_ <= config_.homing_timeout) return;
-  LoopFault fault;
-  fault.kind = FaultKind::kHoming;
-  fault.value = waited_;
-  fault.limit = config_.homing_timeout;
-  fail(fault);
-}
-
-void ControlLoop::awaitSpindle() {
-  const Interlock open = openInterlock();
-  if (open == Interlock::kNone) return apply(MachineEvent::kDone);
-  waited_ += record_.period;
-  if (waited_ <= config_.spindle_timeout) return;
-  record_.fault.kind = FaultKind::kInterlock;
-  record_.fault.interlock = open;
-  record_.fault.value = waited_;
-  record_.fault.limit = config_.spindle_timeout;
-  endJob();
-  apply(MachineEvent::kAtRest);
 }
 
 Interlock ControlLoop::openInterlock() const {
@@ -428,18 +453,107 @@ void ControlLoop::checkInterlocks() {
   }
 }
 
-void ControlLoop::advanceJob() {
-  if (state_ == MachineState::kStarting) return awaitSpindle();
-  checkInterlocks();
-  stream_->setFeedOverride(feed_override_);
-  move();
+// ---------------------------------------------------------------------------------------------------------------------
+// What a state waits for
+
+void ControlLoop::awaitPower() {
+  if (!awaiting_power_) return;
+  waited_ += record_.period;
+  const Refusal refusal = obstacleToPower();
+  if (refusal != Refusal::kNone) {
+    drive_command_.enable = false;
+    answerEnable(refusal);
+  } else if (record_.drive.enabled) {
+    underruns_before_ = record_.drive.underruns;
+    apply(MachineEvent::kEnable);
+    answerEnable(Refusal::kNone);
+  } else if (!(waited_ <= config_.enable_timeout)) {
+    drive_command_.enable = false;
+    answerEnable(Refusal::kNoPower);
+  }
 }
 
-void ControlLoop::move() {
+void ControlLoop::answerEnable(Refusal refusal) {
+  awaiting_power_ = false;
+  requests_.answer(answerTo(MachineEvent::kEnable, refusal));
+}
+
+void ControlLoop::switchOff() {
+  drive_command_.enable = false;
+  if (awaiting_power_) answerEnable(Refusal::kWithdrawn);
+  power_off_next_ = false;
+  apply(MachineEvent::kDisable);
+}
+
+void ControlLoop::awaitHoming() {
+  waited_ += record_.period;
+  homing_seen_ |= record_.drive.homing;
+  const bool over = homing_seen_ && !record_.drive.homing;
+  if (over && record_.drive.homed) return apply(MachineEvent::kDone);
+  if (!over && waited_ <= config_.homing_timeout) return;
+  LoopFault fault;
+  fault.kind = FaultKind::kHoming;
+  fault.value = waited_;
+  fault.limit = config_.homing_timeout;
+  fail(fault);
+}
+
+void ControlLoop::awaitSpindle() {
+  const Interlock open = openInterlock();
+  if (open == Interlock::kNone) {
+    apply(MachineEvent::kDone);
+    if (stream_->holding()) apply(MachineEvent::kHold);
+    return;
+  }
+  waited_ += record_.period;
+  if (waited_ <= config_.spindle_timeout) return;
+  record_.fault.kind = FaultKind::kInterlock;
+  record_.fault.interlock = open;
+  record_.fault.value = waited_;
+  record_.fault.limit = config_.spindle_timeout;
+  endJob(JobEnd::kFault);
+  comeToRest();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Motion
+
+void ControlLoop::takeUpSpeed() {
+  if (!axesWaited()) return;
+  const double periods = record_.period / config_.machine.period;
+  if (!(periods >= config_.late_slow_down)) return;
+  // One way was gone in the time of so many.
+  if (stream_) stream_->slowDown(1 / periods);
+  lift_.slowDown(1 / periods);
+  limit_check_.slowDown(1 / periods);
+}
+
+void ControlLoop::advanceJob() {
+  if (state_ == MachineState::kStarting) return awaitSpindle();
+  // Nothing has moved yet, and nothing needs to.
+  if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
+  checkInterlocks();
+  stream_->setFeedOverride(feed_override_);
   Setpoint setpoint;
   const bool moves = stream_->next(setpoint);
   if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
-  if (!moves) return rest();
+  if (!moves) return restJob();
+  write(setpoint);
+  if (stream_) written_.add(setpoint);
+}
+
+void ControlLoop::advanceLift() {
+  Setpoint setpoint;
+  if (lift_.next(setpoint)) {
+    record_.job = 0;
+    return write(setpoint);
+  }
+  if (!axesGotAll()) return;
+  if (lift_.finished()) now_.wheel.in_work = false;
+  comeToRest();
+}
+
+void ControlLoop::write(const Setpoint& setpoint) {
   if (const auto violation = limit_check_.check(setpoint)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;
@@ -453,25 +567,47 @@ void ControlLoop::move() {
   record_.setpoint = setpoint;
 }
 
-void ControlLoop::rest() {
-  const std::uint64_t rested = rested_++;
+bool ControlLoop::axesGotAll() { return record_.drive.commands_waiting <= rested_++; }
+
+void ControlLoop::restJob() {
+  const bool got_all = axesGotAll();
   const bool on_the_way = state_ == MachineState::kRunning || state_ == MachineState::kResuming;
-  if (on_the_way && !stream_->finished()) return;       // the feed override is 0
-  if (record_.drive.commands_waiting > rested) return;  // the axes have not got the last setpoint yet
-  if (on_the_way || state_ == MachineState::kCanceling) endJob();
-  apply(MachineEvent::kAtRest);
+  if (on_the_way && !stream_->finished()) return;  // the feed override is 0
+  if (liftsOff() || !got_all) return;
+  if (on_the_way) {
+    endJob(JobEnd::kDone);
+  } else if (state_ == MachineState::kCanceling) {
+    endJob(JobEnd::kCanceled);
+  }
+  comeToRest();
 }
 
-void ControlLoop::endJob() {
+bool ControlLoop::liftsOff() {
+  const bool in_work = written_.setpoints > 0 && command_[kY] < now_.wheel.clear_y;
+  if (state_ != MachineState::kCanceling || lifting_off_ || !in_work) return false;
+  lifting_off_ = true;
+  stream_->retract();
+  return true;
+}
+
+void ControlLoop::comeToRest() {
+  apply(MachineEvent::kAtRest);
+  if (power_off_next_) switchOff();
+}
+
+void ControlLoop::endJob(JobEnd end) {
   stream_ = nullptr;
   record_.job_ended = true;
   record_.interlock = Interlock::kNone;
+  ++now_.jobs_ended;
+  now_.end = end;
+  if (end == JobEnd::kFault) now_.fault = record_.fault;
 }
 
 void ControlLoop::fail(const LoopFault& fault) {
   record_.fault = fault;
-  if (stream_) endJob();
-  drive_command_.enable = false;
+  if (stream_) endJob(JobEnd::kFault);
+  drive_command_.enable = power_off_next_ = false;
   apply(MachineEvent::kFault);
 }
 

@@ -25,51 +25,72 @@ constexpr Transition kTransitions[]{
     {S::kReady, E::kLift, S::kLifting},
     {S::kReady, E::kFault, S::kFault},
 
+    // The drive moves by itself, and nothing but its power stops it.
     {S::kHoming, E::kDisable, S::kDisabled},
+    {S::kHoming, E::kHold, S::kDisabled},
+    {S::kHoming, E::kCancel, S::kDisabled},
     {S::kHoming, E::kDone, S::kReady},
     {S::kHoming, E::kFault, S::kFault},
 
+    {S::kStarting, E::kDisable, S::kCanceling},
+    {S::kStarting, E::kHold, S::kStarting},  // and then held, before anything moves
+    {S::kStarting, E::kResume, S::kStarting},
     {S::kStarting, E::kCancel, S::kCanceling},
     {S::kStarting, E::kDone, S::kRunning},
     {S::kStarting, E::kAtRest, S::kReady},  // spindle and coolant did not come
     {S::kStarting, E::kFault, S::kFault},
 
+    {S::kRunning, E::kDisable, S::kCanceling},
     {S::kRunning, E::kHold, S::kHolding},
     {S::kRunning, E::kCancel, S::kCanceling},
     {S::kRunning, E::kAtRest, S::kReady},
     {S::kRunning, E::kFault, S::kFault},
 
+    {S::kHolding, E::kDisable, S::kCanceling},
     {S::kHolding, E::kHold, S::kHolding},
     {S::kHolding, E::kResume, S::kResuming},
     {S::kHolding, E::kCancel, S::kCanceling},
     {S::kHolding, E::kAtRest, S::kHeld},
     {S::kHolding, E::kFault, S::kFault},
 
+    {S::kHeld, E::kDisable, S::kCanceling},
     {S::kHeld, E::kHold, S::kHeld},
     {S::kHeld, E::kResume, S::kResuming},
     {S::kHeld, E::kRetract, S::kRetracting},
     {S::kHeld, E::kCancel, S::kCanceling},
     {S::kHeld, E::kFault, S::kFault},
 
+    {S::kRetracting, E::kDisable, S::kCanceling},
     {S::kRetracting, E::kHold, S::kHolding},
     {S::kRetracting, E::kCancel, S::kCanceling},
     {S::kRetracting, E::kAtRest, S::kRetracted},
     {S::kRetracting, E::kFault, S::kFault},
 
+    {S::kRetracted, E::kDisable, S::kCanceling},
     {S::kRetracted, E::kResume, S::kResuming},
     {S::kRetracted, E::kCancel, S::kCanceling},
     {S::kRetracted, E::kFault, S::kFault},
 
+    {S::kResuming, E::kDisable, S::kCanceling},
     {S::kResuming, E::kHold, S::kHolding},
     {S::kResuming, E::kCancel, S::kCanceling},
     {S::kResuming, E::kDone, S::kRunning},
     {S::kResuming, E::kFault, S::kFault},
 
+    {S::kCanceling, E::kDisable, S::kCanceling},
     {S::kCanceling, E::kCancel, S::kCanceling},
     {S::kCanceling, E::kAtRest, S::kReady},
     {S::kCanceling, E::kFault, S::kFault},
 
+    {S::kFault, E::kDisable, S::kFault},  // its power is off
     {S::kFault, E::kReset, S::kDisabled},
+
+    // Each stops the lift on its way.
+    {S::kLifting, E::kDisable, S::kLifting},
+    {S::kLifting, E::kHold, S::kLifting},
+    {S::kLifting, E::kCancel, S::kLifting},
+    {S::kLifting, E::kAtRest, S::kReady},
+    {S::kLifting, E::kFault, S::kFault},
 };
 
 }  // namespace

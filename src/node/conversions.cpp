@@ -1,10 +1,10 @@
 #include "flute_grinder/node/conversions.h"
 
-#include <openssl/evp.h>
+#include "flute_grinder/node/sha256.h"
+
 #include <ros/serialization.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 namespace flute_grinder {
@@ -52,12 +52,7 @@ GrindJob jobFromGoal(const GrindGoal& goal) {
 
 GrindGoal goalFromJob(const GrindJob& job) {
   GrindGoal goal;
-  goal.cutter.end_diameter = job.cutter.end_diameter;
-  goal.cutter.cone_angle = job.cutter.cone_angle;
-  goal.cutter.spiral_angle = job.cutter.spiral_angle;
-  goal.cutter.rake_angle = job.cutter.rake_angle;
-  goal.cutter.flute_length = job.cutter.flute_length;
-  goal.cutter.tooth_angles = job.tooth_angles;
+  goal.cutter = toMessage(job.cutter, job.tooth_angles);
   goal.process.feed = job.process.feed;
   goal.process.depth = job.process.depth;
   goal.process.infeed = job.process.infeed;
@@ -78,6 +73,17 @@ GrindGoal goalFromJob(const GrindJob& job) {
   return goal;
 }
 
+Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles) {
+  Cutter m;
+  m.end_diameter = cutter.end_diameter;
+  m.cone_angle = cutter.cone_angle;
+  m.spiral_angle = cutter.spiral_angle;
+  m.rake_angle = cutter.rake_angle;
+  m.flute_length = cutter.flute_length;
+  m.tooth_angles = tooth_angles;
+  return m;
+}
+
 std::string jobDigest(const GrindJob& job) {
   const GrindGoal goal = goalFromJob(job);
   std::vector<std::uint8_t> bytes;
@@ -90,17 +96,7 @@ std::string jobDigest(const GrindJob& job) {
   append(goal.cutter);
   append(goal.process);
   append(goal.interpolation);
-
-  std::array<std::uint8_t, 32> digest{};
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("the job's digest cannot be computed");
-  }
-  std::string text;
-  for (const std::uint8_t byte : digest) {
-    constexpr const char* digits = "0123456789abcdef";
-    text += {digits[byte >> 4], digits[byte & 15]};
-  }
-  return text;
+  return sha256Hex(bytes.data(), bytes.size());
 }
 
 PathStatistics toMessage(const PlanStatistics& s) {

@@ -1,13 +1,15 @@
 /// @file
-/// Keeps the node's XML-RPC server on loopback. roscpp binds the servers of topics and services to loopback when ROS_IP
-/// or ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anybody could shut the node
-/// down. The program's own bind() stands before the C library's, and applies the same rule to every server.
+/// Keeps a roscpp node's servers on loopback. roscpp binds those of topics and services to loopback when ROS_IP or
+/// ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anybody could shut the node down.
+/// The program's own bind() stands before the C library's, and applies the same rule to every server. As a library that
+/// is loaded ahead of all others it does so for nodes that are not our own.
 
 #include <dlfcn.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 namespace {
@@ -16,7 +18,22 @@ namespace {
 bool loopbackOnly() {
   const char* host = std::getenv("ROS_HOSTNAME");
   if (!host) host = std::getenv("ROS_IP");
-  return host && (std::string(host) == "localhost" || std::string(host).rfind("127.", 0) == 0);
+  if (!host) return false;
+  const std::string name = host;
+  return name == "localhost" || name == "::1" || name.rfind("127.", 0) == 0;
+}
+
+/// An address with loopback in the place of all interfaces.
+sockaddr_storage onLoopback(const sockaddr* address, socklen_t length) {
+  sockaddr_storage local{};
+  std::memcpy(&local, address, length);
+  auto& four = reinterpret_cast<sockaddr_in&>(local);
+  auto& six = reinterpret_cast<sockaddr_in6&>(local);
+  if (local.ss_family == AF_INET && four.sin_addr.s_addr == htonl(INADDR_ANY)) {
+    four.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  }
+  if (local.ss_family == AF_INET6 && IN6_IS_ADDR_UNSPECIFIED(&six.sin6_addr)) six.sin6_addr = in6addr_loopback;
+  return local;
 }
 
 }  // namespace
@@ -24,10 +41,7 @@ bool loopbackOnly() {
 extern "C" int bind(int fd, const sockaddr* address, socklen_t length) noexcept {
   using Bind = int (*)(int, const sockaddr*, socklen_t);
   static const auto next = reinterpret_cast<Bind>(dlsym(RTLD_NEXT, "bind"));
-  if (address->sa_family == AF_INET && length >= sizeof(sockaddr_in) && loopbackOnly()) {
-    sockaddr_in local = *reinterpret_cast<const sockaddr_in*>(address);
-    if (local.sin_addr.s_addr == htonl(INADDR_ANY)) local.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return next(fd, reinterpret_cast<const sockaddr*>(&local), sizeof local);
-  }
-  return next(fd, address, length);
+  if (!address || length > sizeof(sockaddr_storage) || !loopbackOnly()) return next(fd, address, length);
+  const sockaddr_storage local = onLoopback(address, length);
+  return next(fd, reinterpret_cast<const sockaddr*>(&local), length);
 }

@@ -1,5 +1,6 @@
 #include "flute_grinder/node/grinder_node.h"
 #include "flute_grinder/node/master_watch.h"
+#include "flute_grinder/node/output.h"
 
 #include <ros/ros.h>
 
@@ -11,7 +12,7 @@
 
 namespace {
 
-/// Waits for SIGINT or SIGTERM, or for ROS to be shut down from elsewhere.
+/// Waits for a signal that ends the program, or for ROS to be shut down from elsewhere.
 void waitForEnd(const sigset_t& signals) {
   const timespec interval{0, 100'000'000};
   while (ros::ok()) {
@@ -35,9 +36,9 @@ int main(int argc, char** argv) {
   // Blocked in every thread: the machine must come to rest before the process ends.
   sigset_t signals;
   sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  flute_grinder::dropOutputThatNobodyTakes();
 
   ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
   // Keeps ROS up to the end, for the log of what went wrong too.
@@ -45,15 +46,15 @@ int main(int argc, char** argv) {
   try {
     flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
     const flute_grinder::MasterWatch master_watch(services());
-    ros::AsyncSpinner spinner(4);
+    ros::AsyncSpinner spinner(1);  // of the drive's callbacks; all others have threads of their own
     spinner.start();
     waitForEnd(signals);
     node.shutDown();
     spinner.stop();
-    ros::shutdown();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());
     return 1;
   }
+  ros::shutdown();
   return 0;
 }

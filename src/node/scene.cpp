@@ -68,11 +68,16 @@ std::string plannedText(const GrindJob& job) {
 
 }  // namespace
 
-Scene::Scene(ros::NodeHandle& private_nh)
+Scene::Scene(ros::NodeHandle private_nh)
     : scene_(private_nh.advertise<MarkerArray>("scene", 1, true)),
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
-      path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)) {}
+      path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)) {
+  // What an earlier process has left in rviz is no longer so.
+  for (const ros::Publisher* publisher : {&scene_, &tool_path_, &executed_path_, &path_error_}) {
+    publisher->publish(startOver());
+  }
+}
 
 void Scene::show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned) {
   const GrindJob& job = program.job();

@@ -148,17 +148,30 @@ class Rig {
     return log.back();
   }
 
-  /// Posts a request and runs cycles until it is answered.
-  RequestReply ask(MachineEvent event, SetpointStream* stream = nullptr) {
-    if (!loop->post(event, stream)) {
-      ADD_FAILURE() << "the request was not taken";
-      return {};
+  /// Asks for a stop or for something else, and runs cycles until it is answered.
+  RequestReply ask(MachineEvent event) {
+    if (isStop(event)) {
+      const std::uint32_t ticket = loop->postAskedStop(event);
+      return answerOf([&] { return loop->stopReply(event, ticket); });
     }
-    for (int i = 0; i < 10; ++i) {
+    EXPECT_TRUE(loop->post(event)) << "the request was not taken";
+    return answerOf([&] { return loop->reply(); });
+  }
+
+  /// Asks for a start and runs cycles until it is answered.
+  RequestReply askToStart(SetpointStream& job) {
+    EXPECT_TRUE(loop->postStart(&job)) << "the start was not taken";
+    return answerOf([&] { return loop->startReply(); });
+  }
+
+  /// Runs cycles until there is an answer.
+  template <typename Poll>
+  RequestReply answerOf(const Poll& poll) {
+    for (int i = 0; i < 15; ++i) {
       cycle();
-      if (auto answer = loop->reply()) return *answer;
+      if (const std::optional<RequestReply> answer = poll()) return *answer;
     }
-    ADD_FAILURE() << "no answer within 10 cycles";
+    ADD_FAILURE() << "no answer within 15 cycles";
     return {};
   }
 
@@ -176,7 +189,7 @@ class Rig {
 
   /// Starts a job and runs until spindle and coolant let it run; the next cycle writes its first setpoint.
   void start(SetpointStream& job) {
-    const RequestReply answer = ask(MachineEvent::kStart, &job);
+    const RequestReply answer = askToStart(job);
     ASSERT_TRUE(answer.accepted) << answer.text;
     if (last().state != MachineState::kRunning) runUntil(MachineState::kRunning);
   }
@@ -354,7 +367,7 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
     rig.enable();
     rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
     rig.stream.emplace(rig.paperStream());
-    ASSERT_TRUE(rig.ask(E::kStart, &*rig.stream).accepted);
+    ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
   } else {
     ASSERT_NO_FATAL_FAILURE(rig.startPaper());
     ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));

@@ -86,8 +86,9 @@ SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
 
 
 def goal_of(job, **fields):
-    """The action's goal of a job; `fields` are the goal's own, as dry_run=True."""
-    goal = GrindGoal(**fields)
+    """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten
+    unless they say otherwise."""
+    goal = GrindGoal(**dict({'discard': True}, **fields))
     for path, value in job.items():
         part, name = path.split('.')
         setattr(getattr(goal, part), name, value)
@@ -364,6 +365,9 @@ class Grinder:
     def retract(self):
         return self._call('retract', Trigger)
 
+    def lift(self):
+        return self._call('lift', Trigger)
+
     def reset(self):
         return self._call('reset_fault', Trigger)
 
@@ -485,6 +489,7 @@ def grinder():
     if not NODE:
         NODE.append(Grinder())
         atexit.register(remove_file, rospy.get_param('/grinder/journal'))
+        atexit.register(remove_file, rospy.get_param('/grinder/journal') + '.lock')
     return NODE[0]
 
 
@@ -493,16 +498,23 @@ def remove_file(path):
         os.remove(path)
 
 
-def machine():
+def shipped_machine():
     """The machine's parameters as shipped."""
     with open(package_file('config/grinder.yaml')) as text:
         return yaml.safe_load(text)
 
 
+def machine():
+    """The same on a host that may stall."""
+    with open(package_file('test/patient.yaml')) as text:
+        return dict(shipped_machine(), **yaml.safe_load(text))
+
+
 class NodeProcess:
     """A grinder's node with parameters of its own, and with a journal of its own unless the parameters name one."""
 
-    def __init__(self, name, parameters, arguments=(), environment=()):
+    def __init__(self, name, parameters, arguments=(), environment=(), output=None):
+        """`output`: a file for what it prints, in place of one of its own."""
         self.name = name
         self.folder = tempfile.mkdtemp()
         if rospy.has_param('/' + name):
@@ -515,8 +527,8 @@ class NodeProcess:
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen([program('grinder'), '__name:=' + name,
                                          'joint_states:=/%s/joint_states' % name, *arguments],
-                                        env=dict(os.environ, **dict(environment)), stdout=self.log,
-                                        stderr=subprocess.STDOUT)
+                                        env=dict(os.environ, **dict(environment)),
+                                        stdout=self.log if output is None else output, stderr=subprocess.STDOUT)
 
     def client(self):
         return Grinder(self.name, '/%s/joint_states' % self.name)
@@ -538,6 +550,9 @@ class NodeProcess:
             raise
 
     def close(self):
+        """Ends the process and forgets it; once more does nothing."""
+        if self.log.closed:
+            return
         if self.process.poll() is None:
             self.end(signal.SIGTERM)
         self.log.close()

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 """Shows that the grinder knows how far a job has come, whatever becomes of its process: after a kill at any moment the
-journal is whole, and continuing grinds every pass that was not finished and none that was."""
+journal is whole, and continuing grinds every pass that was not finished, and none that the grinder's state told as
+finished. The journal belongs to one node, what is damaged is refused, and no job that is not finished is forgotten
+without a word."""
 
+import hashlib
 import os
 import random
 import shutil
@@ -19,7 +22,12 @@ from flute_grinder.msg import GrinderState, GrindResult
 import grinder_client as gc
 from grinder_client import MM, STROKE, X, Y
 
-KEYS = {'job_digest', 'finished', 'tooth', 'pass', 'x_m'}
+CUTTER = ['end_diameter', 'cone_angle', 'spiral_angle', 'rake_angle', 'flute_length', 'tooth_angles']
+CUTTER_KEYS = ['end_diameter_m', 'cone_angle_rad', 'spiral_angle_rad', 'rake_angle_rad', 'flute_length_m',
+               'tooth_angles_rad']
+KEYS = {'job_digest', 'job_name', 'finished', 'tooth', 'pass', 'x_m', 'wheel_in_work', 'clear_y_m', 'lift_m',
+        'checksum', *CUTTER_KEYS}
+JOB_NAME = 'mill "10°".yaml'
 KILLS = 20
 SEED = 20
 
@@ -52,6 +60,16 @@ def quick_machine(journal):
     return parameters
 
 
+def sealed(content):
+    """The content with its checksum."""
+    return content + b'checksum: %s\n' % hashlib.sha256(content).hexdigest().encode()
+
+
+def end_of(told):
+    """How many passes of the job are finished, by what is told of its progress."""
+    return PASSES.index((told.tooth, told.pass_)) + told.finished
+
+
 def strokes_of(setpoints):
     """The passes whose strokes there are setpoints of, in order, and those of them that came to their end."""
     begun, ended = [], []
@@ -79,20 +97,31 @@ class JournalTest(unittest.TestCase):
         self.job = gc.job_from_file(self.job_path)
         self.node = None
 
-    def start(self):
-        """Starts a node; every one has a name of its own, since the master remembers those that were killed."""
+    def start_process(self, **environment):
+        """Every node has a name of its own, since the master remembers those that were killed."""
         JournalTest.started += 1
-        self.node = gc.NodeProcess('grinder_%d' % JournalTest.started, quick_machine(self.journal))
-        self.addCleanup(self.node.close)
+        node = gc.NodeProcess('grinder_%d' % JournalTest.started, quick_machine(self.journal), environment=environment)
+        self.addCleanup(node.close)
+        return node
+
+    def start(self, **environment):
+        self.node = self.start_process(**environment)
         self.client = self.node.client()
         self.addCleanup(self.client.close)
         return self.client
 
-    def start_ready(self):
-        self.start()
+    def start_ready(self, **environment):
+        self.start(**environment)
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
+        if self.client.fresh_state().wheel_in_work:
+            self.lift()
         return self.client
+
+    def lift(self):
+        self.assertTrue(self.client.lift().success)
+        self.client.wait_for(lambda: not self.client.states[-1].wheel_in_work, 'the wheel lifted')
+        self.client.wait_state(GrinderState.READY)
 
     def kill(self):
         """Kills the node, and waits until all that it had sent is here."""
@@ -101,25 +130,63 @@ class JournalTest(unittest.TestCase):
         self.client.close()
 
     def read_journal(self):
-        with open(self.journal) as text:
-            journal = yaml.safe_load(text)
+        with open(self.journal, 'rb') as file:
+            content = file.read()
+        self.assertEqual(content, sealed(content[:content.rindex(b'checksum: ')]))
+        journal = yaml.safe_load(content)
         self.assertEqual(set(journal), KEYS)
         return journal
+
+    def wait_finished(self):
+        """The journal, which may be a little later than the job's end."""
+        gc.poll(lambda: self.read_journal()['finished'], 'the end in the journal')
+        return self.read_journal()
+
+    def wait_left(self, run):
+        """The journal of a run that has stopped in a stroke."""
+        x = [s.position[X] for s in run.setpoints if s.move == STROKE][-1]
+        gc.poll(lambda: self.read_journal()['x_m'] == x, 'the place in the journal')
+        return self.read_journal()
 
     def check_told(self, journal):
         """That the node tells the progress that is in the journal."""
         told = self.client.fresh_state().progress
-        self.assertEqual((told.job_digest, told.finished, told.tooth, told.pass_, told.x),
-                         tuple(journal[key] for key in ('job_digest', 'finished', 'tooth', 'pass', 'x_m')))
+        self.assertEqual((told.job_digest, told.job_name, told.finished, told.tooth, told.pass_, told.x),
+                         tuple(journal[key] for key in ('job_digest', 'job_name', 'finished', 'tooth', 'pass', 'x_m')))
+        self.assertEqual([getattr(told.cutter, name) for name in CUTTER[:-1]],
+                         [journal[key] for key in CUTTER_KEYS[:-1]])
+        self.assertEqual(list(told.cutter.tooth_angles), journal['tooth_angles_rad'])
 
     def grind(self, status, *arguments):
         done = gc.grind('--node', self.node.name, *arguments)
         self.assertEqual(done.returncode, status, '%s\n%s' % (done.stdout, done.stderr))
         return done
 
+    def reports(self):
+        """What /diagnostics say of the journal from now on."""
+        reports = []
+
+        def on_report(message):
+            reports.extend(s for s in message.status if self.node.name in s.name and 'Journal' in s.name)
+
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, on_report)
+        self.addCleanup(subscriber.unregister)
+        gc.poll(lambda: reports, 'diagnostics')
+        return reports
+
+    def check_trouble_is_told(self):
+        """That the journal cannot be used is in the log and in the diagnostics, and nothing can be continued."""
+        self.assertIn('journal ' + self.journal, self.node.output)
+        state = self.client.fresh_state()
+        self.assertEqual((state.progress.job_digest, state.progress.finished), ('', False))
+        report = self.reports()[-1]
+        self.assertEqual(report.level, DiagnosticStatus.ERROR)
+        self.assertIn('journal ' + self.journal, report.message)
+        self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
+
     def hold_in_stroke_of(self, tooth, pass_):
         """Holds a job in the midst of a stroke. The feed is low so that it does not get away."""
-        run = self.client.send(self.job)
+        run = self.client.send(self.job, job_name=JOB_NAME)
         run.wait_past(lambda s: (s.tooth, s.pass_) == (tooth, pass_), 'the tooth')
         self.assertTrue(self.client.set_feed_override(0.05).success)
         run.wait_past(lambda s: s.move == STROKE and (s.tooth, s.pass_) == (tooth, pass_) and s.position[X] > FROM,
@@ -139,13 +206,32 @@ class JournalTest(unittest.TestCase):
 class TestKills(JournalTest):
     """The process is killed at random moments."""
 
-    def test_no_pass_is_ground_twice_and_none_is_left_out(self):
+    def check_progress(self, run, states, begin):
+        """What a run that was killed, or came to its end, has left; returns how many passes are finished."""
+        journal = self.read_journal()
+        self.check_told(journal)
+        begun, ended = strokes_of(run.setpoints)
+        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertEqual(begun, PASSES[begin:begin + len(begun)], 'strokes go on from where they were left')
+        self.assertEqual(ended, PASSES[begin:begin + len(ended)])
+        self.check_depths(run.setpoints)
+        if not journal['finished']:
+            self.assertTrue(FROM - 1e-9 <= journal['x_m'] <= TO + 1e-9)
+
+        end = PASSES.index((journal['tooth'], journal['pass'])) + journal['finished']
+        # A pass that is finished may not be told yet; one that ended just now may not be in the journal yet.
+        self.assertTrue(begin <= end <= begin + len(ended) + 1, 'the journal is ahead of the strokes')
+        for state in states:
+            if state.header.stamp > run.batches[0].header.stamp:
+                self.assertLessEqual(end_of(state.progress), end, 'a pass that was told as finished is not')
+        return end
+
+    def test_no_pass_told_as_finished_is_ground_again_and_none_is_left_out(self):
         chance = random.Random(SEED)
         print('kills with seed %d' % SEED)
         planned = None
         begin = 0  # index of the pass at which the next run has to begin
-        seen, unseen = [], []  # passes of this job that ended, by the setpoints, or only by the journal
-        kills = finished_jobs = kills_in_strokes = 0
+        kills = finished_jobs = kills_in_strokes = again = 0
         self.start_ready()
         while kills < KILLS or begin > 0:
             tooth, pass_ = PASSES[begin]
@@ -153,6 +239,7 @@ class TestKills(JournalTest):
             if planned is None:
                 planned = self.client.plan(gc.goal_of(self.job)).duration
             self.client.wait_for(lambda: run.done or run.setpoints, 'the first setpoints')
+            states = self.client.states
             if kills < KILLS:
                 # No wait for anything: it is killed at a moment that nothing decides.
                 time.sleep(chance.uniform(0, 0.5 * planned))
@@ -162,33 +249,14 @@ class TestKills(JournalTest):
             else:
                 run.wait_complete()
                 self.assertEqual(run.status, 'SUCCEEDED', run.text)
-
-            journal = self.read_journal()
-            self.check_told(journal)
-            begun, ended = strokes_of(run.setpoints)
-            self.assertTrue(gc.is_gapless(run.setpoints))
-            self.assertEqual(begun, PASSES[begin:begin + len(begun)], 'strokes go on from where they were left')
-            self.check_depths(run.setpoints)
+                self.wait_finished()
+            end = self.check_progress(run, states, begin)
             kills_in_strokes += run.setpoints[-1].move == STROKE
-            if not journal['finished']:
-                self.assertTrue(FROM - 1e-9 <= journal['x_m'] <= TO + 1e-9)
-
-            end = PASSES.index((journal['tooth'], journal['pass'])) + journal['finished']
-            self.assertGreaterEqual(end, begin)
-            self.assertLessEqual(set(ended), set(PASSES[begin:end]), 'a pass that was seen to end is not finished')
-            only_journal = [p for p in PASSES[begin:end] if p not in ended]
-            # The end of a pass is in the journal before it is told, but no pass is ahead of its end.
-            self.assertLessEqual(len(only_journal), 1)
-            if only_journal:
-                self.assertEqual(only_journal[0], PASSES[end - 1])
-            seen += ended
-            unseen += only_journal
-            begin = end
-            if journal['finished']:
-                self.assertEqual(sorted(seen + unseen), PASSES, 'every pass was finished exactly once')
-                finished_jobs += 1
-                begin, seen, unseen = 0, [], []
-        print('%d kills, %d of them in a stroke; %d jobs finished' % (kills, kills_in_strokes, finished_jobs))
+            again += len(set(strokes_of(run.setpoints)[1]) - set(PASSES[:end]))
+            finished_jobs += end == len(PASSES)
+            begin = end % len(PASSES)
+        print('%d kills, %d of them in a stroke; %d jobs finished; %d passes to be ground again at the same depth'
+              % (kills, kills_in_strokes, finished_jobs, again))
         self.assertGreater(finished_jobs, 0)
 
 
@@ -200,16 +268,23 @@ class TestContinue(JournalTest):
         at = run.setpoints[-1]
         self.assertTrue(FROM < at.position[X] < TO)
         # What a pass has come to is written down from time to time.
-        gc.poll(lambda: self.read_journal()['x_m'] == at.position[X], 'the place in the journal')
+        journal = self.wait_left(run)
         self.kill()
-        journal = self.read_journal()
-        self.assertEqual((journal['finished'], journal['tooth'], journal['pass']), (False, 1, 0))
+        self.assertEqual((journal['finished'], journal['tooth'], journal['pass'], journal['wheel_in_work']),
+                         (False, 1, 0, True))
+        self.assertEqual(journal['job_name'], JOB_NAME)
+        self.assertEqual([journal[key] for key in CUTTER_KEYS], [self.job['cutter.' + name] for name in CUTTER])
 
-        self.start_ready()
+        self.start()
         self.check_told(journal)
-        self.assertRegex(self.grind(0, 'status').stdout,
-                         r'(?m)^last job +%s, tooth 2, pass 1 not finished, X %.3f mm$'
-                         % (journal['job_digest'][:12], at.position[X] / MM))
+        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        status = self.grind(0, 'status').stdout
+        self.assertRegex(status, r'(?m)^last job .*tooth 2, pass 1 not finished, X %.3f mm' % (at.position[X] / MM))
+        self.assertIn(JOB_NAME, status)
+        self.assertTrue(self.client.enable().success)
+        self.client.wait_state(GrinderState.READY)
+        self.lift()
+        gc.poll(lambda: not self.read_journal()['wheel_in_work'], 'the wheel lifted in the journal')
         self.assertEqual(self.client.batches, [])
         self.grind(0, 'run', self.job_path, '--continue')
         self.client.fresh_state()
@@ -220,8 +295,8 @@ class TestContinue(JournalTest):
         self.assertEqual((begun, ended), (PASSES[2:], PASSES[2:]))
         self.check_depths(setpoints)
 
-        self.assertTrue(self.read_journal()['finished'])
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^last job +%s, finished$' % journal['job_digest'][:12])
+        self.wait_finished()
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^last job .*finished')
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^the job is finished: ')
 
     def test_cancelled_job_goes_on_with_the_pass_that_was_cancelled(self):
@@ -230,10 +305,9 @@ class TestContinue(JournalTest):
         run.cancel()
         run.wait()
         self.client.wait_state(GrinderState.READY)
-        journal = self.read_journal()
+        journal = self.wait_left(run)
         self.check_told(journal)
-        self.assertEqual((journal['finished'], journal['tooth'], journal['pass'], journal['x_m']),
-                         (False, 0, 1, run.setpoints[-1].position[X]))
+        self.assertEqual((journal['finished'], journal['tooth'], journal['pass']), (False, 0, 1))
         self.assertTrue(self.client.set_feed_override(1).success)
         batches = len(self.client.batches)
         self.grind(0, 'run', self.job_path, '--continue')
@@ -244,7 +318,7 @@ class TestContinue(JournalTest):
     def test_dry_run_leaves_the_journal_alone(self):
         self.start_ready()
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        journal = self.read_journal()
+        journal = self.wait_finished()
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
         self.assertEqual(self.read_journal(), journal)
         self.check_told(journal)
@@ -256,7 +330,7 @@ class TestContinue(JournalTest):
         self.assertNotIn('last job', self.grind(0, 'status').stdout)
         self.assertEqual(self.client.batches, [])
         self.grind(0, 'run', self.job_path)
-        self.assertTrue(self.read_journal()['finished'])
+        self.wait_finished()
 
 
 # Name, what is changed in the job file.
@@ -310,9 +384,11 @@ UNREADABLE = [
     ('not_yaml', b'job_digest: [1, 2\nfinished: }\n'),
     ('binary', bytes(range(256))),
     ('a_word', b'finished\n'),
-    ('a_key_missing', b'job_digest: "0123"\nfinished: false\ntooth: 0\npass: 0\n'),
-    ('a_wrong_type', b'job_digest: "0123"\nfinished: perhaps\ntooth: 0\npass: 0\nx_m: 0\n'),
+    ('no_checksum', b'job_digest: "0123"\nfinished: false\ntooth: 0\npass: 0\nx_m: 0\n'),
+    ('a_key_missing', sealed(b'job_digest: "0123"\nfinished: false\ntooth: 0\npass: 0\n')),
+    ('a_wrong_type', sealed(b'job_digest: "0123"\nfinished: perhaps\ntooth: 0\npass: 0\nx_m: 0\n')),
     ('cut_off', b'job_digest: "0123"\nfinished: fal'),
+    ('endless', b' ' * (1 << 20)),
 ]
 
 
@@ -323,10 +399,7 @@ class TestUnreadableJournal(JournalTest):
         with open(self.journal, 'wb') as file:
             file.write(content)
         self.start()
-        self.assertIn('journal ' + self.journal, self.node.output)
-        state = self.client.fresh_state()
-        self.assertEqual((state.state_name, state.progress.job_digest), ('disabled', ''))
-        self.assertFalse(state.progress.finished)
+        self.check_trouble_is_told()
         with open(self.journal, 'rb') as file:
             self.assertEqual(file.read(), content, 'it is left as it is until the next job')
 
@@ -334,23 +407,19 @@ class TestUnreadableJournal(JournalTest):
         self.check(b'nothing of a journal')
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
-        self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        self.assertTrue(self.read_journal()['finished'])
-        self.check_told(self.read_journal())
+        self.check_told(self.wait_finished())
 
-    def test_diagnostics_tell_it(self):
-        self.check(b'nothing of a journal')
-        reports = []
-
-        def on_report(message):
-            reports.extend(s for s in message.status if self.node.name in s.name and 'Journal' in s.name)
-
-        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, on_report)
-        self.addCleanup(subscriber.unregister)
-        gc.poll(lambda: reports, 'diagnostics')
-        self.assertEqual(reports[-1].level, DiagnosticStatus.ERROR)
-        self.assertIn('journal ' + self.journal, reports[-1].message)
+    def test_a_flipped_bit_is_told(self):
+        self.start_ready()
+        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
+        self.wait_finished()
+        self.node.end(signal.SIGTERM)
+        with open(self.journal, 'rb') as file:
+            content = bytearray(file.read())
+        content[content.index(b'pass: 1') + len('pass: ')] ^= 1
+        self.check(bytes(content))
+        self.assertIn('checksum is wrong', self.node.output)
 
 
 def add_journals():
@@ -361,21 +430,167 @@ def add_journals():
 add_journals()
 
 
-class TestUnwritableJournal(JournalTest):
-    def test_job_is_refused(self):
-        with open(os.path.join(self.folder, 'file'), 'w'):
-            pass
-        self.journal = os.path.join(self.folder, 'file', 'journal')
+def below_a_file(folder):
+    with open(os.path.join(folder, 'file'), 'w'):
+        pass
+    return 'file/journal'
+
+
+def a_folder(folder):
+    os.mkdir(os.path.join(folder, 'folder'))
+    return 'folder'
+
+
+def a_fifo(folder):
+    os.mkfifo(os.path.join(folder, 'fifo'))
+    return 'fifo'
+
+
+def a_loop_of_links(folder):
+    os.symlink('loop', os.path.join(folder, 'loop'))
+    return 'loop'
+
+
+# How a path is made that no journal can be kept at, and the reason that is told.
+UNUSABLE = [
+    (below_a_file, 'Not a directory'),
+    (a_folder, 'is no regular file'),
+    (a_fifo, 'is no regular file'),
+    (a_loop_of_links, 'Too many levels of symbolic links'),
+    (lambda folder: 256 * 'n', 'File name too long'),
+]
+
+
+class TestUnusableJournal(JournalTest):
+    """The grinder starts, tells it, and grinds nothing; the methods are made of the table."""
+
+    def check(self, make, reason):
+        self.journal = os.path.join(self.folder, make(self.folder))
         self.start_ready()
+        self.check_trouble_is_told()
         rest = self.client.wait_rest()
         run = self.client.send(self.job).wait()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.NOT_READY))
-        self.assertRegex(run.text, r'^(?s:.*)%s.*Not a directory' % self.journal)
+        self.assertIn('journal ' + self.journal, run.text)
+        self.assertIn(reason, run.text)
         state = self.client.fresh_state()
         self.assertEqual((state.state_name, state.progress.job_digest), ('ready', ''))
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
         self.assertEqual(run.setpoints, [])
         self.assertEqual(self.client.send(self.job, dry_run=True).wait().status, 'SUCCEEDED')
+
+
+def add_paths():
+    for make, reason in UNUSABLE:
+        name = 'test_' + make.__name__.replace('<lambda>', 'a_long_name')
+        setattr(TestUnusableJournal, name, lambda self, make=make, reason=reason: self.check(make, reason))
+
+
+add_paths()
+
+
+class TestOwner(JournalTest):
+    """The journal belongs to one node."""
+
+    def test_second_node_is_refused(self):
+        self.start_ready()
+        second = self.start_process()
+        self.assertEqual(second.end(), 1)
+        self.assertIn('journal %s is in use by node /%s, process %d' % (self.journal, self.node.name,
+                                                                         self.node.process.pid), second.output)
+        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
+        self.check_told(self.wait_finished())
+
+    def test_it_is_free_when_its_node_is_killed(self):
+        self.start_ready()
+        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
+        journal = self.wait_finished()
+        self.kill()
+        self.start()
+        self.check_told(journal)
+
+
+class TestUnfinishedJob(JournalTest):
+    """A job that is not finished is forgotten only by whoever says so."""
+
+    def setUp(self):
+        super().setUp()
+        self.start_ready()
+        run = self.hold_in_stroke_of(0, 1)
+        run.cancel()
+        run.wait()
+        self.client.wait_state(GrinderState.READY)
+        self.client.wait_rest()
+        self.assertTrue(self.client.set_feed_override(1).success)
+        self.wait_left(run)
+        gc.poll(lambda: not self.read_journal()['wheel_in_work'], 'the wheel lifted in the journal')
+        with open(self.journal, 'rb') as file:
+            self.left = file.read()
+
+    def check_refused(self, job):
+        rest = self.client.wait_rest()
+        run = self.client.send(job).wait()
+        self.assertEqual(run.code, GrindResult.NOT_READY)
+        for word in (JOB_NAME, 'continue', 'discard'):
+            self.assertIn(word, run.text)
+        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
+        self.assertEqual(run.setpoints, [])
+        with open(self.journal, 'rb') as file:
+            self.assertEqual(file.read(), self.left)
+
+    def check_ground(self, job, **fields):
+        self.assertEqual(self.client.run(job, **fields).status, 'SUCCEEDED')
+        journal = self.wait_finished()
+        self.check_told(journal)
+        return journal
+
+    def test_another_job_does_not_replace_it(self):
+        self.check_refused(gc.SHORT)
+        self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
+        journal = self.check_ground(gc.SHORT, discard=True, job_name='other.yaml')
+        self.assertEqual(journal['job_name'], 'other.yaml')
+
+    def test_it_does_not_begin_anew(self):
+        self.check_refused(self.job)
+        self.check_ground(self.job, discard=True)
+
+    def test_it_is_continued(self):
+        journal = self.read_journal()
+        self.check_ground(self.job, first_tooth=journal['tooth'], first_pass=journal['pass'])
+        self.check_ground(gc.SHORT)
+
+    def test_it_is_remembered_over_a_restart(self):
+        self.kill()
+        self.start_ready()
+        self.check_refused(gc.SHORT)
+
+
+class TestSlowDisk(JournalTest):
+    """Nobody waits for the disk; what is told as finished is on it."""
+
+    def slow_down(self, seconds):
+        with open(self.seconds + '.new', 'w') as file:
+            file.write(str(seconds))
+        os.rename(self.seconds + '.new', self.seconds)
+
+    def test_strokes_go_on_and_progress_waits_for_the_disk(self):
+        self.seconds = os.path.join(self.folder, 'seconds')
+        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libslow_fsync.so')
+        self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
+        self.addCleanup(self.slow_down, 0)
+        run = self.hold_in_stroke_of(0, 1)
+        journal = self.wait_left(run)
+        gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place told')
+        self.slow_down(100)
+        self.assertTrue(self.client.set_feed_override(1).success)
+        self.assertTrue(self.client.resume().success)
+        run.wait_past(lambda s: (s.tooth, s.pass_) == (2, 0), 'the last tooth')
+        self.check_told(journal)
+        self.assertEqual(self.read_journal(), journal)
+        self.slow_down(0)
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED')
+        self.check_told(self.wait_finished())
 
 
 if __name__ == '__main__':

@@ -4,6 +4,9 @@
 
 namespace flute_grinder {
 
+/// Bounds of the figures of a machine, in SI units; far beyond every machine.
+constexpr double kSmallestFigure = 1e-9, kLargestFigure = 1e9;
+
 /// What every axis may do.
 struct AxisLimits {
   Axes min_position = Axes::Zero();      ///< [m], A [rad]

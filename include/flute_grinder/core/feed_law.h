@@ -28,10 +28,20 @@ class FeedLaw {
   /// @throw std::invalid_argument unless limits, distance and target are as stated and finite.
   FeedLaw(const MotionLimits& limits, double distance, double target);
 
+  /// Starts over, as the constructor does, but without an exception. Real-time safe.
+  /// @return false, and nothing is changed, unless limits, distance and target are as the constructor wants them.
+  bool begin(const MotionLimits& limits, double distance, double target) noexcept;
+
   /// Changes the speed to go toward, from this moment on; a target of 0 stops as soon as the limits allow, short of the
   /// distance's end. A target above the limit, or one that is not a number, is not taken.
   /// @return whether the target was taken.
   bool setTarget(double target) noexcept;
+
+  /// Goes on as a film of the same motion does that is shown more slowly: the axes stood where it went on. Speed and
+  /// acceleration are those of the film, so that the way left suffices for a stop as it did before, also in the midst
+  /// of a braking; the speed is then taken up anew.
+  /// @param factor of the time, above 0, below 1; others are not taken.
+  void slowDown(double factor) noexcept;
 
   /// Lets `dt` [s] pass, not negative.
   void advance(double dt) noexcept;

@@ -89,14 +89,25 @@ struct JobField {
   std::string range(UnitSystem units) const;
   /// The name as its reader knows it: the file's key, or the message's path.
   const char* name(UnitSystem units) const { return units == UnitSystem::kSi ? path : file_key; }
+  /// "name = value" of a job, with the unit.
+  std::string text(const GrindJob& job, UnitSystem units) const {
+    return std::string(name(units)) + " = " + format(get(job), units);
+  }
 };
 
 /// Every number of a job but the teeth and the count of spark-out passes.
 const std::vector<JobField>& jobFields();
 
+/// The tool for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
+
+/// The one of a path, which must be there.
+const JobField& jobField(const std::string& path);
+
 constexpr int kMaxTeeth = 64;
 constexpr int kMaxSparkOut = 100;
-constexpr int kMaxPasses = 10000;
+constexpr int kMaxPasses = 10000;         ///< of a tooth
+constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest feed that is ground with [m/s]
 
 /// Checks all figures of a job, each for itself and against the others.

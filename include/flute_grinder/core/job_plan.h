@@ -48,18 +48,19 @@ struct JobPlan {
   PlanFault fault = PlanFault::kNone;
   std::vector<std::string> reasons;  ///< why not, one text for each figure, axis and kind of limit
   PlanStatistics statistics;
-  std::vector<std::uint64_t> move_ends;   ///< last cycle of every move of the program
-  std::unique_ptr<GrindProgram> program;  ///< null where the job's figures are refused
+  std::vector<std::uint64_t> move_ends;         ///< last cycle of every move of the program
+  std::shared_ptr<const GrindProgram> program;  ///< null where the job's figures are refused
 
   bool good() const { return fault == PlanFault::kNone; }
 };
 
-/// Generates and checks every setpoint of a job, just as the machine would get them.
+/// Generates and checks every setpoint of a job, just as the machine would get them, up to the machine's
+/// max_job_duration. Whatever the job and the machine, the answer is a good plan or one with reasons.
 /// @param job the job; its figures are checked too.
 /// @param machine what it is to run on.
 /// @param start where the axes stand [m], A [rad].
 /// @param first first pass to grind.
-/// @param visit called with every setpoint, if given.
+/// @param visit called with every setpoint, if given; all of them are finite.
 /// @param units of the texts about the job's figures.
 /// @param watch may give the plan up, if given.
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},

@@ -36,7 +36,17 @@ class LimitCheck {
   LimitCheck(const AxisLimits& limits, double period) noexcept;
 
   /// Forgets the past: the next setpoint is taken as preceded by rest.
-  void restart() noexcept { seen_ = 0; }
+  void restart() noexcept {
+    seen_ = 0;
+    slow_down_ = 1;
+  }
+
+  /// The axes stood for a while, and go on with a factor of their speed: FeedLaw::slowDown(). What is known of the past
+  /// is taken to have gone that slowly too, from the next pair on.
+  /// @param factor above 0, below 1; others are not taken.
+  void slowDown(double factor) noexcept {
+    if (factor > 0 && factor < slow_down_) slow_down_ = factor;
+  }
 
   /// @return the first violation, if the setpoint is one; violations() has all.
   std::optional<LimitViolation> check(const Setpoint& setpoint) noexcept;
@@ -51,6 +61,7 @@ class LimitCheck {
   const Axes& jerk() const noexcept { return jerk_; }
 
  private:
+  void slowPastDown() noexcept;
   void checkPosition(const Setpoint& setpoint) noexcept;
   void checkPairEnd(const Setpoint& setpoint) noexcept;
   void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
@@ -61,6 +72,7 @@ class LimitCheck {
   Axes middle_, half_range_;  ///< of the positions
   double inverse_period_;
   std::uint64_t seen_ = 0;
+  double slow_down_ = 1;  ///< of the next pair
   Axes last_ = Axes::Zero();
   Axes largest_ = Axes::Zero();  ///< position in size
   Axes ends_[3];                 ///< the last pair ends, newest first

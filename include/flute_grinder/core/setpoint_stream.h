@@ -5,16 +5,23 @@
 #include "flute_grinder/core/odd_even_interpolator.h"
 #include "flute_grinder/core/setpoint.h"
 
+#include <memory>
+
 namespace flute_grinder {
 
 /// The only producer of setpoints: planning, a dry run and the machine all take them from here, so that what was
 /// previewed is, bit for bit, what is streamed. Every move takes an even number of cycles, so that even cycles end a
 /// pair throughout. It can be held anywhere, slowed down, lifted off the work and brought back; each request takes
 /// effect with the next pair, and all motion stays within the axes' limits. While the axes rest there are no setpoints.
+/// A stream that cannot go on, which no program that planJob() accepts comes to, gives positions that are not a number
+/// from then on, for every check to refuse.
 class SetpointStream {
  public:
   /// At the program's start.
   explicit SetpointStream(GrindProgram program);
+
+  /// The same without a copy of the program, which must be there.
+  explicit SetpointStream(std::shared_ptr<const GrindProgram> program);
 
   /// The next setpoint; the first is where the program starts, at rest. Real-time safe.
   /// @return false while the axes rest: at the program's end, after hold(), lifted after retract(), or at a feed
@@ -28,6 +35,15 @@ class SetpointStream {
 
   /// Stops on the path, as soon as the limits allow. Real-time safe.
   void hold() noexcept { holding_ = true; }
+
+  /// Whether hold() is in force.
+  bool holding() const noexcept { return holding_; }
+
+  /// Takes the speed up anew, for axes that stood for a while where they were to move on. Real-time safe.
+  /// @param factor of the speed to go on with, above 0, below 1; others are not taken.
+  void slowDown(double factor) noexcept {
+    if (factor > 0 && factor < slow_down_) slow_down_ = factor;
+  }
 
   /// Goes on after hold(), from where the axes rest, or after retract(): a stroke is entered again ahead of the place
   /// where it was left, by the way that it takes to reach feed. Real-time safe.
@@ -43,7 +59,7 @@ class SetpointStream {
   /// Whether the axes are on the program's path, and not on a detour after retract().
   bool onPath() const noexcept { return leg_ == Leg::kPath; }
 
-  const GrindProgram& program() const noexcept { return program_; }
+  const GrindProgram& program() const noexcept { return *program_; }
 
  private:
   /// What the axes are on: the program, or a part of the detour off the work and back.
@@ -62,12 +78,17 @@ class SetpointStream {
   void strokePair() noexcept;
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;
 
-  GrindProgram program_;
+  std::shared_ptr<const GrindProgram> program_;
+  // What of it every cycle needs, one step nearer.
+  ConicalCutter cutter_;
+  FeedSchedule schedule_;
   LogCurve curve_;
   double period_;
   double override_ = 1;
+  double slow_down_ = 1;  ///< of the next pair
   bool holding_ = false;
   bool stay_lifted_ = false;
+  bool lost_ = false;  ///< cannot go on
 
   Setpoint current_;
   bool started_ = false;

@@ -42,8 +42,8 @@ class ParameterReader {
 
 /// The machine: limits from the URDF, and over them the parameters joint_limits/<joint>/..., as in ros_control;
 /// control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
-/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Fails closed: every axis needs limits of position, velocity, acceleration and jerk,
-/// and each is stated in full.
+/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Fails closed: every axis
+/// needs limits of position, velocity, acceleration and jerk, and each is stated in full.
 /// @param urdf the robot description, XML.
 /// @param parameters the node's parameters.
 /// @throw MachineConfigError

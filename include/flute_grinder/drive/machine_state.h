@@ -46,6 +46,11 @@ const char* toString(MachineEvent event) noexcept;  ///< e.g. "enable"
 /// Whether an event is a request from outside.
 constexpr bool isRequest(MachineEvent event) noexcept { return event < MachineEvent::kDone; }
 
+/// Whether an event is a request that stops the axes.
+constexpr bool isStop(MachineEvent event) noexcept {
+  return event == MachineEvent::kHold || event == MachineEvent::kCancel || event == MachineEvent::kDisable;
+}
+
 /// The state after an event, or nothing where the state does not allow it. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;
 

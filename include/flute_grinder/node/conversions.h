@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/Cutter.h"
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/WrittenSetpoint.h"
@@ -8,6 +9,7 @@
 #include "flute_grinder/core/setpoint.h"
 
 #include <string>
+#include <vector>
 
 /// @file
 /// The one place where messages and the types of core meet. Both are in SI.
@@ -18,6 +20,9 @@ GrindJob jobFromGoal(const GrindGoal& goal);
 
 /// The goal of a job.
 GrindGoal goalFromJob(const GrindJob& job);
+
+/// @param tooth_angles of every tooth [rad].
+Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
 
 /// Tells a job from every other: SHA-256 of its figures, in hexadecimal. What a goal says beside the job does not
 /// count.

@@ -22,7 +22,7 @@ struct MachineSetup {
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
-  explicit Scene(ros::NodeHandle& private_nh);
+  explicit Scene(ros::NodeHandle private_nh);
 
   /// Shows a job ahead of its first setpoint. What was measured on it remains if it is the same job, continued.
   /// @param first first pass to grind.

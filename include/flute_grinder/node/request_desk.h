@@ -1,0 +1,32 @@
+#pragma once
+
+#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/node/job_gate.h"
+#include "flute_grinder/node/served_queue.h"
+
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// What an operator asks of the machine beside stops and jobs: `~enable`, `~home`, `~resume`, `~retract`, `~lift`,
+/// `~reset_fault`. It has a thread of its own, which waits for the control loop's answer, one request at a time.
+class RequestDesk {
+ public:
+  /// @param private_nh the node's own namespace.
+  /// @param loop,gate must outlive this object.
+  RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
+
+ private:
+  void serve(ros::NodeHandle& nh, const char* name, MachineEvent event);
+  RequestReply carryOut(MachineEvent event);
+
+  ControlLoop& loop_;
+  JobGate& gate_;
+  ServedQueue thread_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,242 @@
+#include "flute_grinder/node/goal_desk.h"
+
+#include "flute_grinder/node/conversions.h"
+#include "flute_grinder/node/error_codes.h"
+
+#include <sstream>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr std::size_t kLongestName = 255;         ///< of a job
+constexpr double kPollPeriod = 0.002;             ///< [s]
+const ros::WallDuration kPlanningInterval(0.05);  ///< of the feedback while a goal is planned
+/// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
+const ros::WallDuration kEndPatience(0.5);
+
+GrindResult result(int code, const std::string& text, const PlanStatistics& statistics = {}) {
+  GrindResult r;
+  r.error_code = code;
+  r.error_string = text;
+  r.statistics = toMessage(statistics);
+  return r;
+}
+
+std::string join(const std::vector<std::string>& reasons) {
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
+  return text;
+}
+
+/// For people, who count teeth and passes from 1.
+std::string placeText(const Place& at, const GrindProgram& program) {
+  std::ostringstream text;
+  text << " (at " << toString(program.moves()[at.move_index].kind) << " of tooth " << at.tooth + 1 << ", pass "
+       << at.pass + 1 << ", X = " << at.x << " m)";
+  return text.str();
+}
+
+}  // namespace
+
+GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
+                   Teller& teller, JournalKeeper& journal)
+    : loop_(loop), gate_(gate), planner_(planner), teller_(teller), books_(journal), thread_(kPollPeriod, [this] {
+        poll();
+      }) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  server_ = std::make_unique<Server>(
+      nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
+      [this](const GoalHandle& handle) { onCancel(handle); }, false);
+  server_->start();
+  thread_.start();
+}
+
+void GoalDesk::reject(GoalHandle& handle, int code, const std::string& text) {
+  ROS_WARN_STREAM("goal rejected: " << text);
+  handle.setRejected(result(code, text), text);
+}
+
+void GoalDesk::onGoal(GoalHandle handle) {
+  if (goal_) {
+    return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
+  }
+  const auto goal = handle.getGoal();
+  if (goal->job_name.size() > kLongestName) {
+    return reject(handle, GrindResult::INVALID_GOAL,
+                  "job_name has " + std::to_string(goal->job_name.size()) + " characters; allowed: up to " +
+                      std::to_string(kLongestName));
+  }
+  const GrindJob job = jobFromGoal(*goal);
+  const std::string digest = jobDigest(job);
+  if (!goal->dry_run) {
+    const std::string text = objection(*goal, digest);
+    if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
+  }
+  takeUp(handle, job, digest);
+}
+
+std::string GoalDesk::objection(const GrindGoal& goal, const std::string& digest) const {
+  const LoopStatus status = loop_.status();
+  if (status.state != MachineState::kReady) {
+    return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
+  }
+  if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
+  return goal.discard ? "" : books_.objection(digest, {goal.first_tooth, goal.first_pass});
+}
+
+void GoalDesk::takeUp(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
+  GoalHandle goal = handle;
+  const auto control = std::make_shared<PlanControl>();
+  if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
+    return reject(goal, GrindResult::NOT_READY, "the grinder is being shut down");
+  }
+  Planner::Order order;
+  order.job = job;
+  order.start = Eigen::Map<const Axes>(loop_.status().command.data());
+  order.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  order.control = control;
+  order.done = [this](std::unique_ptr<Preview> preview) {
+    thread_.call([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
+  };
+  if (!planner_.submit(std::move(order))) {
+    gate_.close();
+    return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
+  }
+  goal_ = Goal{handle, digest, control};
+  busy_ = true;
+  tellPlanning();
+}
+
+void GoalDesk::onCancel(const GoalHandle& handle) {
+  // Once more, after the stop desk: what is in this queue ahead of the cancel has been carried out now.
+  if (gate_.cancel(handle.getGoalID())) loop_.postStop(MachineEvent::kCancel);
+}
+
+void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
+  GoalHandle handle = goal_->handle;
+  const JobPlan& plan = preview->plan;
+  const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
+  if (recalled || gate_.canceled()) {
+    leave();
+    const char* text = "canceled before it moved";
+    return handle.setCanceled(result(GrindResult::CANCELED, text), text);
+  }
+  if (!plan.good()) {
+    leave();
+    return reject(handle, errorCode(plan.fault), join(plan.reasons));
+  }
+  handle.setAccepted();
+  if (handle.getGoal()->dry_run) {
+    leave();
+    teller_.show(preview);
+    return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
+  }
+  goal_->phase = Phase::kEntering;
+  goal_->preview = std::move(preview);
+  books_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first);
+}
+
+void GoalDesk::poll() {
+  books_.follow(loop_.status());
+  if (!goal_) return;
+  switch (goal_->phase) {
+    case Phase::kPlanning: return tellPlanning();
+    case Phase::kEntering: return startWhenEntered();
+    case Phase::kStarting: return awaitStart();
+    case Phase::kRunning: return endWhenTold();
+  }
+}
+
+void GoalDesk::tellPlanning() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (now - goal_->last_told < kPlanningInterval) return;
+  goal_->last_told = now;
+  GrindFeedback feedback;
+  feedback.state = "planning";
+  feedback.planned = goal_->control->done;
+  goal_->handle.publishFeedback(feedback);
+}
+
+void GoalDesk::startWhenEntered() {
+  if (gate_.canceled()) return refuseStart("");
+  if (!books_.settled()) return;
+  const std::string error = books_.error();
+  if (!error.empty()) return refuseStart(error);
+  goal_->number = loop_.status().jobs_started + 1;
+  teller_.follow(goal_->number, goal_->handle.getGoalID(), goal_->preview);
+  SetpointStream* stream = goal_->preview->stream.get();
+  bool posted = false;
+  const bool started = gate_.start([&](bool held) {
+    posted = loop_.postStart(stream);
+    if (posted && held) loop_.postStop(MachineEvent::kHold);
+  });
+  goal_->phase = Phase::kStarting;
+  if (!started) return refuseStart("");
+  if (!posted) refuseStart("the control loop has not answered the start of the job before");
+}
+
+void GoalDesk::awaitStart() {
+  const auto reply = loop_.startReply();
+  if (!reply) return;
+  if (!reply->accepted) return refuseStart(reply->text);
+  goal_->phase = Phase::kRunning;
+}
+
+void GoalDesk::refuseStart(const std::string& text) {
+  GoalHandle handle = goal_->handle;
+  if (goal_->phase == Phase::kStarting) teller_.forget(goal_->number);
+  books_.revert();
+  leave();
+  if (text.empty()) {
+    const char* canceled = "canceled before it moved";
+    return handle.setCanceled(result(GrindResult::CANCELED, canceled), canceled);
+  }
+  ROS_WARN_STREAM("goal aborted: " << text);
+  handle.setAborted(result(GrindResult::NOT_READY, text), text);
+}
+
+void GoalDesk::endWhenTold() {
+  const LoopStatus status = loop_.status();
+  if (status.jobs_ended < goal_->number) return;
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (goal_->ended.isZero()) {
+    goal_->ended = now;
+    books_.end(status);
+  }
+  const bool told = teller_.jobsTold() >= goal_->number && books_.settled();
+  if (told || now - goal_->ended > kEndPatience) endJob();
+}
+
+void GoalDesk::endJob() {
+  const LoopStatus status = loop_.status();
+  GoalHandle handle = goal_->handle;
+  const std::shared_ptr<const Preview> preview = goal_->preview;
+  leave();
+  const std::string place = placeText(status.place, *preview->plan.program);
+  GrindResult r = result(GrindResult::SUCCESSFUL, "", preview->plan.statistics);
+  r.setpoints_written = status.setpoints_written;
+  switch (status.end) {
+    case JobEnd::kFault:
+      r.error_code = errorCode(status.fault.kind);
+      r.error_string = status.fault.text() + place;
+      ROS_ERROR_STREAM("goal aborted: " << r.error_string);
+      return handle.setAborted(r, r.error_string);
+    case JobEnd::kCanceled:
+      r.error_code = GrindResult::CANCELED;
+      r.error_string = "canceled; stopped on the path" + place;
+      return handle.setCanceled(r, r.error_string);
+    case JobEnd::kNone:
+    case JobEnd::kDone: return handle.setSucceeded(r);
+  }
+}
+
+void GoalDesk::leave() {
+  gate_.close();
+  goal_.reset();
+  busy_ = false;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,30 @@
+#include "flute_grinder/node/peer_limits.h"
+
+#include <dlfcn.h>
+#include <sys/socket.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace flute_grinder {
+
+void* nextDefinition(const char* symbol) {
+  void* definition = dlsym(RTLD_NEXT, symbol);
+  if (!definition) {
+    std::fprintf(stderr, "%s is in no library: another version of roscpp than the node was made for\n", symbol);
+    std::abort();
+  }
+  return definition;
+}
+
+}  // namespace flute_grinder
+
+/// Stands before the C library's: a connection too many is closed before anything is read from it. It is handed on all
+/// the same, as roscpp stops listening for a while after an error.
+extern "C" int accept(int fd, sockaddr* address, socklen_t* length) {
+  using Accept = int (*)(int, sockaddr*, socklen_t*);
+  static const auto next = reinterpret_cast<Accept>(flute_grinder::nextDefinition("accept"));
+  const int connection = next(fd, address, length);
+  if (connection >= flute_grinder::kMaxPeerDescriptor) shutdown(connection, SHUT_RDWR);
+  return connection;
+}

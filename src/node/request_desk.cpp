@@ -1,0 +1,36 @@
+#include "flute_grinder/node/request_desk.h"
+
+namespace flute_grinder {
+
+RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
+    : loop_(loop), gate_(gate) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  serve(nh, "enable", MachineEvent::kEnable);
+  serve(nh, "home", MachineEvent::kHome);
+  serve(nh, "resume", MachineEvent::kResume);
+  serve(nh, "retract", MachineEvent::kRetract);
+  serve(nh, "lift", MachineEvent::kLift);
+  serve(nh, "reset_fault", MachineEvent::kReset);
+  thread_.start();
+}
+
+void RequestDesk::serve(ros::NodeHandle& nh, const char* name, MachineEvent event) {
+  const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
+      [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        const RequestReply reply = carryOut(event);
+        response.success = reply.accepted;
+        response.message = reply.text;
+        if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+        return true;
+      };
+  services_.push_back(nh.advertiseService(name, callback));
+}
+
+RequestReply RequestDesk::carryOut(MachineEvent event) {
+  // A hold that came ahead of the job's start is taken back where it was taken.
+  if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
+  return loop_.request(event);
+}
+
+}  // namespace flute_grinder

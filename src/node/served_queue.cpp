@@ -1,0 +1,64 @@
+#include "flute_grinder/node/served_queue.h"
+
+#include <boost/make_shared.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kIdlePeriod = 0.1;  ///< [s]
+
+class Call : public ros::CallbackInterface {
+ public:
+  explicit Call(std::function<void()> what) : what_(std::move(what)) {}
+  CallResult call() override {
+    what_();
+    return Success;
+  }
+
+ private:
+  std::function<void()> what_;
+};
+
+}  // namespace
+
+ServedQueue::ServedQueue(double period, std::function<void()> poll) : period_(period), poll_(std::move(poll)) {}
+
+ServedQueue::ServedQueue() : ServedQueue(kIdlePeriod, [] {}) {}
+
+ServedQueue::~ServedQueue() { stop(); }
+
+void ServedQueue::start() {
+  running_ = true;
+  thread_ = std::thread([this] { run(); });
+}
+
+void ServedQueue::stop() {
+  if (!thread_.joinable()) return;
+  call([this] { running_ = false; });
+  thread_.join();
+  queue_.disable();
+  queue_.clear();
+}
+
+void ServedQueue::call(std::function<void()> what) { queue_.addCallback(boost::make_shared<Call>(std::move(what))); }
+
+void ServedQueue::run() {
+  using Clock = std::chrono::steady_clock;
+  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_));
+  for (Clock::time_point next = Clock::now() + period; running_;) {
+    const std::chrono::duration<double> left = next - Clock::now();
+    queue_.callOne(ros::WallDuration(std::max(0.0, left.count())));
+    const Clock::time_point now = Clock::now();
+    if (now < next) continue;
+    poll_();
+    // Those that were missed are left out.
+    next = std::max(next + period, now);
+  }
+}
+
+}  // namespace flute_grinder

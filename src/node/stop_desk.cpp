@@ -1,0 +1,69 @@
+#include "flute_grinder/node/stop_desk.h"
+
+#include <sstream>
+
+namespace flute_grinder {
+
+StopDesk::StopDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate) : loop_(loop), gate_(gate) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  services_.push_back(nh.advertiseService("hold", &StopDesk::onHold, this));
+  services_.push_back(nh.advertiseService("disable", &StopDesk::onDisable, this));
+  services_.push_back(nh.advertiseService("set_feed_override", &StopDesk::onFeedOverride, this));
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  // Beside actionlib, whose own handling waits for what it publishes, and which forwards no cancel of a goal that it
+  // has told of one already.
+  subscribers_.push_back(nh.subscribe("grind/cancel", 50, &StopDesk::onCancel, this, hints));
+  subscribers_.push_back(nh.subscribe("stop", 50, &StopDesk::onStop, this, hints));
+  thread_.start();
+}
+
+bool StopDesk::onHold(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  if (gate_.hold()) {
+    response.success = true;
+    response.message = "the job will be held before it moves";
+    return true;
+  }
+  const RequestReply reply = loop_.stop(MachineEvent::kHold);
+  response.success = reply.accepted;
+  response.message = reply.text;
+  return true;
+}
+
+bool StopDesk::onDisable(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  gate_.cancel(actionlib_msgs::GoalID());
+  const RequestReply reply = loop_.stop(MachineEvent::kDisable);
+  response.success = reply.accepted;
+  response.message = reply.text;
+  return true;
+}
+
+bool StopDesk::onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
+  response.success = loop_.setFeedOverride(request.fraction);
+  if (!response.success) {
+    std::ostringstream text;
+    text << "feed override = " << request.fraction << "; allowed: 0 to " << kMaxFeedOverride;
+    response.message = text.str();
+  }
+  return true;
+}
+
+void StopDesk::onCancel(const actionlib_msgs::GoalID::ConstPtr& what) {
+  if (gate_.cancel(*what)) loop_.postStop(MachineEvent::kCancel);
+}
+
+void StopDesk::onStop(const Stop::ConstPtr& stop) {
+  switch (stop->request) {
+    case Stop::HOLD:
+      if (!gate_.hold()) loop_.postStop(MachineEvent::kHold);
+      break;
+    case Stop::CANCEL:
+    case Stop::DISABLE:
+      gate_.cancel(actionlib_msgs::GoalID());
+      loop_.postStop(stop->request == Stop::CANCEL ? MachineEvent::kCancel : MachineEvent::kDisable);
+      break;
+    default: break;  // of a newer sender: what it means is not known
+  }
+}
+
+}  // namespace flute_grinder

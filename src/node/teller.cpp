@@ -1,0 +1,234 @@
+#include "flute_grinder/node/teller.h"
+
+#include "flute_grinder/GrindActionFeedback.h"
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/node/conversions.h"
+
+#include <sensor_msgs/JointState.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTickPeriod = 0.01;                 ///< of joint states [s]
+constexpr std::uint64_t kTicksPerBatch = 5;          ///< setpoints, state and feedback
+constexpr std::uint64_t kTicksPerScene = 10;         ///< what rviz shows of a job
+constexpr std::uint64_t kTicksPerDiagnostics = 100;  ///< by this thread's clock: the computer's may be set back
+
+double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
+
+/// How far a job has come, in cycles of its plan.
+double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_ends) {
+  const auto begin = static_cast<double>(p.move_index == 0 ? 0 : move_ends[p.move_index - 1]);
+  return begin + p.progress * (static_cast<double>(move_ends[p.move_index]) - begin);
+}
+
+double strokeFraction(const Setpoint& p, const GrindProgram& program) {
+  if (p.move != MoveKind::kStroke) return p.move > MoveKind::kStroke ? 1 : 0;
+  return fraction(p.position[kX] - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
+}
+
+JobProgress toMessage(const Progress& progress) {
+  JobProgress m;
+  m.job_digest = progress.job_digest;
+  m.job_name = progress.job_name;
+  m.cutter = flute_grinder::toMessage(progress.cutter, progress.tooth_angles);
+  m.finished = static_cast<std::uint8_t>(progress.finished);
+  m.tooth = static_cast<std::uint16_t>(progress.next.tooth);
+  m.pass = static_cast<std::uint16_t>(progress.next.pass);
+  m.x = progress.x;
+  return m;
+}
+
+}  // namespace
+
+Teller::Teller(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
+               const JournalKeeper& journal, const DiagnosticThresholds& thresholds)
+    : loop_(loop),
+      journal_(journal),
+      diagnostics_(loop.config(), thresholds,
+                   [&loop] {
+                     return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
+                   }),
+      diagnostic_updater_(nh, private_nh),
+      scene_(private_nh),
+      thread_(kTickPeriod, [this] { tick(); }) {
+  ros::NodeHandle node(nh), own(private_nh);
+  joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
+  state_ = own.advertise<GrinderState>("state", 10, true);
+  setpoints_ = own.advertise<SetpointBatch>("setpoints", 1000);
+  feedback_ = own.advertise<GrindActionFeedback>("grind/feedback", 50);
+  diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
+  diagnostics_.addTo(diagnostic_updater_);
+  batch_.period = loop.config().machine.period;
+}
+
+void Teller::show(std::shared_ptr<const Preview> preview) {
+  thread_.call([this, preview = std::move(preview)] {
+    // What is shown while a job runs is that job.
+    if (jobs_.empty()) scene_.show(*preview->plan.program, preview->first, *preview->errors);
+  });
+}
+
+void Teller::follow(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview) {
+  thread_.call([this, number, goal, preview = std::move(preview)] { jobs_.push_back({number, goal, preview}); });
+}
+
+void Teller::forget(std::uint64_t number) {
+  thread_.call([this, number] {
+    if (!jobs_.empty() && jobs_.back().number == number) jobs_.pop_back();
+  });
+}
+
+void Teller::tick() {
+  takeRecords();
+  if (taken_ == 0) return;
+  Job* job = running();
+  if (job && !job->shown) {
+    scene_.show(*job->preview->plan.program, job->preview->first, *job->preview->errors);
+    job->shown = true;
+  }
+  publishJointStates();
+  if (++ticks_ % kTicksPerBatch == 0) {
+    publishBatch();
+    publishState();
+    publishFeedback();
+  }
+  if (ticks_ % kTicksPerScene == 0 && job) scene_.update(toString(record_.state));
+  if (ticks_ % kTicksPerDiagnostics == 0) {
+    diagnostics_.setJournalError(journal_.told().error);
+    diagnostic_updater_.force_update();
+  }
+}
+
+Teller::Job* Teller::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
+
+void Teller::takeRecords() {
+  while (loop_.pop(record_)) {
+    ++taken_;
+    takeRecord();
+  }
+}
+
+void Teller::takeRecord() {
+  diagnostics_.watch(record_);
+  // A job whose end was lost with the records has ended when there are some of a later one.
+  while (jobs_.size() > 1 && record_.job > jobs_.front().number) endJob(jobs_.front());
+  if (!jobs_.empty() && record_.job == jobs_.front().number) followJob(jobs_.front());
+}
+
+void Teller::followJob(Job& job) {
+  if (record_.has_setpoint) job.waiting.push_back({cycle(), record_.period, record_.setpoint});
+  // A drive may buffer commands: a setpoint is told with the positions of the cycle before the axes get it.
+  auto& waiting = job.waiting;
+  while (!waiting.empty() && waiting.front().cycle + record_.drive.commands_waiting <= cycle()) {
+    job.last = waiting.front().setpoint;
+    if (job.shown) scene_.follow(job.last, record_.position);
+    tell(job, waiting.front());
+    waiting.pop_front();
+  }
+  if (record_.job_ended) endJob(job);
+}
+
+void Teller::tell(Job& job, const Waiting& written) {
+  const Setpoint& setpoint = written.setpoint;
+  const std::uint64_t lost = setpoint.cycle - job.next_cycle;
+  job.next_cycle = setpoint.cycle + 1;
+  if (lost > 0) publishBatch();
+  if (batch_.setpoints.empty()) {
+    batch_.header.stamp = ros::Time(record_.time);
+    batch_.goal_id = job.goal.id;
+    batch_.lost = lost;
+  }
+  batch_.setpoints.push_back(toMessage(setpoint, record_.position, written.period));
+  batch_.end_stamp = ros::Time(record_.time);
+  job.largest_error = std::max(job.largest_error, std::abs(setpoint.path_error));
+}
+
+void Teller::endJob(Job& job) {
+  // Written, but the axes never got them.
+  for (const Waiting& never : job.waiting) tell(job, never);
+  publishBatch();
+  publishFeedback();
+  if (job.shown) scene_.end(toString(record_.state));
+  const std::uint64_t number = job.number;
+  jobs_.pop_front();
+  publishState();
+  jobs_told_ = number;
+}
+
+void Teller::publishJointStates() {
+  sensor_msgs::JointState message;
+  message.header.stamp = ros::Time(record_.time);
+  for (int i = 0; i < kAxisCount; ++i) {
+    message.name.emplace_back(kJointNames[static_cast<std::size_t>(i)]);
+    message.position.push_back(record_.position[i]);
+    message.velocity.push_back(record_.velocity[i]);
+  }
+  // Not of the drive, but robot_state_publisher takes all joints from here.
+  message.name.insert(message.name.end(), {"wheel_swivel", "y_zero"});
+  message.position.insert(message.position.end(), {scene_.setup().wheel_swivel, scene_.setup().y_zero});
+  message.velocity.insert(message.velocity.end(), {0, 0});
+  joint_states_.publish(message);
+}
+
+void Teller::publishBatch() {
+  if (batch_.setpoints.empty()) return;
+  setpoints_.publish(batch_);
+  batch_.setpoints.clear();
+}
+
+void Teller::publishState() {
+  GrinderState message;
+  message.header.stamp = ros::Time(record_.time);
+  message.state = static_cast<std::uint8_t>(record_.state);
+  message.state_name = toString(record_.state);
+  message.enabled = record_.drive.enabled;
+  message.homed = record_.drive.homed;
+  message.spindle_at_speed = record_.drive.spindle_at_speed;
+  message.coolant_on = record_.drive.coolant_on;
+  message.emergency_stop = record_.drive.emergency_stop;
+  message.wheel_in_work = record_.wheel_in_work;
+  message.override = record_.feed_override;
+  if (const Job* job = running()) {
+    message.feed = job->last.feed;
+    message.tooth = job->last.tooth;
+    message.pass = job->last.pass;
+  }
+  message.fault = record_.fault.text();
+  message.hold_reason = toString(record_.interlock);
+  message.progress = toMessage(journal_.told().on_disk);
+  state_.publish(message);
+}
+
+void Teller::publishFeedback() {
+  Job* job = running();
+  if (!job) return;
+  const Setpoint& p = job->last;
+  const JobPlan& plan = job->preview->plan;
+  const double done = plannedCycles(p, plan.move_ends);
+  const auto all = static_cast<double>(plan.move_ends.back());
+  GrindActionFeedback message;
+  message.header.stamp = ros::Time(record_.time);
+  message.status.goal_id = job->goal;
+  message.status.status = actionlib_msgs::GoalStatus::ACTIVE;
+  GrindFeedback& feedback = message.feedback;
+  feedback.state = toString(record_.state);
+  feedback.planned = 1;
+  feedback.tooth = p.tooth;
+  feedback.pass = p.pass;
+  feedback.x = p.position[kX];
+  feedback.stroke_fraction = strokeFraction(p, *plan.program);
+  feedback.job_fraction = fraction(done, all);
+  feedback.remaining_time = std::max(0.0, all - done) * batch_.period;
+  feedback.feed = p.feed;
+  feedback.path_error = job->largest_error;
+  job->largest_error = 0;
+  feedback_.publish(message);
+}
+
+}  // namespace flute_grinder

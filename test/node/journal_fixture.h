@@ -1,0 +1,71 @@
+#pragma once
+
+#include "flute_grinder/node/journal.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace flute_grinder::testing {
+
+/// A folder of its own, with a journal that is not there yet.
+class JournalTest : public ::testing::Test {
+ protected:
+  JournalTest() {
+    std::string name = ::testing::TempDir() + "journal_XXXXXX";
+    folder_ = mkdtemp(name.data());
+    path_ = folder_ + "/journal";
+  }
+  ~JournalTest() override { std::filesystem::remove_all(folder_); }
+
+  static std::string contentOf(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  static void fill(const std::string& path, const std::string& content) {
+    std::ofstream(path, std::ios::binary) << content;
+  }
+
+  std::string folder_, path_;
+};
+
+/// No figure of it is a default, nor like another.
+inline Progress someProgress() {
+  Progress p;
+  p.job_digest = std::string(64, 'd');
+  p.job_name = "jobs/mill 10°.yaml";
+  p.cutter = {0.01, 0.1, 0.5, -0.2, 0.03};
+  p.tooth_angles = {0, 1.0 / 3, 2};
+  p.finished = true;
+  p.next = {2, 7};
+  p.x = 0.1 + 0.2;
+  p.wheel_in_work = true;
+  p.clear_y = 0.0125;
+  p.lift = 0.005;
+  return p;
+}
+
+inline void expectSame(const Progress& a, const Progress& b) {
+  EXPECT_EQ(a.job_digest, b.job_digest);
+  EXPECT_EQ(a.job_name, b.job_name);
+  EXPECT_EQ(a.cutter.end_diameter, b.cutter.end_diameter);
+  EXPECT_EQ(a.cutter.cone_angle, b.cutter.cone_angle);
+  EXPECT_EQ(a.cutter.spiral_angle, b.cutter.spiral_angle);
+  EXPECT_EQ(a.cutter.rake_angle, b.cutter.rake_angle);
+  EXPECT_EQ(a.cutter.flute_length, b.cutter.flute_length);
+  EXPECT_EQ(a.tooth_angles, b.tooth_angles);
+  EXPECT_EQ(a.finished, b.finished);
+  EXPECT_EQ(a.next.tooth, b.next.tooth);
+  EXPECT_EQ(a.next.pass, b.next.pass);
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.wheel_in_work, b.wheel_in_work);
+  EXPECT_EQ(a.clear_y, b.clear_y);
+  EXPECT_EQ(a.lift, b.lift);
+}
+
+}  // namespace flute_grinder::testing

@@ -1,0 +1,323 @@
+#include "flute_grinder/node/journal.h"
+#include "flute_grinder/node/sha256.h"
+
+#include "journal_fixture.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <functional>
+#include <limits>
+
+namespace flute_grinder {
+namespace {
+
+using testing::expectSame;
+using testing::someProgress;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class JournalFileTest : public testing::JournalTest {
+ protected:
+  /// The journal's file with some progress in it.
+  std::string written() {
+    Journal(path_, "/grinder").write(someProgress());
+    return contentOf(path_);
+  }
+
+  /// What reading the content is refused with, or "read".
+  std::string refusalOf(const std::string& content) {
+    fill(path_, content);
+    try {
+      static_cast<void>(Journal(path_, "/grinder").read());
+      return "read";
+    } catch (const JournalError& error) {
+      return error.what();
+    }
+  }
+
+  static std::string sealed(const std::string& body) {
+    return body + "checksum: " + sha256Hex(body.data(), body.size()) + "\n";
+  }
+};
+
+// FIPS 180-4, the examples of NIST.
+TEST(Sha256, IsThatOfTheStandard) {
+  EXPECT_EQ(sha256Hex("", 0), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256Hex("abc", 3), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST_F(JournalFileTest, KeepsAllFigures) {
+  written();
+  expectSame(Journal(path_, "/grinder").read().value(), someProgress());
+}
+
+TEST_F(JournalFileTest, KeepsWhereThereHasBeenNoJob) {
+  Journal journal(path_, "/grinder");
+  EXPECT_FALSE(journal.read().has_value());
+  journal.write(Progress());
+  expectSame(journal.read().value(), Progress());
+}
+
+TEST_F(JournalFileTest, KeepsAnyName) {
+  Journal journal(path_, "/grinder");
+  for (const std::string name : {"", "null", "~", "true", "7", "a: b", "- a", "# a", "'", "\"", "\\", "\n", "\t",
+                                 "job\nchecksum: 0\n", "{", "%", "größe", "\x01"}) {
+    Progress progress = someProgress();
+    progress.job_name = progress.job_digest = name;
+    journal.write(progress);
+    expectSame(journal.read().value(), progress);
+  }
+}
+
+TEST_F(JournalFileTest, EveryFlippedBitIsRefused) {
+  const std::string good = written();
+  ASSERT_GT(good.size(), 300U);
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    std::string bad = good;
+    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    const std::string refusal = refusalOf(bad);
+    ASSERT_EQ(refusal.rfind("journal " + path_ + ": its checksum is ", 0), 0U) << "bit " << bit << ": " << refusal;
+  }
+}
+
+TEST_F(JournalFileTest, EveryShorterAndEveryLongerFileIsRefused) {
+  const std::string good = written();
+  for (std::size_t size = 0; size < good.size(); ++size) {
+    ASSERT_NE(refusalOf(good.substr(0, size)).find("its checksum is"), std::string::npos) << size;
+  }
+  EXPECT_EQ(refusalOf(good), "read");
+  for (const char more : {'\0', '\n', ' ', 'x'}) EXPECT_NE(refusalOf(good + more), "read");
+  EXPECT_NE(refusalOf(good + good).find("its checksum is wrong"), std::string::npos);
+}
+
+TEST_F(JournalFileTest, WhatNoJournalWroteIsRefused) {
+  std::string binary;
+  for (int byte = 0; byte < 256; ++byte) binary += static_cast<char>(byte);
+  const std::string without_checksum = "job_digest: \"0123\"\nfinished: false\ntooth: 0\npass: 0\nx_m: 0\n";
+  for (const std::string& content :
+       {std::string(), binary, std::string("job_digest: [1, 2\nfinished: }\n"), std::string("finished\n"),
+        std::string("job_digest: \"0123\"\nfinished: fal"), without_checksum}) {
+    EXPECT_EQ(refusalOf(content), "journal " + path_ + ": its checksum is missing");
+  }
+  EXPECT_EQ(refusalOf(std::string(1 << 20, ' ')), "journal " + path_ + ": is longer than 65536 bytes");
+}
+
+/// What the line of a key, or all of them, is replaced by, and what the refusal must say.
+struct WrongLine {
+  std::string key, replacement, refusal;
+
+  std::string in(const std::string& body) const {
+    if (key.empty()) return replacement;
+    const std::size_t begin = body.find("\n" + key + ": ") + 1;
+    return body.substr(0, begin) + replacement + body.substr(body.find('\n', begin) + 1);
+  }
+};
+
+TEST_F(JournalFileTest, WrongFiguresAreRefusedUnderARightChecksumToo) {
+  const std::string good = written();
+  const std::string body = good.substr(0, good.rfind("checksum: "));
+  ASSERT_EQ(refusalOf(sealed(body)), "read");
+  const std::vector<WrongLine> lines = {
+      {"pass", "", "pass is missing"},
+      {"pass", "pass: 1.5\n", "bad conversion"},
+      {"pass", "pass: 99999999999999999999\n", "bad conversion"},
+      {"pass", "pass: -1\n", "pass = -1; allowed: 0 to 9999"},
+      {"pass", "pass: 10000\n", "pass = 10000; allowed: 0 to 9999"},
+      {"pass", "pass: 1\nfail: 1\n", "key fail is unknown"},
+      {"pass", "pass: 1\npass: 1\n", "key pass is unknown, or there twice"},
+      {"pass", "pass: [1]\n", "bad conversion"},
+      {"pass", "pass: [1\n", "error at line"},
+      {"tooth", "tooth: 3\n", "tooth = 3; allowed: 0 to 2"},
+      {"tooth", "tooth: -1\n", "tooth = -1; allowed: 0 to 2"},
+      {"finished", "finished: perhaps\n", "bad conversion"},
+      {"x_m", "x_m: .nan\n", "x_m = nan; allowed: a finite number"},
+      {"x_m", "x_m: -.inf\n", "x_m = -inf; allowed: a finite number"},
+      {"x_m", "x_m: 1e999\n", ""},
+      {"lift_m", "lift_m: .inf\n", "lift_m = inf"},
+      {"end_diameter_m", "end_diameter_m: .nan\n", "end_diameter_m = nan"},
+      {"tooth_angles_rad", "tooth_angles_rad: [0, .nan, 2]\n", "tooth_angles_rad = nan"},
+      {"tooth_angles_rad", "tooth_angles_rad: []\n", "tooth = 2; allowed: 0 to 0"},
+      {"", "- a list\n", ""},
+      {"", "a word\n", ""},
+      {"", "", ""},
+  };
+  for (const WrongLine& wrong : lines) {
+    const std::string refusal = refusalOf(sealed(wrong.in(body)));
+    EXPECT_NE(refusal, "read") << wrong.replacement;
+    EXPECT_NE(refusal.find(wrong.refusal), std::string::npos) << wrong.replacement << ": " << refusal;
+  }
+}
+
+TEST_F(JournalFileTest, WhatCouldNotBeReadIsNotWritten) {
+  const std::string good = written();
+  Journal journal(path_, "/grinder");
+  const std::vector<std::function<void(Progress&, double)>> figures = {
+      [](Progress& p, double v) { p.x = v; },
+      [](Progress& p, double v) { p.clear_y = v; },
+      [](Progress& p, double v) { p.lift = v; },
+      [](Progress& p, double v) { p.tooth_angles[1] = v; },
+      [](Progress& p, double v) { p.cutter.end_diameter = v; },
+      [](Progress& p, double v) { p.cutter.cone_angle = v; },
+      [](Progress& p, double v) { p.cutter.spiral_angle = v; },
+      [](Progress& p, double v) { p.cutter.rake_angle = v; },
+      [](Progress& p, double v) { p.cutter.flute_length = v; },
+      [](Progress& p, double) { p.next.tooth = 3; },
+      [](Progress& p, double) { p.next.tooth = -1; },
+      [](Progress& p, double) { p.next.pass = kMaxPasses; },
+      [](Progress& p, double) { p.next.pass = -1; },
+      [](Progress& p, double) { p.tooth_angles.resize(kMaxTeeth + 1); },
+      [](Progress& p, double) { p.job_name.resize(1 << 16); },
+  };
+  for (const double value : {kNan, kInfinity, -kInfinity}) {
+    for (const auto& set : figures) {
+      Progress progress = someProgress();
+      set(progress, value);
+      EXPECT_THROW(journal.write(progress), JournalError) << &set - figures.data();
+    }
+  }
+  EXPECT_EQ(contentOf(path_), good);
+}
+
+/// That the path costs the journal, and nothing else.
+void expectUnusable(const std::string& path) {
+  const Journal journal(path, "/grinder");
+  for (const std::function<void()>& use : {std::function<void()>([&] { journal.read(); }),
+                                           std::function<void()>([&] { journal.write(someProgress()); })}) {
+    try {
+      use();
+      ADD_FAILURE() << path << " is used";
+    } catch (const JournalOwned& error) {
+      ADD_FAILURE() << error.what();
+    } catch (const JournalError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind("journal " + path + ": ", 0), 0U) << error.what();
+    }
+  }
+}
+
+TEST_F(JournalFileTest, PathsThatCannotBeUsedAreToldByReadAndWrite) {
+  std::filesystem::create_directory(folder_ + "/folder");
+  std::filesystem::create_symlink("loop", folder_ + "/loop");
+  std::filesystem::create_symlink("/dev/full", folder_ + "/device");
+  fill(folder_ + "/file", "");
+  for (const char* fifo : {"/fifo", "/a.lock", "/b.new"}) ASSERT_EQ(mkfifo((folder_ + fifo).c_str(), 0600), 0);
+  for (const std::string& name :
+       {std::string("/folder"), std::string("/folder/"), std::string("/loop"), std::string("/loop/journal"),
+        std::string("/fifo"), std::string("/device"), std::string("/a"), std::string("/file/journal"),
+        "/" + std::string(252, 'n'), "/" + std::string(256, 'n'),
+        "/" + std::string(5000, '/') + "journal/" + std::string(5000, 'x')}) {
+    expectUnusable(folder_ + name);
+  }
+  EXPECT_THROW(Journal(folder_ + "/b", "/grinder").write(someProgress()), JournalError);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_ + "/fifo"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/folder.lock"));
+}
+
+TEST_F(JournalFileTest, ForbiddenFoldersAreToldByReadAndWrite) {
+  const std::string forbidden = folder_ + "/forbidden";
+  std::filesystem::create_directory(forbidden);
+  std::filesystem::permissions(forbidden, std::filesystem::perms::none);
+  // Root may write everywhere; nobody may not.
+  const uid_t user = geteuid();
+  ASSERT_EQ(seteuid(user == 0 ? 65534 : user), 0);
+  expectUnusable(forbidden + "/journal");
+  ASSERT_EQ(seteuid(user), 0);
+  std::filesystem::permissions(forbidden, std::filesystem::perms::owner_all);
+}
+
+TEST_F(JournalFileTest, APathThatCanBeUsedAgainIsUsed) {
+  std::filesystem::create_directory(path_);
+  const Journal journal(path_, "/grinder");
+  EXPECT_THROW(journal.write(someProgress()), JournalError);
+  std::filesystem::remove(path_);
+  journal.write(someProgress());
+  expectSame(journal.read().value(), someProgress());
+}
+
+TEST_F(JournalFileTest, FoldersAreMade) {
+  const std::string path = folder_ + "/folders/made/as needed/journal";
+  const Journal journal(path, "/grinder");
+  journal.write(someProgress());
+  expectSame(journal.read().value(), someProgress());
+}
+
+/// That the journal is refused to whoever comes now, with the one who has it.
+void expectOwned(const std::string& path, const std::string& owner, pid_t process) {
+  try {
+    const Journal second(path, "/second");
+    ADD_FAILURE() << "it has two owners";
+  } catch (const JournalOwned& error) {
+    EXPECT_EQ(std::string(error.what()), "journal " + path + " is in use by node " + owner + ", process " +
+                                             std::to_string(process) +
+                                             "; allowed: a journal of its own for every node");
+  }
+}
+
+TEST_F(JournalFileTest, BelongsToOneAtATime) {
+  std::filesystem::create_directory(folder_ + "/real");
+  std::filesystem::create_directory_symlink("real", folder_ + "/other");
+  path_ = folder_ + "/real/journal";
+  fill(path_ + ".lock", "node /a_longer_name_of_one_who_has_ended, process 4000000\n");
+  {
+    const Journal first(path_, "/left/grinder");
+    expectOwned(path_, "/left/grinder", getpid());
+    expectOwned(folder_ + "/other/journal", "/left/grinder", getpid());
+    expectOwned(folder_ + "/real/../other/./journal", "/left/grinder", getpid());
+    first.write(someProgress());
+    expectOwned(path_, "/left/grinder", getpid());
+  }
+  const Journal next(path_, "/right/grinder");
+  expectSame(next.read().value(), someProgress());
+  expectOwned(path_, "/right/grinder", getpid());
+}
+
+TEST_F(JournalFileTest, BelongsToOneProcessUntilThatIsKilled) {
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const Journal first(path_, "/first");
+    static_cast<void>(write(ready[1], "x", 1));
+    while (true) pause();
+  }
+  char got = 0;
+  ASSERT_EQ(read(ready[0], &got, 1), 1);
+  expectOwned(path_, "/first", child);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  Journal(path_, "/second").write(someProgress());
+}
+
+TEST_F(JournalFileTest, AFileOnALinkIsReplacedWhereItIs) {
+  written();
+  std::filesystem::create_symlink("journal", folder_ + "/link");
+  Progress other = someProgress();
+  other.x = 1;
+  Journal(folder_ + "/link", "/grinder").write(other);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ + "/link"));
+  expectSame(Journal(path_, "/grinder").read().value(), other);
+}
+
+TEST_F(JournalFileTest, AWriteThatFailsLeavesTheOldFile) {
+  const std::string good = written();
+  const Journal journal(path_, "/grinder");
+  // A disk that is full after some bytes.
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit full = before;
+  full.rlim_cur = 100;
+  setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THROW(journal.write(Progress()), JournalError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(contentOf(path_), good);
+  journal.write(Progress());
+  expectSame(journal.read().value(), Progress());
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,110 @@
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/node/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+
+namespace flute_grinder {
+namespace {
+
+constexpr std::chrono::seconds kPatience(60);
+
+Machine machine() {
+  Machine m;
+  m.period = 1e-3;
+  m.limits.min_position << -0.1, -0.1, -0.1, -1e3;
+  m.limits.max_position << 0.4, 0.2, 0.1, 1e3;
+  m.limits.max_velocity << 0.1, 0.1, 0.1, 63;
+  m.limits.max_acceleration << 0.5, 0.5, 0.5, 63;
+  m.limits.max_jerk << 10, 10, 10, 1257;
+  m.park << -0.05, 0.05, 0, 0;
+  m.max_job_duration = 1e7;
+  return m;
+}
+
+GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
+
+/// Takes hours to plan.
+GrindJob endless() {
+  GrindJob job = paper();
+  job.process.feed = kMinFeed;
+  job.process.infeed = job.process.depth / 200;
+  return job;
+}
+
+/// An order with what comes of it.
+struct Asked {
+  explicit Asked(const GrindJob& job) {
+    order.job = job;
+    order.start = machine().park;
+    order.control = std::make_shared<PlanControl>();
+    order.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+  }
+  std::unique_ptr<Preview> wait() {
+    if (answer.wait_for(kPatience) != std::future_status::ready) throw std::runtime_error("no plan");
+    return answer.get();
+  }
+  bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
+
+  Planner::Order order;
+  std::promise<std::unique_ptr<Preview>> promise;
+  std::future<std::unique_ptr<Preview>> answer = promise.get_future();
+};
+
+TEST(Planner, PlansWhatPlanJobPlans) {
+  Planner planner(machine());
+  Asked asked(paper());
+  ASSERT_TRUE(planner.submit(asked.order));
+  const auto preview = asked.wait();
+  ASSERT_TRUE(preview->plan.good());
+  const JobPlan expected = planJob(paper(), machine(), machine().park);
+  EXPECT_EQ(preview->plan.statistics.setpoints, expected.statistics.setpoints);
+  EXPECT_EQ(preview->plan.move_ends, expected.move_ends);
+  ASSERT_TRUE(preview->errors);
+  std::uint64_t streamed = 0;
+  for (Setpoint p; preview->stream->next(p);) ++streamed;
+  EXPECT_EQ(streamed, expected.statistics.setpoints);
+}
+
+TEST(Planner, TellsWhyAJobCannotBeGround) {
+  Planner planner(machine());
+  GrindJob job = paper();
+  job.process.feed = -1;
+  Asked asked(job);
+  ASSERT_TRUE(planner.submit(asked.order));
+  const auto preview = asked.wait();
+  EXPECT_EQ(preview->plan.fault, PlanFault::kInvalidJob);
+  ASSERT_EQ(preview->plan.reasons.size(), 1U);
+  EXPECT_NE(preview->plan.reasons[0].find("process.feed"), std::string::npos);
+  EXPECT_FALSE(preview->stream);
+}
+
+TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
+  Planner planner(machine());
+  Asked first(endless()), second(paper()), third(paper());
+  ASSERT_TRUE(planner.submit(first.order));
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (first.order.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_GT(first.order.control->done, 0);
+  EXPECT_FALSE(planner.submit(second.order));
+  EXPECT_FALSE(first.isDone());
+  first.order.control->give_up = true;
+  EXPECT_EQ(first.wait()->plan.fault, PlanFault::kGivenUp);
+  ASSERT_TRUE(planner.submit(third.order)) << "who has the answer may ask for the next";
+  EXPECT_TRUE(third.wait()->plan.good());
+  EXPECT_FALSE(second.isDone());
+}
+
+TEST(Planner, ItsEndGivesUpAndAnswers) {
+  Planner planner(machine());
+  Asked asked(endless()), late(paper());
+  ASSERT_TRUE(planner.submit(asked.order));
+  planner.end();
+  ASSERT_TRUE(asked.isDone());
+  EXPECT_FALSE(asked.wait()->plan.good());
+  EXPECT_FALSE(planner.submit(late.order));
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,510 @@
+#!/usr/bin/env python3
+"""Shows that nothing stands between a stop and the axes: not planning, disk, terminal, other clients or their goals, not the
+end of the process; and that the wheel is not left in the work."""
+
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from flute_grinder.msg import GrinderState, GrindResult, Stop
+from flute_grinder.srv import Plan
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import Trigger
+from visualization_msgs.msg import Marker, MarkerArray
+
+import grinder_client as gc
+from grinder_client import A, MM, MM_MIN, STROKE, X, Y, Z
+
+SEED = 20
+
+# Takes longer to plan than any test waits.
+ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM)
+# Takes some seconds.
+LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.02 * MM)
+# Time enough to do something in a stroke.
+SLOW = gc.paper(feed=300 * MM_MIN, clearance=1 * MM)
+
+ENDED_BY_CANCEL = ('PREEMPTED', 'RECALLED')
+
+
+def machine():
+    """One that loses no time with its spindle, and plans whatever it is asked to."""
+    parameters = gc.machine()
+    parameters['hardware']['spindle_run_up_time'] = 0.0
+    parameters['max_job_duration'] = 1e9
+    return parameters
+
+
+def clear_height(job):
+    """Y at which the wheel is clear of the whole stroke of a cutter that grows toward its shank."""
+    helix = gc.Helix(job)
+    return helix.y(job['cutter.flute_length'] + job['process.overtravel_shank']) + job['process.clearance']
+
+
+class NodeTest(unittest.TestCase):
+    """With a ready node of its own."""
+
+    started = 0
+    parameters = staticmethod(machine)
+
+    def setUp(self):
+        self.client = self.start(self.parameters())
+        self.client.make_ready()
+
+    def start(self, parameters, **arguments):
+        """Starts a node; every one has a name of its own, since the master remembers those that were killed."""
+        NodeTest.started += 1
+        self.node = gc.NodeProcess('stopped_%d' % NodeTest.started, parameters, **arguments)
+        self.addCleanup(self.node.close)
+        client = self.node.client()
+        self.addCleanup(client.close)
+        return client
+
+    def send_into_stroke(self, job=SLOW, x=5 * MM):
+        return self.client.send(job).wait_in_stroke(x)
+
+    def check_stopped_on_path_and_lifted(self, run, job=SLOW):
+        """By its setpoints: on the path to the stop, then radially up to the clearance, at rest at the end."""
+        setpoints = run.setpoints
+        self.assertTrue(gc.is_gapless(setpoints))
+        self.assertEqual(gc.excesses(setpoints, self.client.limits(), self.client.period()), [])
+        self.assertEqual(gc.off_path(setpoints, gc.Helix(job)), [])
+        last_stroke = max(i for i, s in enumerate(setpoints) if s.move == STROKE)
+        lift = setpoints[last_stroke:]
+        self.assertGreater(len(lift), 2, 'it was lifted')
+        for axis in (X, Z, A):
+            self.assertEqual({s.position[axis] for s in lift}, {lift[0].position[axis]})
+        heights = [s.position[Y] for s in lift]
+        self.assertEqual(heights, sorted(heights))
+        self.assertAlmostEqual(heights[-1], clear_height(job), delta=1e-9)
+
+    def assert_rests(self):
+        rest = self.client.wait_rest()
+        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
+
+    @contextlib.contextmanager
+    def in_background(self, what):
+        """Does something over and over beside the test, until that is through."""
+        ended = threading.Event()
+
+        def run():
+            while not ended.is_set():
+                what()
+
+        thread = threading.Thread(target=run)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
+
+class TestPlanning(NodeTest):
+    """A job that takes for ever to be planned holds up nobody."""
+
+    def send_planning(self, job=ENDLESS, **fields):
+        run = self.client.send(job, **fields)
+        self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
+        self.assertEqual(run.feedback[0].state, 'planning')
+        return run
+
+    def test_goal_beside_it_is_busy_and_never_moves(self):
+        first = self.send_planning(dry_run=True)
+        second = self.client.send(gc.SHORT).wait()
+        self.assertEqual((second.status, second.code), ('REJECTED', GrindResult.BUSY))
+        self.assertFalse(first.done)
+        first.cancel()
+        self.assertIn(first.wait().status, ENDED_BY_CANCEL)
+        self.assert_rests()
+        self.assertEqual(self.client.batches, [])
+        self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
+
+    def test_it_tells_how_far_it_is(self):
+        run = self.send_planning(LONG_TO_PLAN, dry_run=True)
+        run.wait()
+        parts = [f.planned for f in run.feedback if f.state == 'planning']
+        self.assertEqual(parts, sorted(parts))
+        self.assertTrue(any(0 < part < 1 for part in parts), parts)
+        self.assertEqual(run.status, 'SUCCEEDED')
+
+    def test_plan_beside_it_is_busy(self):
+        run = self.send_planning()
+        answer = self.client.plan(gc.goal_of(gc.SHORT))
+        self.assertFalse(answer.valid)
+        self.assertRegex(answer.reasons[0], '^busy: ')
+        run.cancel()
+        self.assertIn(run.wait().status, ENDED_BY_CANCEL)
+        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).valid)
+
+    def test_job_can_be_stopped_while_others_plan(self):
+        """With many who ask for plans at once, of whom one is served."""
+        run = self.send_into_stroke()
+        plan = rospy.ServiceProxy('/%s/plan' % self.node.name, Plan)
+        goal = gc.goal_of(gc.paper(feed=2 * MM_MIN))
+        with contextlib.ExitStack() as stack:
+            for _ in range(4):
+                stack.enter_context(self.in_background(lambda: plan(goal)))
+            self.assertTrue(self.client.hold().success)
+            self.client.wait_state(GrinderState.HELD)
+            self.assertTrue(self.client.resume().success)
+            self.client.wait_state(GrinderState.RUNNING)
+            run.cancel()
+            run.wait_complete()
+        self.assertEqual(run.status, 'PREEMPTED')
+        self.check_stopped_on_path_and_lifted(run)
+
+    def test_hold_of_a_job_that_is_planned_latches(self):
+        run = self.send_planning(LONG_TO_PLAN)
+        self.assertTrue(self.client.hold().success)
+        self.client.wait_state(GrinderState.HELD)
+        self.assert_rests()
+        run.cancel()
+        self.assertEqual(run.wait().status, 'PREEMPTED')
+        self.assertEqual(len({tuple(s.position) for s in run.setpoints}), 1)
+
+    def test_signal_ends_the_node(self):
+        run = self.send_planning()
+        self.assertEqual(self.node.end(signal.SIGINT), 0)
+        self.client.wait_for(lambda: run.done, 'the end of the goal')
+        self.assertIn(run.status, ENDED_BY_CANCEL)
+
+    def test_job_that_is_too_long_is_refused(self):
+        self.node.close()
+        self.client = self.start(dict(machine(), max_job_duration=3600.0))
+        started = time.monotonic()
+        run = self.client.send(ENDLESS, dry_run=True).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL), started)
+        self.assertRegex(run.text, 'max_job_duration = 3600')
+
+    def test_no_cancel_is_lost(self):
+        """Goals that are canceled at any moment, while another client plans."""
+        chance = random.Random(SEED)
+        print('cancels with seed %d' % SEED)
+        plan = rospy.ServiceProxy('/%s/plan' % self.node.name, Plan)
+        goal = gc.goal_of(gc.SHORT)
+        canceled = 0
+        with self.in_background(lambda: plan(goal)):
+            while canceled < 80:
+                run = self.client.send(SLOW)
+                # No wait for anything: it is canceled at a moment that nothing decides.
+                time.sleep(chance.uniform(0, 0.01))
+                run.cancel()
+                run.wait()
+                if run.status == 'REJECTED':
+                    self.assertEqual(run.code, GrindResult.BUSY)
+                    continue
+                self.assertIn(run.status, ENDED_BY_CANCEL)
+                canceled += 1
+                gc.poll(lambda: self.client.fresh_state().state == GrinderState.READY, 'the stop')
+
+
+class TestTheWayDown(NodeTest):
+    """What a stop might wait for does not answer."""
+
+    def start_on_slow_disk(self):
+        self.node.close()
+        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libslow_fsync.so')
+        self.delay = os.path.join(self.node.folder + '_delay')
+        self.addCleanup(gc.remove_file, self.delay)
+        self.client = self.start(machine(), environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': self.delay})
+        self.client.make_ready()
+
+    def stop_disk(self):
+        with open(self.delay, 'w') as file:
+            file.write('1e6')
+
+    def release_disk(self):
+        os.remove(self.delay)
+
+    TWO_PASSES = gc.paper(flute_length=5 * MM, feed=1500 * MM_MIN, clearance=1 * MM, infeed=0.3 * MM)
+
+    def test_cancel_does_not_wait_for_the_disk(self):
+        self.start_on_slow_disk()
+        run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
+        self.stop_disk()
+        run.wait_past(lambda s: s.pass_ == 1 and s.move == STROKE, 'the second pass')
+        run.cancel()
+        run.wait_complete()
+        self.assertEqual(run.status, 'PREEMPTED')
+        self.client.wait_state(GrinderState.READY)
+        # What the journal does not have is not told.
+        self.assertEqual(self.client.fresh_state().progress.pass_, 0)
+        self.release_disk()
+        gc.poll(lambda: self.client.fresh_state().progress.pass_ == 1, 'the pass in the journal')
+
+    def test_job_goes_on_to_its_end_without_the_disk(self):
+        self.start_on_slow_disk()
+        run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
+        self.stop_disk()
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.result.setpoints_written, run.result.statistics.setpoints)
+        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertFalse(self.client.fresh_state().progress.finished)
+        self.release_disk()
+        gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end in the journal')
+
+    def test_goal_that_waits_for_the_disk_can_be_canceled(self):
+        self.start_on_slow_disk()
+        self.stop_disk()
+        run = self.client.send(gc.SHORT)
+        self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
+        run.cancel()
+        self.assertIn(run.wait().status, ENDED_BY_CANCEL)
+        self.assertEqual(self.client.batches, [])
+        self.release_disk()
+
+    def test_full_pipe(self):
+        self.node.close()
+        read, write = os.pipe()
+        self.addCleanup(os.close, read)
+        self.client = self.start(machine(), output=write)
+        os.close(write)
+        self.client.make_ready()
+        # Each refusal is a line of the log: more than any pipe holds.
+        for _ in range(400):
+            self.assertEqual(self.client.send(gc.paper(feed=-1, depth=-1, infeed=-1)).wait().status, 'REJECTED')
+        run = self.send_into_stroke()
+        self.client.fresh_state()
+        self.assertTrue(self.client.hold().success)
+        self.client.wait_state(GrinderState.HELD)
+        self.assertFalse(self.client.home().success)
+        run.cancel()
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
+        self.check_stopped_on_path_and_lifted(run)
+
+    def test_client_that_hangs(self):
+        """Its job goes on, and others are told of it."""
+        path = os.path.join(self.node.folder, 'job.yaml')
+        gc.job_file(path, flute_length_mm=10)
+        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--discard'],
+                                  stdout=subprocess.DEVNULL)
+        try:
+            self.client.wait_for(lambda: self.client.batches, 'the first setpoints')
+            client.send_signal(signal.SIGSTOP)
+            gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end of the job')
+            self.client.wait_state(GrinderState.READY)
+        finally:
+            client.send_signal(signal.SIGCONT)
+            self.assertEqual(client.wait(gc.PATIENCE), 0)
+
+
+class TestStates(NodeTest):
+    @staticmethod
+    def parameters():
+        parameters = machine()
+        parameters['hardware']['spindle_run_up_time'] = 1.0
+        return parameters
+
+    def publish_stop(self, request):
+        publisher = rospy.Publisher('/%s/stop' % self.node.name, Stop, queue_size=1)
+        self.addCleanup(publisher.unregister)
+        gc.poll(lambda: publisher.get_num_connections() > 0, 'a subscriber')
+        publisher.publish(Stop(request=request))
+
+    def test_hold_latches_while_the_spindle_runs_up(self):
+        run = self.client.send(SLOW)
+        self.client.wait_state(GrinderState.STARTING)
+        self.assertTrue(self.client.hold().success)
+        state = self.client.wait_state(GrinderState.HELD)
+        self.assertTrue(state.spindle_at_speed)
+        self.assert_rests()
+        self.assertLessEqual(len({tuple(s.position) for s in run.setpoints}), 1)
+        self.assertTrue(self.client.resume().success)
+        self.client.wait_state(GrinderState.RUNNING)
+        run.wait_in_stroke(1 * MM)
+        run.cancel()
+        run.wait_complete()
+        self.check_stopped_on_path_and_lifted(run)
+
+    def test_stops_by_topic(self):
+        run = self.send_into_stroke()
+        self.publish_stop(Stop.HOLD)
+        self.client.wait_state(GrinderState.HELD)
+        self.assertTrue(self.client.resume().success)
+        self.client.wait_state(GrinderState.RUNNING)
+        self.publish_stop(Stop.CANCEL)
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
+        self.check_stopped_on_path_and_lifted(run)
+        self.client.wait_state(GrinderState.READY)
+        self.publish_stop(Stop.DISABLE)
+        self.client.wait_state(GrinderState.DISABLED)
+
+    def test_disable_stops_on_the_path_and_lifts_first(self):
+        run = self.send_into_stroke()
+        self.assertTrue(self.client.disable().success)
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
+        self.check_stopped_on_path_and_lifted(run)
+        self.assertFalse(self.client.wait_state(GrinderState.DISABLED).wheel_in_work)
+
+    def test_cancel_lifts_while_the_wheel_turns(self):
+        run = self.send_into_stroke()
+        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        seen = len(self.client.states)
+        run.cancel()
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
+        self.check_stopped_on_path_and_lifted(run)
+        self.assertFalse(self.client.wait_state(GrinderState.READY).wheel_in_work)
+        canceling = [s for s in self.client.states[seen:] if s.state == GrinderState.CANCELING]
+        self.assertTrue(canceling)
+        self.assertTrue(all(s.spindle_at_speed and s.coolant_on for s in canceling))
+
+    def test_after_a_fault_only_a_lift_moves_the_axes(self):
+        run = self.send_into_stroke()
+        self.client.inject('drive_fault')
+        self.assertEqual(run.wait().status, 'ABORTED')
+        self.client.take_faults_back()
+        self.assertTrue(self.client.wait_state(GrinderState.FAULT).wheel_in_work)
+        lift = rospy.ServiceProxy('/%s/lift' % self.node.name, Trigger)
+        self.assertFalse(lift().success)
+        self.assertTrue(self.client.reset().success)
+        gc.poll(lambda: self.client.enable().success, 'the power on')
+        self.client.wait_state(GrinderState.READY)
+        before = self.client.wait_rest()
+        home = self.client.home()
+        self.assertFalse(home.success)
+        self.assertIn('lift', home.message)
+        refused = self.client.send(SLOW).wait()
+        self.assertEqual((refused.status, refused.code), ('REJECTED', GrindResult.NOT_READY))
+        self.assertIn('lift', refused.text)
+        self.assertEqual(self.client.wait_rest(), before)
+        self.assertTrue(lift().success)
+        gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
+        self.client.wait_state(GrinderState.READY)
+        after = self.client.wait_rest()
+        self.assertEqual([after[i] for i in (X, Z, A)], [before[i] for i in (X, Z, A)])
+        self.assertGreaterEqual(after[Y], clear_height(SLOW) - 1e-6)
+        self.assertFalse(lift().success)
+        self.assertTrue(self.client.home().success)
+        self.client.wait_state(GrinderState.READY)
+
+    def test_wheel_in_work_outlives_the_process(self):
+        """With encoders that do not know where they stand: the wheel is lifted by the journal's figure."""
+        parameters = self.parameters()
+        parameters['hardware']['absolute_encoders'] = False
+        parameters['journal'] = self.node.folder + '_journal'
+        for path in (parameters['journal'], parameters['journal'] + '.lock'):
+            self.addCleanup(gc.remove_file, path)
+        self.node.close()
+        self.client = self.start(parameters)
+        self.client.make_ready()
+        self.send_into_stroke()
+        self.node.end(signal.SIGKILL)
+
+        for i, joint in enumerate(gc.JOINTS):
+            parameters['hardware'][joint]['start_position'] = self.client.positions()[i]
+        self.client = self.start(parameters)
+        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        self.assertTrue(self.client.enable().success)
+        self.client.wait_state(GrinderState.READY)
+        self.assertIn('lift', self.client.home().message)
+        before = self.client.wait_rest()
+        self.assertTrue(rospy.ServiceProxy('/%s/lift' % self.node.name, Trigger)().success)
+        gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
+        after = self.client.wait_rest()
+        self.assertAlmostEqual(after[Y] - before[Y], clear_height(SLOW) + SLOW['process.depth'] - 0 +
+                               gc.Helix(SLOW).tan_cone * SLOW['process.overtravel_end'], delta=1e-5)
+        self.assertTrue(self.client.home().success)
+        gc.poll(lambda: self.client.fresh_state().homed, 'the reference')
+
+
+class TestTheEnd(NodeTest):
+    """However the process ends, the axes stop on the path, where the loop lives."""
+
+    def check_end(self, with_signal, status):
+        run = self.send_into_stroke()
+        self.assertEqual(self.node.end(with_signal), status)
+        self.client.wait_end_of_connections()
+        self.check_stopped_on_path_and_lifted(run)
+        return run
+
+    def test_sighup(self):
+        self.assertEqual(self.check_end(signal.SIGHUP, 0).status, 'PREEMPTED')
+
+    def test_crash(self):
+        self.check_end(signal.SIGSEGV, -signal.SIGSEGV)
+
+    def test_abort(self):
+        self.check_end(signal.SIGABRT, -signal.SIGABRT)
+
+    def test_goals_that_come_meanwhile_do_not_start(self):
+        run = self.send_into_stroke()
+        others = []
+        with self.in_background(lambda: (others.append(self.client.send(gc.SHORT)), time.sleep(0.001))):
+            self.client.wait_for(lambda: len(others) > 10, 'some goals')
+            self.assertEqual(self.node.end(signal.SIGTERM), 0)
+        self.client.wait_end_of_connections()
+        self.check_stopped_on_path_and_lifted(run)
+        told = {batch.goal_id for batch in self.client.batches}
+        self.assertEqual(told, {run.id})
+
+    def test_frozen_loop_is_a_fault(self):
+        """As shipped: ten periods. What the axes were told last is where they stand."""
+        self.node.close()
+        parameters = machine()
+        parameters['late_cycle'] = gc.shipped_machine()['late_cycle']
+        self.client = self.start(parameters)
+        self.client.make_ready()
+        # A host that stalls may be late enough by itself, ahead of the stroke even.
+        run = self.client.send(SLOW)
+        self.client.wait_for(lambda: run.done or run.last and run.last.move == STROKE, 'the stroke')
+        self.node.process.send_signal(signal.SIGSTOP)
+        time.sleep(1)  # how late it is to be
+        self.node.process.send_signal(signal.SIGCONT)
+        run.wait_complete()
+        self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
+        self.assertRegex(run.text, r'the control loop came [0-9.]+ s after the cycle before, allowed 0\.01 s')
+        self.assertTrue(self.client.wait_state(GrinderState.FAULT).wheel_in_work)
+
+
+class TestClock(NodeTest):
+    """The computer's clock, and that of a simulation, are for stamps alone."""
+
+    def setUp(self):
+        rospy.set_param('/use_sim_time', True)
+        self.addCleanup(rospy.delete_param, '/use_sim_time')
+        self.client = self.start(machine())
+
+    def test_stamps_and_diagnostics(self):
+        now = time.time()
+        self.assertAlmostEqual(self.client.fresh_state().header.stamp.to_sec(), now, delta=gc.PATIENCE)
+        reports = []
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda report: reports.extend(
+            s for s in report.status if self.node.name in s.name))
+        self.addCleanup(subscriber.unregister)
+        clock = rospy.Publisher('/clock', Clock, queue_size=1)
+        self.addCleanup(clock.unregister)
+        gc.poll(lambda: clock.get_num_connections() > 0, 'a subscriber of the clock')
+        for set_to in (now + 3600, now):
+            for _ in range(2):
+                clock.publish(Clock(clock=rospy.Time.from_sec(set_to)))
+                seen = len(reports)
+                gc.poll(lambda: len(reports) > seen, 'diagnostics at %f' % set_to)
+
+
+class TestScene(NodeTest):
+    def test_new_process_clears_what_was_shown(self):
+        self.send_into_stroke()
+        self.node.end(signal.SIGKILL)
+        for topic in ('scene', 'tool_path', 'executed_path', 'path_error'):
+            shown = []
+            subscriber = rospy.Subscriber('/%s/%s' % (self.node.name, topic), MarkerArray, shown.append)
+            self.addCleanup(subscriber.unregister)
+        again = gc.NodeProcess(self.node.name, self.parameters())
+        self.addCleanup(again.close)
+        self.client.wait_for(lambda: shown, 'the first markers')
+        self.assertEqual([m.action for m in shown[0].markers], [Marker.DELETEALL])
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_stops')
+    rostest.rosrun('flute_grinder', 'stops', '__main__')

@@ -186,14 +186,11 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
 
 void GrindPanel::ask(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
-  if (isStop(event)) return stop(event);
-  link_->request(event, [this](const std::string& refusal) {
+  const auto on_answer = [this](const std::string& refusal) {
     if (!refusal.empty()) say(refusal);
-  });
-}
-
-void GrindPanel::stop(MachineEvent event) {
-  if (!link_->stop(event)) say(toString(event) + (" was not sent: the grinder " + name_) + " is not connected");
+  };
+  if (isStop(event)) return link_->stop(event, on_answer);
+  link_->request(event, on_answer);
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {

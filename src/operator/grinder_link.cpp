@@ -21,7 +21,18 @@ constexpr const char* kPlanning = "planning";  ///< the feedback's state until t
 constexpr double kRequestTimeout = 10;
 constexpr double kPlanTimeout = 60;
 
+/// For which a stop waits for a connection: longer than it takes to make it after grinder or master have come back.
+const ros::WallDuration kStopTimeout(2);
+
 const char* serviceOf(MachineEvent event) { return event == MachineEvent::kReset ? "reset_fault" : toString(event); }
+
+Stop stopFor(MachineEvent event) {
+  Stop stop;
+  stop.request = event == MachineEvent::kHold     ? Stop::HOLD
+                 : event == MachineEvent::kCancel ? Stop::CANCEL
+                                                  : Stop::DISABLE;
+  return stop;
+}
 
 template <typename Message>
 bool isFresh(const std::optional<Message>& received) {
@@ -97,6 +108,7 @@ void GrinderLink::post(std::function<void()> answer) {
 }
 
 void GrinderLink::deliver() {
+  sendStops();
   for (ServiceCall& call : calls_) call.breakOffWhenDue();
   calls_.remove_if([](const ServiceCall& call) { return call.finished(); });
   std::deque<std::function<void()>> answers;
@@ -167,14 +179,23 @@ std::optional<std::string> GrinderLink::send(const GrindGoal& goal) {
   return message.goal_id.id;
 }
 
-bool GrinderLink::stop(MachineEvent event) {
-  if (stops_.getNumSubscribers() == 0) return false;
-  Stop message;
-  message.request = event == MachineEvent::kHold     ? Stop::HOLD
-                    : event == MachineEvent::kCancel ? Stop::CANCEL
-                                                     : Stop::DISABLE;
-  stops_.publish(message);
-  return true;
+void GrinderLink::stop(MachineEvent event, const OnAnswer& on_answer) {
+  unsent_.push_back({event, ros::SteadyTime::now() + kStopTimeout, on_answer});
+  sendStops();
+}
+
+void GrinderLink::sendStops() {
+  while (!unsent_.empty()) {
+    const Unsent stop = unsent_.front();
+    const bool heard = stops_.getNumSubscribers() > 0;
+    if (!heard && ros::SteadyTime::now() < stop.due) return;
+    unsent_.pop_front();
+    if (heard) {
+      stops_.publish(stopFor(stop.event));
+    } else {
+      stop.on_answer(toString(stop.event) + (" was not sent: the grinder " + name()) + " is not connected");
+    }
+  }
 }
 
 }  // namespace flute_grinder

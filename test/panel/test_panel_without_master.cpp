@@ -13,6 +13,7 @@
 #include <QLineEdit>
 #include <QProcess>
 
+#include <csignal>
 #include <cstring>
 
 namespace flute_grinder {
@@ -69,6 +70,10 @@ class Mortal {
     process_.kill();
     process_.waitForFinished();
   }
+  /// @param number SIGSTOP or SIGCONT.
+  void signal(int number) {
+    if (process_.processId() > 0) ::kill(static_cast<pid_t>(process_.processId()), number);
+  }
 
  private:
   QString program_;
@@ -90,6 +95,7 @@ class WithoutMaster : public ::testing::Test {
   }
   void TearDown() override {
     grinder.kill();
+    master().signal(SIGCONT);
     if (!ros::master::check()) master().start();
     WAIT_FOR(ros::master::check());
     WAIT_FOR(panel.label("meaning") == kNoGrinder);
@@ -128,6 +134,15 @@ TEST_F(WithoutMaster, StopsReachTheGrinder) {
   panel.click("disable");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(panel.text("messages"), "");
+}
+
+TEST_F(WithoutMaster, AMasterThatHangsIsMissing) {
+  master().signal(SIGSTOP);
+  WAIT_FOR(panel.label("meaning").find("No ROS master answers; ") == 0);
+  panel.click("hold");
+  WAIT_FOR(panel.state() == "Held");
+  master().signal(SIGCONT);
+  WAIT_FOR(panel.enabled("resume"));
 }
 
 TEST_F(WithoutMaster, AGrinderThatIsStartedAgainIsFound) {

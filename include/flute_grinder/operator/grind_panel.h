@@ -51,7 +51,6 @@ class GrindPanel : public rviz::Panel {
   void connectLink();
   bool allowed(MachineEvent event, const GrinderView& view) const;
   void ask(MachineEvent event);
-  void stop(MachineEvent event);
   void plan(const GrindGoal& goal);
   void dryRun(const GrindGoal& goal);
   void send(const GrindGoal& goal);

@@ -67,8 +67,8 @@ class GrinderLink {
   /// Holds or cancels the job that runs or is planned, whoever has sent it, or switches the power off. It goes by a
   /// connection that outlives the ROS master, and has no answer: what comes of it is told by the state.
   /// @param event kHold, kCancel or kDisable.
-  /// @return whether a grinder listens; else nothing was sent.
-  bool stop(MachineEvent event);
+  /// @param on_answer called if no grinder has listened for two seconds; then nothing is sent any more.
+  void stop(MachineEvent event, const OnAnswer& on_answer);
 
  private:
   /// A message with the time when it came.
@@ -78,6 +78,14 @@ class GrinderLink {
     ros::SteadyTime time;
   };
 
+  /// A stop that waits for a connection.
+  struct Unsent {
+    MachineEvent event;
+    ros::SteadyTime due;
+    OnAnswer on_answer;
+  };
+
+  void sendStops();
   void onState(const GrinderState::ConstPtr& state);
   void onFeedback(const GrindActionFeedback::ConstPtr& feedback);
   void onResult(const GrindActionResult::ConstPtr& result);
@@ -101,6 +109,7 @@ class GrinderLink {
   std::deque<std::function<void()>> answers_;
 
   ros::Publisher goals_, stops_;
+  std::deque<Unsent> unsent_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;
   std::list<ServiceCall> calls_;  ///< last, so that none answers any more when the rest goes

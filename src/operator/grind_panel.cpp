@@ -23,11 +23,6 @@ std::shared_ptr<MasterWatch> masterWatch() {
   return watch;
 }
 
-/// Goes by a connection that outlives the master.
-bool isStop(MachineEvent event) {
-  return event == MachineEvent::kHold || event == MachineEvent::kCancel || event == MachineEvent::kDisable;
-}
-
 bool jobRuns(const std::optional<MachineState>& state) { return state && after(*state, MachineEvent::kCancel); }
 
 }  // namespace

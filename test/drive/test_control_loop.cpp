@@ -3,6 +3,7 @@
 #include "fixtures.h"
 
 #include <pthread.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -1245,9 +1246,10 @@ TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
   if (!loop_->memoryLocked()) GTEST_SKIP() << "the system does not grant locked memory";
   constexpr std::size_t claim = std::size_t{1} << 28;
   const std::size_t before = resident();
-  const std::unique_ptr<char[]> memory(new char[claim]);
+  void* const memory = mmap(nullptr, claim, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
   EXPECT_LT(resident(), before + claim / 4);
-  memory[claim / 2] = 1;
+  munmap(memory, claim);
 }
 
 TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {

@@ -153,7 +153,7 @@ int runPlan(const PlanOptions& options) {
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));
-  } else {
+  } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
   }
   for (const std::string& reason : plan.reasons) std::fprintf(stderr, "%s\n", reason.c_str());

@@ -359,7 +359,7 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   const double pass = (5 + 32 * testing::edgePerTravel(job.cutter)) / 0.1 * 60;
   std::ostringstream text;
   text << "max_job_duration = 86400 s: the job takes " << 64 * 300 * pass
-       << " s or more, with 64 teeth, 300 passes, process.feed_mm_min = 0.1 mm/min and process.infeed_mm = "
+       << " s or more, with teeth 64, passes 300, process.feed_mm_min = 0.1 mm/min, process.infeed_mm = "
           "0.001666666667 mm; raise process.feed_mm_min or process.infeed_mm, or the parameter";
   EXPECT_EQ(plan.reasons[0], text.str());
 }
@@ -376,7 +376,7 @@ TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {
   ASSERT_EQ(plan.reasons.size(), 1u);
   EXPECT_TRUE(contains(plan.reasons[0], "max_job_duration = ")) << plan.reasons[0];
   EXPECT_TRUE(contains(plan.reasons[0],
-                       " s: the job takes longer, with 1 teeth, 1 passes, process.feed = 0.01 m/s and process.infeed = "
+                       " s: the job takes longer, with teeth 1, passes 1, process.feed = 0.01 m/s, process.infeed = "
                        "0.0005 m; raise process.feed or process.infeed, or the parameter"))
       << plan.reasons[0];
   EXPECT_LE(static_cast<double>(visited.back().cycle) * machine.period, whole);

@@ -140,6 +140,8 @@ std::optional<MachineState> after(MachineState state, MachineEvent event) noexce
   return std::nullopt;
 }
 
+bool isInJob(MachineState state) noexcept { return after(state, E::kCancel) == S::kCanceling; }
+
 std::string allowedIn(MachineState state) {
   std::string text;
   for (const Transition& t : kTransitions) {

@@ -23,8 +23,6 @@ std::shared_ptr<MasterWatch> masterWatch() {
   return watch;
 }
 
-bool jobRuns(const std::optional<MachineState>& state) { return state && after(*state, MachineEvent::kCancel); }
-
 }  // namespace
 
 GrindPanel::GrindPanel(QWidget* parent)
@@ -60,7 +58,8 @@ GrindPanel::GrindPanel(QWidget* parent)
 void GrindPanel::layOut() {
   auto* buttons = new QGridLayout;
   addButton(*buttons, 0, 0, 3, MachineEvent::kEnable, "Enable", "Switch the drive's power on; nothing moves");
-  addButton(*buttons, 0, 3, 3, MachineEvent::kDisable, "Disable", "Switch the drive's power off");
+  addButton(*buttons, 0, 3, 3, MachineEvent::kDisable, "Disable",
+            "Switch the drive's power off; a job is stopped and its wheel lifted first");
   addButton(*buttons, 0, 6, 3, MachineEvent::kHome, "Home", "The drive finds the axes' reference; the axes may move");
   addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Take a fault back; the power stays off");
   addButton(*buttons, 1, 0, 6, MachineEvent::kStart, "Start", "Grind the planned job");
@@ -156,19 +155,22 @@ void GrindPanel::refresh() {
     job_->forgetPlan();
   }
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
-  const bool idle = state && !jobRuns(state) && !planning_ && !sent_ && !view.planned;
+  const bool job_runs = state && isInJob(*state);
+  const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
   job_->refresh(view.state, idle && master == Master::kAnswers);
   for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
-  progress_->show(view, jobRuns(state));
+  progress_->show(view, job_runs);
   position_->show(view);
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   if (!view.state) return false;
-  const bool planned = event == MachineEvent::kCancel && (sent_ || view.planned);
-  if (!planned && !after(static_cast<MachineState>(view.state->state), event)) return false;
+  // A goal that is planned can be canceled, or held ahead of its first move.
+  const bool planned = sent_ || view.planned;
+  const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
+  if (!(planned && for_a_goal) && !after(static_cast<MachineState>(view.state->state), event)) return false;
   if (isStop(event)) return true;
   if (master_watch_->master() == Master::kMissing) return false;
   switch (event) {

@@ -99,8 +99,7 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + inShopUnits(state.fault) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + inShopUnits(state.hold_reason) + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
-  const bool lifts_it = machine == MachineState::kLifting || after(machine, MachineEvent::kCancel);
-  if (state.wheel_in_work && !lifts_it) return text + wheelInWork(machine);
+  if (state.wheel_in_work && !isInJob(machine) && machine != MachineState::kLifting) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)

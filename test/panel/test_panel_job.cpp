@@ -1,13 +1,10 @@
 // The panel against the grinder's node with the simulated drive: an operator's day.
 
 #include "flute_grinder/InjectFault.h"
-#include "flute_grinder/Stop.h"
 #include "panel_fixture.h"
 
-#include <actionlib_msgs/GoalID.h>
 #include <ros/package.h>
 #include <ros/ros.h>
-#include <std_srvs/Trigger.h>
 #include <QCheckBox>
 #include <QFile>
 #include <QFileDialog>
@@ -38,27 +35,6 @@ QString jobFile(const QTemporaryDir& folder, const QString& name,
   EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
   return file.fileName();
 }
-
-/// Does what `~stop` asks for by the grinder's services and its action.
-class StopsByServices {
- public:
-  StopsByServices() {
-    cancels_ = nh_.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
-    stops_ = nh_.subscribe("stop", 10, &StopsByServices::onStop, this);
-  }
-
- private:
-  void onStop(const Stop::ConstPtr& stop) {
-    std_srvs::Trigger call;
-    if (stop->request == Stop::HOLD) ros::service::call(nh_.resolveName("hold"), call);
-    if (stop->request == Stop::DISABLE) ros::service::call(nh_.resolveName("disable"), call);
-    if (stop->request == Stop::CANCEL) cancels_.publish(actionlib_msgs::GoalID());
-  }
-
-  ros::NodeHandle nh_{"grinder"};
-  ros::Publisher cancels_;
-  ros::Subscriber stops_;
-};
 
 class WithGrinder : public ::testing::Test {
  protected:
@@ -93,9 +69,14 @@ class WithGrinder : public ::testing::Test {
     panel.click("enable");
     WAIT_FOR(panel.state() == "Ready");
   }
+  /// Gives up a job that a test before has left.
+  static void startAndDiscard(Panel& of) {
+    of.click("start");
+    if (of.the<QPushButton>("discard").isVisible()) of.click("discard");
+  }
   void start() {
     WAIT_FOR(panel.enabled("start"));
-    panel.click("start");
+    startAndDiscard(panel);
     WAIT_FOR(panel.state() == "Running" && stroke() > 100);
   }
   int stroke() { return panel.the<QProgressBar>("stroke").value(); }
@@ -113,7 +94,6 @@ class WithGrinder : public ::testing::Test {
   }
 
   const QTemporaryDir folder;
-  const StopsByServices stops;
   // Long enough to press buttons.
   const QString slow = jobFile(folder, "slow.yaml", {{"feed_mm_min: 600", "feed_mm_min: 300"}});
   Panel panel{"grinder"};
@@ -136,14 +116,14 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "home", "start"}));
   panel.picture("planned");
   start();
-  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
   EXPECT_EQ(panel.label("place"), "Tooth 1, pass 1");
   WAIT_FOR(panel.label("feed") == "300 mm/min");
   panel.picture("grinding");
 
   panel.click("hold");
   WAIT_FOR(panel.state() == "Held");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "resume", "retract", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "resume", "retract", "cancel"}));
   const double x = position('x');
   const double y = position('y');
   EXPECT_TRUE(0 < x && x < 30) << x;
@@ -153,7 +133,7 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   panel.picture("held_in_the_stroke");
   panel.click("retract");
   WAIT_FOR(panel.state() == "Retracted");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"resume", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "resume", "cancel"}));
   EXPECT_NEAR(position('x'), x, 0.01);
   EXPECT_GT(position('y'), y + 4);
   panel.click("resume");
@@ -187,7 +167,7 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   start();
   inject("emergency_stop");
   WAIT_FOR(panel.state() == "Fault");
-  EXPECT_EQ(panel.enabledRequests(), Names{"reset"});
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "reset"}));
   EXPECT_NE(panel.label("meaning").find("Fault: emergency stop. The emergency stop is pressed."), std::string::npos);
   WAIT_FOR(panel.text("messages").find("The job has ended: emergency stop") != std::string::npos);
   panel.picture("emergency_stop");
@@ -197,7 +177,14 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   inject("none");
   panel.click("reset");
   WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(panel.label("meaning"), "The wheel is in the work: enable, then lift it.");
   enable();
+  WAIT_FOR(panel.enabled("lift"));
+  EXPECT_FALSE(panel.enabled("home"));
+  const double y = position('y');
+  panel.click("lift");
+  WAIT_FOR(!panel.enabled("lift") && panel.state() == "Ready" && panel.enabled("home"));
+  WAIT_FOR(position('y') > y + 1);
 }
 
 TEST_F(WithGrinder, AJobOfSomebodyElseIsShown) {
@@ -207,7 +194,7 @@ TEST_F(WithGrinder, AJobOfSomebodyElseIsShown) {
   WAIT_FOR(other.enabled("plan"));
   other.click("plan");
   WAIT_FOR(other.enabled("start"));
-  other.click("start");
+  startAndDiscard(other);
   WAIT_FOR(panel.state() == "Running" && stroke() > 100);
   panel.click("cancel");
   WAIT_FOR(panel.text("messages").find("The job has ended: canceled") != std::string::npos);

@@ -91,7 +91,7 @@ class WithoutMaster : public ::testing::Test {
   void SetUp() override {
     grinder.start();
     WAIT_FOR(panel.state() == "Running");
-    WAIT_FOR(panel.enabledRequests() == (Names{"hold", "cancel"}));
+    WAIT_FOR(panel.enabledRequests() == (Names{"disable", "hold", "cancel"}));
   }
   void TearDown() override {
     grinder.kill();
@@ -122,12 +122,12 @@ class WithoutMaster : public ::testing::Test {
 TEST_F(WithoutMaster, StopsReachTheGrinder) {
   loseMaster();
   EXPECT_EQ(panel.label("grinder"), "/cell/stage");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
   EXPECT_FALSE(panel.enabled("override"));
   panel.picture("no_master");
   panel.click("hold");
   WAIT_FOR(panel.state() == "Held");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"hold", "cancel"})) << "resume and retract want a master";
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"})) << "resume and retract want a master";
   panel.click("cancel");
   WAIT_FOR(panel.state() == "Ready");
   EXPECT_EQ(panel.enabledRequests(), Names{"disable"});

@@ -54,6 +54,9 @@ constexpr bool isStop(MachineEvent event) noexcept {
 /// The state after an event, or nothing where the state does not allow it. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;
 
+/// Whether a job is under way, which a cancel would end.
+bool isInJob(MachineState state) noexcept;
+
 /// Which requests a state allows, e.g. "disable, start".
 std::string allowedIn(MachineState state);
 

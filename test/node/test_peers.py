@@ -172,7 +172,7 @@ class Attacked(unittest.TestCase):
         return connection
 
     def plan(self, teeth):
-        """Calls ~plan with a request that claims so many teeth and has one; returns whether it was taken, and the reply."""
+        """Calls ~plan with one tooth and a claim of so many; returns whether it was taken, and the reply."""
         request = PlanRequest(gc.goal_of(gc.paper()))
         text = io.BytesIO()
         request.serialize(text)

@@ -137,10 +137,10 @@ std::string tooLongText(const GrindJob& job, const Machine& machine, const std::
   const JobField& feed = jobField("process.feed");
   const JobField& infeed = jobField("process.infeed");
   std::ostringstream text;
-  text << "max_job_duration = " << machine.max_job_duration << " s: the job takes " << takes << ", with "
-       << job.tooth_angles.size() << " teeth, " << passDepths(job.process).size() << " passes, "
-       << feed.text(job, units) << " and " << infeed.text(job, units) << "; raise " << feed.name(units) << " or "
-       << infeed.name(units) << ", or the parameter";
+  text << "max_job_duration = " << machine.max_job_duration << " s: the job takes " << takes << ", with teeth "
+       << job.tooth_angles.size() << ", passes " << passDepths(job.process).size() << ", " << feed.text(job, units)
+       << ", " << infeed.text(job, units) << "; raise " << feed.name(units) << " or " << infeed.name(units)
+       << ", or the parameter";
   return text.str();
 }
 

@@ -19,14 +19,17 @@ bool within(const Axes& value, const Axes& limit) noexcept {
   return good;
 }
 
+/// The same between two limits.
+bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
+  bool good = true;
+  for (int axis = 0; axis < kAxisCount; ++axis) good &= (value[axis] >= low[axis]) & (value[axis] <= high[axis]);
+  return good;
+}
+
 }  // namespace
 
 LimitCheck::LimitCheck(const AxisLimits& limits, double period) noexcept
-    : limits_(limits),
-      middle_((limits.max_position + limits.min_position) / 2),
-      half_range_((limits.max_position - limits.min_position) / 2),
-      inverse_period_(1 / period),
-      ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
+    : limits_(limits), inverse_period_(1 / period), ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
 
 std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexcept {
   const Axes& p = setpoint.position;
@@ -41,7 +44,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
   last_ = p;
 
   violation_count_ = 0;
-  if (!within(p - middle_, half_range_)) checkPosition(setpoint);
+  if (!between(p, limits_.min_position, limits_.max_position)) checkPosition(setpoint);
   if (!within(velocity_, limits_.max_velocity)) {
     checkSize(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_);
   }

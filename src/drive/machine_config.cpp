@@ -10,8 +10,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kLargest = 1e9;  ///< of any limit, in SI units; far beyond every machine
-constexpr double kSmallest = 1e-9;
+constexpr double kSmallest = kSmallestFigure;
+constexpr double kLargest = kLargestFigure;
 
 /// One kind of limit, as ros_control names it.
 struct LimitName {

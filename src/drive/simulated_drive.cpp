@@ -127,15 +127,15 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
 }
 
 void SimulatedDrive::home(double dt) {
-  bool there = true;
-  for (int i = 0; i < kAxisCount; ++i) {
+  // One after the other, and first the one that takes the wheel away from the work.
+  for (const int i : {kY, kX, kZ, kA}) {
     const AxisModel& axis = model_[static_cast<std::size_t>(i)];
     const double way = axis.home_position - motor_[i];
+    if (way == 0) continue;
     const double step = axis.homing_velocity * dt;
     motor_[i] = std::abs(way) <= step ? axis.home_position : motor_[i] + std::copysign(step, way);
-    there = there && motor_[i] == axis.home_position;
+    return;
   }
-  if (!there) return;
   offset_.setZero();
   status_.homing = false;
   status_.homed = true;

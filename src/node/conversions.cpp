@@ -24,12 +24,11 @@ Axes axesOf(const Array& array) {
 }  // namespace
 
 GrindJob jobFromGoal(const GrindGoal& goal) {
-  const Cutter& c = goal.cutter;
   const Process& p = goal.process;
   const Interpolation& i = goal.interpolation;
   GrindJob job;
-  job.cutter = {c.end_diameter, c.cone_angle, c.spiral_angle, c.rake_angle, c.flute_length};
-  job.tooth_angles = c.tooth_angles;
+  job.cutter = fromMessage(goal.cutter);
+  job.tooth_angles = goal.cutter.tooth_angles;
   job.process.feed = p.feed;
   job.process.depth = p.depth;
   job.process.infeed = p.infeed;
@@ -82,6 +81,10 @@ Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_
   m.flute_length = cutter.flute_length;
   m.tooth_angles = tooth_angles;
   return m;
+}
+
+CutterGeometry fromMessage(const Cutter& m) {
+  return {m.end_diameter, m.cone_angle, m.spiral_angle, m.rake_angle, m.flute_length};
 }
 
 std::string jobDigest(const GrindJob& job) {

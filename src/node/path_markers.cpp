@@ -20,11 +20,18 @@ constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
 constexpr double kArrowWidth = 0.12e-3;     ///< [m]
 constexpr double kLongestArrow = 3e-3;      ///< [m]
 constexpr double kNoError = 1e-12;          ///< what is smaller is rounding [m]
+constexpr double kFarthest = 1;             ///< what is farther, or not a number, is left out [m]
+constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
 constexpr std::size_t kMostArrows = 200;
 constexpr std::size_t kMostExecutedPoints = 2000;
 
 /// Where the wheel touches the cutter, at the radius r.
 geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
+
+/// Whether a point can be shown.
+bool isNear(const geometry_msgs::Point& p) {
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
 
 /// How much finer lines are drawn on a small cutter, so that they do not cover it.
 double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
@@ -64,7 +71,7 @@ ToolPath::ToolPath(const GrindProgram& program)
       curve_(cutter_),
       from_(program.strokeFrom()),
       to_(program.strokeTo()),
-      steps_(static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program)))),
+      steps_(std::min(kMostSteps, static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program))))),
       measured_(steps_ + 1, -1) {
   for (const double angle : program.job().tooth_angles) flutes_.push_back({angle, {}});
 }
@@ -87,6 +94,8 @@ bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
   const double around = flutes_[p.tooth].angle + curve_.a(actual[kX]) - actual[kA];
   const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
+  // A drive may say that it is nowhere, or beyond the cone's apex.
+  if (!(error <= kFarthest)) return;
   const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
   float& largest = measured_[static_cast<std::size_t>(std::lround(std::clamp(at, 0.0, static_cast<double>(steps_))))];
   largest = std::max(largest, static_cast<float>(error));
@@ -157,7 +166,10 @@ void ExecutedPath::follow(const Setpoint& p, const Axes& actual) {
     taken_ = 0;
     every_ = 1;
   }
-  last_ = atRadius(actual[kX], cutter_.radius(0) + actual[kY] + wear_of_move_[p.move_index], actual[kA]);
+  const geometry_msgs::Point at =
+      atRadius(actual[kX], cutter_.radius(0) + actual[kY] + wear_of_move_[p.move_index], actual[kA]);
+  if (!isNear(at)) return;
+  last_ = at;
   if (taken_++ % every_ != 0) return;
   points_.push_back(last_);
   if (points_.size() < kMostExecutedPoints) return;
@@ -177,12 +189,13 @@ void ExecutedPath::append(MarkerArray& array) const {
 
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone) return;
+  const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+  if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
   if (move_ != p.move_index) {
     *this = PathErrorMarkers(cutter_);
     move_ = p.move_index;
   }
   if (p.step == StepKind::kOdd) ++pairs_;
-  const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
   largest_ = std::max(largest_, std::abs(deviation));
   if ((pairs_ - 1) % every_ != 0) return;
   points_.push_back({p.position[kX], p.position[kA], deviation});

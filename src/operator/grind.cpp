@@ -5,10 +5,14 @@
 #include "flute_grinder/operator/offline.h"
 #include "flute_grinder/operator/online.h"
 #include "flute_grinder/operator/report.h"
+#include "flute_grinder/operator/state_watch.h"
 
 #include <ros/package.h>
 #include <ros/ros.h>
 #include <CLI/CLI.hpp>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -86,12 +90,16 @@ void addPlan(CLI::App& app, PlanOptions& options) {
 }
 
 void addRun(CLI::App& app, RunOptions& options) {
-  auto& command = addCommand(app, "run", "grind the job; Ctrl-C cancels it and waits for the stop",
+  auto& command = addCommand(app, "run", "grind the job; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it",
                              "jobs/paper.yaml --csv streamed.csv");
   addJob(command, options.job);
   command.add_flag("--dry-run", options.dry_run, "plan, check and show the path, but move nothing");
-  command.add_flag("--continue", options.go_on,
-                   "begin at the first pass that was not finished, by the grinder's journal");
+  auto* go_on = command.add_flag("--continue", options.go_on,
+                                 "begin at the first pass that was not finished, by the grinder's journal");
+  command
+      .add_flag("--discard", options.discard,
+                "start although the grinder's journal keeps another job that is not finished, which is given up")
+      ->excludes(go_on);
   addCsv(command, options.csv, "write the setpoints as streamed to this file");
 }
 
@@ -123,6 +131,8 @@ void addCalls(CLI::App& app, bool& status_json) {
   addCommand(app, "enable", "switch the drive's power on");
   addCommand(app, "disable", "switch the drive's power off");
   addCommand(app, "home", "find the axes' reference, and wait until it is found; Ctrl-C switches the power off");
+  addCommand(app, "lift",
+             "without a job, lift the wheel off the work, and wait until it is; Ctrl-C and Ctrl-Z hold it");
   addCommand(app, "hold", "stop on the path");
   addCommand(app, "resume", "go on after hold or retract");
   addCommand(app, "retract", "after hold, lift the wheel off the work");
@@ -166,7 +176,7 @@ void addCommands(CLI::App& app, Options& options) {
 /// What the command line asks for; called once it is parsed.
 int carryOut(const CLI::App& app, const Options& options) {
   const std::string command = app.get_subcommands().front()->get_name();
-  if (command == "completion") return std::fputs(bashCompletion(app).c_str(), stdout) < 0 ? 1 : 0;
+  if (command == "completion") return std::fputs(bashCompletion(app).c_str(), stdout), 0;
   if (command == "table") return runTable(options.table);
   if (command == "plan") return runPlan(options.plan);
   if (command == "report") writeReport(options.report);
@@ -175,6 +185,7 @@ int carryOut(const CLI::App& app, const Options& options) {
   if (command == "run") return runJob(options.run);
   if (command == "status") return printStatus(node, options.status_json);
   if (command == "home") return home(node);
+  if (command == "lift") return lift(node);
   if (command == "cancel") return cancelJob(node);
   if (command == "override") return setFeedOverride(node, options.percent);
   return callTrigger(node, command == "reset" ? "reset_fault" : command);
@@ -182,6 +193,8 @@ int carryOut(const CLI::App& app, const Options& options) {
 
 int run(int argc, char** argv) {
   ros::init(argc, argv, "grind", ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  // A master that goes amid a call is waited for as long as one that is not there.
+  ros::master::setRetryTimeout(kPatience);
   CLI::App app{"Grinds the flutes of conical end mills: looks at jobs, and works the grinder.", "grind"};
   Options options;
   options.run.node = "grinder";
@@ -194,11 +207,30 @@ int run(int argc, char** argv) {
   return carryOut(app, options);
 }
 
+/// Has a closed stdin, stdout or stderr refuse what is written to it, in place of the file or connection that would be
+/// opened by its number.
+void occupyStandardStreams() {
+  while (true) {
+    const int descriptor = ::open("/dev/null", O_RDONLY);
+    if (descriptor > STDERR_FILENO) ::close(descriptor);
+    if (descriptor > STDERR_FILENO || descriptor < 0) return;
+  }
+}
+
+/// @param status of the command. @return the exit status: what could not be printed is no success.
+int closeOutput(int status) {
+  std::fflush(stdout);
+  if (std::ferror(stdout) == 0) return status;
+  std::fprintf(stderr, "standard output: not all could be written\n");
+  return status == 0 ? 1 : status;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  occupyStandardStreams();
   try {
-    return run(argc, argv);
+    return closeOutput(run(argc, argv));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
   } catch (...) {

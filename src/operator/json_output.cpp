@@ -38,7 +38,16 @@ Json feedLimits(const PlanStatistics& statistics) {
 
 Json lastJob(const JobProgress& progress) {
   if (progress.job_digest.empty()) return nullptr;
-  return {{"digest", progress.job_digest},
+  const Cutter& cutter = progress.cutter;
+  return {{"name", progress.job_name},
+          {"cutter",
+           {{"end_diameter_mm", cutter.end_diameter / kMillimetre},
+            {"cone_angle_deg", cutter.cone_angle / kDegree},
+            {"spiral_angle_deg", cutter.spiral_angle / kDegree},
+            {"rake_angle_deg", cutter.rake_angle / kDegree},
+            {"flute_length_mm", cutter.flute_length / kMillimetre},
+            {"teeth", cutter.tooth_angles.size()}}},
+          {"digest", progress.job_digest},
           {"finished", progress.finished != 0},
           {"tooth", progress.tooth + 1},
           {"pass", progress.pass + 1},
@@ -74,6 +83,7 @@ Json toJson(const GrinderState& state) {
           {"spindle_at_speed", state.spindle_at_speed != 0},
           {"coolant_on", state.coolant_on != 0},
           {"emergency_stop", state.emergency_stop != 0},
+          {"wheel_in_work", state.wheel_in_work != 0},
           {"feed_mm_min", state.feed / kMillimetrePerMinute},
           {"override_percent", state.override * 100},
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
@@ -83,6 +93,9 @@ Json toJson(const GrinderState& state) {
           {"last_job", lastJob(state.progress)}};
 }
 
-void print(const Json& json) { std::printf("%s\n", json.dump(2).c_str()); }
+void print(const Json& json) {
+  // A file's name may be any bytes.
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
 
 }  // namespace flute_grinder

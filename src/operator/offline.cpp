@@ -146,14 +146,14 @@ int runPlan(const PlanOptions& options) {
   std::optional<SetpointCsv> csv;
   std::function<void(const Setpoint&)> visit;
   if (!options.csv.empty()) {
-    csv.emplace(options.csv, machine.period);
-    visit = [&](const Setpoint& p) { csv->write(p); };
+    csv.emplace(options.csv);
+    visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
   const JobPlan plan = planJob(job, machine, machine.park, {}, visit, UnitSystem::kShop);
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));
-  } else {
+  } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
   }
   for (const std::string& reason : plan.reasons) std::fprintf(stderr, "%s\n", reason.c_str());

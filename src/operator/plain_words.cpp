@@ -2,6 +2,7 @@
 
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/drive/machine_state.h"
+#include "flute_grinder/node/conversions.h"
 
 #include <cmath>
 #include <cstdio>
@@ -107,11 +108,9 @@ std::string describe(const GrinderState& state) {
 }
 
 std::string describe(const JobProgress& progress) {
-  const Cutter& c = progress.cutter;
   const std::string name = progress.job_name.empty() ? "a job without a name" : progress.job_name;
-  return name + format(" (end mill %.6g mm, cone %.6g deg, spiral %.6g deg, teeth: %zu), at tooth %d, pass %d",
-                       c.end_diameter / kMillimetre, c.cone_angle / kDegree, c.spiral_angle / kDegree,
-                       c.tooth_angles.size(), progress.tooth + 1, progress.pass + 1);
+  return name + " (" + toolText(fromMessage(progress.cutter), progress.cutter.tooth_angles.size()) + ")" +
+         format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
 }
 
 std::string describe(const Plan::Response& plan) {

@@ -65,21 +65,33 @@ std::size_t length(const std::vector<Part>& parts) {
   return sum;
 }
 
+bool planning(const GrindFeedback& f) { return f.state == "planning"; }
+
+/// What the bar shows: how much is ground, and before that how much is planned.
+double fraction(const GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
+
+constexpr int kBarRank = 5;
+
+std::vector<Part> partsOf(const GrindFeedback& f, int teeth, int passes) {
+  const Part room_for_bar{kBarRank, std::string(kShortestBar, ' ')};
+  if (planning(f)) return {room_for_bar, {0, format("planning %.0f %%", f.planned * 100)}};
+  return {room_for_bar,
+          {0, format("%3.0f %%", f.job_fraction * 100)},
+          {1, f.state},
+          {2, format("tooth %d/%d", f.tooth + 1, teeth)},
+          {3, format("pass %d/%d", f.pass + 1, passes)},
+          {6, format("X %7.3f mm", f.x / units::kMillimetre)},
+          {7, format("%.0f mm/min", f.feed / units::kMillimetrePerMinute)},
+          {4, timeLeft(f.remaining_time)}};
+}
+
 std::string progressLine(const GrindFeedback& f, int teeth, int passes, std::size_t width) {
-  constexpr int bar_rank = 5;
-  std::vector<Part> parts{{bar_rank, std::string(kShortestBar, ' ')},
-                          {0, format("%3.0f %%", f.job_fraction * 100)},
-                          {1, f.state},
-                          {2, format("tooth %d/%d", f.tooth + 1, teeth)},
-                          {3, format("pass %d/%d", f.pass + 1, passes)},
-                          {6, format("X %7.3f mm", f.x / units::kMillimetre)},
-                          {7, format("%.0f mm/min", f.feed / units::kMillimetrePerMinute)},
-                          {4, timeLeft(f.remaining_time)}};
+  std::vector<Part> parts = partsOf(f, teeth, passes);
   const auto lower = [](const Part& a, const Part& b) { return a.rank < b.rank; };
   while (length(parts) > width && parts.size() > 1) parts.erase(std::max_element(parts.begin(), parts.end(), lower));
-  if (parts.front().rank == bar_rank) {
+  if (parts.front().rank == kBarRank) {
     const std::size_t room = width - length(parts) + kShortestBar;
-    parts.front().text = bar(f.job_fraction, std::min(room, kLongestBar));
+    parts.front().text = bar(fraction(f), std::min(room, kLongestBar));
   }
   std::string line;
   for (const Part& part : parts) line += (line.empty() ? "" : kSeparator) + part.text;
@@ -95,7 +107,7 @@ ProgressBar::~ProgressBar() { end(); }
 void ProgressBar::show(const GrindFeedback& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (ended_) return;
-  const int tenths = static_cast<int>(feedback.job_fraction * 10);
+  const int tenths = static_cast<int>(fraction(feedback) * 10);
   const bool changed = tenths != tenths_ || feedback.state != last_.state;
   tenths_ = tenths;
   last_ = feedback;
@@ -120,7 +132,7 @@ void ProgressBar::say(const std::string& text) {
 
 bool ProgressBar::complete() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return !begun_ || last_.job_fraction >= 1;
+  return !begun_ || planning(last_) || last_.job_fraction >= 1;
 }
 
 void ProgressBar::end() {

@@ -1,20 +1,22 @@
 #include "flute_grinder/GrindAction.h"
-#include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/node/conversions.h"
 #include "flute_grinder/operator/continue_job.h"
-#include "flute_grinder/operator/csv.h"
 #include "flute_grinder/operator/interrupt.h"
 #include "flute_grinder/operator/offline.h"
 #include "flute_grinder/operator/online.h"
 #include "flute_grinder/operator/progress_bar.h"
+#include "flute_grinder/operator/recorder.h"
 #include "flute_grinder/operator/state_watch.h"
+#include "flute_grinder/operator/stop_keys.h"
 
 #include <actionlib/client/simple_action_client.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 namespace flute_grinder {
 
@@ -22,139 +24,171 @@ namespace {
 
 using Client = actionlib::SimpleActionClient<GrindAction>;
 
-/// Takes the setpoints as they are streamed, counts them and writes them to a file.
-class Recorder {
+/// What a goal has told of itself. It is shown by another thread than the one that hears it, which a terminal that
+/// stands still must not keep from hearing the grinder. Thread safe.
+class GoalWatch {
  public:
-  Recorder(ros::NodeHandle& nh, std::string csv) : path_(std::move(csv)) {
-    subscriber_ = nh.subscribe("setpoints", 1000, &Recorder::onBatch, this);
-  }
-
-  bool connected() const { return subscriber_.getNumPublishers() > 0; }
-  std::uint64_t received() const {
+  void onFeedback(const GrindFeedbackConstPtr& feedback) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return received_;
+    newest_ = feedback;
   }
-  std::uint64_t missed() const {
+  void onDone(bool succeeded, const GrindResultConstPtr& result) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return missed_;
+    done_ = true;
+    succeeded_ = succeeded;
+    result_ = result;
   }
-  /// From the first setpoint to the last, by the clock of the grinder [s].
-  double duration() const {
+  /// Null if there is none that was not taken yet.
+  GrindFeedbackConstPtr takeFeedback() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return (end_ - begin_).toSec();
+    return std::exchange(newest_, nullptr);
   }
-  /// Ends the record. @throw FileError
-  void close() {
-    subscriber_.shutdown();
+  bool done() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!error_.empty()) throw FileError(error_);
-    if (csv_) csv_->close();
+    return done_;
+  }
+  bool succeeded() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return succeeded_;
+  }
+  /// Null while there is none, and where the grinder knows nothing of the goal any more.
+  GrindResultConstPtr result() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return result_;
   }
 
  private:
-  void onBatch(const SetpointBatch::ConstPtr& batch) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    try {
-      if (!csv_ && !path_.empty()) csv_.emplace(path_, batch->period);
-      if (received_ == 0) begin_ = batch->header.stamp;
-      end_ = batch->end_stamp;
-      for (const WrittenSetpoint& setpoint : batch->setpoints) {
-        missed_ += setpoint.cycle - next_cycle_;
-        next_cycle_ = setpoint.cycle + 1;
-        ++received_;
-        if (csv_) csv_->write(fromMessage(setpoint));
-      }
-    } catch (const FileError& error) {
-      error_ = error.what();
-    }
-  }
-
-  std::string path_;
-  ros::Subscriber subscriber_;
   mutable std::mutex mutex_;
-  std::optional<SetpointCsv> csv_;
-  std::string error_;
-  std::uint64_t received_ = 0;
-  std::uint64_t missed_ = 0;
-  std::uint64_t next_cycle_ = 0;
-  ros::Time begin_, end_;
+  GrindFeedbackConstPtr newest_;
+  bool done_ = false, succeeded_ = false;
+  GrindResultConstPtr result_;
 };
 
-/// Follows a goal to its end. Each interrupt cancels it; what then counts is when the machine has stopped.
-/// @return false if the link is lost.
-bool follow(Client& client, const StateWatch& watch, ProgressBar& bar) {
-  int interrupts_seen = 0;
-  std::string hold_reason;
-  while (!client.waitForResult(ros::Duration(0.05))) {
-    if (watch.lost()) return false;
-    const GrinderState state = watch.newest();
-    if (state.hold_reason != hold_reason && !state.hold_reason.empty()) {
-      bar.say("held: " + state.hold_reason + "; when it is well again, 'grind resume' goes on");
+/// Tells what the operator has asked for by keys, and why the grinder holds.
+class Remarks {
+ public:
+  explicit Remarks(ProgressBar& bar) : bar_(bar) {}
+
+  void make(const GrinderState& state) {
+    if (state.hold_reason != hold_reason_ && !state.hold_reason.empty()) {
+      bar_.say("held: " + state.hold_reason + "; when it is well again, 'grind resume' goes on");
     }
-    hold_reason = state.hold_reason;
-    const int asked = interrupts();
-    if (asked == interrupts_seen) continue;
-    bar.say(interrupts_seen == 0 ? "canceling: waiting for the stop"
-                                 : "canceling: still waiting for the stop; the machine is " + state.state_name);
-    interrupts_seen = asked;
-    client.cancelGoal();
+    hold_reason_ = state.hold_reason;
+    if (std::exchange(holds_seen_, holds()) != holds_seen_) {
+      bar_.say("holding: 'grind resume' goes on, Ctrl-C cancels");
+    }
+    const int seen = std::exchange(interrupts_seen_, interrupts());
+    if (seen == interrupts_seen_) return;
+    bar_.say(seen == 0 ? "canceling: waiting for the stop"
+                       : "canceling: still waiting for the stop; the machine is " + state.state_name);
+  }
+
+ private:
+  ProgressBar& bar_;
+  std::string hold_reason_;
+  int interrupts_seen_ = 0, holds_seen_ = 0;
+};
+
+/// Shows how a goal goes, to its end. @return false if the link is lost.
+bool follow(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
+  Remarks remarks(bar);
+  const auto show = [&] {
+    if (const auto newest = goal.takeFeedback()) bar.show(*newest);
+  };
+  while (!goal.done()) {
+    if (watch.lost()) return false;
+    remarks.make(watch.newest());
+    show();
+    ros::WallDuration(0.01).sleep();
+  }
+  remarks.make(watch.newest());
+  // The last feedback may come after the result, by another connection.
+  if (goal.succeeded()) {
+    await(ros::WallDuration(1), [&] { return show(), bar.complete(); });
   }
   return true;
 }
 
-/// Prints what has become of a goal. @return the exit status.
-int conclude(const GrindResult& result, bool succeeded, Recorder& recorder, const std::string& csv) {
-  // The last setpoints may come after the result, by another connection.
-  const std::uint64_t expected = result.setpoints_written;
-  await(ros::WallDuration(2), [&] { return recorder.received() + recorder.missed() >= expected; });
-  const std::uint64_t received = recorder.received();
-  recorder.close();
-
-  if (result.statistics.setpoints > 0) printStatistics(fromMessage(result.statistics));
-  if (received > 0) {
-    std::printf("streamed             %llu setpoints in %.3f s, %llu missed\n",
-                static_cast<unsigned long long>(received), recorder.duration(),
-                static_cast<unsigned long long>(expected - received));
-    if (!csv.empty()) std::printf("setpoints written to %s\n", csv.c_str());
+/// @param written to the drive, by the goal's result; 0 where that is not known.
+void printStream(const Recorder& recorder, std::uint64_t written) {
+  recorder.awaitAll(written);
+  if (recorder.received() == 0 && recorder.lost() == 0) return;
+  std::printf("streamed             %llu setpoints in %.3f s, %llu missed",
+              static_cast<unsigned long long>(recorder.received()), recorder.duration(),
+              static_cast<unsigned long long>(recorder.missed(written)));
+  if (recorder.lost() > 0) {
+    std::printf(", %llu written but not told", static_cast<unsigned long long>(recorder.lost()));
   }
-  if (succeeded && result.error_code == 0) return 0;
-  return fail(result.error_string + " (code " + std::to_string(result.error_code) + ")");
+  std::printf("\n");
+}
+
+/// Prints what has become of a goal. @param heard whether the link held to its end. @return the exit status.
+int conclude(const GoalWatch& goal, bool heard, const Recorder& recorder) {
+  const GrindResultConstPtr result = goal.result();
+  if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
+  printStream(recorder, result ? result->setpoints_written : 0);
+  if (!heard) return fail(kLinkLost);
+  if (!result) return fail("the grinder knows nothing of the job any more: it has been started anew");
+  if (goal.succeeded() && result->error_code == 0) return 0;
+  return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
+}
+
+/// Ends the record, after all that is to be said of the job. @param status so far. @return the exit status.
+int closeRecord(Recorder& recorder, const std::string& csv, int status) {
+  try {
+    recorder.close();
+  } catch (const FileError& error) {
+    return fail(error.what());
+  }
+  if (!csv.empty() && recorder.received() > 0) std::printf("setpoints written to %s\n", csv.c_str());
+  return status;
+}
+
+GrindGoal goalFor(const GrindJob& job, const RunOptions& options) {
+  GrindGoal goal = goalFromJob(job);
+  goal.dry_run = options.dry_run;
+  goal.discard = options.discard;
+  goal.job_name = std::filesystem::path(options.job).filename();
+  return goal;
 }
 
 }  // namespace
 
 int runJob(const RunOptions& options) {
   const GrindJob job = readJobFile(options.job);
-  ProgressBar bar(static_cast<int>(job.tooth_angles.size()), static_cast<int>(passDepths(job.process).size()));
   ros::NodeHandle nh(options.node);
   ros::AsyncSpinner spinner(1);
-  spinner.start();
-  Client client(nh, "grind", false);
   Recorder recorder(nh, options.csv);
-  StateWatch watch(nh);
-  if (!client.waitForServer(ros::Duration(kPatience.toSec())) || !watch.begin() ||
-      !await(kPatience, [&] { return recorder.connected(); })) {
+  const StateWatch watch(nh);
+  // An action's client waits for a clock for ever.
+  if (!await(kPatience, [] { return ros::Time::isValid(); })) return noGrinder(nh);
+  GoalWatch watched;
+  Client client(nh, "grind", false);
+  StopKeys keys(nh, watch);
+  spinner.start();
+  if (!await(kPatience,
+             [&] { return watch.begun() && client.isServerConnected() && recorder.connected() && keys.connected(); })) {
     return noGrinder(nh);
   }
-  GrindGoal goal = goalFromJob(job);
-  goal.dry_run = options.dry_run;
+  GrindGoal goal = goalFor(job, options);
   if (options.go_on) {
     const std::string refusal = continueFrom(watch.newest().progress, job, goal);
     if (!refusal.empty()) return fail(refusal);
   }
 
+  ProgressBar bar(static_cast<int>(job.tooth_angles.size()), static_cast<int>(passDepths(job.process).size()));
   catchInterrupts();
-  client.sendGoal(goal, Client::SimpleDoneCallback(), Client::SimpleActiveCallback(),
-                  [&](const GrindFeedbackConstPtr& feedback) { bar.show(*feedback); });
-  const bool heard = follow(client, watch, bar);
-  const bool succeeded = client.getState() == actionlib::SimpleClientGoalState::SUCCEEDED;
-  // The last feedback may come after the result, by another connection.
-  if (succeeded) await(ros::WallDuration(1), [&] { return bar.complete(); });
+  catchHolds();
+  client.sendGoal(
+      goal,
+      [&](const actionlib::SimpleClientGoalState& state, const GrindResultConstPtr& result) {
+        watched.onDone(state == actionlib::SimpleClientGoalState::SUCCEEDED, result);
+      },
+      Client::SimpleActiveCallback(), [&](const GrindFeedbackConstPtr& feedback) { watched.onFeedback(feedback); });
+  keys.start([&] { client.cancelGoal(); });
+  const bool heard = follow(watched, watch, bar);
   bar.end();
-  if (!heard) return fail(kLinkLost);
-  const auto result = client.getResult();
-  if (!result) return fail("the grinder knows nothing of the job any more: it has been started anew");
-  return conclude(*result, succeeded, recorder, options.csv);
+  return closeRecord(recorder, options.csv, conclude(watched, heard, recorder));
 }
 
 }  // namespace flute_grinder

@@ -17,9 +17,11 @@ ServiceCall::ServiceCall(std::string name, std::string md5sum, ros::SerializedMe
   thread_ = std::thread([this] { run(); });
 }
 
-ServiceCall::~ServiceCall() {
+ServiceCall::~ServiceCall() { end(); }
+
+void ServiceCall::end() {
   breakOff();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void ServiceCall::breakOffWhenDue() {

@@ -25,10 +25,6 @@ StateWatch::StateWatch(ros::NodeHandle& nh) {
   subscriber_ = nh.subscribe<GrinderState>("state", 10, on_state);
 }
 
-bool StateWatch::begin() const {
-  return await(kPatience, [this] { return heard() > 0; });
-}
-
 bool StateWatch::renew() const {
   // The first two may have been under way.
   const std::uint64_t enough = heard() + 3;

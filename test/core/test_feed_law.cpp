@@ -243,6 +243,25 @@ TEST(FeedLaw, RefusesBadArguments) {
   }
 }
 
+TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
+  FeedLaw law({2, 1, 1}, 10, 2);
+  law.advance(1);
+  const double position = law.position();
+  EXPECT_FALSE(law.begin({2, 1, kNan}, 10, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, kInf, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, 10, 3));
+  EXPECT_EQ(law.position(), position);
+  ASSERT_TRUE(law.begin({1, 1, 1}, 5, 1));
+  FeedLaw made({1, 1, 1}, 5, 1);
+  EXPECT_EQ(law.timeLeft(), made.timeLeft());
+  for (int i = 0; i < 90; ++i) {
+    law.advance(0.1);
+    made.advance(0.1);
+    ASSERT_EQ(law.position(), made.position());
+  }
+  EXPECT_EQ(law.position(), 5);
+}
+
 TEST(FeedLaw, NamesTheBadArgument) {
   const auto text = [](const std::function<void()>& make) -> std::string {
     try {
@@ -454,6 +473,66 @@ RC_GTEST_PROP(FeedLawProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
   RC_ASSERT(std::abs(law.timeLeft() - expected) <= 1e-6 * expected);
   checkBounds(m, run(law, m.dt, 100000, [](int) {}));
   assertFinished(law, m);
+}
+
+RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRestAtTheEnd, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1), factor(0.01, 0.99);
+  const double from = *uniform(0, 1) * law.timeLeft();  // the final braking has its share
+  const double chance = *logUniform(0.01, 1);
+  int left = *whole(1, 20);
+  std::vector<Sample> samples{sampleOf(law)};
+  for (int i = 0; i < 200000 && !law.resting(); ++i) {
+    if (left > 0 && i * m.dt >= from && fraction(random) < chance) {
+      --left;
+      checkBounds(m, samples);
+      const double f = factor(random);
+      const Sample before = samples.back();
+      law.slowDown(f);
+      RC_ASSERT(law.position() == before.position);
+      RC_ASSERT(law.speed() == f * before.speed);
+      RC_ASSERT(law.acceleration() == f * f * before.acceleration);
+      samples = {sampleOf(law)};
+      // There is always a stop within the way left.
+      FeedLaw stop = law;
+      stop.setTarget(0);
+      checkBounds(m, run(stop, m.dt, 100000, [](int) {}));
+      RC_ASSERT(stop.resting());
+    }
+    law.advance(m.dt);
+    samples.push_back(sampleOf(law));
+  }
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+TEST(FeedLaw, SlowedDownItTakesUpItsSpeedAnew) {
+  const MotionLimits limits{1, 2, 8};
+  FeedLaw law(limits, 10, 1);
+  law.advance(2);
+  ASSERT_TRUE(law.cruising());
+  law.slowDown(0.25);
+  EXPECT_EQ(law.speed(), 0.25);
+  // 0.75 more, within 0.75/a + a/j.
+  law.advance(0.75 / 2 + 0.25 + 1e-9);
+  EXPECT_TRUE(law.cruising());
+  EXPECT_EQ(law.speed(), 1);
+}
+
+TEST(FeedLaw, WhatIsNoFactorDoesNotSlowItDown) {
+  for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
+    FeedLaw law({1, 2, 8}, 10, 1);
+    law.advance(2);
+    const double left = law.timeLeft();
+    law.slowDown(factor);
+    EXPECT_EQ(law.speed(), 1) << factor;
+    EXPECT_EQ(law.timeLeft(), left) << factor;
+  }
+  FeedLaw resting;
+  resting.slowDown(0.5);
+  EXPECT_TRUE(resting.finished());
 }
 
 RC_GTEST_PROP(FeedLawProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {

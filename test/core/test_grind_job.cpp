@@ -270,6 +270,14 @@ INSTANTIATE_TEST_SUITE_P(
                         j.process.infeed = 0.1e-6;
                       },
                       "process.infeed", "process.infeed_mm", "1e-07 m", "10000 passes"},
+        Contradiction{"TooManyPassesOfAllTeeth",  // 64 times 313 are 20,032
+                      [](GrindJob& j) {
+                        j.tooth_angles.clear();
+                        for (int i = 0; i < 64; ++i) j.tooth_angles.push_back(i * 0.09);
+                        j.process.infeed = j.process.depth / 311;
+                      },
+                      "process.infeed", "process.infeed_mm", "1.607717042e-06 m",
+                      "312 passes per tooth, 20000 of all teeth"},
         Contradiction{"NoTeeth", [](GrindJob& j) { j.tooth_angles.clear(); }, "cutter.teeth", "cutter.teeth", "0",
                       "1 to 64"},
         Contradiction{"TooManySparkOutPasses", [](GrindJob& j) { j.process.spark_out = 101; }, "process.spark_out",

@@ -341,6 +341,155 @@ TEST(JobPlan, RefusesABadMachine) {
   EXPECT_EQ(planOf(paperJob(), machine).fault, PlanFault::kInvalidJob);
 }
 
+TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
+  // 64 teeth in 300 passes of 5 mm + 32 mm sqrt(1 + tan^2 5 + tan^2 30) at 0.1 mm/min: 42 mm each, 25,200 s.
+  GrindJob job = paperJob();
+  job.tooth_angles.clear();
+  for (int i = 0; i < 64; ++i) job.tooth_angles.push_back(i * 0.09);
+  job.process.infeed = job.process.depth / 300;
+  job.process.feed = 0.1e-3 / 60;
+  const Machine machine = plainMachine();
+  int looks = 0;
+  const JobPlan plan =
+      planJob(job, machine, machine.park, {}, {}, UnitSystem::kShop, [&](double) { return ++looks > 0; });
+  EXPECT_EQ(plan.fault, PlanFault::kTooLong);
+  EXPECT_EQ(plan.program, nullptr);
+  EXPECT_EQ(looks, 0);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  const double pass = (5 + 32 * testing::edgePerTravel(job.cutter)) / 0.1 * 60;
+  std::ostringstream text;
+  text << "max_job_duration = 86400 s: the job takes " << 64 * 300 * pass
+       << " s or more, with teeth 64, passes 300, process.feed_mm_min = 0.1 mm/min, process.infeed_mm = "
+          "0.001666666667 mm; raise process.feed_mm_min or process.infeed_mm, or the parameter";
+  EXPECT_EQ(plan.reasons[0], text.str());
+}
+
+TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {
+  Machine machine = plainMachine();
+  const double whole = planOf(paperJob()).statistics.duration;
+  machine.max_job_duration = whole + 1e-6;
+  EXPECT_TRUE(planOf(paperJob(), machine).good());
+  machine.max_job_duration = whole - 2 * machine.period;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.fault, PlanFault::kTooLong);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_TRUE(contains(plan.reasons[0], "max_job_duration = ")) << plan.reasons[0];
+  EXPECT_TRUE(contains(plan.reasons[0],
+                       " s: the job takes longer, with teeth 1, passes 1, process.feed = 0.01 m/s, process.infeed = "
+                       "0.0005 m; raise process.feed or process.infeed, or the parameter"))
+      << plan.reasons[0];
+  EXPECT_LE(static_cast<double>(visited.back().cycle) * machine.period, whole);
+}
+
+TEST(JobPlan, CountsOnlyThePassesThatAreLeft) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  job.process.spark_out = 4;
+  Machine machine = plainMachine();
+  machine.max_job_duration = planOf(job).statistics.duration * 0.7;
+  for (const GrindOrder order : {GrindOrder::kToothMajor, GrindOrder::kPassMajor}) {
+    job.process.order = order;
+    EXPECT_EQ(planOf(job, machine).fault, PlanFault::kTooLong);
+    const ToothPass half = order == GrindOrder::kToothMajor ? ToothPass{1, 0} : ToothPass{1, 2};
+    const JobPlan plan = planJob(job, machine, machine.park, half);
+    EXPECT_TRUE(plan.good()) << textOf(plan);
+  }
+}
+
+TEST(JobPlan, AsksItsWatchAllTheTime) {
+  GrindJob job = paperJob();
+  job.process.spark_out = 9;
+  const Machine machine = plainMachine();
+  std::uint64_t visited = 0;
+  std::uint64_t seen = 0;
+  std::uint64_t longest = 0;
+  std::vector<double> done;
+  const JobPlan plan = planJob(
+      job, machine, machine.park, {}, [&](const Setpoint&) { ++visited; }, UnitSystem::kSi,
+      [&](double part) {
+        longest = std::max(longest, visited - seen);
+        seen = visited;
+        done.push_back(part);
+        return true;
+      });
+  ASSERT_TRUE(plan.good()) << textOf(plan);
+  EXPECT_LE(std::max(longest, visited - seen), 5000u);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_LE(done.front(), 0.01);
+  EXPECT_GT(done.back(), 0.8);
+  EXPECT_LE(done.back(), 1);
+}
+
+TEST(JobPlan, IsGivenUpByItsWatch) {
+  const Machine machine = plainMachine();
+  GrindJob job = paperJob();
+  job.process.spark_out = 9;
+  std::uint64_t visited = 0;
+  int looks = 0;
+  const JobPlan plan = planJob(
+      job, machine, machine.park, {}, [&](const Setpoint&) { ++visited; }, UnitSystem::kSi,
+      [&](double) { return ++looks < 3; });
+  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(looks, 3);
+  EXPECT_EQ(visited, plan.statistics.setpoints);
+  EXPECT_LE(visited, 10000u);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_TRUE(contains(plan.reasons[0], "given up"));
+}
+
+/// D1 1.6 mm, C 15 deg and next to no spiral, with an overtravel up to next to the apex.
+GrindJob apexJob(double short_of_apex, double spiral_deg) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = 1.6e-3;
+  job.cutter.cone_angle = 15 * units::kDegree;
+  job.cutter.spiral_angle = spiral_deg * units::kDegree;
+  job.process.depth = job.process.infeed = 0.1e-3;
+  job.process.overtravel_end = 0.8e-3 / std::tan(job.cutter.cone_angle) * (1 - short_of_apex);
+  return job;
+}
+
+// Steps far longer than the way to the apex made the path nan, and that ended the process where the stroke's did.
+TEST(JobPlan, GoesNoFartherTowardAnApexThanItsStepsHold) {
+  struct Apex {
+    double short_of_apex, spiral_deg, feed_mm_min, tolerance, scale;
+    StrokeDirection direction;
+    EvenStepRule rule;
+  };
+  const Apex all[]{{1.2e-4, 9.9e-4, 4104, 1.3e-9, 0.227, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {2.6e-5, 2.8e-4, 3921, 1.5e-6, 0.035, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {5.6e-4, 7e-4, 9059, 1.1e-10, 0.266, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {7.3e-4, 4.2e-4, 1055, 3.4e-10, 0.21, StrokeDirection::kFromEnd, EvenStepRule::kThirdOrder},
+                   {1.3e-6, 2e-6, 5634, 6.8e-9, 0.161, StrokeDirection::kFromEnd, EvenStepRule::kThirdOrder},
+                   {1e-6, 1e-6, 600, 1e-6, 1e-3, StrokeDirection::kFromEnd, EvenStepRule::kPublished}};
+  for (const Apex& apex : all) {
+    SCOPED_TRACE(apex.short_of_apex);
+    GrindJob job = apexJob(apex.short_of_apex, apex.spiral_deg);
+    job.cutter.flute_length = 0.5e-3;
+    job.process.feed = apex.feed_mm_min * units::kMillimetrePerMinute;
+    job.process.direction = apex.direction;
+    job.interpolation = {apex.rule, apex.tolerance, apex.scale};
+    ASSERT_TRUE(validate(job).empty());
+    for (const Machine& machine : {plainMachine(), strongMachine()}) {
+      bool finite = true;
+      const JobPlan plan =
+          planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { finite &= p.position.isFinite().all(); });
+      EXPECT_TRUE(finite);
+      EXPECT_EQ(plan.good(), plan.reasons.empty());
+      EXPECT_FALSE(contains(textOf(plan), "nan")) << textOf(plan);
+    }
+  }
+}
+
+TEST(JobPlan, NamesTheControlRateWhereTheApexIsTooNear) {
+  GrindJob job = apexJob(1e-6, 0);
+  const JobPlan plan = planOf(job, strongMachine());
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  // An eighth of the 0.8 um / tan 15 deg of radius left, each millisecond: 22.4 um/min.
+  EXPECT_TRUE(contains(textOf(plan), "process.feed: control rate allows 3.8")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "at X = -0.002985")) << textOf(plan);
+}
+
 /// What a plan should object to: setpoints beyond the upper limit of an axis, counted by moves.
 struct Beyond {
   std::uint64_t count = 0;

@@ -248,6 +248,47 @@ TEST(LimitCheck, ForgetsThePastAtARestart) {
   EXPECT_TRUE(untold.feed(0.25));
 }
 
+/// A tenth of the highest speed, in pairs.
+constexpr double kWay = 0.0125 * 2 * kPeriod;
+
+/// Up to that speed, and some pairs at it.
+std::vector<double> upToSpeed() { return rampTo(0.0125, 0.25, 16); }
+
+TEST(LimitCheck, KnowsThatAxesWhichStoodGoOnMoreSlowly) {
+  for (const double factor : {0.5, 0.2, 0.1}) {
+    Feeder feeder(kX);
+    const std::vector<double> ends = upToSpeed();
+    ASSERT_FALSE(feeder.feedAll(ends));
+    feeder.check().slowDown(factor);
+    for (int i = 1; i <= 10; ++i) {
+      ASSERT_FALSE(feeder.feed(ends.back() + i * factor * kWay / 2)) << factor << ", setpoint " << i;
+    }
+  }
+}
+
+TEST(LimitCheck, CatchesTheFullSpeedOfAxesThatStood) {
+  Feeder feeder(kX);
+  const std::vector<double> ends = upToSpeed();
+  ASSERT_FALSE(feeder.feedAll(ends));
+  feeder.check().slowDown(0.5);
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay / 2));
+  const auto violation = feeder.feed(ends.back() + kWay);
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
+  EXPECT_NEAR(violation->value, 0.0125 / 2 / (2 * kPeriod), 1e-6);
+}
+
+TEST(LimitCheck, ASlowDownAmidAPairIsOfTheNext) {
+  Feeder feeder(kX);
+  const std::vector<double> ends = upToSpeed();
+  ASSERT_FALSE(feeder.feedAll(ends));
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay / 2));
+  feeder.check().slowDown(0.5);
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay)) << "this pair goes on as it was begun";
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay + kWay / 4));
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay + kWay / 2));
+}
+
 /// All violations of the last setpoint checked, as "axis quantity".
 std::vector<std::string> allOf(const LimitCheck& check) {
   static const char* const quantities[]{"position", "velocity", "acceleration", "jerk", "not finite"};

@@ -1,5 +1,7 @@
 #include "flute_grinder/core/setpoint_stream.h"
 
+#include "flute_grinder/core/limit_check.h"
+
 #include "generators.h"
 #include "reference.h"
 
@@ -12,6 +14,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <memory>
 #include <random>
 #include <string>
 #include <utility>
@@ -849,6 +852,60 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, (
   RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");      // and none needs a rest to be gone on from
 }
 
+/// Slowed down at random moments, held and brought up again now and then.
+RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxesThatStood, ()) {
+  const Work work = *testing::work(kCycles);
+  SetpointStream stream(work.program());
+  LimitCheck check(work.machine.limits, work.machine.period);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
+  const double share = *testing::logUniform(1e-3, 0.3);
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  for (int cycle = 0; cycle < 100000 && !stream.finished(); ++cycle) {
+    const bool calm = cycle > 2000;
+    if (!setpoints.empty() && !calm && chance(random) < share) {
+      const double factor = 1 / periods(random);
+      stream.slowDown(factor);
+      check.slowDown(factor);
+    }
+    if (!calm && chance(random) < share / 10) stream.hold();
+    if (!stream.next(p)) {
+      stream.resume();
+      continue;
+    }
+    setpoints.push_back(p);
+    const auto violation = check.check(p);
+    RC_ASSERT(!violation || violation->quantity == LimitedQuantity::kPosition);
+  }
+  RC_ASSERT(stream.finished());
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+}
+
+TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
+  GrindJob job = paperJob();
+  Axes start = plainMachine().park;
+  SetpointStream stream(GrindProgram(job, plainMachine(), start));
+  SetpointStream undisturbed(stream.program());
+  Setpoint p, q;
+  const auto step = [&] {
+    ASSERT_TRUE(stream.next(p));
+    ASSERT_TRUE(undisturbed.next(q));
+  };
+  while (!(p.at_feed && p.step == StepKind::kOdd)) step();
+  const Axes even_before = p.position;
+  stream.slowDown(0.2);
+  step();
+  EXPECT_TRUE((p.position == q.position).all()) << "its second step is made as planned";
+  const double x = p.position[kX];
+  const double full = 2 * (x - even_before[kX]);
+  step();
+  step();
+  // Then a fifth, and what the jerk adds in two cycles.
+  EXPECT_NEAR(p.position[kX] - x, full / 5, 0.02 * full);
+}
+
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstruction, ()) {
   const Work work = *testing::work(kCycles);
   const auto setpoints = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4)).setpoints();
@@ -1356,7 +1413,7 @@ RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAsk
   Work work = *testing::work(kCycles);
   work.machine.limits.max_velocity.setConstant(1e3);
   work.machine.limits.max_acceleration.setConstant(1e6);
-  work.machine.limits.max_jerk.setConstant(1e10);
+  work.machine.limits.max_jerk.setConstant(1e9);
   work.job.interpolation.tolerance = 1e-3;
   SetpointStream stream(work.program());
   RC_PRE(stream.program().schedule().cuts().empty());
@@ -1442,6 +1499,42 @@ TEST(SetpointStream, TellsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
+}
+
+// planJob() refuses every program that comes to this: a tooth that is nowhere.
+TEST(SetpointStream, ThatCannotGoOnGivesWhatEveryCheckRefuses) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {std::numeric_limits<double>::quiet_NaN()};
+  const Machine machine = plainMachine();
+  SetpointStream stream(GrindProgram(job, machine, machine.park));
+  LimitCheck check(machine.limits, machine.period);
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_FALSE(check.check(p));
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(stream.next(p));
+    stream.hold();
+    stream.retract();
+    stream.resume();
+    const auto violation = check.check(p);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
+    ASSERT_FALSE(stream.finished());
+  }
+}
+
+TEST(SetpointStream, SharesItsProgram) {
+  const Machine machine = plainMachine();
+  const auto program = std::make_shared<const GrindProgram>(paperJob(), machine, machine.park);
+  SetpointStream shared(program);
+  SetpointStream owned(*program);
+  EXPECT_EQ(&shared.program(), program.get());
+  Setpoint p, q;
+  while (shared.next(p)) {
+    ASSERT_TRUE(owned.next(q));
+    ASSERT_TRUE((p.position == q.position).all());
+  }
+  EXPECT_FALSE(owned.next(q));
 }
 
 }  // namespace

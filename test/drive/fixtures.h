@@ -121,9 +121,9 @@ inline void setUp(SimulatedDrive& drive, const LoopConfig& config) { drive.init(
 template <typename Drive>
 class Rig {
  public:
-  explicit Rig(const LoopConfig& config = machineConfig()) : config_(config) {
+  explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {}) : config_(config) {
     setUp(drive, config);
-    loop = std::make_unique<ControlLoop>(drive, config);
+    loop = std::make_unique<ControlLoop>(drive, config, wheel);
   }
 
   /// With a drive that `prepare` sets up.
@@ -133,8 +133,9 @@ class Rig {
     loop = std::make_unique<ControlLoop>(drive, config);
   }
 
-  const CycleRecord& cycle() {
-    const ros::Duration period(config_.machine.period);
+  /// @param periods that have passed since the last cycle.
+  const CycleRecord& cycle(double periods = 1) {
+    const ros::Duration period(periods * config_.machine.period);
     time_ += period;
     loop->cycle(time_, period);
     CycleRecord record;
@@ -148,8 +149,10 @@ class Rig {
     return log.back();
   }
 
-  /// Asks for a stop or for something else, and runs cycles until it is answered.
-  RequestReply ask(MachineEvent event) {
+  /// Asks for something by its own road, and runs cycles until it is answered.
+  /// @param job of kStart.
+  RequestReply ask(MachineEvent event, SetpointStream* job = nullptr) {
+    if (event == MachineEvent::kStart) return askToStart(*job);
     if (isStop(event)) {
       const std::uint32_t ticket = loop->postAskedStop(event);
       return answerOf([&] { return loop->stopReply(event, ticket); });
@@ -383,6 +386,16 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
       rig.cycle();
       rig.drive.on_read = [](FakeDrive& d) { d.status.fault = false; };
       rig.cycle();
+    } else if (state == S::kLifting) {
+      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
+      rig.cycle();
+      rig.drive.on_read = nullptr;
+      rig.drive.status.fault = false;
+      rig.cycle();
+      ask(E::kReset);
+      ask(E::kEnable);
+      ask(E::kLift);
+      rig.run(30);
     } else if (state != S::kRunning) {
       ask(E::kHold);
       if (state != S::kHolding) rig.runUntil(S::kHeld);

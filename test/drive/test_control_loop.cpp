@@ -2,8 +2,15 @@
 
 #include "fixtures.h"
 
+#include <pthread.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <csignal>
+#include <fstream>
 #include <limits>
 #include <thread>
 
@@ -273,7 +280,7 @@ TEST(ControlLoopEnable, OneRequestAtATime) {
   Rig<FakeDrive> rig;
   rig.cycle();
   ASSERT_TRUE(rig.loop->post(E::kEnable));
-  EXPECT_FALSE(rig.loop->post(E::kDisable));
+  EXPECT_FALSE(rig.loop->post(E::kReset));
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -294,21 +301,22 @@ std::string requestName(const TestParamInfo<RequestCase>& info) {
 /// Every request in every state that does not list it.
 std::vector<RequestCase> refusedRequests() {
   const std::vector<std::pair<S, const char*>> allowed{{S::kDisabled, "enable, disable, reset"},
-                                                       {S::kReady, "enable, disable, home, start"},
-                                                       {S::kHoming, "disable"},
-                                                       {S::kStarting, "cancel"},
-                                                       {S::kRunning, "hold, cancel"},
-                                                       {S::kHolding, "hold, resume, cancel"},
-                                                       {S::kHeld, "hold, resume, retract, cancel"},
-                                                       {S::kRetracting, "hold, cancel"},
-                                                       {S::kRetracted, "resume, cancel"},
-                                                       {S::kResuming, "hold, cancel"},
-                                                       {S::kCanceling, "cancel"},
-                                                       {S::kFault, "reset"}};
+                                                       {S::kReady, "enable, disable, home, start, lift"},
+                                                       {S::kHoming, "disable, hold, cancel"},
+                                                       {S::kStarting, "disable, hold, resume, cancel"},
+                                                       {S::kRunning, "disable, hold, cancel"},
+                                                       {S::kHolding, "disable, hold, resume, cancel"},
+                                                       {S::kHeld, "disable, hold, resume, retract, cancel"},
+                                                       {S::kRetracting, "disable, hold, cancel"},
+                                                       {S::kRetracted, "disable, resume, cancel"},
+                                                       {S::kResuming, "disable, hold, cancel"},
+                                                       {S::kCanceling, "disable, cancel"},
+                                                       {S::kFault, "disable, reset"},
+                                                       {S::kLifting, "disable, hold, cancel"}};
   const std::vector<std::pair<E, const char*>> requests{
-      {E::kEnable, "enable"},   {E::kDisable, "disable"}, {E::kHome, "home"},
-      {E::kStart, "start"},     {E::kHold, "hold"},       {E::kResume, "resume"},
-      {E::kRetract, "retract"}, {E::kCancel, "cancel"},   {E::kReset, "reset"}};
+      {E::kEnable, "enable"}, {E::kDisable, "disable"}, {E::kHome, "home"},       {E::kStart, "start"},
+      {E::kHold, "hold"},     {E::kResume, "resume"},   {E::kRetract, "retract"}, {E::kCancel, "cancel"},
+      {E::kReset, "reset"},   {E::kLift, "lift"}};
   std::vector<RequestCase> cases;
   for (const auto& [state, list] : allowed) {
     for (const auto& [event, name] : requests) {
@@ -349,7 +357,10 @@ TEST_P(RequestWithoutEffect, IsAcceptedAndChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
                          Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kReady, E::kEnable},
                                 RequestCase{S::kHolding, E::kHold}, RequestCase{S::kHeld, E::kHold},
-                                RequestCase{S::kCanceling, E::kCancel}),
+                                RequestCase{S::kStarting, E::kHold}, RequestCase{S::kStarting, E::kResume},
+                                RequestCase{S::kCanceling, E::kCancel}, RequestCase{S::kCanceling, E::kDisable},
+                                RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
+                                RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable}),
                          requestName);
 
 // What the loop alone may find: taken from outside, these would part the state from the stream and from the power.
@@ -389,7 +400,7 @@ TEST(ControlLoopStart, IsRefusedWhenTheAxesAreNotHomed) {
   rig.enable();
   rig.drive.status.homed = false;
   SetpointStream stream = rig.paperStream();
-  const RequestReply answer = rig.ask(E::kStart, &stream);
+  const RequestReply answer = rig.askToStart(stream);
   EXPECT_FALSE(answer.accepted);
   EXPECT_CONTAINS(answer.text, "not homed");
   EXPECT_EQ(rig.last().state, S::kReady);
@@ -406,7 +417,7 @@ TEST_P(StartAfterMoving, IsRefused) {
   Axes planned = rig.last().command;
   planned[axis] = std::nextafter(planned[axis], 1.0);
   SetpointStream stream(GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), machineConfig().machine, planned));
-  const RequestReply answer = rig.ask(E::kStart, &stream);
+  const RequestReply answer = rig.askToStart(stream);
   EXPECT_FALSE(answer.accepted);
   EXPECT_CONTAINS(answer.text, "do not stand where the job was planned to start");
   EXPECT_EQ(rig.last().state, S::kReady);
@@ -470,7 +481,7 @@ TEST_F(PaperJob, RunsAgain) {
   const std::vector<Setpoint> first = rig_.setpoints();
   rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
   rig_.stream.emplace(rig_.paperStream());
-  ASSERT_TRUE(rig_.ask(E::kStart, &*rig_.stream).accepted);
+  ASSERT_TRUE(rig_.askToStart(*rig_.stream).accepted);
   rig_.runToEnd();
   EXPECT_TRUE(sameSetpoints(rig_.setpoints(), first));
 }
@@ -494,14 +505,25 @@ class Cancel : public TestWithParam<std::tuple<MoveKind, int>> {
   std::uint64_t last_before_ = 0;
 };
 
-TEST_P(Cancel, StopsAsAStreamHeldInTheSameCycle) {
+TEST_P(Cancel, StopsAsAStreamHeldInTheSameCycleAndLiftsTheWheelOffTheWork) {
   EXPECT_EQ(rig_.last().state, S::kCanceling);
   rig_.runToEnd();
   const LoopConfig config = machineConfig();
-  const SetpointStream stream(
-      GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), allSetpoints(stream, last_before_ + 1)));
+  SetpointStream stream(GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
   EXPECT_LT(rig_.setpoints().size(), allSetpoints(stream).size());
+  std::vector<Setpoint> expected;
+  Setpoint p;
+  while (expected.size() <= last_before_ && stream.next(p)) expected.push_back(p);
+  stream.hold();
+  while (stream.next(p)) expected.push_back(p);
+  // 5 mm above 31 mm of 5 degrees.
+  const double clear_y = 0.031 * std::tan(5 * std::acos(-1.0) / 180) + 0.005;
+  if (expected.back().position[kY] < clear_y - 1e-12) {
+    stream.retract();
+    while (stream.next(p)) expected.push_back(p);
+  }
+  EXPECT_NEAR(std::min(expected.back().position[kY], clear_y), clear_y, 1e-12);
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), expected));
 }
 
 TEST_P(Cancel, IsCancelingUntilTheAxesRestThenReady) {
@@ -741,7 +763,7 @@ TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
   const std::size_t before = rig_.setpoints().size();
   SetpointStream stream = rig_.paperStream();
   const std::vector<Setpoint> planned = allSetpoints(stream);
-  ASSERT_TRUE(rig_.ask(E::kStart, &stream).accepted);
+  ASSERT_TRUE(rig_.askToStart(stream).accepted);
   rig_.runToEnd();
   EXPECT_EQ(rig_.last().state, S::kReady);
   EXPECT_EQ(rig_.setpoints().size() - before, planned.size());
@@ -775,7 +797,7 @@ TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
   SetpointStream stream = rig.paperStream();
   rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
-  const RequestReply answer = rig.ask(E::kStart, &stream);
+  const RequestReply answer = rig.askToStart(stream);
   EXPECT_FALSE(answer.accepted);
   EXPECT_CONTAINS(answer.text, "state fault");
   rig.run(10);
@@ -911,8 +933,10 @@ TEST_P(InjectedFault, EndsTheJobAndTheMachineRecovers) {
   ASSERT_NO_FATAL_FAILURE(rig.enable());
   rig.run(50);
   EXPECT_TRUE(sameBits(rig.last().position, rest)) << "power on moved an axis";
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.ask(E::kStart, &*rig.stream).accepted);
+  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
   rig.runToEnd();
   EXPECT_EQ(rig.last().state, S::kReady);
 }
@@ -1085,7 +1109,7 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
-  ASSERT_TRUE(rig.loop->post(E::kStart, &stream));
+  ASSERT_TRUE(rig.loop->postStart(&stream));
   const ros::Duration period(0.001);
   for (std::size_t i = 0; i < planned + 8192; ++i) rig.loop->cycle(ros::Time(2000), period);
   CycleRecord record;
@@ -1105,7 +1129,7 @@ TEST(ControlLoopRecords, TheEndOfAJobIsToldEvenIfItsOwnRecordWasLost) {
   const std::size_t planned = allSetpoints(stream).size();
   const ros::Duration period(0.001);
   for (int i = 0; i < 8192; ++i) rig.loop->cycle(ros::Time(2000), period);  // no room for any record of the job
-  ASSERT_TRUE(rig.loop->post(E::kStart, &stream));
+  ASSERT_TRUE(rig.loop->postStart(&stream));
   for (std::size_t i = 0; i < planned + 10; ++i) rig.loop->cycle(ros::Time(2000), period);
   CycleRecord record;
   while (rig.loop->pop(record)) EXPECT_FALSE(record.job_ended);
@@ -1139,7 +1163,7 @@ class ControlLoopThread : public ::testing::Test {
 };
 
 TEST_F(ControlLoopThread, RunsCyclesWithMonotonicPositivePeriods) {
-  loop_->start();
+  loop_->startThread();
   CycleRecord record;
   double last = 0;
   for (int i = 0; i < 30; ++i) {
@@ -1151,7 +1175,7 @@ TEST_F(ControlLoopThread, RunsCyclesWithMonotonicPositivePeriods) {
 }
 
 TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
-  loop_->start();
+  loop_->startThread();
   CycleRecord record;
   ASSERT_TRUE(popInTime(record));
   const double first = record.time;
@@ -1169,19 +1193,93 @@ TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
   config.following_error.setConstant(1);
   config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
   loop_ = std::make_unique<ControlLoop>(drive_, config);
-  loop_->start();
+  loop_->startThread();
   const RequestReply answer = loop_->request(E::kEnable);
   ASSERT_TRUE(answer.accepted) << answer.text;
-  loop_->stop();
+  loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
   EXPECT_TRUE(sameBits(toAxes(drive_.written), machineConfig().machine.park)) << "stopping moved an axis";
 }
 
-TEST_F(ControlLoopThread, StopEndsTheCycles) {
-  loop_->start();
+TEST_F(ControlLoopThread, TellsTheComputersTime) {
+  ros::Time::setNow(ros::Time(5));  // as of a simulation
+  const double before = ros::WallTime::now().toSec();
+  loop_->startThread();
+  CycleRecord record;
+  const bool popped = popInTime(record);
+  loop_->stopThread();
+  ros::Time::init();
+  ASSERT_TRUE(popped);
+  EXPECT_GE(record.time, before - 1e-3);
+  EXPECT_LE(record.time, ros::WallTime::now().toSec());
+  EXPECT_GE(loop_->status().time, record.time);
+}
+
+TEST_F(ControlLoopThread, TakesNoSignal) {
+  std::atomic<int> open{-1};
+  drive_.on_read = [&](FakeDrive&) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+    int count = 0;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGALRM, SIGUSR1}) {
+      count += sigismember(&blocked, signal) == 0;
+    }
+    open = count;
+  };
+  loop_->startThread();
   CycleRecord record;
   ASSERT_TRUE(popInTime(record));
-  loop_->stop();
+  loop_->stopThread();
+  EXPECT_EQ(open, 0);
+}
+
+/// Resident memory [bytes].
+std::size_t resident() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, pages = 0;
+  statm >> size >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
+  loop_->startThread();
+  if (!loop_->memoryLocked()) GTEST_SKIP() << "the system does not grant locked memory";
+  constexpr std::size_t claim = std::size_t{1} << 28;
+  const std::size_t before = resident();
+  void* const memory = mmap(nullptr, claim, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  EXPECT_LT(resident(), before + claim / 4);
+  munmap(memory, claim);
+}
+
+TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {
+  loop_->startThread();
+  EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
+  const RequestReply answer = loop_->stop(E::kCancel);
+  EXPECT_TRUE(answer.answered);
+  EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");
+  EXPECT_GT(loop_->status().cycles, 0u);
+}
+
+TEST_F(ControlLoopThread, RefusesOnEachRoadWhatBelongsOnAnother) {
+  EXPECT_EQ(loop_->stop(E::kEnable).text, "enable refused: allowed: hold, cancel, disable");
+  for (const E event : {E::kHold, E::kStart, E::kFault}) {
+    EXPECT_CONTAINS(loop_->request(event).text, "allowed: enable, home, resume, retract, lift, reset");
+  }
+}
+
+TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
+  const RequestReply answer = loop_->stop(E::kHold);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_FALSE(answer.answered);
+  EXPECT_EQ(answer.text, "hold: the control loop does not answer");
+}
+
+TEST_F(ControlLoopThread, StopEndsTheCycles) {
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  loop_->stopThread();
   while (loop_->pop(record)) {
   }
   const std::uint64_t cycles = drive_.status.feedback_count;
@@ -1191,14 +1289,14 @@ TEST_F(ControlLoopThread, StopEndsTheCycles) {
 }
 
 TEST_F(ControlLoopThread, RequestTellsARefusal) {
-  loop_->start();
-  const RequestReply answer = loop_->request(E::kCancel);
+  loop_->startThread();
+  const RequestReply answer = loop_->request(E::kLift);
   EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");
+  EXPECT_EQ(answer.text, "lift refused: the machine is in state disabled; allowed: enable, disable, reset");
 }
 
 TEST_F(ControlLoopThread, StopWithoutAStartIsHarmless) {
-  loop_->stop();
+  loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
 }
 

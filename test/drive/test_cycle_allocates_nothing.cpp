@@ -268,10 +268,14 @@ class CycleAllocatesNothing : public ::testing::Test {
     cycle();
   }
 
-  void cycle() {
-    const ros::Duration period(0.001);
+  /// @param periods that have passed since the last cycle.
+  void cycle(double periods = 1) {
+    const ros::Duration period(0.001 * periods);
     time_ += period;
-    used_ += heapUse([&] { loop_->cycle(time_, period); });
+    used_ += heapUse([&] {
+      loop_->cycle(time_, period);
+      status_ = loop_->status();
+    });
     while (loop_->pop(record_)) ended_ += record_.job_ended;
   }
 
@@ -279,11 +283,24 @@ class CycleAllocatesNothing : public ::testing::Test {
     for (int i = 0; i < cycles; ++i) cycle();
   }
 
+  /// Asks by the event's own road. All that a thread calls but cannot wait for is counted too.
   bool accepted(MachineEvent event, SetpointStream* stream = nullptr) {
-    loop_->post(event, stream);
+    std::uint32_t ticket = 0;
+    used_ += heapUse([&] {
+      if (stream) {
+        loop_->postStart(stream);
+      } else if (isStop(event)) {
+        ticket = loop_->postAskedStop(event);
+      } else {
+        loop_->post(event);
+      }
+    });
     for (int i = 0; i < 10; ++i) {
       cycle();
-      if (const auto answer = loop_->reply()) return answer->accepted;
+      const auto answer = stream          ? loop_->startReply()
+                          : isStop(event) ? loop_->stopReply(event, ticket)
+                                          : loop_->reply();
+      if (answer) return answer->accepted;
     }
     ADD_FAILURE() << "no answer";
     return false;
@@ -311,6 +328,7 @@ class CycleAllocatesNothing : public ::testing::Test {
   std::unique_ptr<ControlLoop> loop_;
   ros::Time time_{1000};
   CycleRecord record_;
+  LoopStatus status_;
   HeapUse used_;  ///< by all cycles so far
   int ended_ = 0;
 };
@@ -342,6 +360,29 @@ TEST_F(CycleAllocatesNothing, OverACancel) {
   ASSERT_TRUE(accepted(MachineEvent::kCancel));
   for (int i = 0; i < 100000 && ended_ == 0; ++i) cycle();
   EXPECT_EQ(record_.state, MachineState::kReady);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverStopsFromSignalHandlersAndADisableAmidAJob) {
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  used_ += heapUse([&] {
+    loop_->postStop(MachineEvent::kHold);
+    loop_->postStop(MachineEvent::kDisable);
+  });
+  ASSERT_TRUE(reaches(MachineState::kDisabled));
+  EXPECT_EQ(status_.end, JobEnd::kCanceled);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverALateCycleAndOneThatIsAFault) {
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  cycle(5);
+  run(100);
+  ASSERT_EQ(record_.state, MachineState::kRunning);
+  cycle(50);
+  EXPECT_EQ(record_.fault.kind, FaultKind::kLate);
   expectNone(used_);
 }
 
@@ -461,6 +502,10 @@ TEST_F(CycleAllocatesNothing, OverEveryFaultAndItsReset) {
     run(2);
     ASSERT_TRUE(accepted(MachineEvent::kReset));
     run(2);
+    ASSERT_TRUE(accepted(MachineEvent::kEnable));
+    ASSERT_TRUE(accepted(MachineEvent::kLift));
+    EXPECT_EQ(record_.state, MachineState::kLifting);
+    ASSERT_TRUE(reaches(MachineState::kReady));
   }
   expectNone(used_);
 }

@@ -466,9 +466,16 @@ TEST_P(CancelIn, EndsTheJobReadyAndAtRest) {
   EXPECT_TRUE(smooth(rig_.log));
 }
 
-TEST_P(CancelIn, MovesNothingThatStood) {
-  const bool stood = GetParam() == S::kStarting || GetParam() == S::kHeld || GetParam() == S::kRetracted;
-  EXPECT_EQ(sameBits(rig_.last().command, rig_.log[before_].command), stood);
+TEST_P(CancelIn, MovesNothingThatStoodButTheWheelOffTheWork) {
+  const Axes& before = rig_.log[before_].command;
+  const Axes& now = rig_.last().command;
+  EXPECT_GE(now[kY], kClearanceHeight - 1e-12);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+  if (GetParam() == S::kStarting || GetParam() == S::kRetracted) {
+    EXPECT_TRUE(sameBits(now, before));
+  } else if (GetParam() == S::kHeld) {
+    EXPECT_TRUE(sameBits(now, Axes(before[kX], now[kY], before[kZ], before[kA])));
+  }
 }
 
 TEST_P(CancelIn, LetsANewJobRun) {
@@ -528,11 +535,12 @@ TEST_P(FaultIn, NothingMovesUntilResetEnableAndStart) {
   };
   rig_.stream.emplace(rig_.paperStream());
   expectStanding();
-  expectRefused({E::kEnable, E::kDisable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kCancel});
+  expectRefused({E::kEnable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
+  EXPECT_TRUE(rig_.ask(E::kDisable).accepted);
   expectStanding();
   EXPECT_FALSE(rig_.drive.written_drive.enable);
   ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  expectRefused({E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kCancel});
+  expectRefused({E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
   expectStanding();
   EXPECT_EQ(rig_.last().state, S::kDisabled);
   EXPECT_FALSE(rig_.drive.written_drive.enable);
@@ -542,6 +550,11 @@ TEST_P(FaultIn, NothingMovesUntilResetEnableAndStart) {
   EXPECT_EQ(rig_.last().state, S::kReady);
   EXPECT_EQ(rig_.jobsEnded(), hadJob() ? 1 : 0);
 
+  if (rig_.last().wheel_in_work) {
+    expectRefused({E::kHome, E::kStart});
+    ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+    rig_.runUntil(S::kReady);
+  }
   rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
   rig_.stream.emplace(rig_.paperStream());
   ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
@@ -724,10 +737,13 @@ TEST_F(FeedOverrideOfZero, CanBeRetractedAndRestsAboveTheWorkOnTheWayBack) {
 
 TEST_F(FeedOverrideOfZero, CanBeCanceled) {
   ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
+  rig_.runToEnd();
   rig_.run(3);
   EXPECT_EQ(rig_.last().state, S::kReady);
   EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_TRUE(sameBits(rig_.last().command, rig_.log[at_rest_].command));
+  const Axes& stood = rig_.log[at_rest_].command;
+  EXPECT_TRUE(sameBits(rig_.last().command, Axes(stood[kX], rig_.last().command[kY], stood[kZ], stood[kA])));
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
 }
 
 TEST(FeedOverride, IsTakenFromAnotherThread) {
@@ -735,7 +751,7 @@ TEST(FeedOverride, IsTakenFromAnotherThread) {
   FakeDrive drive;
   testing::setUp(drive, machineConfig());
   ControlLoop loop(drive, machineConfig());
-  loop.start();
+  loop.startThread();
   // The deadline only ends a test that has failed.
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   for (const double fraction : {0.25, 1.2, 0.0}) {

@@ -35,7 +35,7 @@ SimulatedDrive::Model awayFromHome() {
   SimulatedDrive::Model model = driveModel();
   for (std::size_t i = 0; i < model.size(); ++i) {
     model[i].start_position = model[i].home_position + kFromHome[static_cast<int>(i)];
-    model[i].homing_velocity = i == kA ? 20 : 0.5;  // X takes longest: 40 periods
+    model[i].homing_velocity = i == kA ? 50 : 1.25;  // Y, X, Z, A: 8, 16, 4 and 10 periods
   }
   return model;
 }
@@ -75,7 +75,7 @@ TEST_F(Incremental, ReadsZeroAndIsNotHomedAtFirst) {
 
 TEST_F(Incremental, AStartIsRefusedUntilItIsHomed) {
   rig_.stream.emplace(rig_.paperStream());
-  EXPECT_EQ(rig_.ask(E::kStart, &*rig_.stream).text, "start refused: the axes are not homed");
+  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the axes are not homed");
   EXPECT_EQ(rig_.last().state, S::kReady);
 }
 
@@ -85,9 +85,9 @@ TEST_F(Incremental, HomingLeadsToTheHomePosition) {
   int cycles = 0;
   while (rig_.cycle().state == S::kHoming && cycles < 1000) ++cycles;
   EXPECT_EQ(rig_.last().state, S::kReady);
-  // 20 mm at 0.5 m/s take 40 periods, and some until command and answer are through.
-  EXPECT_GE(cycles, 39);
-  EXPECT_LE(cycles, 43);
+  // 38 periods, and some until command and answer are through.
+  EXPECT_GE(cycles, 37);
+  EXPECT_LE(cycles, 42);
   EXPECT_TRUE(rig_.last().drive.homed);
   EXPECT_FALSE(rig_.last().drive.homing);
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
@@ -159,7 +159,7 @@ TEST_F(Incremental, AfterADisableTheAxesStandUntilTheyAreHomedAnew) {
   rig_.run(50);
   EXPECT_TRUE(sameBits(rig_.last().position, stopped)) << "power on goes on with homing";
   rig_.stream.emplace(rig_.paperStream());
-  EXPECT_FALSE(rig_.ask(E::kStart, &*rig_.stream).accepted);
+  EXPECT_FALSE(rig_.askToStart(*rig_.stream).accepted);
   ASSERT_NO_FATAL_FAILURE(home());
   EXPECT_TRUE((rig_.last().position == home_).all());
 }

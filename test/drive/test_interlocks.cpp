@@ -86,9 +86,9 @@ class WaitsFor : public TestWithParam<Part> {
     rig_.cycle();
     rig_.enable();
     rig_.stream.emplace(rig_.paperStream());
-    ASSERT_TRUE(rig_.loop->post(E::kStart, &*rig_.stream));
+    ASSERT_TRUE(rig_.loop->postStart(&*rig_.stream));
     rig_.cycle();
-    const auto answer = rig_.loop->reply();
+    const auto answer = rig_.loop->startReply();
     ASSERT_TRUE(answer && answer->accepted);
     ASSERT_EQ(rig_.last().state, S::kStarting);
     rig_.drive.on_read = GetParam().lose;
@@ -186,7 +186,7 @@ TEST(BeforeAJob, TheFirstThatIsMissingIsTold) {
     rig.cycle();
     rig.enable();
     rig.stream.emplace(rig.paperStream());
-    ASSERT_TRUE(rig.ask(E::kStart, &*rig.stream).accepted);
+    ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
     rig.drive.on_read = [=](FakeDrive& d) {
       for (std::size_t i = first; i < parts().size(); ++i) parts()[i].lose(d);
     };
@@ -204,7 +204,7 @@ TEST(BeforeAJob, SpindleRunsUpOnTheSimulatedDrive) {
   rig.cycle();
   rig.enable();
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.ask(E::kStart, &*rig.stream).accepted);
+  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
   // At speed with the 15th reading after the one in which it was started.
   rig.run(14);
   EXPECT_EQ(rig.last().state, S::kStarting);
@@ -221,7 +221,7 @@ TEST(BeforeAJob, SpindleThatIsTooSlowOnTheSimulatedDriveEndsIt) {
   rig.cycle();
   rig.enable();
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.ask(E::kStart, &*rig.stream).accepted);
+  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
   rig.runUntil(S::kReady);
   EXPECT_EQ(rig.last().fault.interlock, Interlock::kSpindle);
   EXPECT_TRUE(rig.setpoints().empty());
@@ -256,7 +256,7 @@ TEST(Told, SpindleAndCoolantThroughAWholeJob) {
   rig.enable();
   EXPECT_FALSE(rig.drive.written_drive.spindle);
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.loop->post(E::kStart, &*rig.stream));
+  ASSERT_TRUE(rig.loop->postStart(&*rig.stream));
   for (int i = 0; i < 100000; ++i) {
     rig.cycle();
     ASSERT_EQ(rig.drive.written_drive.spindle, !rig.last().job_ended) << "record " << i;
@@ -284,7 +284,7 @@ TEST(Told, NothingIsOnForAStartThatIsRefused) {
   rig.enable();
   rig.drive.status.homed = false;
   SetpointStream stream = rig.paperStream();
-  EXPECT_FALSE(rig.ask(E::kStart, &stream).accepted);
+  EXPECT_FALSE(rig.askToStart(stream).accepted);
   EXPECT_FALSE(rig.drive.written_drive.spindle);
   EXPECT_FALSE(rig.drive.written_drive.coolant);
 }
@@ -298,10 +298,13 @@ TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
   testing::setUp(drive, config);
   SetpointStream stream(GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
   ControlLoop loop(drive, config);
-  loop.start();
+  loop.startThread();
   ASSERT_TRUE(loop.request(E::kEnable).accepted);
-  ASSERT_TRUE(loop.request(E::kStart, &stream).accepted);
-  loop.stop();
+  ASSERT_TRUE(loop.postStart(&stream));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  while (loop.status().jobs_started == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(loop.status().jobs_started, 1u);
+  loop.stopThread();
   EXPECT_FALSE(drive.written_drive.enable);
   EXPECT_FALSE(drive.written_drive.spindle);
   EXPECT_FALSE(drive.written_drive.coolant);

@@ -23,25 +23,26 @@ using E = MachineEvent;
 
 /// The state after every event; "-" where it is refused.
 constexpr const char* kTable = R"(
-state      enable disable  home   start    hold    resume   retract    cancel    reset    done    at_rest   fault
-disabled   ready  disabled -      -        -       -        -          -         disabled -       -         -
-ready      ready  disabled homing starting -       -        -          -         -        -       -         fault
-homing     -      disabled -      -        -       -        -          -         -        ready   -         fault
-starting   -      -        -      -        -       -        -          canceling -        running ready     fault
-running    -      -        -      -        holding -        -          canceling -        -       ready     fault
-holding    -      -        -      -        holding resuming -          canceling -        -       held      fault
-held       -      -        -      -        held    resuming retracting canceling -        -       -         fault
-retracting -      -        -      -        holding -        -          canceling -        -       retracted fault
-retracted  -      -        -      -        -       resuming -          canceling -        -       -         fault
-resuming   -      -        -      -        holding -        -          canceling -        running -         fault
-canceling  -      -        -      -        -       -        -          canceling -        -       ready     fault
-fault      -      -        -      -        -       -        -          -         disabled -       -         -
+state      enable disable   home   start    hold     resume   retract    lift    cancel    reset    done    at_rest   fault
+disabled   ready  disabled  -      -        -        -        -          -       -         disabled -       -         -
+ready      ready  disabled  homing starting -        -        -          lifting -         -        -       -         fault
+homing     -      disabled  -      -        disabled -        -          -       disabled  -        ready   -         fault
+starting   -      canceling -      -        starting starting -          -       canceling -        running ready     fault
+running    -      canceling -      -        holding  -        -          -       canceling -        -       ready     fault
+holding    -      canceling -      -        holding  resuming -          -       canceling -        -       held      fault
+held       -      canceling -      -        held     resuming retracting -       canceling -        -       -         fault
+retracting -      canceling -      -        holding  -        -          -       canceling -        -       retracted fault
+retracted  -      canceling -      -        -        resuming -          -       canceling -        -       -         fault
+resuming   -      canceling -      -        holding  -        -          -       canceling -        running -         fault
+canceling  -      canceling -      -        -        -        -          -       canceling -        -       ready     fault
+fault      -      fault     -      -        -        -        -          -       -         disabled -       -         -
+lifting    -      lifting   -      -        lifting  -        -          -       lifting   -        -       ready     fault
 )";
-
-const std::vector<S> kStates{S::kDisabled, S::kReady,      S::kHoming,    S::kStarting, S::kRunning,   S::kHolding,
-                             S::kHeld,     S::kRetracting, S::kRetracted, S::kResuming, S::kCanceling, S::kFault};
-const std::vector<E> kEvents{E::kEnable,  E::kDisable, E::kHome,  E::kStart, E::kHold,   E::kResume,
-                             E::kRetract, E::kCancel,  E::kReset, E::kDone,  E::kAtRest, E::kFault};
+const std::vector<S> kStates{S::kDisabled,  S::kReady, S::kHoming,     S::kStarting,  S::kRunning,
+                             S::kHolding,   S::kHeld,  S::kRetracting, S::kRetracted, S::kResuming,
+                             S::kCanceling, S::kFault, S::kLifting};
+const std::vector<E> kEvents{E::kEnable, E::kDisable, E::kHome,  E::kStart, E::kHold,   E::kResume, E::kRetract,
+                             E::kLift,   E::kCancel,  E::kReset, E::kDone,  E::kAtRest, E::kFault};
 
 /// The words of the table, row by row.
 std::vector<std::vector<std::string>> words() {
@@ -67,7 +68,7 @@ std::string cellName(const TestParamInfo<std::tuple<std::size_t, std::size_t>>& 
   return words().at(std::get<0>(info.param) + 1).front() + "_" + words().front().at(std::get<1>(info.param) + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 12), Range<std::size_t>(0, 12)), cellName);
+INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 13), Range<std::size_t>(0, 13)), cellName);
 
 TEST(MachineState, StatesHaveNames) {
   for (std::size_t i = 0; i < kStates.size(); ++i) EXPECT_EQ(toString(kStates[i]), words().at(i + 1).front());
@@ -82,8 +83,8 @@ TEST(MachineState, EventsHaveNames) {
 }
 
 TEST(MachineState, RequestsAreWhatComesFromOutside) {
-  for (const E event :
-       {E::kEnable, E::kDisable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kCancel, E::kReset}) {
+  for (const E event : {E::kEnable, E::kDisable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift,
+                        E::kCancel, E::kReset}) {
     EXPECT_TRUE(isRequest(event)) << toString(event);
   }
   for (const E event : {E::kDone, E::kAtRest, E::kFault}) EXPECT_FALSE(isRequest(event)) << toString(event);
@@ -91,13 +92,27 @@ TEST(MachineState, RequestsAreWhatComesFromOutside) {
 
 // Power comes back on after a fault by two requests only, and motion by a third.
 TEST(MachineState, NothingButResetLeavesFault) {
-  for (const E event : kEvents) EXPECT_EQ(after(S::kFault, event).has_value(), event == E::kReset) << toString(event);
+  for (const E event : kEvents) {
+    const bool leaves = after(S::kFault, event).value_or(S::kFault) != S::kFault;
+    EXPECT_EQ(leaves, event == E::kReset) << toString(event);
+  }
 }
 
-TEST(MachineState, OnlyReadyStartsAJobOrHomes) {
+TEST(MachineState, EveryStateCanBeDisabled) {
+  for (const S state : kStates) EXPECT_TRUE(after(state, E::kDisable)) << toString(state);
+}
+
+TEST(MachineState, StopsAreHoldCancelAndDisable) {
+  for (const E event : kEvents) {
+    EXPECT_EQ(isStop(event), event == E::kHold || event == E::kCancel || event == E::kDisable) << toString(event);
+  }
+}
+
+TEST(MachineState, OnlyReadyStartsAJobHomesOrLifts) {
   for (const S state : kStates) {
     EXPECT_EQ(after(state, E::kStart).has_value(), state == S::kReady) << toString(state);
     EXPECT_EQ(after(state, E::kHome).has_value(), state == S::kReady) << toString(state);
+    EXPECT_EQ(after(state, E::kLift).has_value(), state == S::kReady) << toString(state);
   }
 }
 
@@ -110,17 +125,18 @@ TEST(MachineState, EveryStateUnderPowerCanFault) {
 
 TEST(MachineState, AllowedInListsTheRequestsOfTheState) {
   EXPECT_EQ(allowedIn(S::kDisabled), "enable, disable, reset");
-  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start");
-  EXPECT_EQ(allowedIn(S::kHoming), "disable");
-  EXPECT_EQ(allowedIn(S::kStarting), "cancel");
-  EXPECT_EQ(allowedIn(S::kRunning), "hold, cancel");
-  EXPECT_EQ(allowedIn(S::kHolding), "hold, resume, cancel");
-  EXPECT_EQ(allowedIn(S::kHeld), "hold, resume, retract, cancel");
-  EXPECT_EQ(allowedIn(S::kRetracting), "hold, cancel");
-  EXPECT_EQ(allowedIn(S::kRetracted), "resume, cancel");
-  EXPECT_EQ(allowedIn(S::kResuming), "hold, cancel");
-  EXPECT_EQ(allowedIn(S::kCanceling), "cancel");
-  EXPECT_EQ(allowedIn(S::kFault), "reset");
+  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start, lift");
+  EXPECT_EQ(allowedIn(S::kHoming), "disable, hold, cancel");
+  EXPECT_EQ(allowedIn(S::kStarting), "disable, hold, resume, cancel");
+  EXPECT_EQ(allowedIn(S::kRunning), "disable, hold, cancel");
+  EXPECT_EQ(allowedIn(S::kHolding), "disable, hold, resume, cancel");
+  EXPECT_EQ(allowedIn(S::kHeld), "disable, hold, resume, retract, cancel");
+  EXPECT_EQ(allowedIn(S::kRetracting), "disable, hold, cancel");
+  EXPECT_EQ(allowedIn(S::kRetracted), "disable, resume, cancel");
+  EXPECT_EQ(allowedIn(S::kResuming), "disable, hold, cancel");
+  EXPECT_EQ(allowedIn(S::kCanceling), "disable, cancel");
+  EXPECT_EQ(allowedIn(S::kFault), "disable, reset");
+  EXPECT_EQ(allowedIn(S::kLifting), "disable, hold, cancel");
 }
 
 TEST(MachineState, WhatIsNoStateOrEventIsRefused) {

@@ -3,6 +3,7 @@
 #include "fixtures.h"
 
 #include <cmath>
+#include <vector>
 
 namespace flute_grinder {
 namespace {
@@ -558,19 +559,36 @@ TEST(SimulatedDriveHoming, GoesHomeWithTheHomingVelocity) {
   EXPECT_TRUE(bench.status().homing);
   EXPECT_FALSE(bench.status().homed);
   // The first reading only shows that it has begun.
-  const Axes way(-0.005, 0.005, -0.005, 0.005);
+  const Axes way(0, 0.005, 0, 0);
   EXPECT_TRUE(((bench.positions() - way).abs() < 1e-12).all()) << bench.positions().transpose();
-  EXPECT_NEAR(bench.velocity(kX), -1, 1e-9);
-  EXPECT_NEAR(bench.velocity(kA), 1, 1e-9);
+  EXPECT_NEAR(bench.velocity(kY), 1, 1e-9);
+  EXPECT_EQ(bench.velocity(kX), 0);
+}
+
+TEST(SimulatedDriveHoming, TakesOneAxisAfterTheOtherAndFirstTheWheelFromTheWork) {
+  HomingBench bench;
+  bench.home();
+  bench.run(1);
+  std::vector<int> order;
+  Axes last = bench.positions();
+  while (bench.status().homing) {
+    bench.run(1);
+    const Axes now = bench.positions();
+    for (int axis = 0; axis < kAxisCount && bench.status().homing; ++axis) {
+      if (now[axis] != last[axis] && (order.empty() || order.back() != axis)) order.push_back(axis);
+    }
+    last = now;
+  }
+  EXPECT_EQ(order, (std::vector<int>{kY, kX, kZ, kA}));
 }
 
 TEST(SimulatedDriveHoming, EndsAtHomeWhenTheLastAxisIsThere) {
   HomingBench bench;
   bench.home();
-  bench.run(12);
-  EXPECT_TRUE(bench.status().homing) << "X has 13 periods to go";
-  EXPECT_NEAR(bench.position(kA), 0.010, 1e-12) << "A is there, and waits";
-  bench.run(3);
+  bench.run(46);
+  EXPECT_TRUE(bench.status().homing) << "it has 46 periods to go";
+  EXPECT_NEAR(bench.position(kX), -0.013, 1e-12) << "X is there, and waits";
+  bench.run(6);
   EXPECT_FALSE(bench.status().homing);
   EXPECT_TRUE(bench.status().homed);
   EXPECT_TRUE((bench.positions() == Axes(0.5, 1.5, 2.5, 3.5)).all()) << bench.positions().transpose();
@@ -595,7 +613,7 @@ TEST(SimulatedDriveHoming, DoesNotFollowCommandsMeanwhileNorBeginAnewByItself) {
   HomingBench bench;
   bench.home();
   for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, 9);
-  bench.run(50);
+  bench.run(80);
   EXPECT_FALSE(bench.status().homing);
   EXPECT_TRUE((bench.positions() == Axes(0.5, 1.5, 2.5, 3.5)).all()) << bench.positions().transpose();
 }
@@ -670,7 +688,7 @@ TEST(SimulatedDriveFault, ALostReferenceStaysLostUntilHomed) {
   bench.run(20);
   EXPECT_FALSE(bench.status().homed);
   bench.home();
-  bench.run(50);
+  bench.run(80);
   EXPECT_TRUE(bench.status().homed);
 }
 

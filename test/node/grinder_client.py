@@ -510,6 +510,13 @@ def machine():
         return dict(shipped_machine(), **yaml.safe_load(text))
 
 
+def machine_file(path):
+    """Writes machine() for the launch file's `config`."""
+    with open(path, 'w') as file:
+        yaml.safe_dump(machine(), file)
+    return path
+
+
 class NodeProcess:
     """A grinder's node with parameters of its own, and with a journal of its own unless the parameters name one."""
 

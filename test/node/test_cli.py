@@ -271,6 +271,18 @@ class TestUsage(CommandLine):
                           ['status', 'extra']):
             self.grind(2, *arguments)
 
+    def test_output_that_cannot_be_printed_is_no_success(self):
+        grinder().make_ready()
+        for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
+                          ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['--help'],
+                          ['plan', '--help'], ['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):
+            for close in (None, lambda: os.close(1)):
+                with open('/dev/full', 'w') as full:
+                    done = subprocess.run([gc.program('grind'), *arguments], stdout=full, stderr=subprocess.PIPE,
+                                          universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=close)
+                self.assertEqual(done.returncode, 1, arguments)
+                self.assertTrue(done.stderr.endswith('standard output: not all could be written\n'), done.stderr)
+
     def test_step_length_that_is_no_number(self):
         self.grind(2, 'table', PAPER_JOB, '--step-length', 'nan')
 
@@ -302,13 +314,14 @@ class TestUsage(CommandLine):
 COMMANDS = {
     'table': ['JOB', '--step-length', '--even-step', 'published|third_order|exact', '--csv', '--json'],
     'plan': ['JOB', '--csv', '--machine', '--urdf', '--json'],
-    'run': ['JOB', '--dry-run', '--continue', '--csv'],
+    'run': ['JOB', '--dry-run', '--continue', '--discard', '--csv', 'Ctrl-Z'],
     'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
     'override': ['PERCENT', '0 to 120'],
     'status': ['--json'],
     'enable': ['power on'],
     'disable': ['power off'],
     'home': ['reference'],
+    'lift': ['off the work', 'without a job'],
     'hold': ['stop on the path'],
     'resume': ['hold', 'retract'],
     'retract': ['lift'],
@@ -328,7 +341,9 @@ WRONG = [
     ('hold_with_more', ['hold', 'now']),
     ('resume_with_more', ['resume', 'now']),
     ('retract_with_more', ['retract', 'now']),
+    ('lift_with_more', ['lift', 'now']),
     ('continue_without_job', ['run', '--continue']),
+    ('continue_and_discard', ['run', PAPER_JOB, '--continue', '--discard']),
     ('report_without_output', ['report', 'plan.csv']),
     ('report_of_job_zero', ['report', 'record.bag', '-o', 'report.html', '--job', '0']),
     ('cancel_with_more', ['cancel', 'now']),
@@ -359,21 +374,29 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'state +ready\n')
         self.assertRegex(printed, r'enabled +yes\n')
         self.assertRegex(printed, r'emergency stop +released\n')
+        self.assertRegex(printed, r'wheel in work +no\n')
         self.assertNotIn('fault ', printed)
 
     def test_status_as_json(self):
         run = grinder().run(gc.SHORT)
         self.assertEqual(run.status, 'SUCCEEDED')
         told, _ = self.json(0, 'status')
+        progress = grinder().fresh_state().progress
         digest = told['last_job'].pop('digest')
         self.assertRegex(digest, '^[0-9a-f]{64}$')
-        self.assertEqual(digest, grinder().fresh_state().progress.job_digest)
-        x = told['last_job'].pop('x_mm')
-        self.assertEqual(x, grinder().fresh_state().progress.x / MM)
+        self.assertEqual(digest, progress.job_digest)
+        self.assertEqual(told['last_job'].pop('x_mm'), progress.x / MM)
+        cutter = told['last_job'].pop('cutter')
+        self.assertEqual(cutter.pop('teeth'), len(progress.cutter.tooth_angles))
+        self.assertEqual(cutter, {
+            'end_diameter_mm': progress.cutter.end_diameter / MM, 'cone_angle_deg': progress.cutter.cone_angle / DEG,
+            'spiral_angle_deg': progress.cutter.spiral_angle / DEG, 'rake_angle_deg': progress.cutter.rake_angle / DEG,
+            'flute_length_mm': progress.cutter.flute_length / MM})
         self.assertEqual(told, {
             'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
-            'coolant_on': False, 'emergency_stop': False, 'feed_mm_min': 0, 'override_percent': 100, 'tooth': None,
-            'pass': None, 'hold_reason': '', 'fault': '', 'last_job': {'finished': True, 'tooth': 1, 'pass': 1}})
+            'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'feed_mm_min': 0,
+            'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
+            'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})
 
     def test_disable_and_enable(self):
         self.grind(0, 'disable')
@@ -462,7 +485,8 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'(?m)^spindle +at speed$')
         self.assertRegex(printed, r'(?m)^coolant +on$')
         self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 10 %$')
-        self.assertRegex(printed, r'(?m)^last job +[0-9a-f]{12}, tooth 1, pass 1 not finished, X \d+\.\d{3} mm$')
+        self.assertRegex(printed, r'(?m)^last job +paper\.yaml: D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth; '
+                                  r'tooth 1, pass 1 not finished, X \d+\.\d{3} mm \([0-9a-f]{12}\)$')
         self.grind(0, 'retract')
         grinder().wait_state(GrinderState.RETRACTED)
         self.grind(0, 'override', '120')

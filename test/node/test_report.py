@@ -43,7 +43,8 @@ class Recording:
         self.bag = os.path.join(folder, 'record.bag')
         self.csv = os.path.join(folder, 'run.csv')
         launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=recorded', 'record:=true',
-                                   'bag:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal')],
+                                   'bag:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal'),
+                                   'config:=' + gc.machine_file(os.path.join(folder, 'machine.yaml'))],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             self.node = gc.Grinder('recorded')

@@ -3,17 +3,10 @@
 stops the machine cleanly, and what it says when the grinder is gone. And the same of `grind home`."""
 
 import contextlib
-import fcntl
 import os
-import pty
 import re
-import shutil
 import signal
-import struct
 import subprocess
-import tempfile
-import termios
-import threading
 import time
 import unittest
 
@@ -22,88 +15,13 @@ import rostest
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
+from grind_command import PAPER_JOB, RunTest, default_signals
 from grinder_client import MM, STROKE, X, grinder
 
-PAPER_JOB = gc.package_file('jobs/paper.yaml')
 CLEAR_LINE = '\r\x1b[K'
 # What the line shows where there is room for all.
 LINE = re.compile(r'\[(#*\.*)\]   {,2}(\d+) %  (\w+)  tooth (\d+)/(\d+)  pass (\d+)/(\d+)  X +-?\d+\.\d{3} mm  \d+ mm/min  '
                   r'\d+:\d\d left')
-
-
-def default_signals():
-    """Whatever started the test may have had them ignored."""
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE):
-        signal.signal(number, signal.SIG_DFL)
-
-
-class Command:
-    """The command line in a process of its own, with what it says on stderr as it comes: by a pipe, or as a terminal."""
-
-    def __init__(self, *arguments, columns=None, term='xterm', before=default_signals):
-        self.text = ''
-        if columns is None:
-            self.reader, writer = os.pipe()
-        else:
-            self.reader, writer = pty.openpty()
-            self.resize(columns)
-        self.process = subprocess.Popen([gc.program('grind'), *arguments], stdout=subprocess.PIPE, stderr=writer,
-                                        env=dict(os.environ, TERM=term), preexec_fn=before)
-        os.close(writer)
-        self.thread = threading.Thread(target=self.read)
-        self.thread.start()
-
-    def resize(self, columns):
-        fcntl.ioctl(self.reader, termios.TIOCSWINSZ, struct.pack('HHHH', 24, columns, 0, 0))
-
-    def read(self):
-        # A terminal whose other side is closed gives an error in place of the end.
-        with contextlib.suppress(OSError):
-            while True:
-                data = os.read(self.reader, 4096)
-                if not data:
-                    break
-                self.text += data.decode()
-        os.close(self.reader)
-
-    def wait_text(self, text):
-        gc.poll(lambda: text in self.text, text)
-
-    def send(self, with_signal):
-        self.process.send_signal(with_signal)
-
-    def end(self):
-        """Its exit status."""
-        self.stdout = self.process.communicate(timeout=gc.PATIENCE)[0].decode()
-        self.thread.join(gc.PATIENCE)
-        return self.process.returncode
-
-    def close(self):
-        if self.process.poll() is None:
-            self.process.kill()
-            self.end()
-
-
-class RunTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def grind(self, *arguments, **options):
-        command = Command(*arguments, **options)
-        self.addCleanup(command.close)
-        return command
-
-    def short_job(self, **changes):
-        return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
-                           clearance_mm=1, **changes)
-
-    def wait_in_stroke(self, client, seen):
-        def past():
-            new = client.batches[seen:]
-            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
-
-        client.wait_for(past, 'the stroke')
 
 
 class TestBar(RunTest):
@@ -134,6 +52,7 @@ class TestBar(RunTest):
         self.assertEqual(command.end(), 0, command.text)
         self.assertNotRegex(command.text, '[^\n -~]')
         self.assertTrue(command.text.endswith('\n'))
+        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
         self.check_lines(command.text, '\n', 2, 2)
 
     def test_dumb_terminal_counts_as_a_file(self):
@@ -185,7 +104,7 @@ class TestBar(RunTest):
         command.send(signal.SIGINT)
         self.assertEqual(command.end(), 1)
         lines = self.drawn(command)
-        others = [line for line in lines if not LINE.fullmatch(line)]
+        others = [line for line in lines if not LINE.fullmatch(line) and not re.search('  planning \\d+ %$', line)]
         self.assertEqual(others[:2], ["held: no coolant flows; when it is well again, 'grind resume' goes on",
                                       'canceling: waiting for the stop'])
         self.assertRegex(others[2], r'^canceled; stopped on the path')
@@ -255,6 +174,130 @@ class TestEnd(RunTest):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr,
                          'cancel refused: the machine is in state ready; allowed: enable, disable, home, start\n')
+
+
+class TestStuck(RunTest):
+    """Whoever takes what it says or writes takes no more for a while."""
+
+    def test_terminal_that_stands_still_holds_up_no_stop(self):
+        grinder().make_ready()
+        seen = len(grinder().batches)
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writer, b'.')
+        os.set_blocking(writer, True)
+        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB], stdout=subprocess.PIPE, stderr=writer,
+                                   preexec_fn=default_signals)
+        os.close(writer)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.kill)
+        self.wait_in_stroke(grinder(), seen)
+        process.send_signal(signal.SIGINT)
+        grinder().wait_state(GrinderState.READY)
+        with open(reader, 'rb') as pipe:
+            text = pipe.read().decode().lstrip('.')
+        self.assertEqual(process.wait(gc.PATIENCE), 1)
+        self.assertRegex(text, r'\ncanceling: waiting for the stop\n(.*\n)?canceled; stopped on the path ')
+        last = grinder().batches[-1].setpoints[-1]
+        self.assertLess(last.position[X], 30 * MM)
+
+    def test_disk_that_stands_still_loses_no_setpoint(self):
+        grinder().make_ready()
+        path = os.path.join(self.folder, 'fifo')
+        os.mkfifo(path)
+        reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
+        command = self.grind('run', PAPER_JOB, '--csv', path)
+        grinder().wait_state(GrinderState.RUNNING)
+        # The job ends while the disk takes nothing.
+        command.wait_text('100 %')
+        grinder().wait_state(GrinderState.READY)
+        os.set_blocking(reader, True)
+        with open(reader) as lines:
+            cycles = [line.split(',')[0] for line in lines]
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
+        self.assertRegex(command.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
+
+
+class TestHold(RunTest):
+    def test_ctrl_z_holds_on_the_path_and_does_not_suspend(self):
+        grinder().make_ready()
+        seen = len(grinder().batches)
+        command = self.grind('run', PAPER_JOB)
+        self.wait_in_stroke(grinder(), seen)
+        command.send(signal.SIGTSTP)
+        command.wait_text("holding: 'grind resume' goes on, Ctrl-C cancels\n")
+        grinder().wait_state(GrinderState.HELD)
+        command.wait_text('  held  ')
+        held = grinder().wait_rest()
+        self.assertLess(held[X], 30 * MM)
+        self.assertEqual(gc.grind('resume').returncode, 0)
+        self.assertEqual(command.end(), 0, command.text)
+        setpoints = [s for batch in grinder().batches[seen:] for s in batch.setpoints]
+        self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
+
+
+class TestRecord(RunTest):
+    """The file of `--csv`, and the figures that stand for it."""
+
+    def setUp(self):
+        super().setUp()
+        grinder().make_ready()
+        self.csv = os.path.join(self.folder, 'streamed.csv')
+
+    def test_second_run_leaves_the_first_and_its_file_alone(self):
+        seen = len(grinder().batches)
+        first = self.grind('run', PAPER_JOB, '--csv', self.csv)
+        self.wait_in_stroke(grinder(), seen)
+        written = os.stat(self.csv).st_size
+        self.assertGreater(written, 0)
+        for csv in (self.csv, os.path.join(self.folder, 'second.csv')):
+            second = self.grind('run', PAPER_JOB, '--csv', csv)
+            self.assertEqual(second.end(), 1)
+            self.assertRegex(second.text, r'\(code -12\)\n$')
+            self.assertEqual(second.stdout, '')
+        self.assertEqual(os.listdir(self.folder), ['streamed.csv'])
+        self.assertGreaterEqual(os.stat(self.csv).st_size, written)
+        self.assertEqual(first.end(), 0, first.text)
+        with open(self.csv) as lines:
+            cycles = [line.split(',')[0] for line in lines]
+        self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
+        self.assertRegex(first.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
+
+    def test_own_run_beside_another_waits_for_none_of_its_setpoints(self):
+        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        second = self.grind('run', PAPER_JOB)
+        self.assertEqual(second.end(), 1)
+        self.assertNotIn('streamed', second.stdout)
+        run.cancel()
+        run.wait()
+
+    def test_full_disk_hides_no_emergency_stop(self):
+        seen = len(grinder().batches)
+        command = self.grind('run', PAPER_JOB, '--csv', '/dev/full')
+        self.wait_in_stroke(grinder(), seen)
+        grinder().inject('emergency_stop')
+        self.assertEqual(command.end(), 1)
+        self.assertRegex(command.text, r'emergency stop \(at stroke .*\(code -9\)\n'
+                                       r'/dev/full: not all could be written: No space left on device\n$')
+        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
+        self.assertNotIn('setpoints written to', command.stdout)
+
+    def test_full_disk_is_no_success(self):
+        command = self.grind('run', self.short_job(), '--csv', '/dev/full')
+        self.assertEqual(command.end(), 1)
+        self.assertRegex(command.text, r'\n/dev/full: not all could be written: No space left on device\n$')
+
+    def test_file_that_cannot_be_made_is_refused_before_anything_moves(self):
+        seen = len(grinder().batches)
+        for path in (os.path.join(self.folder, 'no/such/folder.csv'), self.folder):
+            command = self.grind('run', PAPER_JOB, '--csv', path)
+            self.assertEqual(command.end(), 2)
+            self.assertRegex(command.text, '^%s: cannot be written: ' % re.escape(path))
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        self.assertEqual(len(grinder().batches), seen)
 
 
 class TestOwnNode(RunTest):

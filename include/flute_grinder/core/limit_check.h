@@ -69,7 +69,6 @@ class LimitCheck {
   void report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value, double limit) noexcept;
 
   AxisLimits limits_;
-  Axes middle_, half_range_;  ///< of the positions
   double inverse_period_;
   std::uint64_t seen_ = 0;
   double slow_down_ = 1;  ///< of the next pair

@@ -9,9 +9,9 @@
 namespace flute_grinder {
 
 /// A tool grinder in software. Each axis follows its command with a first-order lag and is read through an encoder; an
-/// incremental one reads 0 where the axis stands at the start, until it is homed. Homing takes every axis to its home
-/// position; the spindle runs up in a given time; coolant flows at once. Tests make it fail through the service
-/// ~hardware/inject_fault.
+/// incremental one reads 0 where the axis stands at the start, until it is homed. Homing takes the axes to their home
+/// positions, one after the other: Y, X, Z, A; the spindle runs up in a given time; coolant flows at once. Tests make
+/// it fail through the service ~hardware/inject_fault.
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];

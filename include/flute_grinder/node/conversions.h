@@ -24,6 +24,9 @@ GrindGoal goalFromJob(const GrindJob& job);
 /// @param tooth_angles of every tooth [rad].
 Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
 
+/// What a cutter's message says but its teeth.
+CutterGeometry fromMessage(const Cutter& message);
+
 /// Tells a job from every other: SHA-256 of its figures, in hexadecimal. What a goal says beside the job does not
 /// count.
 /// @throw std::runtime_error if the computer cannot compute it.

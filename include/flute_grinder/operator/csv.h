@@ -16,25 +16,36 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes lines of comma-separated values with 17 significant digits, which is every bit of a double.
+/// Writes lines of comma-separated values with 17 significant digits, which is every bit of a double. What was in the
+/// file stays until the first line is written, or the file is closed; a file that was not there goes again, where
+/// neither comes.
 class CsvFile {
  public:
-  /// @param path the file, overwritten.
+  /// @param path the file.
   /// @param header its first line.
-  /// @throw FileError
-  CsvFile(const std::string& path, const char* header);
+  /// @throw FileError if it cannot be opened for writing.
+  CsvFile(std::string path, const char* header);
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  ~CsvFile();
 
   /// Closes the file. @throw FileError if not all could be written.
   void close();
 
  protected:
-  std::FILE* file() { return file_.get(); }
+  /// As printf; what fails is told by close().
+  void print(const char* format, ...) __attribute__((format(printf, 2, 3)));
 
  private:
+  void begin();
+
   struct Closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  std::string path_;
+  const std::string path_;
+  const char* const header_;
+  bool created_ = false, begun_ = false;
+  int error_ = 0;  ///< errno of the first line that could not be written
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
@@ -48,14 +59,10 @@ class TableCsv : public CsvFile {
 /// `cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min`, a line for each setpoint.
 class SetpointCsv : public CsvFile {
  public:
+  explicit SetpointCsv(const std::string& path)
+      : CsvFile(path, "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min") {}
   /// @param period control cycle [s].
-  SetpointCsv(const std::string& path, double period)
-      : CsvFile(path, "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min"),
-        period_(period) {}
-  void write(const Setpoint& setpoint);
-
- private:
-  double period_;
+  void write(const Setpoint& setpoint, double period);
 };
 
 }  // namespace flute_grinder

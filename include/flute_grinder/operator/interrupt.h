@@ -9,4 +9,10 @@ void catchInterrupts();
 /// How many there have been.
 int interrupts();
 
+/// From now on SIGTSTP (Ctrl-Z) is counted in place of suspending the program.
+void catchHolds();
+
+/// How many there have been.
+int holds();
+
 }  // namespace flute_grinder

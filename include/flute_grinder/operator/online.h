@@ -11,8 +11,9 @@ struct RunOptions {
   std::string node;  ///< name of the grinder's node
   std::string job;
   bool dry_run = false;
-  bool go_on = false;  ///< from the first pass that is not finished
-  std::string csv;     ///< file for the setpoints that were streamed, or empty
+  bool go_on = false;    ///< from the first pass that is not finished
+  bool discard = false;  ///< although the journal keeps another job that is not finished
+  std::string csv;       ///< file for the setpoints that were streamed, or empty
 };
 
 /// Waits for the ROS master, which may be only just coming up. @return whether it answers.
@@ -20,11 +21,12 @@ bool awaitMaster();
 
 /// Prints why not. @return the exit status for that.
 int fail(const std::string& text);
-/// Prints that there is no grinder in a namespace. @return the exit status for that.
+/// Prints what is missing where nothing is heard of a grinder: the master, the clock or the node. @return the exit
+/// status for that.
 int noGrinder(const ros::NodeHandle& nh);
 
-/// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop. @return the exit
-/// status.
+/// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it.
+/// @return the exit status. @throw FileError, before anything is sent, if a file cannot be opened.
 int runJob(const RunOptions& options);
 
 /// Stops the job that runs, whoever has started it, and waits for the stop. @return the exit status.
@@ -39,6 +41,9 @@ int callTrigger(const std::string& node, const std::string& service);
 /// Homes the axes, and waits until that is over; Ctrl-C breaks it off by switching the power off. @return the exit
 /// status.
 int home(const std::string& node);
+
+/// Lifts the wheel off the work, and waits until it is; Ctrl-C and Ctrl-Z hold it. @return the exit status.
+int lift(const std::string& node);
 
 /// Sets the feed override. @param percent 0 to 120. @return the exit status.
 int setFeedOverride(const std::string& node, double percent);

@@ -8,8 +8,8 @@
 namespace flute_grinder {
 
 /// Shows on stderr how far a job has come. On a terminal that is one line, drawn anew and never longer than the
-/// terminal is wide; in a file, a pipe or on a dumb terminal it is a line for each tenth of the job and each state.
-/// Thread safe.
+/// terminal is wide; in a file, a pipe or on a dumb terminal it is a line for each tenth of the job, or of
+/// its planning, and each state. Thread safe.
 class ProgressBar {
  public:
   /// @param teeth of the job.
@@ -25,7 +25,7 @@ class ProgressBar {
   /// Prints a line of its own, above the bar.
   void say(const std::string& text);
 
-  /// Whether it stands at the end of the job, or there was nothing to show.
+  /// Whether it stands at the end of the job, or there was no more to show than its planning.
   bool complete();
 
   /// Ends the line; what comes later is not shown.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ros/serialization.h>
 #include <ros/serialized_message.h>
 #include <ros/service_server_link.h>
 #include <ros/steady_timer.h>
@@ -7,6 +8,7 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -31,6 +33,8 @@ class ServiceCall {
 
   bool finished() const { return finished_; }
   void breakOffWhenDue();
+  /// Breaks it off if it still waits, and waits for the end of its thread.
+  void end();
 
  private:
   void run();
@@ -46,5 +50,17 @@ class ServiceCall {
   bool broken_off_ = false;
   std::thread thread_;
 };
+
+/// What a call has brought. @param answer as Done is given it. @return nothing where none came, or one that is cut off.
+template <typename Service>
+std::optional<typename Service::Response> answerOf(ros::SerializedMessage* answer) {
+  std::optional<typename Service::Response> response;
+  try {
+    if (answer) ros::serialization::deserializeMessage(*answer, response.emplace());
+  } catch (const ros::serialization::StreamOverrunException&) {
+    response.reset();
+  }
+  return response;
+}
 
 }  // namespace flute_grinder

@@ -30,8 +30,8 @@ class StateWatch {
   /// @param nh the grinder's namespace.
   explicit StateWatch(ros::NodeHandle& nh);
 
-  /// Waits for the grinder's first word. @return whether it came.
-  bool begin() const;
+  /// Whether the grinder has told of itself.
+  bool begun() const { return heard() > 0; }
   /// Waits for what is told from now on. @return false if the link is lost.
   bool renew() const;
   GrinderState newest() const;

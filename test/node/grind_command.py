@@ -1,0 +1,94 @@
+"""The command line in a process of its own, for tests of what it does while it waits."""
+
+import contextlib
+import fcntl
+import os
+import pty
+import shutil
+import signal
+import struct
+import subprocess
+import tempfile
+import termios
+import threading
+import unittest
+
+import grinder_client as gc
+from grinder_client import MM, STROKE, X
+
+PAPER_JOB = gc.package_file('jobs/paper.yaml')
+
+
+def default_signals():
+    """Whatever started the test may have had them ignored."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE, signal.SIGTSTP):
+        signal.signal(number, signal.SIG_DFL)
+
+
+class Command:
+    """The command line in a process of its own, with what it says on stderr as it comes: by a pipe, or as a terminal."""
+
+    def __init__(self, *arguments, columns=None, term='xterm', before=default_signals, environment=()):
+        self.text = ''
+        if columns is None:
+            self.reader, writer = os.pipe()
+        else:
+            self.reader, writer = pty.openpty()
+            self.resize(columns)
+        self.process = subprocess.Popen([gc.program('grind'), *arguments], stdout=subprocess.PIPE, stderr=writer,
+                                        env=dict(os.environ, TERM=term, **dict(environment)), preexec_fn=before)
+        os.close(writer)
+        self.thread = threading.Thread(target=self.read)
+        self.thread.start()
+
+    def resize(self, columns):
+        fcntl.ioctl(self.reader, termios.TIOCSWINSZ, struct.pack('HHHH', 24, columns, 0, 0))
+
+    def read(self):
+        # A terminal whose other side is closed gives an error in place of the end.
+        with contextlib.suppress(OSError):
+            while True:
+                data = os.read(self.reader, 4096)
+                if not data:
+                    break
+                self.text += data.decode()
+        os.close(self.reader)
+
+    def wait_text(self, text):
+        gc.poll(lambda: text in self.text, text)
+
+    def send(self, with_signal):
+        self.process.send_signal(with_signal)
+
+    def end(self):
+        """Its exit status."""
+        self.stdout = self.process.communicate(timeout=gc.PATIENCE)[0].decode()
+        self.thread.join(gc.PATIENCE)
+        return self.process.returncode
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.end()
+
+
+class RunTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def grind(self, *arguments, **options):
+        command = Command(*arguments, **options)
+        self.addCleanup(command.close)
+        return command
+
+    def short_job(self, **changes):
+        return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
+                           clearance_mm=1, **changes)
+
+    def wait_in_stroke(self, client, seen):
+        def past():
+            new = client.batches[seen:]
+            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
+
+        client.wait_for(past, 'the stroke')

@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+"""Shows the command line with a stand-in for the grinder, which tells what a good one hardly ever does: a job that takes
+long to plan, setpoints that were lost, those of others' jobs amid one's own, a wheel that is left in the work."""
+
+import json
+import signal
+import threading
+
+import actionlib
+import rospy
+import rostest
+from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
+                               WrittenSetpoint)
+from std_srvs.srv import Trigger, TriggerResponse
+
+import grinder_client as gc
+from grind_command import PAPER_JOB, RunTest
+
+DIGEST = '0123456789abcdef' * 4
+
+
+class StandIn:
+    """A node that says what a test has it say. Goals are accepted, and stay until the test ends them."""
+
+    def __init__(self):
+        self.lock = threading.Lock()
+        self.state = GrinderState(state=GrinderState.READY, state_name='ready', enabled=True, homed=True, override=1)
+        self.goals, self.canceled, self.stops, self.lifts = [], [], [], 0
+        self.states = rospy.Publisher('grinder/state', GrinderState, queue_size=10, latch=True)
+        self.setpoints = rospy.Publisher('grinder/setpoints', SetpointBatch, queue_size=1000)
+        rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
+        rospy.Service('grinder/lift', Trigger, self.on_lift)
+        self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
+        self.server.start()
+        threading.Thread(target=self.tell, daemon=True).start()
+
+    def tell(self):
+        while not rospy.is_shutdown():
+            with self.lock:
+                self.states.publish(self.state)
+            rospy.rostime.wallsleep(0.02)
+
+    def set(self, state, name, **fields):
+        with self.lock:
+            self.state.state, self.state.state_name = state, name
+            for field, value in fields.items():
+                setattr(self.state, field, value)
+
+    def on_goal(self, goal):
+        goal.set_accepted()
+        self.goals.append(goal)
+
+    def on_lift(self, _):
+        self.lifts += 1
+        self.set(GrinderState.LIFTING, 'lifting')
+        return TriggerResponse(success=True)
+
+    def await_goal(self):
+        gc.poll(lambda: self.goals, 'a goal')
+        return self.goals[-1]
+
+    def batch(self, goal_id, cycles, lost=0):
+        self.setpoints.publish(SetpointBatch(goal_id=goal_id, period=1e-3, lost=lost,
+                                             setpoints=[WrittenSetpoint(cycle=cycle) for cycle in cycles]))
+
+
+class TestStandIn(RunTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.node = StandIn()
+
+    def setUp(self):
+        super().setUp()
+        for kept in (self.node.goals, self.node.canceled, self.node.stops):
+            kept.clear()
+        self.node.set(GrinderState.READY, 'ready', wheel_in_work=False, fault='', progress=type(self.node.state.progress)())
+
+    def status(self):
+        done = gc.grind('status')
+        told = gc.grind('status', '--json')
+        self.assertEqual((done.returncode, told.returncode), (0, 0), done.stderr + told.stderr)
+        return done.stdout, json.loads(told.stdout)
+
+    def start_run(self, *arguments):
+        command = self.grind('run', PAPER_JOB, *arguments)
+        return command, self.node.await_goal()
+
+    def test_planning_is_shown_and_can_be_canceled(self):
+        command, goal = self.start_run()
+        goal.publish_feedback(GrindFeedback(state='planning', planned=0.43))
+        command.wait_text('planning 43 %\n')
+        self.assertRegex(command.text, r'(?m)^\[#{12}\.{18}\]  planning 43 %$')
+        command.send(signal.SIGINT)
+        gc.poll(lambda: self.node.canceled, 'the cancel')
+        self.assertEqual(self.node.canceled[0].get_goal_id().id, goal.get_goal_id().id)
+        goal.set_canceled(GrindResult(error_code=GrindResult.CANCELED, error_string='canceled while it was planned'))
+        self.assertEqual(command.end(), 1)
+        self.assertTrue(command.text.endswith('\ncanceled while it was planned (code -11)\n'), command.text)
+        self.assertEqual(command.stdout, '')
+
+    def test_planning_on_a_terminal(self):
+        command, goal = self.start_run_on_terminal(30)
+        goal.publish_feedback(GrindFeedback(state='planning', planned=0.5))
+        command.wait_text('planning 50 %')
+        goal.set_succeeded(GrindResult())
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\n$')
+
+    def start_run_on_terminal(self, columns):
+        command = self.grind('run', PAPER_JOB, '--dry-run', columns=columns)
+        return command, self.node.await_goal()
+
+    def test_hold_while_a_job_is_planned_holds_its_start(self):
+        command, goal = self.start_run()
+        goal.publish_feedback(GrindFeedback(state='planning', planned=0.1))
+        command.wait_text('planning 10 %')
+        command.send(signal.SIGTSTP)
+        gc.poll(lambda: self.node.stops == [Stop.HOLD], 'the hold')
+        self.node.set(GrinderState.STARTING, 'starting')
+        gc.poll(lambda: self.node.stops == [Stop.HOLD] * 2, 'the hold of the start')
+        self.node.set(GrinderState.HELD, 'held')
+        self.assertEqual(gc.grind('status').returncode, 0)
+        self.assertEqual(self.node.stops, [Stop.HOLD] * 2)
+        goal.set_aborted(GrindResult(error_code=-8, error_string='enough'))
+        self.assertEqual(command.end(), 1)
+
+    def test_setpoints_that_were_lost_are_told_and_those_of_others_not_taken(self):
+        csv = self.folder + '/streamed.csv'
+        command, goal = self.start_run('--csv', csv)
+        own, other = goal.get_goal_id().id, '/someone_else-1-1.0'
+        # Told: 0 to 9 and 15 to 19. Lost: 10 to 12. On the way: 13 and 14, and 20 at the end.
+        for batch in ((other, range(500, 700)), (own, range(10)), (other, range(700, 900), 4), (own, range(15, 20), 3)):
+            self.node.batch(*batch)
+        goal.set_succeeded(GrindResult(setpoints_written=21))
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertRegex(command.stdout, r'(?m)^streamed +15 setpoints in 0\.000 s, 3 missed, 3 written but not told$')
+        with open(csv) as lines:
+            self.assertEqual([line.split(',')[0] for line in lines],
+                             ['cycle'] + [str(i) for i in [*range(10), *range(15, 20)]])
+
+    def test_setpoints_of_which_none_could_be_told(self):
+        command, goal = self.start_run()
+        self.node.batch(goal.get_goal_id().id, [], 7)
+        goal.set_succeeded(GrindResult(setpoints_written=7))
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertRegex(command.stdout, r'(?m)^streamed +0 setpoints in 0\.000 s, 0 missed, 7 written but not told$')
+
+    def test_goal_has_the_files_name_and_what_is_discarded(self):
+        for arguments, discard in (([], False), (['--discard'], True)):
+            self.node.goals.clear()
+            command, goal = self.start_run(*arguments)
+            self.assertEqual((goal.get_goal().job_name, goal.get_goal().discard), ('paper.yaml', discard))
+            goal.set_succeeded(GrindResult())
+            self.assertEqual(command.end(), 0)
+
+    def test_lift_waits_until_the_wheel_is_off_the_work(self):
+        self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
+        text, told = self.status()
+        self.assertRegex(text, r'(?m)^wheel in work   yes$')
+        self.assertIs(told['wheel_in_work'], True)
+        command = self.grind('lift')
+        gc.poll(lambda: self.node.state.state == GrinderState.LIFTING, 'the lift')
+        self.assertRegex(self.status()[0], r'^state           lifting\n')
+        self.assertIsNone(command.process.poll())
+        self.node.set(GrinderState.READY, 'ready', wheel_in_work=False)
+        self.assertEqual((command.end(), command.text), (0, ''))
+
+    def test_lift_is_held_by_ctrl_c_and_ctrl_z(self):
+        for key in (signal.SIGINT, signal.SIGTSTP):
+            self.node.stops.clear()
+            self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
+            lifts = self.node.lifts
+            command = self.grind('lift')
+            gc.poll(lambda: self.node.lifts > lifts, 'the lift')
+            command.send(key)
+            gc.poll(lambda: self.node.stops == [Stop.HOLD], 'the hold')
+            self.node.set(GrinderState.READY, 'ready')
+            self.assertEqual(command.end(), 1)
+            self.assertEqual(command.text, "the lift was broken off: the wheel stands in the work; 'grind lift' lifts it\n")
+
+    def test_fault_amid_a_lift(self):
+        self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
+        lifts = self.node.lifts
+        command = self.grind('lift')
+        gc.poll(lambda: self.node.lifts > lifts, 'the lift')
+        self.node.set(GrinderState.FAULT, 'fault', fault='emergency stop')
+        self.assertEqual((command.end(), command.text), (1, 'emergency stop\n'))
+
+    def test_last_job_goes_by_its_file_and_tool(self):
+        progress = self.node.state.progress
+        progress.job_digest, progress.job_name, progress.tooth, progress.x = DIGEST, 'd10 r\u00e9.yaml', 1, 12e-3
+        cutter = progress.cutter
+        cutter.end_diameter, cutter.flute_length = 10e-3, 30e-3
+        cutter.cone_angle, cutter.spiral_angle, cutter.rake_angle = 5 * gc.DEG, -30 * gc.DEG, 8 * gc.DEG
+        cutter.tooth_angles = [0, 1, 2]
+        text, told = self.status()
+        tool = 'D 10 mm, cone 5 deg, spiral -30 deg, rake 8 deg'
+        self.assertIn('\nlast job        d10 r\u00e9.yaml: %s, 3 teeth; tooth 2, pass 1 not finished, X 12.000 mm (0123456789ab)\n'
+                      % tool, text)
+        self.assertEqual({key: told['last_job'][key] for key in ('name', 'digest', 'finished', 'tooth', 'pass', 'x_mm')},
+                         {'name': 'd10 r\u00e9.yaml', 'digest': DIGEST, 'finished': False, 'tooth': 2, 'pass': 1,
+                          'x_mm': 12})
+        of_cutter = told['last_job']['cutter']
+        self.assertEqual(of_cutter.pop('teeth'), 3)
+        for key, value in {'end_diameter_mm': 10, 'cone_angle_deg': 5, 'spiral_angle_deg': -30, 'rake_angle_deg': 8,
+                           'flute_length_mm': 30}.items():
+            self.assertAlmostEqual(of_cutter.pop(key), value, delta=1e-12)
+        self.assertEqual(of_cutter, {})
+        progress.finished, progress.job_name, cutter.tooth_angles = True, '', [0]
+        self.assertIn('\nlast job        without a name: %s, 1 tooth; finished (0123456789ab)\n' % tool, self.status()[0])
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_stand_in')
+    rostest.rosrun('flute_grinder', 'stand_in', '__main__')

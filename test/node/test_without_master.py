@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Shows that `grind run` stops its job when the master is gone, and what every command says where master, clock or grinder
+are missing."""
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import tempfile
+
+import rosgraph
+import rostest
+
+import grinder_client as gc
+from grind_command import PAPER_JOB, RunTest
+
+
+class Master:
+    """A ROS master of one's own, with a grinder."""
+
+    def __init__(self, **parameters):
+        with socket.socket() as probe:
+            probe.bind(('127.0.0.1', 0))
+            port = probe.getsockname()[1]
+        self.environment = {'ROS_MASTER_URI': 'http://127.0.0.1:%d' % port}
+        self.log = tempfile.TemporaryFile()
+        self.process = self.start(['rosmaster', '--core', '-p', str(port)])
+        master = rosgraph.Master('/test_run', self.environment['ROS_MASTER_URI'])
+        gc.poll(master.is_online, 'the master')
+        for name, value in parameters.items():
+            master.setParam('/' + name, value)
+
+    def start(self, arguments):
+        return subprocess.Popen(arguments, env=dict(os.environ, **self.environment), stdout=self.log,
+                                stderr=subprocess.STDOUT)
+
+    @staticmethod
+    def end(process):
+        process.kill()
+        process.wait()
+
+    def grind(self, *arguments):
+        return subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, **self.environment),
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
+                              timeout=gc.PATIENCE)
+
+
+class TestWithoutMaster(RunTest):
+    def start_master(self, **parameters):
+        self.master = Master(**parameters)
+        self.addCleanup(self.master.log.close)
+        self.addCleanup(self.master.end, self.master.process)
+
+    def start_grinder(self, **parameters):
+        with open(gc.package_file('urdf/grinder.urdf')) as urdf:
+            self.start_master(grinder=dict(gc.machine(), journal=os.path.join(self.folder, 'journal')),
+                              robot_description=urdf.read(), **parameters)
+        node = self.master.start([gc.program('grinder')])
+        self.addCleanup(self.master.end, node)
+
+    def start_run(self):
+        self.start_grinder()
+        done = self.master.grind('enable')
+        self.assertEqual(done.returncode, 0, done.stderr)
+        command = self.grind('run', PAPER_JOB, environment=self.master.environment)
+        command.wait_text('  running  ')
+        self.master.end(self.master.process)
+        return command
+
+    def test_ctrl_c_stops_the_job_when_the_master_is_gone(self):
+        command = self.start_run()
+        command.send(signal.SIGINT)
+        self.assertEqual(command.end(), 1)
+        self.assertRegex(command.text, r'canceled; stopped on the path \(at .*\(code -11\)\n$')
+        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
+
+    def test_ctrl_z_holds_the_job_when_the_master_is_gone(self):
+        command = self.start_run()
+        command.send(signal.SIGTSTP)
+        command.wait_text('  held  ')
+        command.send(signal.SIGINT)
+        self.assertEqual(command.end(), 1)
+        self.assertRegex(command.text, r'canceled; stopped on the path \(at .*\(code -11\)\n$')
+
+    def test_commands_say_that_the_master_is_missing(self):
+        self.start_master()
+        self.master.end(self.master.process)
+        self.check_all_say('^no ROS master answers at %s\n$' % re.escape(self.master.environment['ROS_MASTER_URI']))
+
+    def test_commands_say_that_the_grinder_is_missing(self):
+        self.start_master()
+        self.check_all_say('^no grinder answers as /grinder\n$')
+
+    def test_commands_say_that_the_clock_is_missing(self):
+        self.start_master(use_sim_time=True)
+        self.check_all_say('^/use_sim_time is set, but no time comes on /clock\n$')
+
+    def check_all_say(self, text):
+        commands = [self.grind(*words.split(), environment=self.master.environment)
+                    for words in ('status', 'hold', 'cancel', 'disable', 'home', 'lift', 'override 50',
+                                  'run ' + PAPER_JOB)]
+        for command in commands:
+            self.assertEqual(command.end(), 1)
+            self.assertRegex(command.text, text)
+
+    def test_run_says_that_the_clock_is_missing_and_a_stop_needs_none(self):
+        self.start_grinder(use_sim_time=True)
+        self.assertEqual(self.master.grind('enable').returncode, 0)
+        command = self.grind('run', PAPER_JOB, environment=self.master.environment)
+        self.assertEqual(command.end(), 1)
+        self.assertEqual(command.text, '/use_sim_time is set, but no time comes on /clock\n')
+        self.assertRegex(self.master.grind('status').stdout, r'^state +ready\n')
+        self.assertEqual(self.master.grind('disable').returncode, 0)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'without_master', '__main__')

@@ -167,10 +167,11 @@ void GrindPanel::refresh() {
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   if (!view.state) return false;
-  // A goal that is planned can be canceled, or held ahead of its first move.
-  const bool planned = sent_ || view.planned;
+  const auto state = static_cast<MachineState>(view.state->state);
+  // A goal that is planned, or on its way, can be canceled, or held ahead of its first move.
+  const bool planned = view.planned || (sent_ && !isInJob(state));
   const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
-  if (!(planned && for_a_goal) && !after(static_cast<MachineState>(view.state->state), event)) return false;
+  if (!(planned && for_a_goal) && !after(state, event)) return false;
   if (isStop(event)) return true;
   if (master_watch_->master() == Master::kMissing) return false;
   switch (event) {

@@ -215,7 +215,13 @@ void GoalDesk::endJob() {
   GoalHandle handle = goal_->handle;
   const std::shared_ptr<const Preview> preview = goal_->preview;
   leave();
-  const std::string place = placeText(status.place, *preview->plan.program);
+  Place at = status.place;
+  if (status.setpoints_written == 0) {  // the axes have got nothing of the job
+    at.tooth = static_cast<std::uint16_t>(preview->first.tooth);
+    at.pass = static_cast<std::uint16_t>(preview->first.pass);
+    at.x = preview->plan.program->start()[kX];
+  }
+  const std::string place = placeText(at, *preview->plan.program);
   GrindResult r = result(GrindResult::SUCCESSFUL, "", preview->plan.statistics);
   r.setpoints_written = status.setpoints_written;
   switch (status.end) {

@@ -58,7 +58,7 @@ std::unique_ptr<Preview> Planner::plan(const Order& order) const {
     return !order.control->give_up;
   };
   preview->plan = planJob(order.job, machine_, order.start, order.first, visit, UnitSystem::kSi, watch);
-  if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(*preview->plan.program);
+  if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
   return preview;
 }
 

@@ -11,7 +11,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr std::size_t kLongestName = 255;         ///< of a job
-constexpr double kPollPeriod = 0.002;             ///< [s]
+constexpr double kPollPeriod = 0.001;             ///< [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< of the feedback while a goal is planned
 /// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
 const ros::WallDuration kEndPatience(0.5);

@@ -54,6 +54,16 @@ void Subscription::pendingConnectionDone(const PendingConnectionPtr& connection,
   next(this, connection, answer);
 }
 
+/// Opens the port for datagrams, which roscpp watches but never reads: one datagram would keep its thread busy for
+/// good.
+bool TransportUDP::createIncoming(int port, bool is_server) {
+  using Create = bool (*)(TransportUDP*, int, bool);
+  static const auto next = reinterpret_cast<Create>(nextDefinition("_ZN3ros12TransportUDP14createIncomingEib"));
+  if (!next(this, port, is_server)) return false;
+  if (is_server) disableRead();
+  return true;
+}
+
 /// Never: the node speaks TCPROS alone.
 TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { return {}; }
 

@@ -98,6 +98,9 @@ TEST_F(PackageMachine, HasTimeouts) {
   EXPECT_EQ(config_.enable_timeout, 2);
   EXPECT_EQ(config_.homing_timeout, 60);
   EXPECT_EQ(config_.spindle_timeout, 10);
+  EXPECT_EQ(config_.machine.max_job_duration, 24 * 3600);
+  EXPECT_EQ(config_.late_slow_down, 2);
+  EXPECT_EQ(config_.late_fault, 10);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -128,6 +131,9 @@ XmlRpcValue parameters() {
   p["enable_timeout"] = 3.0;
   p["homing_timeout"] = 45.0;
   p["spindle_timeout"] = 7.5;
+  p["max_job_duration"] = 7200.0;
+  p["late_cycle"]["slow_down"] = 3.0;
+  p["late_cycle"]["fault"] = 25.0;
   for (const char* name : kJointNames) {
     const int axis = name == std::string("axis_a") ? 4 : name[5] - 'x' + 1;
     XmlRpcValue& limits = p["joint_limits"][name];
@@ -188,6 +194,9 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.enable_timeout, 3);
   EXPECT_EQ(config.homing_timeout, 45);
   EXPECT_EQ(config.spindle_timeout, 7.5);
+  EXPECT_EQ(config.machine.max_job_duration, 7200);
+  EXPECT_EQ(config.late_slow_down, 3);
+  EXPECT_EQ(config.late_fault, 25);
 }
 
 TEST(MachineConfig, ParameterLimitsGoOverTheUrdfs) {
@@ -261,14 +270,14 @@ struct Number {
   bool negative_allowed;
 };
 
-constexpr std::size_t kMachineNumbers = 5;  ///< that are no axis' own; they come first
+constexpr std::size_t kMachineNumbers = 8;  ///< that are no axis' own; they come first
 
 std::vector<Number> numbers() {
-  std::vector<Number> all{{"control_rate", "10 to 20000", false, false},
-                          {"feedback_timeout", "0 to 1", true, false},
-                          {"enable_timeout", "0 to 60", true, false},
-                          {"homing_timeout", "0 to 3600", true, false},
-                          {"spindle_timeout", "0 to 600", true, false}};
+  std::vector<Number> all{
+      {"control_rate", "10 to 20000", false, false},        {"feedback_timeout", "0 to 1", true, false},
+      {"enable_timeout", "0 to 60", true, false},           {"homing_timeout", "0 to 3600", true, false},
+      {"spindle_timeout", "0 to 600", true, false},         {"max_job_duration", "1 to 1e+09", false, false},
+      {"late_cycle/slow_down", "2 to 1e+09", false, false}, {"late_cycle/fault", "3 to 1e+09", false, false}};
   const char* park[]{"-0.11 to 0.31", "-0.12 to 0.32", "-0.13 to 0.33", "-114 to 134"};
   for (std::size_t i = 0; i < kJointNames.size(); ++i) {
     const std::string name = kJointNames[i];

@@ -3,13 +3,16 @@
 more than a little memory."""
 
 import contextlib
+import glob
 import http.server
 import io
 import os
 import random
+import resource
 import socket
 import struct
 import threading
+import time
 import unittest
 import urllib.parse
 import xmlrpc.client
@@ -32,9 +35,12 @@ FEW_MEGABYTES = 24 * MEGABYTE
 LONGEST_MESSAGE = 256 << 10
 
 
+NEST = '<value><array><data>'
+
+
 def nested_arrays(size):
     """XML of arrays in arrays, of about `size` bytes."""
-    opening, closing = '<value><array><data>', '</data></array></value>'
+    opening, closing = NEST, '</data></array></value>'
     depth = size // len(opening + closing)
     return depth * opening + '<value><i4>1</i4></value>' + depth * closing
 
@@ -94,7 +100,7 @@ class FakePublisher:
         self._server.server_close()
 
 
-class TestPeers(unittest.TestCase):
+class Attacked(unittest.TestCase):
     """A node for each test, with the wheel in a stroke that outlasts the attack."""
 
     def setUp(self):
@@ -157,6 +163,29 @@ class TestPeers(unittest.TestCase):
         self.addCleanup(publisher.close)
         gc.poll(publisher.asked.is_set, 'the node to ask the publisher')
 
+    def service(self, name, kind):
+        connection = self.connect(self.tcpros_port)
+        connection.sendall(header({'service': '/attacked/' + name, 'md5sum': kind._md5sum, 'type': kind._type,
+                                   'callerid': CALLER, 'persistent': '1'}))
+        length, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
+        connection.recv(length, socket.MSG_WAITALL)
+        return connection
+
+    def plan(self, teeth):
+        """Calls ~plan with one tooth and a claim of so many; returns whether it was taken, and the reply."""
+        request = PlanRequest(gc.goal_of(gc.paper()))
+        text = io.BytesIO()
+        request.serialize(text)
+        # The claim is behind five numbers of the cutter.
+        text = bytearray(text.getvalue())
+        self.assertEqual(struct.unpack_from('<Id', text, 40), (1, 0.0))
+        struct.pack_into('<I', text, 40, teeth)
+        connection = self.service('plan', Plan)
+        connection.sendall(struct.pack('<I', len(text)) + text)
+        good = connection.recv(1)
+        length, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
+        return good == b'\x01', connection.recv(length, socket.MSG_WAITALL)
+
     def check(self, bound=FEW_MEGABYTES):
         """The node has done with what was sent, the stroke goes on, and memory is about as before."""
         self.let_the_api_turn()
@@ -173,14 +202,12 @@ class TestPeers(unittest.TestCase):
         for name in after:
             self.assertLess(after[name] - self.before[name], bound, name)
 
+
+class TestPeers(Attacked):
     # The API of the node, XML-RPC.
 
     def test_request_of_nested_arrays(self):
         self.post(call('getPid', nested_arrays(2400000)))
-        self.check()
-
-    def test_nested_arrays_no_longer_than_allowed(self):
-        self.post(call('getPid', nested_arrays(LONGEST_MESSAGE - 4096)))
         self.check()
 
     def test_call_of_calls(self):
@@ -220,14 +247,33 @@ class TestPeers(unittest.TestCase):
                 self.assertNotEqual(self.proxy().requestTopic(CALLER, '/attacked/state', [offer])[0], 1)
         self.check()
 
+    def test_datagram_that_nobody_reads(self):
+        """roscpp has a port for datagrams, of topics that are not spoken that way."""
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', ('127.0.0.1', self.datagram_port()))
+        begin, used = time.monotonic(), self.processor_time()
+        for _ in range(10):
+            self.grinder.fresh_state()
+        # Of one that watches what it does not read, it is all.
+        self.assertLess(self.processor_time() - used, 0.5 * (time.monotonic() - begin))
+        self.check()
+
+    def datagram_port(self):
+        inodes = {os.readlink(link)[len('socket:['):-1] for link in glob.glob('/proc/%d/fd/*' % self.node.process.pid)}
+        with open('/proc/net/udp') as table:
+            lines = [line.split() for line in list(table)[1:]]
+        port, = [int(fields[1].split(':')[1], 16) for fields in lines if fields[9] in inodes]
+        return port
+
+    def processor_time(self):
+        """What all threads of the node have had of a processor [s]."""
+        with open('/proc/%d/stat' % self.node.process.pid) as stat:
+            fields = stat.read().rpartition(')')[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
     # Publishers that the node asks, because the master told it to.
 
     def test_publisher_that_answers_nested_arrays(self):
         self.answer(response(nested_arrays(3000000)))
-        self.check()
-
-    def test_publisher_that_answers_nested_arrays_no_longer_than_allowed(self):
-        self.answer(response(nested_arrays(LONGEST_MESSAGE - 4096)))
         self.check()
 
     def test_publisher_that_answers_300_megabytes(self):
@@ -258,33 +304,10 @@ class TestPeers(unittest.TestCase):
             self.connect(self.tcpros_port).sendall(struct.pack('<I', size))
         self.check()
 
-    def service(self, name, kind):
-        connection = self.connect(self.tcpros_port)
-        connection.sendall(header({'service': '/attacked/' + name, 'md5sum': kind._md5sum, 'type': kind._type,
-                                   'callerid': CALLER, 'persistent': '1'}))
-        length, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
-        connection.recv(length, socket.MSG_WAITALL)
-        return connection
-
     def test_request_that_claims_much(self):
         for size in (300000000, 1000000000, 0xffffffff):
             self.service('plan', Plan).sendall(struct.pack('<I', size))
         self.check()
-
-    def plan(self, teeth):
-        """Calls ~plan with a request that claims so many teeth and has one; returns whether it was taken, and the reply."""
-        request = PlanRequest(gc.goal_of(gc.paper()))
-        text = io.BytesIO()
-        request.serialize(text)
-        # The claim is behind five numbers of the cutter.
-        text = bytearray(text.getvalue())
-        self.assertEqual(struct.unpack_from('<Id', text, 40), (1, 0.0))
-        struct.pack_into('<I', text, 40, teeth)
-        connection = self.service('plan', Plan)
-        connection.sendall(struct.pack('<I', len(text)) + text)
-        good = connection.recv(1)
-        length, = struct.unpack('<I', connection.recv(4, socket.MSG_WAITALL))
-        return good == b'\x01', connection.recv(length, socket.MSG_WAITALL)
 
     def test_request_that_claims_many_teeth(self):
         self.assertTrue(self.plan(1)[0])
@@ -351,6 +374,25 @@ class TestPeers(unittest.TestCase):
             with contextlib.suppress(ConnectionError):
                 connection.sendall(chance.choice(heads[port]) + bytes(chance.choices(range(256), k=chance.randrange(600))))
             connection.close()
+        self.check()
+
+
+class TestNesting(Attacked):
+    """A text that is not too long, on threads with a stack that it would not fit on."""
+
+    @classmethod
+    def setUpClass(cls):
+        # The size that the node's threads get.
+        soft, hard = resource.getrlimit(resource.RLIMIT_STACK)
+        resource.setrlimit(resource.RLIMIT_STACK, (MEGABYTE, hard))
+        cls.addClassCleanup(resource.setrlimit, resource.RLIMIT_STACK, (soft, hard))
+
+    def test_request(self):
+        self.post(call('getPid', NEST * (LONGEST_MESSAGE // len(NEST) - 10)))
+        self.check()
+
+    def test_answer(self):
+        self.answer(response(NEST * (LONGEST_MESSAGE // len(NEST) - 10)))
         self.check()
 
 

@@ -7,7 +7,7 @@ namespace flute_grinder {
 // What a peer may have of the node, whoever it is: the ports ask for no name. docs/network.md lists them.
 
 /// Longest message [bytes]: of XML-RPC, whose longest is the one with robot_description, and of TCPROS.
-constexpr std::size_t kMaxPeerMessage = 256 * 1024;
+constexpr std::size_t kMaxPeerMessage = 262144;
 
 /// Deepest nesting of arrays and structures in XML-RPC, which is read by recursion; ROS's own go four deep.
 constexpr int kMaxPeerNesting = 32;

@@ -35,8 +35,9 @@ std::string Bookkeeper::objection(const std::string& digest, const ToothPass& fi
 }
 
 void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                       const ToothPass& first) {
+                       const ToothPass& first, std::uint64_t number) {
   before_ = progress_;
+  number_ = number;
   moves_ = program.moves();
   passes_ = passOrder(program.job());
   strokes_ended_at_ = 0;
@@ -79,7 +80,7 @@ void Bookkeeper::follow(const LoopStatus& status) {
 }
 
 void Bookkeeper::takePlace(const LoopStatus& status) {
-  if (progress_.finished) return;
+  if (progress_.finished || status.jobs_started != number_) return;
   if (status.strokes_ended_at > strokes_ended_at_) {
     strokes_ended_at_ = status.strokes_ended_at;
     const Move& ended = moves_[strokes_ended_at_ - 1];

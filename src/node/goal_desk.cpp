@@ -136,7 +136,8 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
   }
   goal_->phase = Phase::kEntering;
   goal_->preview = std::move(preview);
-  books_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first);
+  goal_->number = loop_.status().jobs_started + 1;
+  books_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
 }
 
 void GoalDesk::poll() {
@@ -165,7 +166,6 @@ void GoalDesk::startWhenEntered() {
   if (!books_.settled()) return;
   const std::string error = books_.error();
   if (!error.empty()) return refuseStart(error);
-  goal_->number = loop_.status().jobs_started + 1;
   teller_.follow(goal_->number, goal_->handle.getGoalID(), goal_->preview);
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;

@@ -77,7 +77,8 @@ class WithGrinder : public ::testing::Test {
   void start() {
     WAIT_FOR(panel.enabled("start"));
     startAndDiscard(panel);
-    WAIT_FOR(panel.state() == "Running" && stroke() > 100);
+    // Not the stroke that the job before has ended with.
+    WAIT_FOR(panel.state() == "Running" && 100 < stroke() && stroke() < 1000);
   }
   int stroke() { return panel.the<QProgressBar>("stroke").value(); }
   /// [mm], A [deg]

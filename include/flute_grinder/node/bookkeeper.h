@@ -24,7 +24,9 @@ class Bookkeeper {
   std::string objection(const std::string& digest, const ToothPass& first) const;
 
   /// Enters a job ahead of its start.
-  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first);
+  /// @param number of the job, as the loop will count it; what the loop says of another one is not taken.
+  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first,
+             std::uint64_t number);
   /// The job has not been started: what was there before stands again.
   void revert();
   /// The job has ended.
@@ -46,6 +48,7 @@ class Bookkeeper {
   Progress before_;                ///< as of the job before
   std::vector<Move> moves_;        ///< of the job's program
   std::vector<ToothPass> passes_;  ///< in order
+  std::uint64_t number_ = 0;       ///< of the job
   std::uint32_t strokes_ended_at_ = 0;
   bool running_ = false;
   std::uint64_t order_ = 0;

@@ -44,9 +44,9 @@ inline Progress someProgress() {
   p.finished = true;
   p.next = {2, 7};
   p.x = 0.1 + 0.2;
-  p.wheel_in_work = true;
-  p.clear_y = 0.0125;
-  p.lift = 0.005;
+  p.wheel.in_work = true;
+  p.wheel.clear_y = 0.0125;
+  p.wheel.lift = 0.005;
   return p;
 }
 
@@ -63,9 +63,9 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.next.tooth, b.next.tooth);
   EXPECT_EQ(a.next.pass, b.next.pass);
   EXPECT_EQ(a.x, b.x);
-  EXPECT_EQ(a.wheel_in_work, b.wheel_in_work);
-  EXPECT_EQ(a.clear_y, b.clear_y);
-  EXPECT_EQ(a.lift, b.lift);
+  EXPECT_EQ(a.wheel.in_work, b.wheel.in_work);
+  EXPECT_EQ(a.wheel.clear_y, b.wheel.clear_y);
+  EXPECT_EQ(a.wheel.lift, b.wheel.lift);
 }
 
 }  // namespace flute_grinder::testing

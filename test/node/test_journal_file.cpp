@@ -158,8 +158,8 @@ TEST_F(JournalFileTest, WhatCouldNotBeReadIsNotWritten) {
   Journal journal(path_, "/grinder");
   const std::vector<std::function<void(Progress&, double)>> figures = {
       [](Progress& p, double v) { p.x = v; },
-      [](Progress& p, double v) { p.clear_y = v; },
-      [](Progress& p, double v) { p.lift = v; },
+      [](Progress& p, double v) { p.wheel.clear_y = v; },
+      [](Progress& p, double v) { p.wheel.lift = v; },
       [](Progress& p, double v) { p.tooth_angles[1] = v; },
       [](Progress& p, double v) { p.cutter.end_diameter = v; },
       [](Progress& p, double v) { p.cutter.cone_angle = v; },

@@ -47,6 +47,8 @@ class PaperJob:
         cls.period = grinder().period()
         cls.statistics = cls.job_run.result.statistics
         cls.feed = cls.feed_mm_min * MM_MIN
+        cls.planning = [f for f in cls.job_run.feedback if f.state == 'planning']
+        cls.feedback = cls.job_run.feedback[len(cls.planning):]
 
     def pair_feeds(self):
         return [(even.position[X] - start.position[X]) / (2 * self.period) * self.helix.edge
@@ -228,8 +230,15 @@ class PaperJob:
             for axis in range(4):
                 self.assertLessEqual(abs(before.position[axis] - setpoint.actual[axis]), allowed[axis])
 
+    def test_feedback_tells_the_planning_ahead_of_all_else(self):
+        self.assertGreater(len(self.planning), 0)
+        for f in self.planning:
+            self.assertTrue(0 <= f.planned <= 1)
+            self.assertEqual(f.job_fraction, 0)
+        self.assertEqual({f.planned for f in self.feedback}, {1})
+
     def test_feedback_goes_from_start_to_end(self):
-        feedback = self.job_run.feedback
+        feedback = self.feedback
         self.assertGreater(len(feedback), 10)
         self.assertLess(feedback[0].job_fraction, 0.1)
         # The very last may be overtaken by the result, and is then not handed on.
@@ -244,10 +253,10 @@ class PaperJob:
         self.assertLessEqual({f.state for f in feedback}, {'ready', 'starting', 'running'})
 
     def test_feedback_tells_the_largest_path_error(self):
-        largest = max(f.path_error for f in self.job_run.feedback)
+        largest = max(f.path_error for f in self.feedback)
         self.assertAlmostEqual(largest, max(abs(s.path_error) for s in self.stroke), delta=1e-15)
         # It is the largest since the feedback before, and so never one from before the stroke.
-        self.assertEqual(self.job_run.feedback[0].path_error, 0)
+        self.assertEqual(self.feedback[0].path_error, 0)
 
     def test_plan_lists_the_very_same_values(self):
         folder = tempfile.mkdtemp()

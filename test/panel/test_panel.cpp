@@ -270,9 +270,10 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
   Panel panel("cell/stage", kPaper);
   planAndStart(panel);
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
-  EXPECT_EQ(panel.label("unfinished_job"),
-            "Not finished: published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), at tooth 2, pass 3. "
-            "Once this job starts it cannot be continued.");
+  EXPECT_EQ(
+      panel.label("unfinished_job"),
+      "Not finished: published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), at tooth 2, pass 3. "
+      "Once this job starts it cannot be continued.");
   EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Keep it");
   panel.picture("discard_question");
   panel.click("keep");

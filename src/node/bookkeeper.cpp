@@ -30,8 +30,7 @@ std::string Bookkeeper::objection(const std::string& digest, const ToothPass& fi
   if (progress_.job_digest.empty() || progress_.finished) return "";
   const bool from_the_beginning = first.tooth == 0 && first.pass == 0;
   if (digest == progress_.job_digest && (!from_the_beginning || same(first, progress_.next))) return "";
-  return "the journal keeps a job that is not finished: " + describe(progress_) +
-         "; continue it, or send the goal with discard to forget it";
+  return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 
 void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, const std::string& name,

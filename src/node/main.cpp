@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
   // Keeps ROS up to the end, for the log of what went wrong too.
   const ros::NodeHandle nh;
+  // A machine's time is the computer's, also where a simulation's is announced, until that comes.
+  ros::Time::init();
   try {
     flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
     const flute_grinder::MasterWatch master_watch(services());

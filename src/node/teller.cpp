@@ -14,10 +14,9 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTickPeriod = 0.01;                 ///< of joint states [s]
-constexpr std::uint64_t kTicksPerBatch = 5;          ///< setpoints, state and feedback
-constexpr std::uint64_t kTicksPerScene = 10;         ///< what rviz shows of a job
-constexpr std::uint64_t kTicksPerDiagnostics = 100;  ///< by this thread's clock: the computer's may be set back
+constexpr double kTickPeriod = 0.01;          ///< of joint states [s]
+constexpr std::uint64_t kTicksPerBatch = 5;   ///< setpoints, state and feedback
+constexpr std::uint64_t kTicksPerScene = 10;  ///< what rviz shows of a job
 
 double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
 
@@ -64,6 +63,8 @@ Teller::Teller(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, Con
   feedback_ = own.advertise<GrindActionFeedback>("grind/feedback", 50);
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
+  ticks_per_diagnostics_ =
+      static_cast<std::uint64_t>(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0) / kTickPeriod);
   batch_.period = loop.config().machine.period;
 }
 
@@ -99,7 +100,8 @@ void Teller::tick() {
     publishFeedback();
   }
   if (ticks_ % kTicksPerScene == 0 && job) scene_.update(toString(record_.state));
-  if (ticks_ % kTicksPerDiagnostics == 0) {
+  // By this thread's clock: the computer's may be set back.
+  if (ticks_ % ticks_per_diagnostics_ == 0) {
     diagnostics_.setJournalError(journal_.told().error);
     diagnostic_updater_.force_update();
   }

@@ -129,14 +129,15 @@ void addReport(CLI::App& app, ReportOptions& options) {
 void addCalls(CLI::App& app, bool& status_json) {
   addJson(addCommand(app, "status", "print what the grinder is doing"), status_json);
   addCommand(app, "enable", "switch the drive's power on");
-  addCommand(app, "disable", "switch the drive's power off");
+  addCommand(app, "disable", "switch the drive's power off; a job is stopped on the path and the wheel lifted first");
   addCommand(app, "home", "find the axes' reference, and wait until it is found; Ctrl-C switches the power off");
   addCommand(app, "lift",
              "without a job, lift the wheel off the work, and wait until it is; Ctrl-C and Ctrl-Z hold it");
   addCommand(app, "hold", "stop on the path");
   addCommand(app, "resume", "go on after hold or retract");
   addCommand(app, "retract", "after hold, lift the wheel off the work");
-  addCommand(app, "cancel", "stop on the path and end the job, whoever has started it; waits for the stop");
+  addCommand(app, "cancel",
+             "stop on the path, lift the wheel and end the job, whoever has started it; waits for the end");
   addCommand(app, "reset", "reset a fault; the machine is then disabled");
 }
 

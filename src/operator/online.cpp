@@ -154,12 +154,13 @@ int cancelJob(const std::string& node) {
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
   if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
   const GrinderState before = watch.newest();
-  if (!inJob(before)) {
-    return fail("cancel refused: the machine is in state " + before.state_name +
-                "; allowed: " + allowedIn(static_cast<MachineState>(before.state)));
+  // In any state: a job may be planned of which the state says nothing yet. One that names no goal is for all.
+  cancel.publish(actionlib_msgs::GoalID());
+  if (!takesCancel(before)) {
+    return fail("cancel refused: the machine is in state " + before.state_name + "; allowed: " +
+                allowedIn(static_cast<MachineState>(before.state)) + "; a job that was being planned is given up");
   }
-  cancel.publish(actionlib_msgs::GoalID());  // one that names no goal is for all
-  while (inJob(watch.newest()) && !watch.lost()) ros::WallDuration(0.02).sleep();
+  while (takesCancel(watch.newest()) && !watch.lost()) ros::WallDuration(0.02).sleep();
   if (watch.lost()) return fail(kLinkLost);
   const GrinderState state = watch.newest();
   return state.fault.empty() ? 0 : fail(state.fault);

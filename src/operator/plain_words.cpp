@@ -34,7 +34,7 @@ const char* sentence(MachineState state) {
     case MachineState::kRetracting: return "The wheel is lifted off the work.";
     case MachineState::kRetracted: return "The axes rest, the wheel off the work. Resume goes on.";
     case MachineState::kResuming: return "The wheel goes back to the place where it left the path.";
-    case MachineState::kCanceling: return "The axes stop on the path; the job ends there.";
+    case MachineState::kCanceling: return "The axes stop on the path and the wheel is lifted; then the job ends.";
     case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
     case MachineState::kLifting: return "The wheel is lifted off the work, without a job.";
   }

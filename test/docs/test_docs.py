@@ -28,6 +28,7 @@ NOT_RUN = {
     'latency-histogram': 'is a window to look at for an hour',
     'scripts/bench_hal': 'measures for minutes',
     'scripts/bench_rviz': 'measures for minutes',
+    'scripts/bench_stop': 'measures for minutes',
     'kill -STOP': 'lacks the number of a process; test/hal/test_hal_stops.py does it',
     'kill -KILL': 'lacks the number of a process; test/hal/test_hal_stops.py does it',
     'rostopic echo /joint_states': 'prints until it is ended',

@@ -13,7 +13,7 @@ from flute_grinder.msg import GrinderState, GrindResult
 
 import hal_bench
 from hal_bench import gc
-from grinder_client import DEG, MM, STROKE
+from grinder_client import A, DEG, MM, STROKE, X, Y, Z
 
 RECORDER = hal_bench.Recorder()
 BUFFER = 0.2
@@ -77,15 +77,18 @@ class Stop:
         self.assertRegex(self.goal_run.text, r'stroke of tooth 1, pass 1, X = 0\.0[0-3]\d* m')
 
     def check_start_from_standing(self):
-        """Reset, power and a new goal: the axes start from where they stand."""
+        """Reset, power, the wheel lifted where it is in the work, and a new goal: the axes start from where they stand."""
         first = RECORDER.now()
         standing = RECORDER.over(1)[0].position
         self.grinder.make_ready()
         powered = next(row for row in RECORDER.read()[first:] if row.enabled)
         self.assertEqual(powered.command, standing)
+        lifted = RECORDER.over(1)[0].position
+        self.assertEqual([lifted[axis] for axis in (X, Z, A)], [standing[axis] for axis in (X, Z, A)])
+        self.assertGreaterEqual(lifted[Y], standing[Y])
         run = self.grinder.run(AGAIN)
         self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
-        self.assertEqual(tuple(run.setpoints[0].position), standing)
+        self.assertEqual(tuple(run.setpoints[0].position), lifted)
         self.check_steps(RECORDER.read()[first:])
 
 
@@ -221,7 +224,7 @@ class TestHold(Stop, unittest.TestCase):
         self.assertTrue(gc.is_gapless(self.goal_run.setpoints))
         self.check_steps(RECORDER.read()[self.first:])
 
-    def test_cancel_stops_on_the_path(self):
+    def test_cancel_stops_on_the_path_and_lifts(self):
         self.goal_run.cancel()
         self.goal_run.wait()
         self.assertEqual((self.goal_run.status, self.goal_run.code), ('PREEMPTED', GrindResult.CANCELED))
@@ -230,7 +233,11 @@ class TestHold(Stop, unittest.TestCase):
         self.assertEqual({r.command for r in RECORDER.over(300)}, {row.command})
         self.grinder.fresh_state()
         self.assertEqual(row.command, tuple(self.goal_run.setpoints[-1].position))
-        self.assertEqual(self.goal_run.setpoints[-1].move, STROKE)
+        setpoints = self.goal_run.setpoints
+        stroke_end = max(i for i, s in enumerate(setpoints) if s.move == STROKE)
+        self.assertGreater(len(setpoints) - stroke_end, 2, 'the wheel was lifted')
+        for axis in (X, Z, A):
+            self.assertEqual(len({s.position[axis] for s in setpoints[stroke_end:]}), 1)
         self.assertEqual(gc.excesses(self.goal_run.setpoints, self.limits, self.period), [])
 
 

@@ -469,6 +469,10 @@ class Grinder:
             self.disable()
         poll(lambda: self.enable().success, 'the power on')
         self.wait_state(GrinderState.READY)
+        if self.fresh_state().wheel_in_work:
+            assert self.lift().success
+            poll(lambda: not self.fresh_state().wheel_in_work, 'the wheel off the work')
+            self.wait_state(GrinderState.READY)
         if not self.fresh_state().homed:
             assert self.home().success
             self.wait_state(GrinderState.READY)

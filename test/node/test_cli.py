@@ -16,7 +16,7 @@ import rostest
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
-from grinder_client import DEG, MM, MM_MIN, STROKE, X, grinder
+from grinder_client import DEG, LIFT, MM, MM_MIN, STROKE, X, grinder
 
 PAPER_JOB = gc.package_file('jobs/paper.yaml')
 
@@ -416,7 +416,7 @@ class TestMachine(CommandLine):
         told, _ = self.json(0, 'status')
         self.assertEqual((told['fault'], told['emergency_stop'], told['enabled']), ('emergency stop', True, False))
         self.assertRegex(self.grind(1, 'enable').stderr,
-                         r'^enable refused: the machine is in state fault; allowed: reset')
+                         r'^enable refused: the machine is in state fault; allowed: disable, reset\n$')
         self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the emergency stop is pressed')
         grinder().inject('none')
         gc.poll(lambda: not grinder().fresh_state().emergency_stop, 'the emergency stop released')
@@ -428,7 +428,7 @@ class TestMachine(CommandLine):
         job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
         batches = len(grinder().batches)
         self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
-        printed = self.grind(0, 'run', job, '--csv', self.path('run.csv'))
+        printed = self.grind(0, 'run', job, '--discard', '--csv', self.path('run.csv'))
         with open(self.path('plan.csv'), 'rb') as plan, open(self.path('run.csv'), 'rb') as run:
             planned, streamed = plan.read(), run.read()
         self.assertTrue(planned == streamed, 'the files differ')
@@ -442,7 +442,8 @@ class TestMachine(CommandLine):
 
     def check_refused(self, command):
         self.assertEqual(self.grind(1, command).stderr,
-                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start\n' % command)
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift\n'
+                         % command)
 
     def test_hold_without_a_job_is_refused(self):
         self.check_refused('hold')
@@ -530,7 +531,21 @@ class TestMachine(CommandLine):
 
     def test_run_outside_of_the_limits(self):
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
-        self.assertRegex(self.grind(1, 'run', job).stderr, r'axis_x position .* beyond its limit 0\.3 m.*\(code -6\)')
+        self.assertRegex(self.grind(1, 'run', job, '--discard').stderr,
+                         r'axis_x position .* beyond its limit 0\.3 m.*\(code -6\)')
+
+    def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
+        run = grinder().send(gc.PAPER, job_name='left.yaml').wait_in_stroke(2 * MM)
+        run.cancel()
+        run.wait()
+        batches = len(grinder().batches)
+        job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1)
+        self.assertRegex(self.grind(1, 'run', job).stderr,
+                         r'^the journal keeps a job that is not finished: left\.yaml \(.*\(code -7\)\n$')
+        self.assertEqual(grinder().fresh_state().progress.job_name, 'left.yaml')
+        self.assertEqual(len(grinder().batches), batches)
+        self.grind(0, 'run', job, '--discard')
+        self.assertEqual(grinder().fresh_state().progress.job_name, 'short.yaml')
 
     def test_run_of_a_bad_file(self):
         self.grind(2, 'run', self.path('nothing.yaml'))
@@ -545,7 +560,7 @@ class TestMachine(CommandLine):
         self.assertRegex(reason, r'emergency stop \(at stroke .*\(code -9\)')
 
     def start_run(self):
-        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB], stdout=subprocess.PIPE,
+        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard'], stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, universal_newlines=True)
         self.addCleanup(self.kill, process)
         return process
@@ -576,8 +591,11 @@ class TestMachine(CommandLine):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         setpoints = [s for batch in grinder().batches[batches:] for s in batch.setpoints]
         self.assertTrue(gc.is_gapless(setpoints))
-        self.assertEqual(setpoints[-1].move, STROKE)
-        self.assertLess(setpoints[-1].position[X], 30 * MM)
+        stopped = [s for s in setpoints if s.move != LIFT][-1]
+        self.assertEqual(stopped.move, STROKE)
+        self.assertLess(stopped.position[X], 30 * MM)
+        self.assertEqual(setpoints[-1].move, LIFT)
+        self.assertFalse(grinder().fresh_state().wheel_in_work)
         self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
         self.assertEqual(len(grinder().positions_over(0.1)) > 5 and len(set(grinder().positions_over(0.1))), 1)
 

@@ -64,7 +64,6 @@ class TestDiagnostics(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         parameters = gc.machine()
-        parameters['diagnostic_period'] = 0.1
         parameters['diagnostics']['following_error'] = {'warn': 0.2, 'error': 0.9}
         parameters['diagnostics']['limit_use'] = {'warn': 0.9, 'error': 1.000001}
         cls.node = gc.NodeProcess(cls.name, parameters)

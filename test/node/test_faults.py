@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Shows what a fault of the drive in the middle of a stroke does, for every kind that the simulated drive can show: the
-goal ends with the right code and words, nothing moves any more, and after reset and enable the grinder is back in use.
-And that a cancelled goal stops on the path, from where the next one lifts out of the work."""
+goal ends with the right code and words, nothing moves any more, and after reset, enable and lift the grinder is back in
+use. And that a cancelled goal stops on the path and lifts the wheel off the work before it ends."""
 
 import math
 import re
@@ -16,8 +16,12 @@ from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, X, Y, Z, grinder
 
 # Steep enough for every axis to move by more than its following error may be.
 STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM)
+STEEP_CLEAR = gc.Helix(STEEP).y(31 * MM) + 1 * MM
 # The same cutter once more, and clear of all of its flute.
 AGAIN = dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.feed': 3000 * MM_MIN, 'process.clearance': 12 * MM})
+
+# Encoder counts, as in config/grinder.yaml.
+RESOLUTION = (1e-7, 1e-7, 1e-7, 1e-6)
 
 
 class FaultMidStroke:
@@ -56,6 +60,13 @@ class FaultMidStroke:
         cls.enable = g.enable()
         cls.after_enable = g.wait_state(GrinderState.READY)
         cls.at_enable = g.positions_over(0.3)
+        cls.home_in_work = g.home()
+        cls.goal_in_work = g.send(gc.SHORT).wait()
+        cls.at_refusals = g.wait_rest()
+        cls.lift = g.lift()
+        gc.poll(lambda: not g.fresh_state().wheel_in_work, 'the wheel off the work')
+        cls.after_lift = g.wait_state(GrinderState.READY)
+        cls.at_lift = g.wait_rest()
         cls.late_setpoints = cls.goal_run.setpoints[len(cls.setpoints):]
         cls.next_run = g.run(AGAIN)
 
@@ -97,14 +108,18 @@ class FaultMidStroke:
         """Among how many places the axes were, of those that tell a number."""
         return len({tuple(p for p in position if not math.isnan(p)) for position in positions})
 
-    def test_enable_and_disable_are_refused(self):
-        for reply in (self.enable_in_fault, self.disable_in_fault):
-            self.assertFalse(reply.success)
-            self.assertRegex(reply.message, r'refused: the machine is in state fault; allowed: reset$')
+    def test_enable_is_refused(self):
+        self.assertFalse(self.enable_in_fault.success)
+        self.assertRegex(self.enable_in_fault.message,
+                         r'refused: the machine is in state fault; allowed: disable, reset$')
+
+    def test_disable_finds_the_power_off(self):
+        self.assertEqual((self.disable_in_fault.success, self.disable_in_fault.message), (True, ''))
+        self.assertEqual(self.still_fault.state, GrinderState.FAULT)
 
     def test_goal_is_refused(self):
         self.assertEqual((self.goal_in_fault.status, self.goal_in_fault.code), ('REJECTED', GrindResult.NOT_READY))
-        self.assertRegex(self.goal_in_fault.text, r'state fault; allowed: reset')
+        self.assertRegex(self.goal_in_fault.text, r'state fault; allowed: disable, reset')
         self.assertEqual(self.goal_in_fault.setpoints, [])
 
     def test_fault_stays_until_reset(self):
@@ -116,6 +131,22 @@ class FaultMidStroke:
         self.assertTrue(self.enable.success, self.enable.message)
         self.assertEqual((self.after_enable.enabled, self.after_enable.fault), (True, ''))
         self.assertEqual({tuple(position) for position in self.at_enable}, {tuple(self.at_reset)})
+
+    def test_state_tells_the_wheel_in_the_work_until_it_is_lifted(self):
+        told = [s.wheel_in_work for s in (self.state, self.after_reset, self.after_enable, self.after_lift)]
+        self.assertEqual(told, [True, True, True, False])
+
+    def test_home_and_goals_are_refused_in_the_work(self):
+        self.assertEqual((self.home_in_work.success, self.home_in_work.message),
+                         (False, 'home refused: the wheel stands in the work; lift it first'))
+        self.assertEqual((self.goal_in_work.status, self.goal_in_work.code), ('REJECTED', GrindResult.NOT_READY))
+        self.assertEqual(self.goal_in_work.text, 'the wheel stands in the work of the last job; lift it first')
+        self.assertEqual(self.at_refusals, self.at_reset)
+
+    def test_lift_goes_radially_clear_of_the_work(self):
+        self.assertTrue(self.lift.success, self.lift.message)
+        self.assertEqual([self.at_lift[i] for i in (X, Z, A)], [self.at_reset[i] for i in (X, Z, A)])
+        self.assertAlmostEqual(self.at_lift[Y], STEEP_CLEAR, delta=1.01 * RESOLUTION[Y])
 
     def test_next_goal_lifts_first_and_runs_to_its_end(self):
         self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0))
@@ -254,11 +285,13 @@ class CancelledGoal:
         cls.limits, cls.period = g.limits(), g.period()
         cls.goal_run = g.send(cls.job)
         cls.wait_for_the_moment()
+        first_state = len(g.states)
         cls.goal_run.cancel()
         # Twice, as impatient people do.
         cls.goal_run.cancel()
-        cls.goal_run.wait()
+        cls.goal_run.wait_complete()
         cls.state = g.wait_state(GrinderState.READY)
+        cls.canceling = [s for s in g.states[first_state:] if s.state == GrinderState.CANCELING]
         g.fresh_state()
         cls.setpoints = cls.goal_run.setpoints
         cls.rest = g.wait_rest()
@@ -270,6 +303,7 @@ class CancelledGoal:
 
     def test_machine_is_ready(self):
         self.assertEqual((self.state.state, self.state.enabled, self.state.fault), (GrinderState.READY, True, ''))
+        self.assertFalse(self.state.wheel_in_work)
 
     def test_stop_is_short_of_the_end(self):
         self.assertTrue(gc.is_gapless(self.setpoints))
@@ -283,7 +317,7 @@ class CancelledGoal:
         self.assertEqual(gc.off_path(self.setpoints, gc.Helix(self.job)), [])
 
     def test_axes_rest_at_the_last_setpoint(self):
-        for position, commanded, resolution in zip(self.rest, self.setpoints[-1].position, (1e-7, 1e-7, 1e-7, 1e-6)):
+        for position, commanded, resolution in zip(self.rest, self.setpoints[-1].position, RESOLUTION):
             self.assertAlmostEqual(position, commanded, delta=1.01 * resolution)
 
     def test_next_goal_goes_on_from_there(self):
@@ -297,8 +331,31 @@ class TestCancelMidStroke(CancelledGoal, unittest.TestCase):
     def wait_for_the_moment(cls):
         cls.goal_run.wait_in_stroke(5 * MM)
 
-    def test_last_setpoint_is_of_the_stroke(self):
-        self.assertEqual(self.setpoints[-1].move, STROKE)
+    @property
+    def ground(self):
+        """The setpoints to the stop."""
+        return self.setpoints[:max(i for i, s in enumerate(self.setpoints) if s.move == STROKE) + 1]
+
+    def test_text_tells_where_the_stroke_was_left(self):
+        self.assertIn('(at stroke of tooth 1, pass 1, X = %g m)' % self.ground[-1].position[X], self.goal_run.text)
+
+    def test_axes_rest_on_the_stroke_first(self):
+        self.assertEqual(len(self.ground) % 2, 1, 'the last ends a pair')
+        self.assertEqual(gc.excesses(self.ground, self.limits, self.period, rest_after=True), [])
+
+    def test_wheel_is_lifted_before_the_goal_ends(self):
+        lift = self.setpoints[len(self.ground):]
+        self.assertEqual({s.move for s in lift}, {LIFT})
+        stop = self.ground[-1].position
+        for axis in (X, Z, A):
+            self.assertEqual({s.position[axis] for s in lift}, {stop[axis]})
+        heights = [stop[Y]] + [s.position[Y] for s in lift]
+        self.assertEqual(heights, sorted(heights))
+        self.assertAlmostEqual(heights[-1], STEEP_CLEAR, delta=1e-12)
+
+    def test_wheel_turns_and_coolant_flows_until_it_is_lifted(self):
+        self.assertTrue(self.canceling)
+        self.assertTrue(all(s.spindle_at_speed and s.coolant_on for s in self.canceling))
 
     def test_next_goal_lifts_first(self):
         check_lift(self, self.next_run.setpoints)
@@ -310,8 +367,9 @@ class TestCancelOffTheStroke(CancelledGoal, unittest.TestCase):
         # The axes are on their way, but not yet at work.
         grinder().wait_for(lambda: any(s.velocity[X] > 0.05 for s in cls.goal_run.setpoints), 'motion')
 
-    def test_last_setpoint_is_of_no_stroke(self):
-        self.assertNotEqual(self.setpoints[-1].move, STROKE)
+    def test_it_ends_where_it_stops(self):
+        self.assertNotIn(self.setpoints[-1].move, (STROKE, LIFT))
+        self.assertGreaterEqual(self.setpoints[-1].position[Y], STEEP_CLEAR - 1e-15)
 
 
 if __name__ == '__main__':

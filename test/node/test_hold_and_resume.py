@@ -329,14 +329,14 @@ class TestOverrideBeforeTheJob(unittest.TestCase):
 # What each state allows, in the order in which it is told.
 ALLOWED = {
     'disabled': 'enable, disable, reset',
-    'ready': 'enable, disable, home, start',
-    'running': 'hold, cancel',
-    'held': 'hold, resume, retract, cancel',
-    'retracted': 'resume, cancel',
-    'fault': 'reset',
+    'ready': 'enable, disable, home, start, lift',
+    'running': 'disable, hold, cancel',
+    'held': 'disable, hold, resume, retract, cancel',
+    'retracted': 'disable, resume, cancel',
+    'fault': 'disable, reset',
 }
 
-SERVICES = ['enable', 'disable', 'home', 'hold', 'resume', 'retract', 'reset']
+SERVICES = ['enable', 'disable', 'home', 'hold', 'resume', 'retract', 'lift', 'reset']
 
 
 class TestRefusedRequests(unittest.TestCase):
@@ -393,7 +393,7 @@ add_requests()
 
 
 class CancelAtRest:
-    """A cancel while the axes rest in the midst of a stroke."""
+    """A cancel while the axes rest in the midst of a stroke: it leaves the wheel clear of the work."""
 
     @classmethod
     def setUpClass(cls):
@@ -407,12 +407,15 @@ class CancelAtRest:
         cls.other = g.send(gc.SHORT).wait()
         cls.dry_run = g.send(gc.SHORT, dry_run=True).wait()
         cls.state_after_others = g.fresh_state()
-        written = len(cls.job_run.setpoints)
+        written, first_state = len(cls.job_run.setpoints), len(g.states)
         cls.job_run.cancel()
-        cls.job_run.wait()
+        cls.job_run.wait_complete()
         cls.state = g.wait_state(GrinderState.READY)
+        cls.canceling = [s for s in g.states[first_state:] if s.state == GrinderState.CANCELING]
+        cls.end = g.wait_rest()
         cls.positions = g.positions_over(0.3)
-        cls.new = len(cls.job_run.setpoints) - written
+        cls.setpoints = cls.job_run.setpoints
+        cls.new = cls.setpoints[written:]
         cls.resume = g.resume()
         cls.next_run = g.run(gc.SHORT)
 
@@ -427,18 +430,26 @@ class CancelAtRest:
 
     def test_machine_is_ready_and_the_equipment_off(self):
         self.assertEqual((self.state.state_name, self.state.fault, self.state.hold_reason), ('ready', '', ''))
+        self.assertFalse(self.state.wheel_in_work)
         gc.poll(lambda: not (grinder().fresh_state().coolant_on or grinder().fresh_state().spindle_at_speed),
                 'spindle and coolant off')
 
-    def test_nothing_moves(self):
-        self.assertEqual({tuple(position) for position in self.positions}, {tuple(self.at)})
-        self.assertEqual(self.new, 0)
+    def test_axes_rest_clear_of_the_work(self):
+        self.assertEqual({tuple(position) for position in self.positions}, {tuple(self.end)})
+        for axis in (X, Z, A):
+            self.assertEqual(self.end[axis], self.at[axis])
+        self.assertGreaterEqual(self.end[Y], CLEAR - RESOLUTION[Y])
+
+    def test_no_axis_exceeds_a_limit(self):
+        self.assertTrue(gc.is_gapless(self.setpoints))
+        self.assertEqual(gc.excesses(self.setpoints, grinder().limits(), grinder().period()), [])
 
     def test_job_cannot_be_resumed(self):
         self.assertFalse(self.resume.success)
 
     def test_next_goal_lifts_first_and_succeeds(self):
         self.assertEqual(self.next_run.status, 'SUCCEEDED')
+        self.assertEqual(list(self.next_run.setpoints[0].position), list(self.setpoints[-1].position))
         self.assertEqual(self.next_run.setpoints[1].move, LIFT)
 
 
@@ -449,6 +460,19 @@ class TestCancelWhileHeld(CancelAtRest, unittest.TestCase):
     def rest_there(cls, g):
         pass
 
+    def test_wheel_is_lifted_before_the_goal_ends(self):
+        self.assertEqual({s.move for s in self.new}, {LIFT})
+        held = self.setpoints[-len(self.new) - 1].position
+        for axis in (X, Z, A):
+            self.assertEqual({s.position[axis] for s in self.new}, {held[axis]})
+        heights = [held[Y]] + [s.position[Y] for s in self.new]
+        self.assertEqual(heights, sorted(heights))
+        self.assertAlmostEqual(heights[-1], CLEAR, delta=1e-12)
+
+    def test_wheel_turns_and_coolant_flows_until_it_is_lifted(self):
+        self.assertTrue(self.canceling)
+        self.assertTrue(all(s.spindle_at_speed and s.coolant_on for s in self.canceling))
+
 
 class TestCancelWhileRetracted(CancelAtRest, unittest.TestCase):
     at_rest_in = 'retracted'
@@ -457,6 +481,10 @@ class TestCancelWhileRetracted(CancelAtRest, unittest.TestCase):
     def rest_there(cls, g):
         assert g.retract().success
         g.wait_state(GrinderState.RETRACTED)
+
+    def test_nothing_moves(self):
+        self.assertEqual(self.end, self.at)
+        self.assertEqual(self.new, [])
 
 
 if __name__ == '__main__':

@@ -100,6 +100,7 @@ class LostMidStroke(OwnNode):
     def test_wheel_is_lifted_and_the_state_tells_why(self):
         self.assertEqual((self.state.state_name, self.state.hold_reason), ('retracted', self.reason))
         self.assertEqual((self.state.enabled, self.state.fault), (True, ''))
+        self.assertEqual((self.before.wheel_in_work, self.state.wheel_in_work), (True, False))
         self.assertGreaterEqual(self.at[Y], CLEAR - RESOLUTION[Y])
         self.assertEqual(self.lifted.move, LIFT)
         lift = [s for s in self.setpoints if s.move == LIFT]
@@ -195,7 +196,7 @@ class TestReferenceLost(LostMidStroke, unittest.TestCase):
     def test_homing_needs_the_job_to_be_given_up(self):
         self.assertFalse(self.home_in_job.success)
         self.assertEqual(self.home_in_job.message,
-                         'home refused: the machine is in state retracted; allowed: resume, cancel')
+                         'home refused: the machine is in state retracted; allowed: disable, resume, cancel')
 
     def test_cancel_ends_the_job_where_it_is(self):
         self.assertEqual((self.job_run.status, self.job_run.code), ('PREEMPTED', GrindResult.CANCELED))
@@ -220,7 +221,8 @@ class TestHoming(OwnNode, unittest.TestCase):
     """A machine whose encoders do not know where it stands when it is switched on: they start at 0."""
 
     equipment = {'absolute_encoders': False, 'spindle_run_up_time': 0}
-    axes = {'axis_x': {'start_position': -0.045}, 'axis_a': {'start_position': 0.5}}
+    # Homing takes longer than all that is to happen meanwhile.
+    axes = {'axis_x': {'start_position': -0.045}, 'axis_a': {'start_position': 3.0}}
 
     @classmethod
     def go_through(cls, g):
@@ -238,17 +240,18 @@ class TestHoming(OwnNode, unittest.TestCase):
 
         # Broken off, it is not homed.
         first_state = len(g.states)
-        assert g.home().success
-        g.wait_for(lambda: g.states[-1].state == GrinderState.HOMING, 'homing')
+        cls.begin_homing(g)
         cls.goal_while_homing = g.send(gc.SHORT).wait()
-        services = ('enable', 'home', 'hold', 'resume', 'retract', 'reset')
+        services = ('enable', 'home', 'resume', 'retract', 'lift', 'reset')
         cls.refused = {service: getattr(g, service)() for service in services}
         cls.disable = g.disable()
-        cls.broken_off = g.wait_state(GrinderState.DISABLED)
-        cls.rest_when_broken_off = g.wait_rest()
-        cls.positions_when_broken_off = g.positions_over(0.2)
-        assert g.enable().success
-        g.wait_state(GrinderState.READY)
+        cls.broken_off = [cls.off_when_broken_off(g)]
+        cls.begin_homing(g)
+        cls.hold = g.hold()
+        cls.broken_off.append(cls.off_when_broken_off(g))
+        cls.begin_homing(g)
+        g.client.cancel_all_goals()
+        cls.broken_off.append(cls.off_when_broken_off(g))
         cls.start_when_broken_off = g.send(gc.SHORT).wait()
 
         cls.home = gc.grind('--node', cls.node.name, 'home')
@@ -259,6 +262,21 @@ class TestHoming(OwnNode, unittest.TestCase):
         if cls.states[0] == 'ready':  # of before
             del cls.states[0]
         cls.job_run = g.run(gc.SHORT)
+
+    @classmethod
+    def begin_homing(cls, g):
+        assert g.home().success
+        g.wait_for(lambda: g.states[-1].state == GrinderState.HOMING, 'homing')
+
+    @classmethod
+    def off_when_broken_off(cls, g):
+        """Waits for the end of the power, switches it on again, and returns the state and the positions in between."""
+        state = g.wait_state(GrinderState.DISABLED)
+        rest = g.wait_rest()
+        positions = g.positions_over(0.2)
+        assert g.enable().success
+        g.wait_state(GrinderState.READY)
+        return state, rest, positions
 
     def test_nothing_moves_after_the_start(self):
         self.assertEqual((self.at_first.state_name, self.at_first.homed, self.at_first.enabled),
@@ -287,18 +305,20 @@ class TestHoming(OwnNode, unittest.TestCase):
     def test_status_tells_it(self):
         self.assertRegex(self.status.stdout, r'(?m)^homed +no$')
 
-    def test_only_disable_is_allowed_meanwhile(self):
+    def test_only_stops_are_allowed_meanwhile(self):
         for service, reply in self.refused.items():
             self.assertEqual((reply.success, reply.message), (
-                False, '%s refused: the machine is in state homing; allowed: disable' % service))
+                False, '%s refused: the machine is in state homing; allowed: disable, hold, cancel' % service))
         self.assertEqual((self.goal_while_homing.status, self.goal_while_homing.code),
                          ('REJECTED', GrindResult.NOT_READY))
-        self.assertRegex(self.goal_while_homing.text, r'state homing; allowed: disable')
+        self.assertRegex(self.goal_while_homing.text, r'state homing; allowed: disable, hold, cancel')
 
-    def test_disable_breaks_it_off(self):
-        self.assertTrue(self.disable.success)
-        self.assertEqual((self.broken_off.homed, self.broken_off.fault), (False, ''))
-        self.assertEqual(set(self.positions_when_broken_off), {tuple(self.rest_when_broken_off)})
+    def test_disable_hold_and_cancel_break_it_off_by_the_power(self):
+        for reply in (self.disable, self.hold):
+            self.assertEqual((reply.success, reply.message), (True, ''))
+        for state, rest, positions in self.broken_off:
+            self.assertEqual((state.enabled, state.homed, state.fault), (False, False, ''))
+            self.assertEqual(set(positions), {tuple(rest)})
 
     def test_homing_goes_to_the_reference(self):
         self.assertEqual((self.home.returncode, self.home.stderr), (0, ''))
@@ -306,7 +326,7 @@ class TestHoming(OwnNode, unittest.TestCase):
         for joint, position, resolution in zip(gc.JOINTS, self.at_home, RESOLUTION):
             self.assertAlmostEqual(position, self.parameters['hardware'][joint]['home_position'], delta=resolution)
         self.assertEqual(set(self.positions_at_home), {tuple(self.at_home)})
-        self.assertEqual(self.states, ['homing', 'disabled', 'ready', 'homing', 'ready'])
+        self.assertEqual(self.states, ['homing', 'disabled', 'ready'] * 3 + ['homing', 'ready'])
 
     def test_job_works_afterwards(self):
         self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', 0))
@@ -414,28 +434,50 @@ class TestWaitForTheSpindle(OwnNode, unittest.TestCase):
         cls.job_run = g.send(gc.SHORT)
         cls.starting = g.wait_state(GrinderState.STARTING)
         cls.positions = g.positions_over(0.3)
-        services = ('enable', 'disable', 'home', 'hold', 'resume', 'retract', 'reset')
+        services = ('enable', 'home', 'retract', 'lift', 'reset')
         cls.refused = {service: getattr(g, service)() for service in services}
         cls.busy = g.send(gc.SHORT).wait()
+        cls.hold = g.hold()
+        cls.held = g.fresh_state()
+        cls.resume = g.resume()
+        cls.resumed = g.fresh_state()
         cls.job_run.cancel()
         cls.job_run.wait()
         cls.state = g.wait_state(GrinderState.READY)
         cls.positions_when_ready = g.positions_over(0.3)
+        cls.disabled_run = g.send(gc.SHORT)
+        g.wait_state(GrinderState.STARTING)
+        cls.disable = g.disable()
+        cls.disabled_run.wait()
+        cls.disabled = g.wait_state(GrinderState.DISABLED)
+        cls.positions_when_disabled = g.positions_over(0.3)
 
     def test_nothing_moves_meanwhile(self):
         self.assertEqual((self.starting.spindle_at_speed, self.starting.coolant_on), (False, True))
         self.assertEqual({tuple(position) for position in self.positions}, {tuple(self.at)})
 
-    def test_only_cancel_is_allowed_meanwhile(self):
+    def test_only_stops_and_resume_are_allowed_meanwhile(self):
         for service, reply in self.refused.items():
             self.assertEqual((reply.success, reply.message), (
-                False, '%s refused: the machine is in state starting; allowed: cancel' % service))
+                False, service + ' refused: the machine is in state starting; allowed: disable, hold, resume, cancel'))
         self.assertEqual((self.busy.status, self.busy.code), ('REJECTED', GrindResult.BUSY))
+
+    def test_hold_and_resume_wait_for_the_spindle(self):
+        for reply in (self.hold, self.resume):
+            self.assertEqual((reply.success, reply.message), (True, ''))
+        self.assertEqual([s.state_name for s in (self.held, self.resumed)], ['starting', 'starting'])
 
     def test_cancel_ends_the_job_before_it_moved(self):
         self.assertEqual((self.job_run.status, self.job_run.code), ('PREEMPTED', GrindResult.CANCELED))
         self.assertEqual((self.state.state_name, self.state.fault), ('ready', ''))
+        self.assertFalse(self.state.wheel_in_work)
         self.assertEqual({tuple(position) for position in self.positions_when_ready}, {tuple(self.at)})
+
+    def test_disable_ends_the_job_before_it_moved(self):
+        self.assertTrue(self.disable.success)
+        self.assertEqual((self.disabled_run.status, self.disabled_run.code), ('PREEMPTED', GrindResult.CANCELED))
+        self.assertEqual((self.disabled.enabled, self.disabled.fault, self.disabled.wheel_in_work), (False, '', False))
+        self.assertEqual({tuple(position) for position in self.positions_when_disabled}, {tuple(self.at)})
 
 
 class TestEmergencyStopWhileRetracted(OwnNode, unittest.TestCase):
@@ -476,6 +518,7 @@ class TestEmergencyStopWhileRetracted(OwnNode, unittest.TestCase):
 
     def test_job_is_over(self):
         self.assertEqual((self.ready.fault, self.ready.hold_reason), ('', ''))
+        self.assertFalse(self.ready.wheel_in_work, 'it was lifted ahead of the fault')
         self.assertFalse(self.resume.success)
         self.assertEqual(self.next_run.status, 'SUCCEEDED')
 

@@ -46,14 +46,14 @@ PASSES = [(tooth, pass_) for tooth in range(3) for pass_ in range(2)]
 DEPTHS = (0.3 * MM, 0.5 * MM)
 
 
-def quick_machine(journal):
-    """A machine that loses no time with rapids and its spindle."""
+def quick_machine(journal, at=None):
+    """A machine that loses no time with rapids and its spindle. Its axes stand at park, or at other positions."""
     parameters = gc.machine()
     parameters['journal'] = journal
     parameters['hardware']['spindle_run_up_time'] = 0
     parameters['park_position'].update({'axis_x': -0.004, 'axis_y': 0.002})
-    parameters['hardware']['axis_x']['start_position'] = -0.004
-    parameters['hardware']['axis_y']['start_position'] = 0.002
+    for joint, position in zip(gc.JOINTS, at or (-0.004, 0.002, 0, 0)):
+        parameters['hardware'][joint]['start_position'] = position
     for joint, (acceleration, jerk) in {'axis_x': (20.0, 4000.0), 'axis_y': (20.0, 4000.0), 'axis_z': (20.0, 4000.0),
                                         'axis_a': (1000.0, 100000.0)}.items():
         parameters['joint_limits'][joint].update({'max_acceleration': acceleration, 'max_jerk': jerk})
@@ -88,6 +88,7 @@ class JournalTest(unittest.TestCase):
     """With a folder for the journal, and nodes that are started on it one after another."""
 
     started = 0
+    at = None  # where the axes stand when a node is started
 
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -100,7 +101,8 @@ class JournalTest(unittest.TestCase):
     def start_process(self, **environment):
         """Every node has a name of its own, since the master remembers those that were killed."""
         JournalTest.started += 1
-        node = gc.NodeProcess('grinder_%d' % JournalTest.started, quick_machine(self.journal), environment=environment)
+        node = gc.NodeProcess('grinder_%d' % JournalTest.started, quick_machine(self.journal, self.at),
+                              environment=environment)
         self.addCleanup(node.close)
         return node
 
@@ -124,9 +126,10 @@ class JournalTest(unittest.TestCase):
         self.client.wait_state(GrinderState.READY)
 
     def kill(self):
-        """Kills the node, and waits until all that it had sent is here."""
+        """Kills the node, and waits until all that it had sent is here. The axes stay where they are."""
         self.node.end(signal.SIGKILL)
         self.client.wait_end_of_connections()
+        self.at = self.client.positions()
         self.client.close()
 
     def read_journal(self):
@@ -529,7 +532,7 @@ class TestUnfinishedJob(JournalTest):
 
     def check_refused(self, job):
         rest = self.client.wait_rest()
-        run = self.client.send(job).wait()
+        run = self.client.send(job, discard=False).wait()
         self.assertEqual(run.code, GrindResult.NOT_READY)
         for word in (JOB_NAME, 'continue', 'discard'):
             self.assertIn(word, run.text)
@@ -538,8 +541,8 @@ class TestUnfinishedJob(JournalTest):
         with open(self.journal, 'rb') as file:
             self.assertEqual(file.read(), self.left)
 
-    def check_ground(self, job, **fields):
-        self.assertEqual(self.client.run(job, **fields).status, 'SUCCEEDED')
+    def check_ground(self, job, discard=False, **fields):
+        self.assertEqual(self.client.run(job, discard=discard, **fields).status, 'SUCCEEDED')
         journal = self.wait_finished()
         self.check_told(journal)
         return journal

@@ -11,7 +11,7 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
-from grinder_client import DEG, MM, MM_MIN, STROKE, UM, X, grinder
+from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder
 
 # Long enough for something to happen meanwhile.
 LONG = gc.paper(feed=1500 * MM_MIN)
@@ -256,15 +256,41 @@ class TestState(unittest.TestCase):
         self.assertTrue(grinder().disable().success)
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
 
-    def test_disable_enable_and_reset_while_running(self):
+    def test_enable_home_lift_and_reset_while_running(self):
         run = grinder().send(LONG).wait_in_stroke(2 * MM)
-        for service in (grinder().disable, grinder().enable, grinder().reset):
+        for service in (grinder().enable, grinder().home, grinder().lift, grinder().reset):
             reply = service()
             self.assertFalse(reply.success)
-            self.assertRegex(reply.message, r'refused: the machine is in state running; allowed: hold, cancel$')
+            self.assertRegex(reply.message,
+                             r'refused: the machine is in state running; allowed: disable, hold, cancel$')
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
         self.assertTrue(gc.is_gapless(run.setpoints))
+
+    def test_disable_while_running_cancels_first(self):
+        run = grinder().send(LONG).wait_in_stroke(2 * MM)
+        reply = grinder().disable()
+        self.assertEqual((reply.success, reply.message), (True, ''))
+        run.wait_complete()
+        self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
+        state = grinder().wait_state(GrinderState.DISABLED)
+        self.assertEqual((state.enabled, state.wheel_in_work, state.fault), (False, False, ''))
+        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertEqual(gc.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(gc.off_path(run.setpoints, gc.Helix(LONG)), [])
+        stop = [s for s in run.setpoints if s.move == STROKE][-1]
+        lifted = run.setpoints[-1]
+        self.assertEqual(lifted.move, LIFT)
+        self.assertEqual([lifted.position[i] for i in (X, Z, A)], [stop.position[i] for i in (X, Z, A)])
+        self.assertAlmostEqual(lifted.position[Y], gc.Helix(LONG).y(31 * MM) + 5 * MM, delta=1e-12)
+
+    def test_lift_off_the_work(self):
+        rest = grinder().wait_rest()
+        reply = grinder().lift()
+        self.assertEqual((reply.success, reply.message),
+                         (False, 'lift refused: the wheel does not stand in the work'))
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        self.assertEqual(grinder().positions(), rest)
 
     def test_reset_without_a_fault(self):
         reply = grinder().reset()

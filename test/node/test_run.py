@@ -16,7 +16,10 @@ from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
 from grind_command import PAPER_JOB, RunTest, default_signals
-from grinder_client import MM, STROKE, X, grinder
+from grinder_client import LIFT, MM, STROKE, X, grinder
+
+# Whatever the test before has left in the journal is forgotten.
+RUN = ['run', '--discard']
 
 CLEAR_LINE = '\r\x1b[K'
 # What the line shows where there is room for all.
@@ -48,7 +51,7 @@ class TestBar(RunTest):
             self.assertAlmostEqual(len(m.group(1).rstrip('.')) / 30, int(m.group(2)) / 100, delta=1 / 30 + 0.01)
 
     def test_file_gets_lines_without_control_characters(self):
-        command = self.grind('run', self.short_job(teeth=2, depth_mm=0.4, infeed_mm=0.2))
+        command = self.grind(*RUN, self.short_job(teeth=2, depth_mm=0.4, infeed_mm=0.2))
         self.assertEqual(command.end(), 0, command.text)
         self.assertNotRegex(command.text, '[^\n -~]')
         self.assertTrue(command.text.endswith('\n'))
@@ -56,7 +59,7 @@ class TestBar(RunTest):
         self.check_lines(command.text, '\n', 2, 2)
 
     def test_dumb_terminal_counts_as_a_file(self):
-        command = self.grind('run', self.short_job(), columns=80, term='dumb')
+        command = self.grind(*RUN, self.short_job(), columns=80, term='dumb')
         self.assertEqual(command.end(), 0, command.text)
         # The newlines are the terminal's.
         self.assertNotRegex(command.text.replace('\r\n', '\n'), '[^\n -~]')
@@ -73,7 +76,7 @@ class TestBar(RunTest):
         return [line for line in lines if line]
 
     def test_line_fits_a_terminal_that_gets_narrow(self):
-        command = self.grind('run', self.short_job(), columns=200)
+        command = self.grind(*RUN, self.short_job(), columns=200)
         command.wait_text('tooth 1/1')
         wide = len(command.text)
         command.resize(80)
@@ -97,7 +100,7 @@ class TestBar(RunTest):
 
     def test_messages_do_not_tear_the_line(self):
         seen = len(grinder().batches)
-        command = self.grind('run', PAPER_JOB, columns=200)
+        command = self.grind(*RUN, PAPER_JOB, columns=200)
         self.wait_in_stroke(grinder(), seen)
         grinder().inject('coolant_lost')
         command.wait_text('  retracted  ')
@@ -120,15 +123,18 @@ class TestEnd(RunTest):
 
     def start(self, **options):
         seen = len(grinder().batches)
-        command = self.grind('run', PAPER_JOB, **options)
+        command = self.grind(*RUN, PAPER_JOB, **options)
         self.wait_in_stroke(grinder(), seen)
         return command, seen
 
     def check_stopped(self, seen):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         setpoints = [s for batch in grinder().batches[seen:] for s in batch.setpoints]
-        self.assertEqual(setpoints[-1].move, STROKE)
-        self.assertLess(setpoints[-1].position[X], 30 * MM)
+        stopped = [s for s in setpoints if s.move != LIFT][-1]
+        self.assertEqual(stopped.move, STROKE)
+        self.assertLess(stopped.position[X], 30 * MM)
+        self.assertEqual(setpoints[-1].move, LIFT)
+        self.assertFalse(grinder().fresh_state().wheel_in_work)
         self.assertEqual(gc.excesses(setpoints, grinder().limits(), grinder().period()), [])
         self.assertEqual(len(set(grinder().positions_over(0.1))), 1)
 
@@ -154,7 +160,7 @@ class TestEnd(RunTest):
     def test_reader_of_its_words_that_has_ended(self):
         """As `grind run JOB 2>&1 | tee log`, where Ctrl-C ends tee too."""
         seen = len(grinder().batches)
-        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB], stdout=subprocess.PIPE,
+        process = subprocess.Popen([gc.program('grind'), *RUN, PAPER_JOB], stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, preexec_fn=default_signals)
         self.wait_in_stroke(grinder(), seen)
         process.stdout.close()
@@ -173,7 +179,7 @@ class TestEnd(RunTest):
         done = gc.grind('cancel')
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr,
-                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start\n')
+                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift\n')
 
 
 class TestStuck(RunTest):
@@ -188,7 +194,7 @@ class TestStuck(RunTest):
             while True:
                 os.write(writer, b'.')
         os.set_blocking(writer, True)
-        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB], stdout=subprocess.PIPE, stderr=writer,
+        process = subprocess.Popen([gc.program('grind'), *RUN, PAPER_JOB], stdout=subprocess.PIPE, stderr=writer,
                                    preexec_fn=default_signals)
         os.close(writer)
         self.addCleanup(process.stdout.close)
@@ -208,7 +214,7 @@ class TestStuck(RunTest):
         path = os.path.join(self.folder, 'fifo')
         os.mkfifo(path)
         reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
-        command = self.grind('run', PAPER_JOB, '--csv', path)
+        command = self.grind(*RUN, PAPER_JOB, '--csv', path)
         grinder().wait_state(GrinderState.RUNNING)
         # The job ends while the disk takes nothing.
         command.wait_text('100 %')
@@ -225,7 +231,7 @@ class TestHold(RunTest):
     def test_ctrl_z_holds_on_the_path_and_does_not_suspend(self):
         grinder().make_ready()
         seen = len(grinder().batches)
-        command = self.grind('run', PAPER_JOB)
+        command = self.grind(*RUN, PAPER_JOB)
         self.wait_in_stroke(grinder(), seen)
         command.send(signal.SIGTSTP)
         command.wait_text("holding: 'grind resume' goes on, Ctrl-C cancels\n")
@@ -249,12 +255,12 @@ class TestRecord(RunTest):
 
     def test_second_run_leaves_the_first_and_its_file_alone(self):
         seen = len(grinder().batches)
-        first = self.grind('run', PAPER_JOB, '--csv', self.csv)
+        first = self.grind(*RUN, PAPER_JOB, '--csv', self.csv)
         self.wait_in_stroke(grinder(), seen)
         written = os.stat(self.csv).st_size
         self.assertGreater(written, 0)
         for csv in (self.csv, os.path.join(self.folder, 'second.csv')):
-            second = self.grind('run', PAPER_JOB, '--csv', csv)
+            second = self.grind(*RUN, PAPER_JOB, '--csv', csv)
             self.assertEqual(second.end(), 1)
             self.assertRegex(second.text, r'\(code -12\)\n$')
             self.assertEqual(second.stdout, '')
@@ -268,7 +274,7 @@ class TestRecord(RunTest):
 
     def test_own_run_beside_another_waits_for_none_of_its_setpoints(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
-        second = self.grind('run', PAPER_JOB)
+        second = self.grind(*RUN, PAPER_JOB)
         self.assertEqual(second.end(), 1)
         self.assertNotIn('streamed', second.stdout)
         run.cancel()
@@ -276,7 +282,7 @@ class TestRecord(RunTest):
 
     def test_full_disk_hides_no_emergency_stop(self):
         seen = len(grinder().batches)
-        command = self.grind('run', PAPER_JOB, '--csv', '/dev/full')
+        command = self.grind(*RUN, PAPER_JOB, '--csv', '/dev/full')
         self.wait_in_stroke(grinder(), seen)
         grinder().inject('emergency_stop')
         self.assertEqual(command.end(), 1)
@@ -286,14 +292,14 @@ class TestRecord(RunTest):
         self.assertNotIn('setpoints written to', command.stdout)
 
     def test_full_disk_is_no_success(self):
-        command = self.grind('run', self.short_job(), '--csv', '/dev/full')
+        command = self.grind(*RUN, self.short_job(), '--csv', '/dev/full')
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'\n/dev/full: not all could be written: No space left on device\n$')
 
     def test_file_that_cannot_be_made_is_refused_before_anything_moves(self):
         seen = len(grinder().batches)
         for path in (os.path.join(self.folder, 'no/such/folder.csv'), self.folder):
-            command = self.grind('run', PAPER_JOB, '--csv', path)
+            command = self.grind(*RUN, PAPER_JOB, '--csv', path)
             self.assertEqual(command.end(), 2)
             self.assertRegex(command.text, '^%s: cannot be written: ' % re.escape(path))
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
@@ -319,7 +325,7 @@ class TestOwnNode(RunTest):
     def start_run(self):
         self.client.make_ready()
         seen = len(self.client.batches)
-        command = self.grind('--node', 'ill_treated', 'run', PAPER_JOB)
+        command = self.grind('--node', 'ill_treated', *RUN, PAPER_JOB)
         self.wait_in_stroke(self.client, seen)
         return command
 

@@ -18,7 +18,7 @@ enum class MachineState : std::uint8_t {
   kRetracting,  ///< lifting the wheel off the work
   kRetracted,   ///< at rest in the midst of a job, the wheel off the work
   kResuming,    ///< on the way back to the place where the path was left
-  kCanceling,   ///< stopping on the path, to end the job
+  kCanceling,   ///< stopping on the path and lifting the wheel, to end the job
   kFault,       ///< power off after a fault, until reset
   kLifting,     ///< lifting the wheel off the work, without a job
 };

@@ -89,6 +89,7 @@ class Teller {
   std::deque<Job> jobs_;  ///< announced; the first may run
   SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_per_diagnostics_ = 1;
   std::atomic<std::uint64_t> jobs_told_{0};
 
   ServedQueue thread_;  ///< last, so that it has ended when the rest goes

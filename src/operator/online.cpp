@@ -21,6 +21,11 @@ namespace flute_grinder {
 
 namespace {
 
+/// Whether there is something that a cancel ends.
+bool takesCancel(const GrinderState& state) {
+  return after(static_cast<MachineState>(state.state), MachineEvent::kCancel).has_value();
+}
+
 int noMaster() { return fail("no ROS master answers at " + ros::master::getURI()); }
 
 /// Calls a service of the grinder, and prints why not where it is refused or not answered. @return the exit status.

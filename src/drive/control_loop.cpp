@@ -165,7 +165,9 @@ Refusal ControlLoop::stopMotion(MachineEvent event) {
     power_off_next_ |= off;
     // A wheel that is being lifted goes on to where a canceled job is to leave it.
     const bool lifting = state_ == MachineState::kCanceling || state_ == MachineState::kRetracting;
-    if (event == MachineEvent::kHold || !lifting) stream_->hold();
+    const bool hold = event == MachineEvent::kHold;
+    if (hold || !lifting) stream_->hold();
+    if (hold && state_ == MachineState::kCanceling) lifts_off_ = false;
   } else if (state_ == MachineState::kLifting) {
     power_off_next_ |= off;
     lift_.hold();
@@ -213,7 +215,8 @@ Refusal ControlLoop::start(const Start& job) {
   now_.strokes_ended_at = 0;
   now_.wheel = job.wheel;
   waited_ = 0;
-  lifting_off_ = power_off_next_ = false;
+  lifts_off_ = true;
+  power_off_next_ = false;
   apply(MachineEvent::kStart);
   return Refusal::kNone;
 }
@@ -454,8 +457,8 @@ void ControlLoop::restJob() {
 
 bool ControlLoop::liftsOff() {
   const bool in_work = written_.setpoints > 0 && command_[kY] < now_.wheel.clear_y;
-  if (state_ != MachineState::kCanceling || lifting_off_ || !in_work) return false;
-  lifting_off_ = true;
+  if (state_ != MachineState::kCanceling || !lifts_off_ || !in_work) return false;
+  lifts_off_ = false;
   stream_->retract();
   return true;
 }

@@ -78,6 +78,7 @@ constexpr Transition kTransitions[]{
     {S::kResuming, E::kFault, S::kFault},
 
     {S::kCanceling, E::kDisable, S::kCanceling},
+    {S::kCanceling, E::kHold, S::kCanceling},  // the wheel is not lifted any farther
     {S::kCanceling, E::kCancel, S::kCanceling},
     {S::kCanceling, E::kAtRest, S::kReady},
     {S::kCanceling, E::kFault, S::kFault},

@@ -3,6 +3,8 @@
 #include "flute_grinder/node/conversions.h"
 #include "flute_grinder/node/error_codes.h"
 
+#include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <utility>
 
@@ -28,6 +30,12 @@ std::string join(const std::vector<std::string>& reasons) {
   std::string text;
   for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
   return text;
+}
+
+/// Whether a job may be named so: people read it in their terminals.
+bool isName(const std::string& name) {
+  const auto controls = [](unsigned char c) { return std::iscntrl(c) != 0; };
+  return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), controls);
 }
 
 /// For people, who count teeth and passes from 1.
@@ -64,10 +72,10 @@ void GoalDesk::onGoal(GoalHandle handle) {
     return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
   }
   const auto goal = handle.getGoal();
-  if (goal->job_name.size() > kLongestName) {
+  if (!isName(goal->job_name)) {
     return reject(handle, GrindResult::INVALID_GOAL,
                   "job_name has " + std::to_string(goal->job_name.size()) + " characters; allowed: up to " +
-                      std::to_string(kLongestName));
+                      std::to_string(kLongestName) + ", and none that controls a terminal");
   }
   const GrindJob job = jobFromGoal(*goal);
   const std::string digest = jobDigest(job);
@@ -119,11 +127,7 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
   GoalHandle handle = goal_->handle;
   const JobPlan& plan = preview->plan;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
-  if (recalled || gate_.canceled()) {
-    leave();
-    const char* text = "canceled before it moved";
-    return handle.setCanceled(result(GrindResult::CANCELED, text), text);
-  }
+  if (recalled || gate_.canceled()) return giveUp();
   if (!plan.good()) {
     leave();
     return reject(handle, errorCode(plan.fault), join(plan.reasons));
@@ -162,7 +166,7 @@ void GoalDesk::tellPlanning() {
 }
 
 void GoalDesk::startWhenEntered() {
-  if (gate_.canceled()) return refuseStart("");
+  if (gate_.canceled()) return giveUp();
   if (!books_.settled()) return;
   const std::string error = books_.error();
   if (!error.empty()) return refuseStart(error);
@@ -174,7 +178,7 @@ void GoalDesk::startWhenEntered() {
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   goal_->phase = Phase::kStarting;
-  if (!started) return refuseStart("");
+  if (!started) return giveUp();
   if (!posted) refuseStart("the control loop has not answered the start of the job before");
 }
 
@@ -185,17 +189,24 @@ void GoalDesk::awaitStart() {
   goal_->phase = Phase::kRunning;
 }
 
+void GoalDesk::giveUp() {
+  GoalHandle handle = goal_->handle;
+  takeBack();
+  const char* text = "canceled before it moved";
+  handle.setCanceled(result(GrindResult::CANCELED, text), text);
+}
+
 void GoalDesk::refuseStart(const std::string& text) {
   GoalHandle handle = goal_->handle;
-  if (goal_->phase == Phase::kStarting) teller_.forget(goal_->number);
-  books_.revert();
-  leave();
-  if (text.empty()) {
-    const char* canceled = "canceled before it moved";
-    return handle.setCanceled(result(GrindResult::CANCELED, canceled), canceled);
-  }
+  takeBack();
   ROS_WARN_STREAM("goal aborted: " << text);
   handle.setAborted(result(GrindResult::NOT_READY, text), text);
+}
+
+void GoalDesk::takeBack() {
+  if (goal_->phase == Phase::kStarting) teller_.forget(goal_->number);
+  if (goal_->phase != Phase::kPlanning) books_.revert();
+  leave();
 }
 
 void GoalDesk::endWhenTold() {

@@ -34,7 +34,7 @@ held       -      canceling -      -        held     resuming retracting -      
 retracting -      canceling -      -        holding  -        -          -       canceling -        -       retracted fault
 retracted  -      canceling -      -        -        resuming -          -       canceling -        -       -         fault
 resuming   -      canceling -      -        holding  -        -          -       canceling -        running -         fault
-canceling  -      canceling -      -        -        -        -          -       canceling -        -       ready     fault
+canceling  -      canceling -      -        canceling -       -          -       canceling -        -       ready     fault
 fault      -      fault     -      -        -        -        -          -       -         disabled -       -         -
 lifting    -      lifting   -      -        lifting  -        -          -       lifting   -        -       ready     fault
 )";
@@ -134,7 +134,7 @@ TEST(MachineState, AllowedInListsTheRequestsOfTheState) {
   EXPECT_EQ(allowedIn(S::kRetracting), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kRetracted), "disable, resume, cancel");
   EXPECT_EQ(allowedIn(S::kResuming), "disable, hold, cancel");
-  EXPECT_EQ(allowedIn(S::kCanceling), "disable, cancel");
+  EXPECT_EQ(allowedIn(S::kCanceling), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kFault), "disable, reset");
   EXPECT_EQ(allowedIn(S::kLifting), "disable, hold, cancel");
 }

@@ -208,6 +208,26 @@ TEST(Cancel, AgainDuringTheLiftChangesNothing) {
   EXPECT_TRUE(sameSetpoints(often.setpoints(), once.setpoints()));
 }
 
+/// Whatever moves can be stopped.
+TEST(Cancel, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
+  for (const double lifted : {0.0, 1e-4, 1e-3}) {
+    Rig<FakeDrive> rig;
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
+    const double stopped_at = rig.last().command[kY];
+    while (rig.last().command[kY] < stopped_at + lifted) rig.cycle();
+    ASSERT_TRUE(rig.ask(E::kHold).accepted);
+    rig.runUntil(S::kReady);
+    EXPECT_LT(rig.last().command[kY], kClearanceHeight - 1e-4);
+    EXPECT_TRUE(smooth(rig.log));
+    const LoopStatus status = rig.loop->status();
+    EXPECT_EQ(status.end, JobEnd::kCanceled);
+    EXPECT_TRUE(status.wheel.in_work);
+    ASSERT_TRUE(rig.ask(E::kLift).accepted);
+    rig.runUntil(S::kReady);
+    EXPECT_FALSE(rig.last().wheel_in_work);
+  }
+}
+
 TEST(Cancel, AFaultDuringTheLiftEndsTheJobAsAFault) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));

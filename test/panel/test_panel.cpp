@@ -46,7 +46,7 @@ const std::vector<Row> kStates{
     {GrinderState::RETRACTING, "retracting", {"disable", "hold", "cancel"}, "lifted"},
     {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
     {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "goes back"},
-    {GrinderState::CANCELING, "canceling", {"disable", "cancel"}, "the job ends"},
+    {GrinderState::CANCELING, "canceling", {"disable", "hold", "cancel"}, "the job ends"},
     {GrinderState::FAULT, "fault", {"disable", "reset"}, "following error 1.2 mm"},
     {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
 };

@@ -87,7 +87,8 @@ class ControlLoop {
   /// time.
   ///
   /// Hold stops a job on its path, before its first setpoint too; cancel stops it on its path, lifts the wheel off the
-  /// work and ends the job; disable does that and switches the power off. Each stops a lift on its way. Each ends
+  /// work and ends the job; disable does that and switches the power off. Each stops a lift on its way, a hold that of a
+  /// canceled job too, which ends there. Each ends
   /// homing by the power: the drive moves by itself then, and no command of the loop's counts.
   RequestReply stop(MachineEvent event);
   /// The same without the answer. For any thread and for signal handlers; what is no stop is not taken.
@@ -191,7 +192,7 @@ class ControlLoop {
   CommandHistory history_;
   JobTrack written_;                    ///< of the job that runs, or of the last one
   bool moving_ = false;                 ///< the cycle before wrote a setpoint that moves an axis
-  bool lifting_off_ = false;            ///< a canceled job has stopped, and is lifting the wheel
+  bool lifts_off_ = true;               ///< the job is to lift the wheel when it has stopped for a cancel
   bool power_off_next_ = false;         ///< once the axes rest
   std::uint64_t rested_ = 0;            ///< cycles since the last setpoint
   std::uint64_t underruns_before_ = 0;  ///< those that the drive had counted when the power came

@@ -60,7 +60,9 @@ class GoalDesk {
   void awaitStart();
   void endWhenTold();
   void endJob();
+  void giveUp();
   void refuseStart(const std::string& text);
+  void takeBack();
   void reject(GoalHandle& handle, int code, const std::string& text);
   void leave();
 

@@ -365,7 +365,7 @@ TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
       panel.text("verdict").find("\naxis A velocity -180 deg/s; allowed: 1 to 10 mm/s^2, 5 minutes, 2 ms, 1e-3 m/min"),
       std::string::npos)
       << panel.text("verdict");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "home"}));
+  WAIT_FOR(panel.enabledRequests() == (Names{"enable", "disable", "home"}));
   panel.picture("cannot_be_ground");
 }
 

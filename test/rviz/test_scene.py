@@ -213,7 +213,9 @@ class Story:
     def __init__(self):
         self.rviz, g = Rviz(), grinder()
         g.make_ready_at_park()
-        self.before_plan = {topic: len(messages) for topic, messages in self.rviz.messages.items()}
+        self.before_plan = {topic: sum(marker.action != Marker.DELETEALL for message in messages
+                                       for marker in message.markers)
+                            for topic, messages in self.rviz.messages.items()}
         self.machine = self.rviz.picture('machine')
         self.planned = {}
         for path in ('left_hand_d8_t3', 'micro_d05_t2', 'finishing_d20_t8', 'roughing_d10_t4', 'unequal_d12_t4'):

@@ -16,7 +16,7 @@ namespace {
 constexpr int kRealtimePriority = 80;
 
 /// More than the loop's calls take by far.
-constexpr std::size_t kStack = 256 * 1024;
+constexpr std::size_t kStack = std::size_t{256} * 1024;
 constexpr std::size_t kPage = 4096;
 
 /// Memory that is locked as it is touched must be touched before it counts.

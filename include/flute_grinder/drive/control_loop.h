@@ -87,9 +87,9 @@ class ControlLoop {
   /// time.
   ///
   /// Hold stops a job on its path, before its first setpoint too; cancel stops it on its path, lifts the wheel off the
-  /// work and ends the job; disable does that and switches the power off. Each stops a lift on its way, a hold that of a
-  /// canceled job too, which ends there. Each ends
-  /// homing by the power: the drive moves by itself then, and no command of the loop's counts.
+  /// work and ends the job; disable does that and switches the power off. Each stops a lift on its way, a hold that of
+  /// a canceled job too, which ends there. Each ends homing by the power: the drive moves by itself then, and no
+  /// command of the loop's counts.
   RequestReply stop(MachineEvent event);
   /// The same without the answer. For any thread and for signal handlers; what is no stop is not taken.
   void postStop(MachineEvent event) noexcept { stops_.post(event); }

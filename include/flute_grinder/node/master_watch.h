@@ -1,5 +1,7 @@
 #pragma once
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -9,10 +11,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-namespace XmlRpc {
-class XmlRpcValue;
-}
 
 namespace flute_grinder {
 

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kLongestName = 255;         ///< of a job
 constexpr double kPollPeriod = 0.001;             ///< [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< of the feedback while a goal is planned
+const ros::WallDuration kLongestSilence(1);       ///< of the control loop
 /// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
 const ros::WallDuration kEndPatience(0.5);
 
@@ -87,6 +88,7 @@ void GoalDesk::onGoal(GoalHandle handle) {
 }
 
 std::string GoalDesk::objection(const GrindGoal& goal, const std::string& digest) const {
+  if (ros::SteadyTime::now() - last_cycle_ > kLongestSilence) return "the control loop does not answer";
   const LoopStatus status = loop_.status();
   if (status.state != MachineState::kReady) {
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
@@ -145,7 +147,10 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
 }
 
 void GoalDesk::poll() {
-  books_.follow(loop_.status());
+  const LoopStatus status = loop_.status();
+  if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
+  cycles_ = status.cycles;
+  books_.follow(status);
   if (!goal_) return;
   switch (goal_->phase) {
     case Phase::kPlanning: return tellPlanning();

@@ -72,6 +72,8 @@ class GoalDesk {
   Teller& teller_;
   Bookkeeper books_;
 
+  std::uint64_t cycles_ = 0;    ///< of the loop
+  ros::SteadyTime last_cycle_;  ///< when their count was seen to go up
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
   ServedQueue thread_;

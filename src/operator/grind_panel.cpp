@@ -166,7 +166,8 @@ void GrindPanel::refresh() {
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
-  if (!view.state) return false;
+  // A grinder that says nothing may hear a stop all the same.
+  if (!view.state) return isStop(event) && link_ && link_->hearsStops();
   const auto state = static_cast<MachineState>(view.state->state);
   // A goal that is planned, or on its way, can be canceled, or held ahead of its first move.
   const bool planned = view.planned || (sent_ && !isInJob(state));

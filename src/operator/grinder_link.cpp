@@ -187,7 +187,7 @@ void GrinderLink::stop(MachineEvent event, const OnAnswer& on_answer) {
 void GrinderLink::sendStops() {
   while (!unsent_.empty()) {
     const Unsent stop = unsent_.front();
-    const bool heard = stops_.getNumSubscribers() > 0;
+    const bool heard = hearsStops();
     if (!heard && ros::SteadyTime::now() < stop.due) return;
     unsent_.pop_front();
     if (heard) {

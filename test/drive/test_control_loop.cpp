@@ -310,7 +310,7 @@ std::vector<RequestCase> refusedRequests() {
                                                        {S::kRetracting, "disable, hold, cancel"},
                                                        {S::kRetracted, "disable, resume, cancel"},
                                                        {S::kResuming, "disable, hold, cancel"},
-                                                       {S::kCanceling, "disable, cancel"},
+                                                       {S::kCanceling, "disable, hold, cancel"},
                                                        {S::kFault, "disable, reset"},
                                                        {S::kLifting, "disable, hold, cancel"}};
   const std::vector<std::pair<E, const char*>> requests{
@@ -359,8 +359,9 @@ INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
                                 RequestCase{S::kHolding, E::kHold}, RequestCase{S::kHeld, E::kHold},
                                 RequestCase{S::kStarting, E::kHold}, RequestCase{S::kStarting, E::kResume},
                                 RequestCase{S::kCanceling, E::kCancel}, RequestCase{S::kCanceling, E::kDisable},
-                                RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
-                                RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable}),
+                                RequestCase{S::kCanceling, E::kHold}, RequestCase{S::kFault, E::kDisable},
+                                RequestCase{S::kLifting, E::kHold}, RequestCase{S::kLifting, E::kCancel},
+                                RequestCase{S::kLifting, E::kDisable}),
                          requestName);
 
 // What the loop alone may find: taken from outside, these would part the state from the stream and from the power.

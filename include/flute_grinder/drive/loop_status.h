@@ -36,7 +36,7 @@ Wheel wheelOf(const GrindProgram& program);
 enum class JobEnd : std::uint8_t {
   kNone,      ///< it runs
   kDone,      ///< at its program's end
-  kCanceled,  ///< stopped on its path, and the wheel lifted off the work
+  kCanceled,  ///< stopped on its path; the wheel is lifted off the work, unless a hold stopped that
   kFault,
 };
 

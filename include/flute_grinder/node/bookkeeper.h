@@ -27,7 +27,7 @@ class Bookkeeper {
   /// @param number of the job, as the loop will count it; what the loop says of another one is not taken.
   void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first,
              std::uint64_t number);
-  /// The job has not been started: what was there before stands again.
+  /// The job has not been started: restores the entry of the job before.
   void revert();
   /// The job has ended.
   void end(const LoopStatus& status);

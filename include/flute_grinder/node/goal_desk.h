@@ -18,8 +18,8 @@
 namespace flute_grinder {
 
 /// The action `~grind`: takes a goal up, has it planned, enters it in the journal, starts it and ends it. It has a
-/// thread of its own, which waits for nobody: what others are asked for comes back as a callback, or is looked for when
-/// the thread comes by. One goal at a time; every other is answered at once.
+/// thread of its own, which blocks on nobody: what others are asked for comes back as a callback, or is polled every
+/// millisecond. One goal at a time; every other is answered at once.
 class GoalDesk {
  public:
   /// @param private_nh the node's own namespace.

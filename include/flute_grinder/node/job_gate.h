@@ -7,8 +7,8 @@
 
 namespace flute_grinder {
 
-/// Where a stop and the start of a job meet: whatever stops a job ahead of its start keeps it from starting, and
-/// whatever comes later is for the control loop. Thread safe; its lock is held for some instructions only.
+/// Decides between a stop and the start of a job: ahead of the start a cancel prevents it and a hold has the job begin
+/// held; what comes later is for the control loop. Thread safe; its lock is held for some instructions only.
 class JobGate {
  public:
   /// A goal has been taken up, and is the one that stops are meant for.
@@ -35,7 +35,7 @@ class JobGate {
   /// Takes that back. @return whether there was something to take back.
   bool resume();
 
-  /// Gives up the goal if its job has not been started, and keeps every other from starting.
+  /// Gives up the goal if its job has not been started, and keeps every other from starting, for good.
   void shut();
 
   bool canceled() const;  ///< whether the goal is to be given up, or its job is being canceled

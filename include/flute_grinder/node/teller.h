@@ -21,7 +21,7 @@
 namespace flute_grinder {
 
 /// Tells what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, what rviz shows, and
-/// diagnostics. It has a thread of its own, which takes the loop's records; nobody waits for it for ever, and when it
+/// diagnostics. It has a thread of its own, which takes the loop's records; no thread blocks on it, and when it
 /// has been away for too long, records are lost, which it tells.
 class Teller {
  public:

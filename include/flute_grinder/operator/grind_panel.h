@@ -22,9 +22,9 @@ class QGridLayout;
 namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
-/// where the table of the machine's states allows what it asks for, and none where the grinder does not answer; Start
-/// wants a job that was planned without a violation besides. Without a ROS master the stops alone are left. Nothing
-/// here waits for the grinder or the master, and both are found again when they come back.
+/// where the table of the machine's states allows what it asks for, and the stops alone where the grinder says
+/// nothing; Start wants a job that was planned without a violation besides. Without a ROS master the stops alone are
+/// left. Nothing here waits for the grinder or the master, and both are found again when they come back.
 ///
 /// Its configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {

@@ -69,6 +69,8 @@ class GrinderLink {
   /// @param event kHold, kCancel or kDisable.
   /// @param on_answer called if no grinder has listened for two seconds; then nothing is sent any more.
   void stop(MachineEvent event, const OnAnswer& on_answer);
+  /// Whether there is a connection for that now.
+  bool hearsStops() const { return stops_.getNumSubscribers() > 0; }
 
  private:
   /// A message with the time when it came.

@@ -103,7 +103,7 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   WAIT_FOR(panel.enabled("hold"));
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.state() == "No answer");
-  WAIT_FOR(panel.enabledRequests() == (Names{"disable", "hold", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
   for (const char* name : {"choose", "plan", "dry_run", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
   EXPECT_EQ(panel.label("meaning"), "No grinder answers as /cell/stage. Does its node run?");
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;

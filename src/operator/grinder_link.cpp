@@ -123,12 +123,7 @@ template <typename Service, typename OnResponse>
 void GrinderLink::call(const std::string& service, const typename Service::Request& request, double timeout,
                        OnResponse on_response) {
   const auto on_answer = [this, on_response](ros::SerializedMessage* answer) {
-    std::optional<typename Service::Response> response;
-    try {
-      if (answer) ros::serialization::deserializeMessage(*answer, response.emplace());
-    } catch (const ros::serialization::StreamOverrunException&) {
-      response.reset();  // cut off: no answer
-    }
+    const auto response = answerOf<Service>(answer);
     post([on_response, response] { on_response(response); });
   };
   calls_.emplace_back(nh_.resolveName(service), ros::service_traits::md5sum<Service>(),

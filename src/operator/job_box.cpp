@@ -42,7 +42,6 @@ JobBox::JobBox(QWidget* parent)
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
-  continue_->setMinimumHeight(continue_->sizeHint().height());  // a small panel would cut its text
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);

@@ -2,10 +2,10 @@
 /// What a step, a setpoint, a planned job and a cycle of the control loop cost. Figures per setpoint or per cycle are
 /// the item rates: 10M items/s are 100 ns each.
 
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/core/units.h"
-#include "flute_grinder/drive/control_loop.h"
 #include "flute_grinder/drive/simulated_drive.h"
 
 #include <benchmark/benchmark.h>

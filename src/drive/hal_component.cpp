@@ -1,6 +1,6 @@
 #include "flute_grinder/drive/hal_component.h"
 
-#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/drive/parameters.h"
 
 #include <signal.h>
 #include <sys/ipc.h>
@@ -34,12 +34,12 @@ const char* typeName(hal_type_t type) {
 
 std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy) {
   const int id = shmget(key, 0, 0);
-  if (id < 0) throw MachineConfigError(what + " is not there (" + std::strerror(errno) + "); " + remedy);
+  if (id < 0) throw ParameterError(what + " is not there (" + std::strerror(errno) + "); " + remedy);
   shmid_ds status{};
   const void* memory = shmat(id, nullptr, 0);
   if (reinterpret_cast<std::intptr_t>(memory) == -1 || shmctl(id, IPC_STAT, &status) != 0) {
-    throw MachineConfigError("no permission to use " + what + " as user " + std::to_string(geteuid()) +
-                             "; allowed: the user that has started HAL");
+    throw ParameterError("no permission to use " + what + " as user " + std::to_string(geteuid()) +
+                         "; allowed: the user that has started HAL");
   }
   shmdt(memory);
   return status.shm_segsz;
@@ -53,7 +53,7 @@ HalComponent::HalComponent(const std::string& name) : HalComponent() {
     removeDead(id_);
     id_ = hal_init(name_.c_str());
   }
-  if (id_ < 0) throw MachineConfigError("HAL takes no component '" + name_ + "': " + std::strerror(-id_));
+  if (id_ < 0) throw ParameterError("HAL takes no component '" + name_ + "': " + std::strerror(-id_));
   auto*& process = *static_cast<hal_s32_t**>(allocate(sizeof(hal_s32_t*)));
   addPin(kProcessPin, HAL_OUT, process, false);
   *process = getpid();
@@ -68,7 +68,7 @@ void HalComponent::removeDead(int reason) {
   // HAL's library lets go of HAL as often as components are removed, and another program's counts too: a second one of
   // our own makes up for it.
   helper_ = hal_init((name_ + '-' + std::to_string(getpid())).c_str());
-  if (helper_ < 0) throw MachineConfigError("HAL takes no component '" + name_ + "': " + std::strerror(-reason));
+  if (helper_ < 0) throw ParameterError("HAL takes no component '" + name_ + "': " + std::strerror(-reason));
   int other = 1;
   for (const char* name = ""; other < kLargestId; ++other) {
     name = hal_comp_name(other);
@@ -79,18 +79,18 @@ void HalComponent::removeDead(int reason) {
   hal_data_u* process = nullptr;
   const std::string pin = name_ + '.' + kProcessPin;
   if (other == kLargestId || hal_get_pin_value_by_name(pin.c_str(), &type, &process, nullptr) != 0) {
-    throw MachineConfigError(taken + ", and it is not a grinder's; allowed: another name");
+    throw ParameterError(taken + ", and it is not a grinder's; allowed: another name");
   }
   if (kill(process->s, 0) == 0 || errno != ESRCH) {
-    throw MachineConfigError(taken + ", of the running process " + std::to_string(process->s) +
-                             "; allowed: to end that first, or another name");
+    throw ParameterError(taken + ", of the running process " + std::to_string(process->s) +
+                         "; allowed: to end that first, or another name");
   }
   hal_exit(other);
 }
 
 void* HalComponent::allocate(std::size_t size) const {
   void* memory = hal_malloc(static_cast<long>(size));
-  if (!memory) throw MachineConfigError("HAL has no memory left for component '" + name_ + "'");
+  if (!memory) throw ParameterError("HAL has no memory left for component '" + name_ + "'");
   std::memset(memory, 0, size);
   return memory;
 }
@@ -99,7 +99,7 @@ void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_
                           bool required) {
   const std::string full = name_ + '.' + name;
   const int made = hal_pin_new(full.c_str(), type, direction, data, id_);
-  if (made < 0) throw MachineConfigError("HAL makes no pin '" + full + "': " + std::strerror(-made));
+  if (made < 0) throw ParameterError("HAL makes no pin '" + full + "': " + std::strerror(-made));
   hal_type_t signal_type = HAL_TYPE_UNSPECIFIED;
   hal_data_u* value = nullptr;
   bool written = false;
@@ -108,23 +108,23 @@ void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_
     return;
   }
   if (signal_type != type) {
-    throw MachineConfigError("HAL's signal '" + name + "' is of type " + typeName(signal_type) +
-                             "; allowed: " + typeName(type));
+    throw ParameterError("HAL's signal '" + name + "' is of type " + typeName(signal_type) +
+                         "; allowed: " + typeName(type));
   }
   if (written && direction == HAL_OUT) {
-    throw MachineConfigError("HAL's signal '" + name + "' has a writer already; allowed: none beside " + full);
+    throw ParameterError("HAL's signal '" + name + "' has a writer already; allowed: none beside " + full);
   }
   // A signal that a HAL file has only set takes the value of the first pin that is linked with it.
   if (direction == HAL_IN) std::memcpy(*data, value, sizeof(*value));
   const int linked = hal_link(full.c_str(), name.c_str());
-  if (linked < 0) throw MachineConfigError("HAL does not link pin '" + full + "': " + std::strerror(-linked));
+  if (linked < 0) throw ParameterError("HAL does not link pin '" + full + "': " + std::strerror(-linked));
 }
 
 void HalComponent::ready() const {
   std::string names;
   for (const std::string& name : missing_) names += (names.empty() ? "" : ", ") + name;
   if (!missing_.empty()) {
-    throw MachineConfigError("HAL lacks the signals " + names + "; allowed: a HAL file that makes them all");
+    throw ParameterError("HAL lacks the signals " + names + "; allowed: a HAL file that makes them all");
   }
   hal_ready(id_);
 }

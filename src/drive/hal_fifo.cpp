@@ -1,7 +1,7 @@
 #include "flute_grinder/drive/hal_fifo.h"
 
 #include "flute_grinder/drive/hal_component.h"
-#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/drive/parameters.h"
 
 #include <rtapi.h>
 
@@ -25,16 +25,16 @@ HalFifo::HalFifo(int component, int streamer, std::uint32_t depth) {
   const std::size_t size = requireHalMemory(key, name, std::string("load it: loadrt streamer cfg=") + kTypes);
   // Attached in full beforehand: hal_stream_attach() maps it in two steps, and keeps the address of the first.
   const int memory = rtapi_shmem_new(key, component, size);
-  if (memory < 0) throw MachineConfigError(name + " cannot be attached: " + std::strerror(-memory));
+  if (memory < 0) throw ParameterError(name + " cannot be attached: " + std::strerror(-memory));
   const int attached = hal_stream_attach(&stream_, component, key, kTypes);
   // The library compares no more types than it is given.
   if (attached < 0 || hal_stream_element_count(&stream_) != kColumns) {
-    throw MachineConfigError(name + " has other columns; allowed: cfg=" + kTypes + " (X, Y, Z, A, number)");
+    throw ParameterError(name + " has other columns; allowed: cfg=" + kTypes + " (X, Y, Z, A, number)");
   }
   const int deepest = hal_stream_maxdepth(&stream_);
   if (deepest < static_cast<int>(depth)) {
-    throw MachineConfigError(name + " has depth=" + std::to_string(deepest) + "; allowed: " + std::to_string(depth) +
-                             " or more for this buffer");
+    throw ParameterError(name + " has depth=" + std::to_string(deepest) + "; allowed: " + std::to_string(depth) +
+                         " or more for this buffer");
   }
 }
 

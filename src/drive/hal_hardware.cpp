@@ -1,6 +1,6 @@
 #include "flute_grinder/drive/hal_hardware.h"
 
-#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/drive/parameters.h"
 
 #include <pluginlib/class_list_macros.hpp>
 
@@ -86,7 +86,7 @@ void HalHardware::checkServoThread(double control_rate) const {
   std::ostringstream text;
   text << "HAL's servo thread runs at " << rate
        << " Hz (0 if it was not started); allowed: control_rate = " << control_rate << " Hz";
-  throw MachineConfigError(text.str());
+  throw ParameterError(text.str());
 }
 
 void HalHardware::registerHandles() {

@@ -1,6 +1,6 @@
 #include "flute_grinder/drive/simulated_drive.h"
 
-#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/drive/parameters.h"
 
 #include <pluginlib/class_list_macros.hpp>
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/node/bookkeeper.h"
 
-#include "flute_grinder/node/conversions.h"
+#include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>
 #include <sstream>

@@ -1,7 +1,7 @@
 #include "flute_grinder/node/goal_desk.h"
 
-#include "flute_grinder/node/conversions.h"
-#include "flute_grinder/node/error_codes.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/error_codes.h"
 
 #include <algorithm>
 #include <cctype>

@@ -40,7 +40,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
     : nh_(nh), private_nh_(private_nh) {
   std::string urdf;
   if (!nh_.getParam("robot_description", urdf)) {
-    throw MachineConfigError("parameter " + nh_.resolveName("robot_description") + " is missing; allowed: a URDF");
+    throw ParameterError("parameter " + nh_.resolveName("robot_description") + " is missing; allowed: a URDF");
   }
   XmlRpc::XmlRpcValue values;
   private_nh_.getParam("", values);
@@ -70,17 +70,17 @@ void GrinderNode::loadDrive(const ParameterReader& parameters) {
   const std::string type = parameters.text("hardware/type");
   loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
   if (!loader_->isClassAvailable(type)) {
-    throw MachineConfigError("parameter " + parameters.name("hardware/type") + " = " + type +
-                             "; allowed: " + join(loader_->getDeclaredClasses()));
+    throw ParameterError("parameter " + parameters.name("hardware/type") + " = " + type +
+                         "; allowed: " + join(loader_->getDeclaredClasses()));
   }
   try {
     hw_ = loader_->createUniqueInstance(type);
   } catch (const pluginlib::PluginlibException& error) {
-    throw MachineConfigError("parameter " + parameters.name("hardware/type") + " = " + type + " cannot be loaded: " +
-                             error.what() + " What it is: " + loader_->getClassDescription(type));
+    throw ParameterError("parameter " + parameters.name("hardware/type") + " = " + type +
+                         " cannot be loaded: " + error.what() + " What it is: " + loader_->getClassDescription(type));
   }
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
-  if (!hw_->init(private_nh_, hardware_nh)) throw MachineConfigError("the drive " + type + " could not be initialised");
+  if (!hw_->init(private_nh_, hardware_nh)) throw ParameterError("the drive " + type + " could not be initialised");
 }
 
 void GrinderNode::shutDown() {

@@ -1,6 +1,6 @@
 #include "flute_grinder/node/journal.h"
 
-#include "flute_grinder/node/sha256.h"
+#include "flute_grinder/messages/sha256.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -1,5 +1,5 @@
+#include "flute_grinder/connection/master_watch.h"
 #include "flute_grinder/node/grinder_node.h"
-#include "flute_grinder/node/master_watch.h"
 #include "flute_grinder/node/output.h"
 
 #include <ros/ros.h>

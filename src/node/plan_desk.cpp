@@ -1,6 +1,6 @@
 #include "flute_grinder/node/plan_desk.h"
 
-#include "flute_grinder/node/conversions.h"
+#include "flute_grinder/messages/conversions.h"
 
 #include <future>
 #include <utility>

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/node/conversions.h"
+#include "flute_grinder/messages/conversions.h"
 
 #include <sensor_msgs/JointState.h>
 

@@ -1,4 +1,4 @@
-#include "fixtures.h"
+#include "control/fixtures.h"
 
 #include <deque>
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/drive/simulated_drive.h"
 
-#include "fixtures.h"
+#include "control/fixtures.h"
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "flute_grinder/node/diagnostics.h"
 
-#include "../drive/fixtures.h"
+#include "control/fixtures.h"
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 

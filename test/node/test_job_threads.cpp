@@ -1,4 +1,4 @@
-#include "../drive/fixtures.h"
+#include "control/fixtures.h"
 
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/planner.h"

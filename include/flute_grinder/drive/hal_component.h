@@ -14,7 +14,7 @@ class HalComponent {
  public:
   /// Attaches to HAL. A component of the same name that a dead program has left is removed; its signals stay.
   /// @param name of the component, up to 20 characters.
-  /// @throw MachineConfigError if HAL does not run, gives no permission, or has a living component of that name.
+  /// @throw ParameterError if HAL does not run, gives no permission, or has a living component of that name.
   explicit HalComponent(const std::string& name);
   ~HalComponent();
   HalComponent(const HalComponent&) = delete;
@@ -24,21 +24,21 @@ class HalComponent {
   const std::string& name() const { return name_; }
 
   /// Memory that HAL can reach, zeroed; pins' pointers must lie in it.
-  /// @throw MachineConfigError if HAL has none left.
+  /// @throw ParameterError if HAL has none left.
   void* allocate(std::size_t size) const;
 
   /// Makes a pin and links it with its signal.
   /// @param name of pin and signal.
   /// @param data where HAL puts the address of the value; from allocate().
   /// @param required whether the signal must be there; a missing one is told by ready().
-  /// @throw MachineConfigError if the signal is of another type or has another writer.
+  /// @throw ParameterError if the signal is of another type or has another writer.
   template <typename Value>
   void addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
     addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)), required);
   }
 
   /// Tells HAL that all pins are there.
-  /// @throw MachineConfigError that lists the signals that are missing.
+  /// @throw ParameterError that lists the signals that are missing.
   void ready() const;
 
  private:
@@ -62,7 +62,7 @@ class HalComponent {
 /// @param what it is, for the message, e.g. "HAL".
 /// @param remedy what to do if it is missing.
 /// @return its size in bytes.
-/// @throw MachineConfigError unless it is there and may be read and written.
+/// @throw ParameterError unless it is there and may be read and written.
 std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy);
 
 }  // namespace flute_grinder

@@ -16,7 +16,7 @@ class HalFifo {
   /// @param component the id of the HAL component.
   /// @param streamer its number, as in `streamer.0`.
   /// @param depth how many commands it must take at least.
-  /// @throw MachineConfigError if there is no such streamer, or one of another type or depth.
+  /// @throw ParameterError if there is no such streamer, or one of another type or depth.
   HalFifo(int component, int streamer, std::uint32_t depth);
   ~HalFifo();
   HalFifo(const HalFifo&) = delete;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/core/grind_program.h"
-#include "flute_grinder/drive/loop_status.h"
 #include "flute_grinder/node/journal_keeper.h"
 
 #include <ros/steady_timer.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 
 namespace flute_grinder {
 

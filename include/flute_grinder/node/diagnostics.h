@@ -1,8 +1,8 @@
 #pragma once
 
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/core/limit_check.h"
-#include "flute_grinder/drive/control_loop.h"
-#include "flute_grinder/drive/machine_config.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
 
@@ -28,7 +28,7 @@ struct DiagnosticThresholds {
 };
 
 /// Reads diagnostics/<figure>/warn and .../error.
-/// @throw MachineConfigError unless all are there, in range, and the error no earlier than the warning.
+/// @throw ParameterError unless all are there, in range, and the error no earlier than the warning.
 DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters);
 
 /// What the system has granted the control loop.

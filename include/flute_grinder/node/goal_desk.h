@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/GrindAction.h"
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/bookkeeper.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/planner.h"

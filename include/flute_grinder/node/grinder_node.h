@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/drive/control_loop.h"
-#include "flute_grinder/drive/machine_config.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/node/goal_desk.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/journal_keeper.h"

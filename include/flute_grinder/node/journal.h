@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/drive/loop_status.h"
 
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/Plan.h"
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/planner.h"
 #include "flute_grinder/node/teller.h"
 

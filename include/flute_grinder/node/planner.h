@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/core/job_plan.h"
-#include "flute_grinder/node/path_markers.h"
+#include "flute_grinder/scene/path_markers.h"
 
 #include <atomic>
 #include <condition_variable>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/served_queue.h"
 

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/served_queue.h"
 

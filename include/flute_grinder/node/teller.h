@@ -1,12 +1,12 @@
 #pragma once
 
 #include "flute_grinder/SetpointBatch.h"
-#include "flute_grinder/drive/control_loop.h"
+#include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/diagnostics.h"
 #include "flute_grinder/node/journal_keeper.h"
 #include "flute_grinder/node/planner.h"
-#include "flute_grinder/node/scene.h"
 #include "flute_grinder/node/served_queue.h"
+#include "flute_grinder/scene/scene.h"
 
 #include <actionlib_msgs/GoalID.h>
 #include <diagnostic_updater/diagnostic_updater.h>

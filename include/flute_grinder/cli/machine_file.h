@@ -1,0 +1,15 @@
+#pragma once
+
+#include "flute_grinder/control/control_loop.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// The machine from the very files that roslaunch loads, without ROS running.
+/// @param parameters YAML, the node's parameters.
+/// @param urdf the robot description.
+/// @throw FileError if a file cannot be read; ParameterError if the machine cannot be used.
+LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf);
+
+}  // namespace flute_grinder

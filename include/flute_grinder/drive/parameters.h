@@ -1,0 +1,41 @@
+#pragma once
+
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace flute_grinder {
+
+/// A parameter that is missing or not allowed; what() names it, its value and what is allowed.
+class ParameterError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads parameters of one namespace, and refuses what is missing, of the wrong type or out of range.
+class ParameterReader {
+ public:
+  /// @param parameters all of the namespace, as a struct.
+  /// @param ns the namespace, for messages, e.g. "/grinder".
+  ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns);
+
+  bool has(const std::string& path) const;
+  /// @throw ParameterError unless the parameter is a finite number from `min` to `max`.
+  double number(const std::string& path, double min, double max) const;
+  /// @throw ParameterError unless the parameter is a bool.
+  bool flag(const std::string& path) const;
+  /// @throw ParameterError unless the parameter is a string that is not empty.
+  std::string text(const std::string& path) const;
+  /// The parameter's full name.
+  std::string name(const std::string& path) const { return ns_ + "/" + path; }
+
+ private:
+  XmlRpc::XmlRpcValue find(const std::string& path) const;
+  XmlRpc::XmlRpcValue require(const std::string& path, const char* what) const;
+
+  XmlRpc::XmlRpcValue parameters_;
+  std::string ns_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,101 @@
+#include "flute_grinder/cli/json_output.h"
+
+#include "flute_grinder/cli/state_watch.h"
+#include "flute_grinder/core/units.h"
+
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+/// One number per axis, the unit of X, Y and Z and that of A in the names.
+Json axes(const Axes& value, const std::string& per_time) {
+  return {{"x_mm" + per_time, value[kX] / kMillimetre},
+          {"y_mm" + per_time, value[kY] / kMillimetre},
+          {"z_mm" + per_time, value[kZ] / kMillimetre},
+          {"a_deg" + per_time, value[kA] / kDegree}};
+}
+
+Json moveDurations(const PlanStatistics& statistics) {
+  Json json = Json::object();
+  for (int i = 0; i < kMoveKindCount; ++i) {
+    json[std::string(toString(static_cast<MoveKind>(i))) + "_s"] =
+        statistics.move_duration[static_cast<std::size_t>(i)];
+  }
+  return json;
+}
+
+Json feedLimits(const PlanStatistics& statistics) {
+  Json json = Json::array();
+  for (const FeedCut& cut : statistics.feed_cuts) {
+    json.push_back({{"cause", cut.cause}, {"from_x_mm", cut.from / kMillimetre}, {"to_x_mm", cut.to / kMillimetre}});
+  }
+  return json;
+}
+
+Json lastJob(const JobProgress& progress) {
+  if (progress.job_digest.empty()) return nullptr;
+  const Cutter& cutter = progress.cutter;
+  return {{"name", progress.job_name},
+          {"cutter",
+           {{"end_diameter_mm", cutter.end_diameter / kMillimetre},
+            {"cone_angle_deg", cutter.cone_angle / kDegree},
+            {"spiral_angle_deg", cutter.spiral_angle / kDegree},
+            {"rake_angle_deg", cutter.rake_angle / kDegree},
+            {"flute_length_mm", cutter.flute_length / kMillimetre},
+            {"teeth", cutter.tooth_angles.size()}}},
+          {"digest", progress.job_digest},
+          {"finished", progress.finished != 0},
+          {"tooth", progress.tooth + 1},
+          {"pass", progress.pass + 1},
+          {"x_mm", progress.x / kMillimetre}};
+}
+
+}  // namespace
+
+Json toJson(const JobPlan& plan) {
+  const PlanStatistics& s = plan.statistics;
+  return {{"valid", plan.good()},
+          {"reasons", plan.reasons},
+          {"setpoints", s.setpoints},
+          {"duration_s", s.duration},
+          {"move_durations", moveDurations(s)},
+          {"largest_odd_error_rad", s.max_odd_error},
+          {"largest_even_error_rad", s.max_even_error},
+          {"largest_deviation_um", s.max_deviation / kMicrometre},
+          {"smallest_feed_mm_min", s.min_feed / kMillimetrePerMinute},
+          {"largest_feed_mm_min", s.max_feed / kMillimetrePerMinute},
+          {"feed_limits", feedLimits(s)},
+          {"largest_velocity", axes(s.max_velocity, "_s")},
+          {"largest_acceleration", axes(s.max_acceleration, "_s2")},
+          {"largest_jerk", axes(s.max_jerk, "_s3")},
+          {"odd_even_ripple", axes(s.ripple_acceleration, "_s2")}};
+}
+
+Json toJson(const GrinderState& state) {
+  const bool job = inJob(state);
+  return {{"state", state.state_name},
+          {"enabled", state.enabled != 0},
+          {"homed", state.homed != 0},
+          {"spindle_at_speed", state.spindle_at_speed != 0},
+          {"coolant_on", state.coolant_on != 0},
+          {"emergency_stop", state.emergency_stop != 0},
+          {"wheel_in_work", state.wheel_in_work != 0},
+          {"feed_mm_min", state.feed / kMillimetrePerMinute},
+          {"override_percent", state.override * 100},
+          {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
+          {"pass", job ? Json(state.pass + 1) : Json(nullptr)},
+          {"hold_reason", state.hold_reason},
+          {"fault", state.fault},
+          {"last_job", lastJob(state.progress)}};
+}
+
+void print(const Json& json) {
+  // A file's name may be any bytes.
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,32 @@
+#include "flute_grinder/cli/last_job.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/conversions.h"
+
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+}  // namespace
+
+std::string lastJob(const JobProgress& p) {
+  const std::string came_to =
+      p.finished ? "finished"
+                 : format("tooth %d, pass %d not finished, X %.3f mm", p.tooth + 1, p.pass + 1, p.x / kMillimetre);
+  return (p.job_name.empty() ? "without a name" : p.job_name) + ": " +
+         toolText(fromMessage(p.cutter), p.cutter.tooth_angles.size()) + "; " + came_to + " (" +
+         p.job_digest.substr(0, 12) + ")";
+}
+
+}  // namespace flute_grinder

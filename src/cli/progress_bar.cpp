@@ -1,0 +1,144 @@
+#include "flute_grinder/cli/progress_bar.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr std::size_t kShortestBar = 12, kLongestBar = 32;  ///< with its brackets
+constexpr std::size_t kAnyWidth = 1000;                     ///< of a line in a file
+constexpr const char* kSeparator = "  ";
+constexpr const char* kClearLine = "\r\x1b[K";
+
+bool isTerminal() {
+  const char* type = std::getenv("TERM");
+  return isatty(STDERR_FILENO) != 0 && type && *type && std::strcmp(type, "dumb") != 0;
+}
+
+/// Columns that a line may take: a character in the last one would have the next begin a new line.
+std::size_t terminalWidth() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  return known ? size.ws_col - 1U : 79U;
+}
+
+template <typename... Arguments>
+std::string format(const char* pattern, Arguments... arguments) {
+  char text[100];
+  std::snprintf(text, sizeof text, pattern, arguments...);
+  return text;
+}
+
+std::string timeLeft(double seconds) {
+  const long all = std::lround(std::clamp(seconds, 0.0, 1e7));
+  if (all < 3600) return format("%ld:%02ld left", all / 60, all % 60);
+  return format("%ld:%02ld:%02ld left", all / 3600, all / 60 % 60, all % 60);
+}
+
+std::string bar(double fraction, std::size_t width) {
+  std::string text(width - 2, '.');
+  const auto done = static_cast<std::size_t>(std::clamp(fraction, 0.0, 1.0) * static_cast<double>(text.size()));
+  text.replace(0, done, done, '#');
+  return "[" + text + "]";
+}
+
+/// A part of the line; of those that do not fit, the one of the highest rank goes first.
+struct Part {
+  int rank;
+  std::string text;
+};
+
+std::size_t length(const std::vector<Part>& parts) {
+  std::size_t sum = 0;
+  for (const Part& part : parts) sum += (sum > 0 ? std::strlen(kSeparator) : 0) + part.text.size();
+  return sum;
+}
+
+bool planning(const GrindFeedback& f) { return f.state == "planning"; }
+
+/// What the bar shows: how much is ground, and before that how much is planned.
+double fraction(const GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
+
+constexpr int kBarRank = 5;
+
+std::vector<Part> partsOf(const GrindFeedback& f, int teeth, int passes) {
+  const Part room_for_bar{kBarRank, std::string(kShortestBar, ' ')};
+  if (planning(f)) return {room_for_bar, {0, format("planning %.0f %%", f.planned * 100)}};
+  return {room_for_bar,
+          {0, format("%3.0f %%", f.job_fraction * 100)},
+          {1, f.state},
+          {2, format("tooth %d/%d", f.tooth + 1, teeth)},
+          {3, format("pass %d/%d", f.pass + 1, passes)},
+          {6, format("X %7.3f mm", f.x / units::kMillimetre)},
+          {7, format("%.0f mm/min", f.feed / units::kMillimetrePerMinute)},
+          {4, timeLeft(f.remaining_time)}};
+}
+
+std::string progressLine(const GrindFeedback& f, int teeth, int passes, std::size_t width) {
+  std::vector<Part> parts = partsOf(f, teeth, passes);
+  const auto lower = [](const Part& a, const Part& b) { return a.rank < b.rank; };
+  while (length(parts) > width && parts.size() > 1) parts.erase(std::max_element(parts.begin(), parts.end(), lower));
+  if (parts.front().rank == kBarRank) {
+    const std::size_t room = width - length(parts) + kShortestBar;
+    parts.front().text = bar(fraction(f), std::min(room, kLongestBar));
+  }
+  std::string line;
+  for (const Part& part : parts) line += (line.empty() ? "" : kSeparator) + part.text;
+  return line.substr(0, width);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(int teeth, int passes) : terminal_(isTerminal()), teeth_(teeth), passes_(passes) {}
+
+ProgressBar::~ProgressBar() { end(); }
+
+void ProgressBar::show(const GrindFeedback& feedback) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (ended_) return;
+  const int tenths = static_cast<int>(fraction(feedback) * 10);
+  const bool changed = tenths != tenths_ || feedback.state != last_.state;
+  tenths_ = tenths;
+  last_ = feedback;
+  begun_ = true;
+  if (terminal_) {
+    draw();
+  } else if (changed) {
+    std::fprintf(stderr, "%s\n", progressLine(last_, teeth_, passes_, kAnyWidth).c_str());
+  }
+}
+
+void ProgressBar::draw() {
+  std::fprintf(stderr, "%s%s", kClearLine, progressLine(last_, teeth_, passes_, terminalWidth()).c_str());
+}
+
+void ProgressBar::say(const std::string& text) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool drawn = terminal_ && begun_ && !ended_;
+  std::fprintf(stderr, "%s%s\n", drawn ? kClearLine : "", text.c_str());
+  if (drawn) draw();
+}
+
+bool ProgressBar::complete() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return !begun_ || planning(last_) || last_.job_fraction >= 1;
+}
+
+void ProgressBar::end() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (terminal_ && begun_ && !ended_) std::fprintf(stderr, "\n");
+  ended_ = true;
+}
+
+}  // namespace flute_grinder

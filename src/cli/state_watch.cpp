@@ -1,0 +1,49 @@
+#include "flute_grinder/cli/state_watch.h"
+
+namespace flute_grinder {
+
+namespace {
+
+const ros::WallDuration kLongestSilence(3);
+
+}  // namespace
+
+const char* const kLinkLost =
+    "the link to the grinder is lost: nothing was heard of it for 3 s, and what the machine does is not known";
+
+bool inJob(const GrinderState& state) {
+  return state.state >= GrinderState::STARTING && state.state <= GrinderState::CANCELING;
+}
+
+StateWatch::StateWatch(ros::NodeHandle& nh) {
+  const boost::function<void(const GrinderState::ConstPtr&)> on_state = [this](const GrinderState::ConstPtr& state) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    newest_ = *state;
+    time_ = ros::SteadyTime::now();
+    ++heard_;
+  };
+  subscriber_ = nh.subscribe<GrinderState>("state", 10, on_state);
+}
+
+bool StateWatch::renew() const {
+  // The first two may have been under way.
+  const std::uint64_t enough = heard() + 3;
+  return await(kLongestSilence, [&] { return heard() >= enough; });
+}
+
+GrinderState StateWatch::newest() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return newest_;
+}
+
+std::uint64_t StateWatch::heard() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return heard_;
+}
+
+bool StateWatch::lost() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return !ros::ok() || ros::SteadyTime::now() - time_ > kLongestSilence;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,48 @@
+#include "flute_grinder/cli/stop_keys.h"
+
+#include "flute_grinder/Stop.h"
+#include "flute_grinder/cli/interrupt.h"
+
+#include <utility>
+
+namespace flute_grinder {
+
+StopKeys::StopKeys(ros::NodeHandle& nh, const StateWatch& watch)
+    : watch_(watch), publisher_(nh.advertise<Stop>("stop", 10)) {}
+
+StopKeys::~StopKeys() {
+  ended_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void StopKeys::hold() const {
+  Stop stop;
+  stop.request = Stop::HOLD;
+  publisher_.publish(stop);
+}
+
+void StopKeys::start(std::function<void()> on_interrupt) {
+  thread_ = std::thread([this, on_interrupt = std::move(on_interrupt)] { follow(on_interrupt); });
+}
+
+void StopKeys::follow(const std::function<void()>& on_interrupt) const {
+  int interrupts_seen = 0, holds_seen = 0;
+  bool waits_for_job = false;
+  while (!ended_) {
+    if (const int asked = interrupts(); asked != interrupts_seen) {
+      interrupts_seen = asked;
+      on_interrupt();
+    }
+    const bool pressed = holds() != holds_seen;
+    const bool job = inJob(watch_.newest());
+    if (pressed || (waits_for_job && job)) {
+      hold();
+      // While it is planned there is no job yet that could be held, and it must not begin to move.
+      waits_for_job = !job;
+    }
+    if (pressed) holds_seen = holds();
+    ros::WallDuration(0.002).sleep();
+  }
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,191 @@
+#include "flute_grinder/connection/master_watch.h"
+
+#include <ros/connection_manager.h>
+#include <ros/network.h>
+#include <ros/ros.h>
+#include <ros/service_manager.h>
+#include <ros/xmlrpc_manager.h>
+#include <xmlrpcpp/XmlRpc.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+constexpr std::chrono::seconds kInterval(1);
+constexpr std::chrono::seconds kTimeout(1);  ///< of one call
+constexpr double kSlice = 0.02;              ///< after which a call that waits looks whether it still may [s]
+constexpr int kAttempts = 5;                 ///< for lists of publishers that grow while they are passed on
+
+/// What a call of ROS' API has brought: nothing unless it is [1, text, value].
+std::optional<XmlRpcValue> valueOf(XmlRpcValue& answer) {
+  const bool complete = answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3;
+  if (!complete || answer[0].getType() != XmlRpcValue::TypeInt || static_cast<int>(answer[0]) != 1) return std::nullopt;
+  return answer[2];
+}
+
+XmlRpcValue listOf(const std::vector<XmlRpcValue>& values) {
+  XmlRpcValue list;
+  list.setSize(static_cast<int>(values.size()));
+  for (std::size_t i = 0; i < values.size(); ++i) list[static_cast<int>(i)] = values[i];
+  return list;
+}
+
+/// The texts of a list; those of its members that are none are left out.
+std::vector<std::string> texts(XmlRpcValue& list) {
+  std::vector<std::string> found;
+  if (list.getType() != XmlRpcValue::TypeArray) return found;
+  for (int i = 0; i < list.size(); ++i) {
+    if (list[i].getType() == XmlRpcValue::TypeString) found.push_back(list[i]);
+  }
+  return found;
+}
+
+/// The [topic, type] of a list.
+std::vector<std::pair<std::string, std::string>> topics(XmlRpcValue list) {
+  std::vector<std::pair<std::string, std::string>> found;
+  for (int i = 0; list.getType() == XmlRpcValue::TypeArray && i < list.size(); ++i) {
+    const std::vector<std::string> topic = texts(list[i]);
+    if (topic.size() == 2) found.emplace_back(topic[0], topic[1]);
+  }
+  return found;
+}
+
+std::string ownUri() { return ros::XMLRPCManager::instance()->getServerURI(); }
+
+}  // namespace
+
+MasterWatch::MasterWatch(std::vector<std::string> services) : services_(std::move(services)) {
+  // What every node of roscpp has.
+  for (const char* service : {"/get_loggers", "/set_logger_level"}) {
+    services_.push_back(ros::this_node::getName() + service);
+  }
+  thread_ = std::thread([this] { run(); });
+}
+
+MasterWatch::~MasterWatch() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  stop_.notify_one();
+  thread_.join();
+}
+
+void MasterWatch::run() {
+  while (!stopping_ && ros::ok()) {
+    look();
+    std::unique_lock<std::mutex> lock(mutex_);
+    stop_.wait_for(lock, kInterval, [this] { return stopping_.load(); });
+  }
+}
+
+void MasterWatch::look() {
+  const bool answers = askMaster("getPid").has_value();
+  if (stopping_ || !ros::ok()) return;
+  if (!answers) {
+    if (master_.exchange(Master::kMissing) == Master::kAnswers) {
+      ROS_WARN_THROTTLE(10, "no ROS master answers at %s", ros::master::getURI().c_str());
+    }
+    return;
+  }
+  if (!askMaster("lookupService", {services_.back()})) {
+    if (!registerAnew()) return;
+    ROS_WARN_THROTTLE(10, "registered anew with the ROS master at %s", ros::master::getURI().c_str());
+  }
+  master_ = Master::kAnswers;
+}
+
+bool MasterWatch::registerAnew() {
+  // First what others wait for; last, among the services, what the master is asked for to know whether it has all.
+  return registerPublications() && registerSubscriptions() && registerServices();
+}
+
+bool MasterWatch::registerPublications() {
+  const auto publications = askSelf("getPublications");
+  if (!publications) return false;
+  for (const auto& [topic, type] : topics(*publications)) {
+    if (!askMaster("registerPublisher", {topic, type, ownUri()})) return false;
+  }
+  return true;
+}
+
+bool MasterWatch::registerServices() {
+  const std::string uri =
+      "rosrpc://" + ros::network::getHost() + ":" + std::to_string(ros::ConnectionManager::instance()->getTCPPort());
+  for (const std::string& service : services_) {
+    if (!ros::ServiceManager::instance()->lookupServicePublication(service)) continue;
+    if (!askMaster("registerService", {service, uri, ownUri()})) return false;
+  }
+  return true;
+}
+
+bool MasterWatch::registerSubscriptions() {
+  const auto subscriptions = askSelf("getSubscriptions");
+  if (!subscriptions) return false;
+  const auto connected = connectedPublishers();
+  for (const auto& [topic, type] : topics(*subscriptions)) {
+    const auto publishers = connected.find(topic);
+    if (!registerSubscription(topic, type, publishers == connected.end() ? Uris() : publishers->second)) return false;
+  }
+  return true;
+}
+
+bool MasterWatch::registerSubscription(const std::string& topic, const std::string& type, const Uris& connected) {
+  // Publishers that the new master does not know yet stay connected. The master tells of others by itself from now on,
+  // but what it told while its list was on the way is undone by that; hence once more where it has grown.
+  Uris told = connected;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    auto publishers = askMaster("registerSubscriber", {topic, type, ownUri()});
+    if (!publishers) return false;
+    const std::size_t before = told.size();
+    for (const std::string& uri : texts(*publishers)) told.insert(uri);
+    if (told.size() == before) return true;
+    if (!askSelf("publisherUpdate", {topic, listOf({told.begin(), told.end()})})) return false;
+  }
+  return true;
+}
+
+std::map<std::string, MasterWatch::Uris> MasterWatch::connectedPublishers() {
+  std::map<std::string, Uris> found;
+  auto connections = askSelf("getBusInfo");
+  if (!connections || connections->getType() != XmlRpcValue::TypeArray) return found;
+  for (int i = 0; i < connections->size(); ++i) {
+    // Of [number, publisher, "i", transport, topic, ...]; a connection to a subscriber has an "o".
+    const std::vector<std::string> connection = texts((*connections)[i]);
+    if (connection.size() >= 4 && connection[1] == "i") found[connection[3]].insert(connection[0]);
+  }
+  return found;
+}
+
+std::optional<XmlRpcValue> MasterWatch::ask(const std::string& host, unsigned port, const char* method,
+                                            const std::vector<Value>& arguments) {
+  std::vector<Value> all{ros::this_node::getName()};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+  if (!client.executeNonBlock(method, listOf(all))) return std::nullopt;
+  XmlRpc::XmlRpcDispatch dispatch;
+  dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
+  const auto due = std::chrono::steady_clock::now() + kTimeout;
+  while (!stopping_ && client.getfd() >= 0 && std::chrono::steady_clock::now() < due) {
+    dispatch.work(kSlice);
+    Value answer;
+    if (client.executeCheckDone(answer)) return valueOf(answer);
+  }
+  return std::nullopt;
+}
+
+std::optional<XmlRpcValue> MasterWatch::askMaster(const char* method, const std::vector<Value>& arguments) {
+  return ask(ros::master::getHost(), ros::master::getPort(), method, arguments);
+}
+
+std::optional<XmlRpcValue> MasterWatch::askSelf(const char* method, const std::vector<Value>& arguments) {
+  return ask(ros::network::getHost(), ros::XMLRPCManager::instance()->getServerPort(), method, arguments);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,57 @@
+#include "flute_grinder/control/loop_requests.h"
+
+#include <sstream>
+
+namespace flute_grinder {
+
+RequestReply Answer::reply() const {
+  if (refusal == Refusal::kNone) return {true, "", true};
+  std::ostringstream text;
+  text << toString(event) << " refused: ";
+  switch (refusal) {
+    case Refusal::kNone: break;
+    case Refusal::kState:
+      text << "the machine is in state " << toString(state) << "; allowed: " << allowedIn(state);
+      break;
+    case Refusal::kEmergencyStop: text << "the emergency stop is pressed; release it first"; break;
+    case Refusal::kDriveFault: text << "the drive reports a fault; reset it first"; break;
+    case Refusal::kInterlock: text << toString(interlock); break;
+    case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
+    case Refusal::kMoved: text << "the axes do not stand where the job was planned to start; plan it again"; break;
+    case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;
+    case Refusal::kWithdrawn: text << "disable came before the power"; break;
+    case Refusal::kInWork: text << "the wheel stands in the work; lift it first"; break;
+    case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
+    case Refusal::kLiftTooFar:
+      text << "it would lead " << kJointNames[kY] << " to " << value << " m; allowed: up to " << limit << " m";
+      break;
+  }
+  return {false, text.str(), true};
+}
+
+std::uint32_t StopRoad::ask(MachineEvent stop) noexcept {
+  const std::uint32_t ticket = ticket_.load(std::memory_order_relaxed) + 1;
+  ticket_.store(ticket, std::memory_order_relaxed);
+  bits_.fetch_or(askedBit(stop));
+  return ticket;
+}
+
+std::optional<Answer> StopRoad::reply(MachineEvent stop, std::uint32_t ticket) const noexcept {
+  if (!isStop(stop)) return std::nullopt;
+  const std::uint64_t word = answers_[indexOf(stop)].load(std::memory_order_acquire);
+  if (word >> 32 != ticket) return std::nullopt;
+  Answer answer;
+  answer.event = stop;
+  answer.state = static_cast<MachineState>(word >> 8 & 0xff);
+  answer.refusal = static_cast<Refusal>(word & 0xff);
+  return answer;
+}
+
+void StopRoad::answer(const Answer& answer) noexcept {
+  const std::uint64_t ticket = ticket_.load(std::memory_order_relaxed);
+  answers_[indexOf(answer.event)].store(
+      ticket << 32 | static_cast<std::uint64_t>(answer.state) << 8 | static_cast<std::uint64_t>(answer.refusal),
+      std::memory_order_release);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,111 @@
+#include "flute_grinder/control/machine_config.h"
+
+#include <urdf/model.h>
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kSmallest = kSmallestFigure;
+constexpr double kLargest = kLargestFigure;
+
+/// One kind of limit, as ros_control names it.
+struct LimitName {
+  const char* flag;
+  const char* value;
+};
+constexpr LimitName kVelocity{"has_velocity_limits", "max_velocity"};
+constexpr LimitName kAcceleration{"has_acceleration_limits", "max_acceleration"};
+constexpr LimitName kJerk{"has_jerk_limits", "max_jerk"};
+
+/// Whether the parameters state a limit; half of one is an error, and so is doing away with one.
+bool states(const ParameterReader& p, const std::string& joint, const char* flag,
+            std::initializer_list<const char*> values) {
+  const std::string ns = "joint_limits/" + joint + "/";
+  if (!p.has(ns + flag)) {
+    for (const char* value : values) {
+      if (p.has(ns + value)) {
+        throw ParameterError("parameter " + p.name(ns + flag) + " is missing, though " + p.name(ns + value) +
+                             " is there; allowed: true beside it");
+      }
+    }
+    return false;
+  }
+  if (!p.flag(ns + flag)) {
+    throw ParameterError("parameter " + p.name(ns + flag) +
+                         " = false; allowed: true, since every axis needs this limit");
+  }
+  return true;
+}
+
+double limit(const ParameterReader& p, const std::string& joint, const LimitName& name, double from_urdf) {
+  if (states(p, joint, name.flag, {name.value})) {
+    return p.number("joint_limits/" + joint + "/" + name.value, kSmallest, kLargest);
+  }
+  if (from_urdf > 0 && std::isfinite(from_urdf)) return from_urdf;
+  throw ParameterError("parameter " + p.name("joint_limits/" + joint + "/" + name.flag) +
+                       " is missing, and robot_description has no such limit; allowed: true, with " + name.value);
+}
+
+const urdf::Joint& axisJoint(const urdf::Model& model, int axis) {
+  const char* name = kJointNames[static_cast<std::size_t>(axis)];
+  const auto joint = model.getJoint(name);
+  if (!joint) throw ParameterError(std::string("robot_description has no joint ") + name);
+  const int type = axis == kA ? urdf::Joint::REVOLUTE : urdf::Joint::PRISMATIC;
+  if (joint->type != type) {
+    throw ParameterError(std::string("robot_description: joint ") + name + " must be " +
+                         (axis == kA ? "revolute, with limits over several turns" : "prismatic"));
+  }
+  return *joint;
+}
+
+void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, LoopConfig& config) {
+  const urdf::Joint& joint = axisJoint(model, axis);
+  const std::string name = joint.name;
+  const std::string ns = "joint_limits/" + name + "/";
+  AxisLimits& limits = config.machine.limits;
+
+  if (states(p, name, "has_position_limits", {"min_position", "max_position"})) {
+    limits.min_position[axis] = p.number(ns + "min_position", -kLargest, kLargest);
+    limits.max_position[axis] = p.number(ns + "max_position", -kLargest, kLargest);
+  } else if (joint.limits) {
+    limits.min_position[axis] = joint.limits->lower;
+    limits.max_position[axis] = joint.limits->upper;
+  }
+  if (!(limits.min_position[axis] < limits.max_position[axis])) {
+    std::ostringstream text;
+    text << "parameters " << p.name(ns + "min_position")
+         << ", max_position (or the limits of robot_description): " << limits.min_position[axis] << " to "
+         << limits.max_position[axis] << " " << axisUnit(axis) << "; allowed: the lower below the upper";
+    throw ParameterError(text.str());
+  }
+  limits.max_velocity[axis] = limit(p, name, kVelocity, joint.limits ? joint.limits->velocity : 0);
+  limits.max_acceleration[axis] = limit(p, name, kAcceleration, 0);
+  limits.max_jerk[axis] = limit(p, name, kJerk, 0);
+  config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kSmallest, kLargest);
+  config.machine.park[axis] = p.number("park_position/" + name, limits.min_position[axis], limits.max_position[axis]);
+}
+
+}  // namespace
+
+LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) {
+  urdf::Model model;
+  if (!model.initString(urdf)) throw ParameterError("robot_description is not a URDF");
+  LoopConfig config;
+  config.machine.period = 1 / p.number("control_rate", 10, 20000);
+  config.feedback_timeout = p.number("feedback_timeout", 0, 1);
+  config.enable_timeout = p.number("enable_timeout", 0, 60);
+  config.homing_timeout = p.number("homing_timeout", 0, 3600);
+  config.spindle_timeout = p.number("spindle_timeout", 0, 600);
+  config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
+  config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
+  config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
+  for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
+  return config;
+}
+
+}  // namespace flute_grinder

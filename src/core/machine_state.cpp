@@ -1,0 +1,154 @@
+#include "flute_grinder/core/machine_state.h"
+
+namespace flute_grinder {
+
+namespace {
+
+struct Transition {
+  MachineState from;
+  MachineEvent event;
+  MachineState to;
+};
+
+using S = MachineState;
+using E = MachineEvent;
+
+constexpr Transition kTransitions[]{
+    {S::kDisabled, E::kEnable, S::kReady},
+    {S::kDisabled, E::kDisable, S::kDisabled},
+    {S::kDisabled, E::kReset, S::kDisabled},  // of a fault that the drive has kept, or has got since
+
+    {S::kReady, E::kEnable, S::kReady},
+    {S::kReady, E::kDisable, S::kDisabled},
+    {S::kReady, E::kHome, S::kHoming},
+    {S::kReady, E::kStart, S::kStarting},
+    {S::kReady, E::kLift, S::kLifting},
+    {S::kReady, E::kFault, S::kFault},
+
+    // The drive moves by itself, and nothing but its power stops it.
+    {S::kHoming, E::kDisable, S::kDisabled},
+    {S::kHoming, E::kHold, S::kDisabled},
+    {S::kHoming, E::kCancel, S::kDisabled},
+    {S::kHoming, E::kDone, S::kReady},
+    {S::kHoming, E::kFault, S::kFault},
+
+    {S::kStarting, E::kDisable, S::kCanceling},
+    {S::kStarting, E::kHold, S::kStarting},  // and then held, before anything moves
+    {S::kStarting, E::kResume, S::kStarting},
+    {S::kStarting, E::kCancel, S::kCanceling},
+    {S::kStarting, E::kDone, S::kRunning},
+    {S::kStarting, E::kAtRest, S::kReady},  // spindle and coolant did not come
+    {S::kStarting, E::kFault, S::kFault},
+
+    {S::kRunning, E::kDisable, S::kCanceling},
+    {S::kRunning, E::kHold, S::kHolding},
+    {S::kRunning, E::kCancel, S::kCanceling},
+    {S::kRunning, E::kAtRest, S::kReady},
+    {S::kRunning, E::kFault, S::kFault},
+
+    {S::kHolding, E::kDisable, S::kCanceling},
+    {S::kHolding, E::kHold, S::kHolding},
+    {S::kHolding, E::kResume, S::kResuming},
+    {S::kHolding, E::kCancel, S::kCanceling},
+    {S::kHolding, E::kAtRest, S::kHeld},
+    {S::kHolding, E::kFault, S::kFault},
+
+    {S::kHeld, E::kDisable, S::kCanceling},
+    {S::kHeld, E::kHold, S::kHeld},
+    {S::kHeld, E::kResume, S::kResuming},
+    {S::kHeld, E::kRetract, S::kRetracting},
+    {S::kHeld, E::kCancel, S::kCanceling},
+    {S::kHeld, E::kFault, S::kFault},
+
+    {S::kRetracting, E::kDisable, S::kCanceling},
+    {S::kRetracting, E::kHold, S::kHolding},
+    {S::kRetracting, E::kCancel, S::kCanceling},
+    {S::kRetracting, E::kAtRest, S::kRetracted},
+    {S::kRetracting, E::kFault, S::kFault},
+
+    {S::kRetracted, E::kDisable, S::kCanceling},
+    {S::kRetracted, E::kResume, S::kResuming},
+    {S::kRetracted, E::kCancel, S::kCanceling},
+    {S::kRetracted, E::kFault, S::kFault},
+
+    {S::kResuming, E::kDisable, S::kCanceling},
+    {S::kResuming, E::kHold, S::kHolding},
+    {S::kResuming, E::kCancel, S::kCanceling},
+    {S::kResuming, E::kDone, S::kRunning},
+    {S::kResuming, E::kFault, S::kFault},
+
+    {S::kCanceling, E::kDisable, S::kCanceling},
+    {S::kCanceling, E::kHold, S::kCanceling},  // the wheel is not lifted any farther
+    {S::kCanceling, E::kCancel, S::kCanceling},
+    {S::kCanceling, E::kAtRest, S::kReady},
+    {S::kCanceling, E::kFault, S::kFault},
+
+    {S::kFault, E::kDisable, S::kFault},  // its power is off
+    {S::kFault, E::kReset, S::kDisabled},
+
+    // Each stops the lift on its way.
+    {S::kLifting, E::kDisable, S::kLifting},
+    {S::kLifting, E::kHold, S::kLifting},
+    {S::kLifting, E::kCancel, S::kLifting},
+    {S::kLifting, E::kAtRest, S::kReady},
+    {S::kLifting, E::kFault, S::kFault},
+};
+
+}  // namespace
+
+const char* toString(MachineState state) noexcept {
+  switch (state) {
+    case S::kDisabled: return "disabled";
+    case S::kReady: return "ready";
+    case S::kHoming: return "homing";
+    case S::kStarting: return "starting";
+    case S::kRunning: return "running";
+    case S::kHolding: return "holding";
+    case S::kHeld: return "held";
+    case S::kRetracting: return "retracting";
+    case S::kRetracted: return "retracted";
+    case S::kResuming: return "resuming";
+    case S::kCanceling: return "canceling";
+    case S::kFault: return "fault";
+    case S::kLifting: return "lifting";
+  }
+  return "unknown";
+}
+
+const char* toString(MachineEvent event) noexcept {
+  switch (event) {
+    case E::kEnable: return "enable";
+    case E::kDisable: return "disable";
+    case E::kHome: return "home";
+    case E::kStart: return "start";
+    case E::kHold: return "hold";
+    case E::kResume: return "resume";
+    case E::kRetract: return "retract";
+    case E::kLift: return "lift";
+    case E::kCancel: return "cancel";
+    case E::kReset: return "reset";
+    case E::kDone: return "done";
+    case E::kAtRest: return "at rest";
+    case E::kFault: return "fault";
+  }
+  return "unknown";
+}
+
+std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept {
+  for (const Transition& t : kTransitions) {
+    if (t.from == state && t.event == event) return t.to;
+  }
+  return std::nullopt;
+}
+
+bool isInJob(MachineState state) noexcept { return after(state, E::kCancel) == S::kCanceling; }
+
+std::string allowedIn(MachineState state) {
+  std::string text;
+  for (const Transition& t : kTransitions) {
+    if (t.from == state && isRequest(t.event)) text += (text.empty() ? "" : ", ") + std::string(toString(t.event));
+  }
+  return text;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,251 @@
+#include "flute_grinder/panel/grind_panel.h"
+
+#include "flute_grinder/panel/plain_words.h"
+#include "flute_grinder/panel/text_view.h"
+
+#include <QGridLayout>
+#include <QTime>
+#include <QVBoxLayout>
+#include <pluginlib/class_list_macros.hpp>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kRefreshInterval = 50;  ///< as often as the grinder tells its state [ms]
+constexpr int kMessages = 200;        ///< that are kept
+
+/// One for the process, however many panels there are.
+std::shared_ptr<MasterWatch> masterWatch() {
+  static std::weak_ptr<MasterWatch> the;
+  auto watch = the.lock();
+  if (!watch) the = watch = std::make_shared<MasterWatch>();
+  return watch;
+}
+
+}  // namespace
+
+GrindPanel::GrindPanel(QWidget* parent)
+    : rviz::Panel(parent),
+      master_watch_(masterWatch()),
+      state_(new StateBox),
+      job_(new JobBox),
+      override_(new OverrideBox),
+      progress_(new ProgressBox),
+      position_(new PositionBox),
+      messages_(textView("messages", 3)),
+      node_edit_(new QLineEdit) {
+  messages_->setMaximumBlockCount(kMessages);
+  messages_->setPlaceholderText("What the grinder has answered");
+  node_edit_->setObjectName("node");
+  node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
+  layOut();
+  connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
+  connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
+  connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
+  connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
+  connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
+  connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
+    if (node_edit_->text() == node_) return;
+    setNode(node_edit_->text());
+    Q_EMIT configChanged();
+  });
+  connect(&refresh_timer_, &QTimer::timeout, this, &GrindPanel::refresh);
+  setNode("grinder");
+  refresh_timer_.start(kRefreshInterval);
+}
+
+void GrindPanel::layOut() {
+  auto* buttons = new QGridLayout;
+  addButton(*buttons, 0, 0, 3, MachineEvent::kEnable, "Enable", "Switch the drive's power on; nothing moves");
+  addButton(*buttons, 0, 3, 3, MachineEvent::kDisable, "Disable",
+            "Switch the drive's power off; a job is stopped and its wheel lifted first");
+  addButton(*buttons, 0, 6, 3, MachineEvent::kHome, "Home", "The drive finds the axes' reference; the axes may move");
+  addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Take a fault back; the power stays off");
+  addButton(*buttons, 1, 0, 6, MachineEvent::kStart, "Start", "Grind the planned job");
+  addButton(*buttons, 1, 6, 6, MachineEvent::kHold, "Hold", "Stop on the path; the wheel turns on");
+  addButton(*buttons, 2, 0, 3, MachineEvent::kRetract, "Retract", "Lift the held wheel off the work");
+  addButton(*buttons, 2, 3, 3, MachineEvent::kResume, "Resume", "Go on where the job was held");
+  addButton(*buttons, 2, 6, 3, MachineEvent::kCancel, "Cancel", "Stop on the path, lift the wheel and end the job");
+  addButton(*buttons, 2, 9, 3, MachineEvent::kLift, "Lift", "Lift the wheel off the work, without a job");
+  for (const MachineEvent event : {MachineEvent::kStart, MachineEvent::kHold}) {
+    QFont bold = font();
+    bold.setBold(true);
+    buttons_[event]->setFont(bold);
+    buttons_[event]->setMinimumHeight(2 * fontMetrics().height() + 6);
+  }
+
+  auto* node = new QHBoxLayout;
+  node->addWidget(new QLabel("Grinder's node"));
+  node->addWidget(node_edit_, 1);
+
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(state_);
+  layout->addWidget(job_, 2);
+  layout->addLayout(buttons);
+  layout->addWidget(override_);
+  layout->addWidget(progress_);
+  layout->addWidget(position_);
+  layout->addWidget(messages_, 1);
+  layout->addLayout(node);
+}
+
+void GrindPanel::addButton(QGridLayout& layout, int row, int column, int columns, MachineEvent event,
+                           const QString& text, const QString& hint) {
+  auto* button = new QPushButton(text);
+  button->setObjectName(toString(event));
+  button->setToolTip(hint);
+  button->setEnabled(false);
+  button->setMinimumWidth(10);
+  layout.addWidget(button, row, column, 1, columns);
+  buttons_[event] = button;
+  connect(button, &QPushButton::clicked, this, [this, event] { ask(event); });
+}
+
+void GrindPanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  QString node, job;
+  if (config.mapGetString("Node", &node)) setNode(node);
+  if (config.mapGetString("Job", &job)) job_->setFile(job);
+}
+
+void GrindPanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue("Node", node_);
+  config.mapSetValue("Job", job_->file());
+}
+
+void GrindPanel::setNode(const QString& node) {
+  node_ = node;
+  node_edit_->setText(node);
+  planning_ = false;
+  sent_.reset();
+  job_->forgetPlan();  // it is another machine's
+  override_->reset();
+  link_.reset();
+  name_.clear();
+  try {
+    if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
+    name_ = ros::names::resolve(node.toStdString());
+  } catch (const ros::InvalidNameException& error) {
+    say(std::string("grinder's node: ") + error.what());
+  }
+  refresh();
+}
+
+void GrindPanel::connectLink() {
+  // Without a master it would wait for one.
+  if (name_.empty() || master_watch_->master() == Master::kMissing) return;
+  link_ = std::make_unique<GrinderLink>(
+      name_, [this](const std::string& id, const GrindResult& result) { onResult(id, result); });
+}
+
+void GrindPanel::refresh() {
+  GrinderView view;
+  if (!link_) connectLink();
+  if (link_) {
+    link_->deliver();
+    view = link_->view();
+  }
+  const Master master = master_watch_->master();
+  std::optional<MachineState> state;
+  if (view.state) state = static_cast<MachineState>(view.state->state);
+  if (!state && sent_) {  // a grinder that is gone will not tell its end
+    sent_.reset();
+    job_->forgetPlan();
+  }
+  state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
+  const bool job_runs = state && isInJob(*state);
+  const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
+  job_->refresh(view.state, idle && master == Master::kAnswers);
+  for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
+  override_->setEnabled(master == Master::kAnswers);
+  override_->refresh(view.state);
+  progress_->show(view, job_runs);
+  position_->show(view);
+}
+
+bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
+  // A grinder that says nothing may hear a stop all the same.
+  if (!view.state) return isStop(event) && link_ && link_->hearsStops();
+  const auto state = static_cast<MachineState>(view.state->state);
+  // A goal that is planned, or on its way, can be canceled, or held ahead of its first move.
+  const bool planned = view.planned || (sent_ && !isInJob(state));
+  const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
+  if (!(planned && for_a_goal) && !after(state, event)) return false;
+  if (isStop(event)) return true;
+  if (master_watch_->master() == Master::kMissing) return false;
+  switch (event) {
+    case MachineEvent::kHome: return !view.state->wheel_in_work;
+    case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
+    case MachineEvent::kLift: return view.state->wheel_in_work != 0;
+    default: return true;
+  }
+}
+
+void GrindPanel::ask(MachineEvent event) {
+  if (event == MachineEvent::kStart) return job_->start();
+  const auto on_answer = [this](const std::string& refusal) {
+    if (!refusal.empty()) say(refusal);
+  };
+  if (isStop(event)) return link_->stop(event, on_answer);
+  link_->request(event, on_answer);
+}
+
+void GrindPanel::plan(const GrindGoal& goal) {
+  planning_ = true;
+  link_->plan(goal, [this, goal](const Plan::Response& plan) {
+    planning_ = false;
+    job_->setPlan(goal, plan);
+  });
+}
+
+void GrindPanel::dryRun(const GrindGoal& goal) {
+  GrindGoal dry = goal;
+  dry.dry_run = true;
+  send(dry);
+  if (!sent_) job_->forgetPlan();
+}
+
+void GrindPanel::send(const GrindGoal& goal) {
+  const auto id = link_->send(goal);
+  if (id) sent_ = Sent{*id, goal};
+  if (!id) say("the job was not sent: no answer from the grinder " + name_);
+}
+
+void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
+  const bool good = result.error_code == GrindResult::SUCCESSFUL;
+  if (sent_ && id == sent_->id) {
+    GrindGoal goal = sent_->goal;
+    sent_.reset();
+    if (goal.dry_run) {
+      goal.dry_run = false;
+      Plan::Response plan;
+      plan.valid = static_cast<std::uint8_t>(good);
+      plan.statistics = result.statistics;
+      plan.duration = result.statistics.duration;
+      plan.reasons = {result.error_string};
+      job_->setPlan(goal, plan);
+      if (good) say(result.error_string);
+      return;
+    }
+  }
+  say(good ? "the job is done" : "the job has ended: " + result.error_string);
+}
+
+void GrindPanel::setFeedOverride(double fraction) {
+  link_->setFeedOverride(fraction, [this](const std::string& refusal) {
+    override_->answered();
+    if (!refusal.empty()) say(refusal);
+  });
+}
+
+void GrindPanel::say(const std::string& text) {
+  QString told = QString::fromStdString(inShopUnits(text));
+  if (!told.isEmpty()) told[0] = told[0].toUpper();
+  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + told);
+}
+
+}  // namespace flute_grinder
+
+PLUGINLIB_EXPORT_CLASS(flute_grinder::GrindPanel, rviz::Panel)

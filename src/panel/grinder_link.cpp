@@ -1,0 +1,196 @@
+#include "flute_grinder/panel/grinder_link.h"
+
+#include "flute_grinder/GrindActionGoal.h"
+#include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/Stop.h"
+
+#include <std_srvs/Trigger.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+const ros::WallDuration kStale(1);  ///< state and positions come at 20 Hz and more
+
+constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
+
+// Longest time to an answer [s].
+constexpr double kRequestTimeout = 10;
+constexpr double kPlanTimeout = 60;
+
+/// For which a stop waits for a connection: longer than it takes to make it after grinder or master have come back.
+const ros::WallDuration kStopTimeout(2);
+
+const char* serviceOf(MachineEvent event) { return event == MachineEvent::kReset ? "reset_fault" : toString(event); }
+
+Stop stopFor(MachineEvent event) {
+  Stop stop;
+  stop.request = event == MachineEvent::kHold     ? Stop::HOLD
+                 : event == MachineEvent::kCancel ? Stop::CANCEL
+                                                  : Stop::DISABLE;
+  return stop;
+}
+
+template <typename Message>
+bool isFresh(const std::optional<Message>& received) {
+  return received && ros::SteadyTime::now() - received->time <= kStale;
+}
+
+}  // namespace
+
+GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
+    : nh_(node), on_result_(std::move(on_result)), spinner_(1, &queue_) {
+  nh_.setCallbackQueue(&queue_);
+  ros::NodeHandle around(ros::names::parentNamespace(nh_.getNamespace()));
+  around.setCallbackQueue(&queue_);
+  const auto hints = ros::TransportHints().tcpNoDelay();
+  subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
+  subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
+  subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
+  subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
+  goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
+  stops_ = nh_.advertise<Stop>("stop", 10);
+  spinner_.start();
+}
+
+GrinderLink::~GrinderLink() { spinner_.stop(); }
+
+GrinderView GrinderLink::view() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  GrinderView view;
+  if (isFresh(state_)) view.state = state_->message;
+  if (isFresh(position_)) view.position = position_->message;
+  if (feedback_) view.progress = feedback_->message.feedback;
+  if (isFresh(feedback_) && view.progress->state == kPlanning) view.planned = view.progress->planned;
+  return view;
+}
+
+void GrinderLink::onState(const GrinderState::ConstPtr& state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  state_ = Received<GrinderState>{*state, ros::SteadyTime::now()};
+}
+
+void GrinderLink::onFeedback(const GrindActionFeedback::ConstPtr& feedback) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  feedback_ = Received<GrindActionFeedback>{*feedback, ros::SteadyTime::now()};
+}
+
+void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
+  const std::string& id = result->status.goal_id.id;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool shown = feedback_ && id == feedback_->message.status.goal_id.id;
+    if (id != sent_ && !shown) return;
+    if (shown) feedback_->message.feedback.state.clear();  // it is planned no more
+  }
+  post([this, result] { on_result_(result->status.goal_id.id, result->result); });
+}
+
+void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
+  Axes position;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto& names = joints->name;
+    const auto joint = std::find(names.begin(), names.end(), kJointNames[static_cast<std::size_t>(axis)]);
+    const auto at = static_cast<std::size_t>(joint - names.begin());
+    if (joint == names.end() || at >= joints->position.size()) return;  // of another part of the machine
+    position[axis] = joints->position[at];
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  position_ = Received<Axes>{position, ros::SteadyTime::now()};
+}
+
+void GrinderLink::post(std::function<void()> answer) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  answers_.push_back(std::move(answer));
+}
+
+void GrinderLink::deliver() {
+  sendStops();
+  for (ServiceCall& call : calls_) call.breakOffWhenDue();
+  calls_.remove_if([](const ServiceCall& call) { return call.finished(); });
+  std::deque<std::function<void()>> answers;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answers.swap(answers_);
+  }
+  for (const auto& answer : answers) answer();
+}
+
+template <typename Service, typename OnResponse>
+void GrinderLink::call(const std::string& service, const typename Service::Request& request, double timeout,
+                       OnResponse on_response) {
+  const auto on_answer = [this, on_response](ros::SerializedMessage* answer) {
+    const auto response = answerOf<Service>(answer);
+    post([on_response, response] { on_response(response); });
+  };
+  calls_.emplace_back(nh_.resolveName(service), ros::service_traits::md5sum<Service>(),
+                      ros::serialization::serializeMessage(request), ros::WallDuration(timeout), on_answer);
+}
+
+void GrinderLink::request(MachineEvent event, const OnAnswer& on_answer) {
+  call<std_srvs::Trigger>(serviceOf(event), {}, kRequestTimeout,
+                          [event, on_answer, silence = noAnswer()](const auto& response) {
+                            if (!response) return on_answer(toString(event) + (": " + silence));
+                            on_answer(response->success ? "" : response->message);
+                          });
+}
+
+void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
+  SetFeedOverride::Request request;
+  request.fraction = fraction;
+  call<SetFeedOverride>("set_feed_override", request, kRequestTimeout,
+                        [on_answer, silence = noAnswer()](const auto& response) {
+                          if (!response) return on_answer("feed override: " + silence);
+                          on_answer(response->success ? "" : response->message);
+                        });
+}
+
+void GrinderLink::plan(const GrindGoal& goal, const OnPlan& on_plan) {
+  Plan::Request request;
+  request.goal = goal;
+  call<Plan>("plan", request, kPlanTimeout, [on_plan, silence = noAnswer()](const auto& response) {
+    if (response) return on_plan(*response);
+    Plan::Response unknown;
+    unknown.valid = 0;
+    unknown.reasons.push_back(silence);
+    on_plan(unknown);
+  });
+}
+
+std::optional<std::string> GrinderLink::send(const GrindGoal& goal) {
+  if (goals_.getNumSubscribers() == 0) return std::nullopt;
+  GrindActionGoal message;
+  message.header.stamp = ros::Time::now();
+  message.goal_id = ids_.generateID();
+  message.goal = goal;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    sent_ = message.goal_id.id;
+  }
+  goals_.publish(message);
+  return message.goal_id.id;
+}
+
+void GrinderLink::stop(MachineEvent event, const OnAnswer& on_answer) {
+  unsent_.push_back({event, ros::SteadyTime::now() + kStopTimeout, on_answer});
+  sendStops();
+}
+
+void GrinderLink::sendStops() {
+  while (!unsent_.empty()) {
+    const Unsent stop = unsent_.front();
+    const bool heard = hearsStops();
+    if (!heard && ros::SteadyTime::now() < stop.due) return;
+    unsent_.pop_front();
+    if (heard) {
+      stops_.publish(stopFor(stop.event));
+    } else {
+      stop.on_answer(toString(stop.event) + (" was not sent: the grinder " + name()) + " is not connected");
+    }
+  }
+}
+
+}  // namespace flute_grinder

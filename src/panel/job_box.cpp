@@ -1,0 +1,203 @@
+#include "flute_grinder/panel/job_box.h"
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/messages/continue_job.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/panel/plain_words.h"
+#include "flute_grinder/panel/text_view.h"
+
+#include <ros/package.h>
+#include <QFileDialog>
+#include <QFileInfo>
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include <exception>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+QPushButton* button(const char* name, const QString& text, const QString& hint) {
+  auto* made = new QPushButton(text);
+  made->setObjectName(name);
+  made->setToolTip(hint);
+  return made;
+}
+
+}  // namespace
+
+JobBox::JobBox(QWidget* parent)
+    : QGroupBox("Job", parent),
+      name_(new QLabel),
+      choose_(button("choose", "Open...", "Choose a job file")),
+      continue_(new QCheckBox),
+      plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
+      dry_run_(
+          button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
+      verdict_(textView("verdict", 5)),
+      question_(new DiscardQuestion),
+      answer_(new QStackedWidget) {
+  name_->setObjectName("job_file");
+  name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  continue_->setObjectName("continue");
+  auto* file = new QHBoxLayout;
+  file->addWidget(name_, 1);
+  file->addWidget(choose_);
+  auto* plan = new QHBoxLayout;
+  plan->addWidget(plan_, 1);
+  plan->addWidget(dry_run_, 1);
+  auto* layout = new QVBoxLayout(this);
+  layout->addLayout(file);
+  layout->addWidget(continue_);
+  layout->addLayout(plan);
+  answer_->addWidget(verdict_);
+  answer_->addWidget(question_);
+  layout->addWidget(answer_);
+
+  connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
+  connect(continue_, &QCheckBox::clicked, this, &JobBox::forgetPlan);
+  connect(plan_, &QPushButton::clicked, this, [this] {
+    if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
+  });
+  connect(dry_run_, &QPushButton::clicked, this, [this] {
+    if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
+  });
+  connect(question_, &DiscardQuestion::discarded, this, [this] { startPlanned(true); });
+  connect(question_, &DiscardQuestion::kept, this, &JobBox::keepUnfinished);
+  setFile("");
+}
+
+void JobBox::choose() {
+  const QString folder = file_.isEmpty() ? QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"
+                                         : QFileInfo(file_).path();
+  auto* dialog = new QFileDialog(this, "Choose a job file", folder, "Jobs (*.yaml *.yml);;All files (*)");
+  dialog->setFileMode(QFileDialog::ExistingFile);
+  dialog->setAttribute(Qt::WA_DeleteOnClose);
+  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+    setFile(file);
+    Q_EMIT fileChosen();
+  });
+  dialog->open();
+}
+
+void JobBox::setFile(const QString& file) {
+  file_ = file;
+  where_left_.reset();
+  continue_->setChecked(false);
+  const QString name = file.isEmpty() ? "no job file" : QFileInfo(file).fileName();
+  name_->setText(name_->fontMetrics().elidedText(name, Qt::ElideMiddle, 180));
+  name_->setToolTip(file);
+  forgetPlan();
+  if (!file.isEmpty()) read();
+}
+
+void JobBox::read() {
+  try {
+    job_ = readJobFile(file_.toStdString());
+  } catch (const std::exception& error) {
+    job_.reset();
+    planned_.reset();
+    // The folder is known, and too long for a panel.
+    showVerdict(QString(error.what()).replace(file_, QFileInfo(file_).fileName()), false);
+  }
+}
+
+void JobBox::forgetPlan() {
+  planned_.reset();
+  showVerdict(file_.isEmpty() ? "Open a job file first." : "Not planned yet.", true);
+}
+
+GrindGoal JobBox::goal() const {
+  GrindGoal goal = goalFromJob(*job_);
+  goal.job_name = QFileInfo(file_).fileName().toStdString();
+  return goal;
+}
+
+std::optional<GrindGoal> JobBox::goalNow() {
+  if (!job_) return std::nullopt;
+  if (continue_->isChecked()) return where_left_;
+  return goal();
+}
+
+std::optional<GrindGoal> JobBox::beginPlan() {
+  forgetPlan();
+  read();
+  auto goal = goalNow();
+  if (goal) showVerdict("Planning ...", true);
+  return goal;
+}
+
+void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
+  if (goalNow() != goal) return;
+  planned_.reset();
+  if (plan.valid) planned_ = goal;
+  showVerdict(QString::fromStdString(describe(plan)), plan.valid != 0);
+}
+
+void JobBox::start() {
+  if (!planned_) return;
+  if (!discardsUnfinished(*planned_, progress_)) return startPlanned(false);
+  question_->ask(progress_, where_left_.has_value());
+  answer_->setCurrentWidget(question_);
+}
+
+void JobBox::startPlanned(bool discard) {
+  answer_->setCurrentWidget(verdict_);
+  auto goal = takePlanned();
+  if (!goal) return;
+  goal->discard = static_cast<std::uint8_t>(discard);
+  Q_EMIT startWanted(*goal);
+}
+
+void JobBox::keepUnfinished() {
+  answer_->setCurrentWidget(verdict_);
+  if (!where_left_) return;
+  continue_->setChecked(true);
+  if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
+}
+
+/// The goal that was planned. Reads the file once more; nothing, and the reason shown, if it is not what was planned
+/// any more.
+std::optional<GrindGoal> JobBox::takePlanned() {
+  read();
+  auto goal = std::exchange(planned_, std::nullopt);
+  if (goal && goal == goalNow()) return goal;
+  if (job_) showVerdict("The job file is not what was planned any more. Plan it again.", false);
+  return std::nullopt;
+}
+
+void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
+  refreshContinue(state);
+  if (!idle || !planned_ || !discardsUnfinished(*planned_, progress_)) answer_->setCurrentWidget(verdict_);
+  choose_->setEnabled(idle);
+  continue_->setEnabled(idle && where_left_);
+  plan_->setEnabled(idle && !file_.isEmpty());
+  dry_run_->setEnabled(idle && !file_.isEmpty());
+}
+
+void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
+  if (!state) return;
+  progress_ = state->progress;
+  where_left_.reset();
+  if (job_) {
+    GrindGoal left = goal();
+    if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
+  }
+  if (continue_->isChecked() && planned_ && planned_ != where_left_) forgetPlan();
+  if (!where_left_) {
+    continue_->setChecked(false);
+    continue_->setText("Continue where it was left");
+    return;
+  }
+  continue_->setText(
+      QString("Continue at tooth %1, pass %2").arg(where_left_->first_tooth + 1).arg(where_left_->first_pass + 1));
+}
+
+void JobBox::showVerdict(const QString& text, bool good) {
+  showText(*verdict_, text, good);
+  answer_->setCurrentWidget(verdict_);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,74 @@
+#include "flute_grinder/panel/override_box.h"
+
+#include "flute_grinder/core/feed_schedule.h"
+
+#include <QHBoxLayout>
+#include <QSignalBlocker>
+
+#include <cmath>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kRest = 300;    ///< after which a slider that is moved by keys or the mouse wheel counts as at rest [ms]
+constexpr int kSettle = 200;  ///< within which some states come [ms]
+const int kMaxPercent = static_cast<int>(std::lround(kMaxFeedOverride * 100));
+
+}  // namespace
+
+OverrideBox::OverrideBox(QWidget* parent) : QWidget(parent), slider_(new QSlider(Qt::Horizontal)), value_(new QLabel) {
+  slider_->setObjectName("override");
+  slider_->setRange(0, kMaxPercent);
+  slider_->setPageStep(10);
+  slider_->setTickInterval(20);
+  slider_->setTickPosition(QSlider::TicksBelow);
+  slider_->setToolTip("Part of the job's feed; rapids keep their speed");
+  value_->setObjectName("override_value");
+  value_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  value_->setMinimumWidth(value_->fontMetrics().horizontalAdvance(QString("%1 %").arg(kMaxPercent)) + 4);
+  auto* layout = new QHBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(new QLabel("Feed override"));
+  layout->addWidget(slider_, 1);
+  layout->addWidget(value_);
+
+  rest_.setSingleShot(true);
+  rest_.setInterval(kRest);
+  settle_.setSingleShot(true);
+  settle_.setInterval(kSettle);
+  connect(&rest_, &QTimer::timeout, this, &OverrideBox::ask);
+  connect(slider_, &QSlider::sliderReleased, this, &OverrideBox::ask);
+  connect(slider_, &QSlider::valueChanged, this, [this](int percent) {
+    value_->setText(QString("%1 %").arg(percent));
+    rest_.start();
+  });
+}
+
+void OverrideBox::ask() {
+  rest_.stop();
+  // One that is held by the mouse is not sent before it is let go of; and Qt lets go of one that is disabled meanwhile.
+  if (slider_->isSliderDown() || !slider_->isEnabled()) return;
+  ++unanswered_;
+  Q_EMIT wanted(slider_->value() / 100.0);
+}
+
+void OverrideBox::answered() {
+  --unanswered_;
+  settle_.start();
+}
+
+void OverrideBox::reset() { unanswered_ = 0; }
+
+void OverrideBox::refresh(const std::optional<GrinderState>& state) {
+  slider_->setEnabled(state.has_value());
+  const bool asking = slider_->isSliderDown() || rest_.isActive() || unanswered_ > 0 || settle_.isActive();
+  if (!state) value_->clear();
+  if (!state || asking) return;
+  const int percent = static_cast<int>(std::lround(state->override * 100));
+  const QSignalBlocker programmatic(slider_);
+  slider_->setValue(percent);
+  value_->setText(QString("%1 %").arg(percent));
+}
+
+}  // namespace flute_grinder

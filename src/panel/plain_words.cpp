@@ -1,0 +1,131 @@
+#include "flute_grinder/panel/plain_words.h"
+
+#include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/conversions.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <regex>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+template <typename... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[200];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+const char* sentence(MachineState state) {
+  switch (state) {
+    case MachineState::kDisabled: return "The power is off. Enable switches it on.";
+    case MachineState::kReady: return "The power is on, the axes rest. Plan a job, then start it.";
+    case MachineState::kHoming: return "The drive looks for the axes' reference.";
+    case MachineState::kStarting: return "The job waits for spindle and coolant.";
+    case MachineState::kRunning: return "The job moves the axes.";
+    case MachineState::kHolding: return "The axes stop on the path.";
+    case MachineState::kHeld: return "The axes rest in the midst of the job. Resume goes on; Retract lifts the wheel.";
+    case MachineState::kRetracting: return "The wheel is lifted off the work.";
+    case MachineState::kRetracted: return "The axes rest, the wheel off the work. Resume goes on.";
+    case MachineState::kResuming: return "The wheel goes back to the place where it left the path.";
+    case MachineState::kCanceling: return "The axes stop on the path and the wheel is lifted; then the job ends.";
+    case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
+    case MachineState::kLifting: return "The wheel is lifted off the work, without a job.";
+  }
+  return "The grinder is in a state that this panel does not know.";
+}
+
+const char* wheelInWork(MachineState state) {
+  switch (state) {
+    case MachineState::kFault: return "The wheel is in the work: reset, enable, then lift it.";
+    case MachineState::kDisabled: return "The wheel is in the work: enable, then lift it.";
+    default: return "The wheel is in the work: lift it.";
+  }
+}
+
+std::string feedText(const PathStatistics& s) {
+  if (!(s.max_feed > 0)) return "The feed is never reached.";
+  const double slowest = s.min_feed / kMillimetrePerMinute;
+  const double fastest = s.max_feed / kMillimetrePerMinute;
+  const std::string feed = fastest - slowest < 0.05 ? format("Feed %.1f mm/min", fastest)
+                                                    : format("Feed %.1f to %.1f mm/min", slowest, fastest);
+  return feed + (s.feed_limits.empty() ? "; no axis limits it." : ", limited by");
+}
+
+}  // namespace
+
+std::string inShopUnits(const std::string& text) {
+  // A number, or "from to" with one unit for both.
+  static const std::regex quantity(R"(([-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?)( to ([-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?))? )"
+                                   R"((m|rad)(/s(?:\^[23])?)?(?![A-Za-z0-9_/^]))");
+  static const std::regex axis("axis_([xyza])");
+  std::string told;
+  auto from = text.cbegin();
+  for (std::sregex_iterator it(text.begin(), text.end(), quantity), end; it != end; ++it) {
+    const std::smatch& match = *it;
+    const bool linear = match[4] == "m";
+    const double unit = linear ? kMillimetre : kDegree;
+    told.append(from, match[0].first);
+    told += format("%.6g", std::strtod(match[1].str().c_str(), nullptr) / unit);
+    if (match[2].matched) told += format(" to %.6g", std::strtod(match[3].str().c_str(), nullptr) / unit);
+    told += (linear ? " mm" : " deg") + match[5].str();
+    from = match[0].second;
+  }
+  told.append(from, text.cend());
+  for (std::smatch match; std::regex_search(told, match, axis);) {
+    const char letter = static_cast<char>(*match[1].first - 'a' + 'A');
+    told = match.prefix().str() + "axis " + letter + match.suffix().str();
+  }
+  return told;
+}
+
+std::string duration(double seconds) {
+  if (seconds < 59.95) return format("%.1f s", seconds);
+  const auto whole = static_cast<long>(std::lround(seconds));
+  if (whole < 3600) return format("%ld:%02ld min", whole / 60, whole % 60);
+  return format("%ld:%02ld:%02ld h", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string describe(const GrinderState& state) {
+  const auto machine = static_cast<MachineState>(state.state);
+  std::string text;
+  // In states other than a fault it tells why the last job did not begin.
+  if (!state.fault.empty()) text = "Fault: " + inShopUnits(state.fault) + ". ";
+  if (!state.hold_reason.empty()) text += "Held because " + inShopUnits(state.hold_reason) + ". ";
+  if (state.emergency_stop) text += "The emergency stop is pressed. ";
+  if (state.wheel_in_work && !isInJob(machine) && machine != MachineState::kLifting) return text + wheelInWork(machine);
+  if (machine == MachineState::kReady && !state.homed)
+    return text + "The axes are not homed. Home finds their reference.";
+  if (machine == MachineState::kRunning && state.override == 0)
+    return text + "The feed override is 0 %: the axes rest.";
+  return text + sentence(machine);
+}
+
+std::string describe(const JobProgress& progress) {
+  const std::string name = progress.job_name.empty() ? "a job without a name" : progress.job_name;
+  return name + " (" + toolText(fromMessage(progress.cutter), progress.cutter.tooth_angles.size()) + ")" +
+         format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
+}
+
+std::string describe(const Plan::Response& plan) {
+  std::string text;
+  if (!plan.valid) {
+    text = "Cannot be ground:";
+    for (const std::string& reason : plan.reasons) text += "\n" + inShopUnits(reason);
+    return text;
+  }
+  text = "Takes " + duration(plan.duration) + ".\n" + feedText(plan.statistics);
+  for (const FeedLimit& limit : plan.statistics.feed_limits) {
+    text += "\n" + inShopUnits(limit.cause) +
+            format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
+  }
+  return text;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,184 @@
+#include "flute_grinder/panel/readout.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/panel/plain_words.h"
+
+#include <QFontDatabase>
+#include <QGridLayout>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+constexpr const char* kGrey = "#5f6368";
+constexpr const char* kGreen = "#1e7d34";
+constexpr const char* kBlue = "#1a5fb4";
+constexpr const char* kAmber = "#9a5b00";
+constexpr const char* kRed = "#b00020";
+
+/// Green: a job may begin. Blue: the axes move. Amber: they rest in the midst of a job, or are about to.
+const char* colourOf(const GrinderState& grinder) {
+  switch (static_cast<MachineState>(grinder.state)) {
+    case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
+    case MachineState::kLifting:
+    case MachineState::kHoming:
+    case MachineState::kStarting:
+    case MachineState::kRunning:
+    case MachineState::kResuming: return kBlue;
+    case MachineState::kHolding:
+    case MachineState::kHeld:
+    case MachineState::kRetracting:
+    case MachineState::kRetracted:
+    case MachineState::kCanceling: return kAmber;
+    case MachineState::kFault: return kRed;
+    case MachineState::kDisabled: break;
+  }
+  return kGrey;
+}
+
+constexpr const char* kJobDone = "Job %p %";
+
+QProgressBar* bar(const char* name, const QString& format) {
+  auto* made = new QProgressBar;
+  made->setObjectName(name);
+  made->setRange(0, 1000);
+  made->setValue(0);
+  made->setFormat(format);
+  return made;
+}
+
+void setFraction(QProgressBar& bar, double fraction) {
+  bar.setValue(static_cast<int>(std::clamp(fraction, 0.0, 1.0) * bar.maximum()));
+}
+
+}  // namespace
+
+StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
+  node_->setObjectName("grinder");
+  node_->setAlignment(Qt::AlignCenter);
+  node_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  name_->setObjectName("state");
+  name_->setAlignment(Qt::AlignCenter);
+  QFont font = name_->font();
+  font.setPointSize(font.pointSize() * 2);
+  font.setBold(true);
+  name_->setFont(font);
+  meaning_->setObjectName("meaning");
+  meaning_->setWordWrap(true);
+  meaning_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  // Room for what is mostly said, so that the buttons below stay where they are.
+  meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(node_);
+  layout->addWidget(name_);
+  layout->addWidget(meaning_);
+}
+
+void StateBox::setNode(const QString& node) {
+  node_->setText(node_->fontMetrics().elidedText(node, Qt::ElideMiddle, node_->width()));
+  node_->setToolTip(node);
+}
+
+void StateBox::setName(const QString& name, const QString& colour) {
+  const QString style = QString("background: %1; color: white; padding: 4px; border-radius: 4px;").arg(colour);
+  name_->setText(name);
+  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // which is costly
+}
+
+void StateBox::show(const GrinderView& view, const QString& node, Master master) {
+  setNode(node);
+  if (!view.state) {
+    setName("No answer", kGrey);
+    meaning_->setText(master == Master::kMissing
+                          ? "No ROS master answers, and nothing comes from the grinder " + node + "."
+                          : "No grinder answers as " + node + ". Does its node run?");
+    return;
+  }
+  QString name = QString::fromStdString(view.state->state_name);
+  if (!name.isEmpty()) name[0] = name[0].toUpper();
+  setName(name, colourOf(*view.state));
+  const QString alone = "No ROS master answers; Hold, Cancel and Disable work without. ";
+  meaning_->setText((master == Master::kMissing ? alone : "") + QString::fromStdString(describe(*view.state)));
+}
+
+ProgressBox::ProgressBox(QWidget* parent)
+    : QWidget(parent),
+      place_(new QLabel),
+      feed_(new QLabel),
+      stroke_(bar("stroke", "Stroke %p %")),
+      job_(bar("job", kJobDone)) {
+  place_->setObjectName("place");
+  feed_->setObjectName("feed");
+  feed_->setAlignment(Qt::AlignRight);
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setColumnStretch(0, 1);
+  layout->addWidget(place_, 0, 0);
+  layout->addWidget(feed_, 0, 1);
+  layout->addWidget(stroke_, 1, 0, 1, 2);
+  layout->addWidget(job_, 2, 0, 1, 2);
+}
+
+void ProgressBox::show(const GrinderView& view, bool job_runs) {
+  if (view.planned) return showPlanning(*view.planned);
+  stroke_->setEnabled(job_runs);
+  job_->setEnabled(job_runs);
+  if (view.progress) {
+    setFraction(*stroke_, view.progress->stroke_fraction);
+    setFraction(*job_, view.progress->job_fraction);
+  }
+  if (!view.progress || !job_runs) {
+    place_->setText(view.state ? "No job runs" : "");
+    feed_->clear();
+    job_->setFormat(kJobDone);
+    return;
+  }
+  const GrindFeedback& f = *view.progress;
+  place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
+  feed_->setText(QString("%1 mm/min").arg(f.feed / kMillimetrePerMinute, 0, 'f', 0));
+  // The grinder reckons with the job's own feed.
+  const bool at_feed = !view.state || view.state->override == 1;
+  job_->setFormat(QString(kJobDone) + ", " + QString::fromStdString(duration(f.remaining_time)) +
+                  (at_feed ? " left" : " left at 100 % feed"));
+}
+
+void ProgressBox::showPlanning(double planned) {
+  place_->setText("A job is planned");
+  feed_->clear();
+  stroke_->setEnabled(false);
+  setFraction(*stroke_, 0);
+  job_->setEnabled(true);
+  setFraction(*job_, planned);
+  job_->setFormat("Planning %p %");
+}
+
+PositionBox::PositionBox(QWidget* parent) : QWidget(parent) {
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
+  font.setPointSize(font.pointSize() + 2);
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    auto* value = new QLabel;
+    value->setObjectName(QString("position_%1").arg("xyza"[axis]));
+    value->setFont(font);
+    layout->addWidget(value, axis / 2, axis % 2);
+    values_[static_cast<std::size_t>(axis)] = value;
+  }
+}
+
+void PositionBox::show(const GrinderView& view) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const double unit = axis == kA ? kDegree : kMillimetre;
+    const QString value = view.position ? QString::number((*view.position)[axis] / unit, 'f', 3) : "-";
+    values_[static_cast<std::size_t>(axis)]->setText(
+        QString("%1 %2 %3").arg("XYZA"[axis]).arg(value, 9).arg(axis == kA ? "deg" : "mm"));
+  }
+}
+
+}  // namespace flute_grinder

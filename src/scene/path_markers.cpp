@@ -1,0 +1,244 @@
+#include "flute_grinder/scene/path_markers.h"
+
+#include "flute_grinder/scene/board.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr const char* kFrame = "cutter";
+constexpr double kPathTolerance = 1e-7;     ///< between the strip shown and the helix [m]
+constexpr double kPathWidth = 0.3e-3;       ///< as all widths, of cutters that are not small [m]
+constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
+constexpr double kArrowWidth = 0.12e-3;     ///< [m]
+constexpr double kLongestArrow = 3e-3;      ///< [m]
+constexpr double kNoError = 1e-12;          ///< what is smaller is rounding [m]
+constexpr double kFarthest = 1;             ///< what is farther, or not a number, is left out [m]
+constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
+constexpr std::size_t kMostArrows = 200;
+constexpr std::size_t kMostExecutedPoints = 2000;
+
+/// Where the wheel touches the cutter, at the radius r.
+geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
+
+/// Whether a point can be shown.
+bool isNear(const geometry_msgs::Point& p) {
+  return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
+/// How much finer lines are drawn on a small cutter, so that they do not cover it.
+double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
+
+/// The largest axial distance between points of the strip that keeps within kPathTolerance of the helix: its chord
+/// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
+double pathStep(const GrindProgram& program) {
+  const ConicalCutter& cutter = program.cutter();
+  const double radius = std::min(cutter.radius(program.strokeFrom()), cutter.radius(program.strokeTo()));
+  const double turning = std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius;
+  return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
+}
+
+/// The next lower of 1, 2, 5, 10, ...
+double roundDown(double value) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  const double mantissa = value / decade;
+  return (mantissa >= 5 ? 5 : mantissa >= 2 ? 2 : 1) * decade;
+}
+
+/// 1, 2 or 5 times a power of ten, as short as it can be.
+std::string factorText(double factor) {
+  const int exponent = static_cast<int>(std::floor(std::log10(factor) + 1e-9));
+  char text[32];
+  if (exponent < 4) {
+    std::snprintf(text, sizeof text, "%g", factor);
+  } else {
+    std::snprintf(text, sizeof text, "%.0fe%d", factor / std::pow(10, exponent), exponent);
+  }
+  return text;
+}
+
+}  // namespace
+
+ToolPath::ToolPath(const GrindProgram& program)
+    : cutter_(program.cutter()),
+      curve_(cutter_),
+      from_(program.strokeFrom()),
+      to_(program.strokeTo()),
+      steps_(std::min(kMostSteps, static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program))))),
+      measured_(steps_ + 1, -1) {
+  for (const double angle : program.job().tooth_angles) flutes_.push_back({angle, {}});
+}
+
+double ToolPath::x(std::size_t i) const {
+  return from_ + (to_ - from_) * (static_cast<double>(i) / static_cast<double>(steps_));
+}
+
+bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
+  const std::optional<std::size_t> before = active_;
+  if (p.move != MoveKind::kRetract && p.move != MoveKind::kReturn && p.move != MoveKind::kLift) active_ = p.tooth;
+  if (p.move != MoveKind::kStroke) return active_ != before;
+  if (p.step != StepKind::kNone) measure(p, actual);
+  if (p.progress < 1) return active_ != before;
+  finishPass(flutes_[p.tooth]);
+  leave();
+  return true;
+}
+
+void ToolPath::measure(const Setpoint& p, const Axes& actual) {
+  const double around = flutes_[p.tooth].angle + curve_.a(actual[kX]) - actual[kA];
+  const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
+  // A drive may say that it is nowhere, or beyond the cone's apex.
+  if (!(error <= kFarthest)) return;
+  const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
+  float& largest = measured_[static_cast<std::size_t>(std::lround(std::clamp(at, 0.0, static_cast<double>(steps_))))];
+  largest = std::max(largest, static_cast<float>(error));
+  largest_ = std::max(largest_, error);
+}
+
+void ToolPath::finishPass(Flute& flute) {
+  // Where the stroke goes faster than a point a cycle, a point has what was measured next to it.
+  for (std::size_t i = 1; i <= steps_; ++i) {
+    if (measured_[i] < 0) measured_[i] = measured_[i - 1];
+  }
+  for (std::size_t i = steps_; i-- > 0;) {
+    if (measured_[i] < 0) measured_[i] = measured_[i + 1];
+  }
+  flute.errors = measured_;
+}
+
+void ToolPath::leave() {
+  active_.reset();
+  std::fill(measured_.begin(), measured_.end(), -1);
+}
+
+double ToolPath::scaleEnd() const {
+  float largest = 0;
+  for (const Flute& flute : flutes_) {
+    for (const float error : flute.errors) largest = std::max(largest, error);
+  }
+  return largest;
+}
+
+void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth, double scale_end) const {
+  const Flute& flute = flutes_[tooth];
+  const bool active = active_ == tooth;
+  for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
+    Marker& m = append(array, "tool_path", Marker::LINE_STRIP, kFrame);
+    m.scale.x = kPathWidth * fineness(cutter_);
+    m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
+    const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
+    for (std::size_t i = first; i <= last; ++i) {
+      m.points.push_back(atRadius(x(i), cutter_.radius(x(i)), flute.angle + curve_.a(x(i))));
+      if (!active && !flute.errors.empty()) m.colors.push_back(heat(scale_end > 0 ? flute.errors[i] / scale_end : 0));
+    }
+  }
+}
+
+MarkerArray ToolPath::markers() const {
+  MarkerArray array = startOver();
+  const double scale_end = scaleEnd();
+  for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth, scale_end);
+  if (scale_end > 0) board::appendScale(array, board::Side::kLeft, "measured error of the flutes", scale_end);
+  return array;
+}
+
+ExecutedPath::ExecutedPath(const GrindProgram& program) : cutter_(program.cutter()) {
+  const std::vector<double> depths = passDepths(program.job().process);
+  for (const Move& move : program.moves()) {
+    // The plunge takes up the wheel's wear beside the pass' depth.
+    const double infeed = program.cutter().y(move.to[kX]) - move.to[kY];
+    wear_of_move_.push_back(infeed - depths[move.pass]);
+  }
+}
+
+void ExecutedPath::follow(const Setpoint& p, const Axes& actual) {
+  if (p.move != MoveKind::kStroke) return;
+  if (move_ != p.move_index) {
+    move_ = p.move_index;
+    points_.clear();
+    taken_ = 0;
+    every_ = 1;
+  }
+  const geometry_msgs::Point at =
+      atRadius(actual[kX], cutter_.radius(0) + actual[kY] + wear_of_move_[p.move_index], actual[kA]);
+  if (!isNear(at)) return;
+  last_ = at;
+  if (taken_++ % every_ != 0) return;
+  points_.push_back(last_);
+  if (points_.size() < kMostExecutedPoints) return;
+  for (std::size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
+  points_.resize(points_.size() / 2);
+  every_ *= 2;
+}
+
+void ExecutedPath::append(MarkerArray& array) const {
+  if (points_.empty()) return;
+  Marker& m = flute_grinder::append(array, "executed_path", Marker::LINE_STRIP, kFrame);
+  m.scale.x = kExecutedWidth * fineness(cutter_);
+  m.color = colour(0.3, 1, 1);
+  m.points = points_;
+  m.points.push_back(last_);
+}
+
+void PathErrorMarkers::add(const Setpoint& p) {
+  if (p.step == StepKind::kNone) return;
+  const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+  if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
+  if (move_ != p.move_index) {
+    *this = PathErrorMarkers(cutter_);
+    move_ = p.move_index;
+  }
+  if (p.step == StepKind::kOdd) ++pairs_;
+  largest_ = std::max(largest_, std::abs(deviation));
+  if ((pairs_ - 1) % every_ != 0) return;
+  points_.push_back({p.position[kX], p.position[kA], deviation});
+  if (points_.size() >= kMostArrows && p.step == StepKind::kEven) thinOut();
+}
+
+void PathErrorMarkers::thinOut() {
+  // Pairs are kept or dropped as such, so that odd and even points stay in equal number.
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i + 1 < points_.size(); i += 4) {
+    points_[kept++] = points_[i];
+    points_[kept++] = points_[i + 1];
+  }
+  points_.resize(kept);
+  every_ *= 2;
+}
+
+MarkerArray PathErrorMarkers::markers() const {
+  MarkerArray array = startOver();
+  if (points_.empty()) return array;
+  // A path without an error, of a cylinder, does not come down to rounding.
+  const double largest = std::max(largest_, kNoError);
+  const double factor = roundDown(kLongestArrow * fineness(cutter_) / largest);
+
+  Marker& arrows = append(array, "path_error", Marker::LINE_LIST, kFrame);
+  arrows.scale.x = kArrowWidth * fineness(cutter_);
+  // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
+  const double around = cutter_.cosHelixToGeneratrix();
+  const double along = std::copysign(std::sqrt(1 - around * around), cutter_.tanSpiral());
+  const double cos_cone = 1 / std::hypot(1, cutter_.tanCone());
+  const double sin_cone = cutter_.tanCone() * cos_cone;
+  for (const Point& p : points_) {
+    const double offset = factor * p.deviation;
+    const geometry_msgs::Point from = atRadius(p.x, cutter_.radius(p.x), p.a);
+    geometry_msgs::Point to = from;
+    to.x -= offset * along * cos_cone;
+    to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));
+    to.z += offset * (around * std::cos(p.a) - along * sin_cone * std::sin(p.a));
+    arrows.points.insert(arrows.points.end(), {from, to});
+    arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / largest));
+  }
+  board::appendScale(array, board::Side::kRight, "path error, drawn " + factorText(factor) + " times larger", largest);
+  return array;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,211 @@
+#include "control/fixtures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// The wheel in the work: how that is known, what is refused until it is off, and the lift without a job.
+namespace flute_grinder {
+namespace {
+
+using testing::atRestFrom;
+using testing::bringTo;
+using testing::driveModel;
+using testing::FakeDrive;
+using testing::machineConfig;
+using testing::Rig;
+using testing::sameBits;
+using testing::smooth;
+using ::testing::TestParamInfo;
+using ::testing::TestWithParam;
+using ::testing::Values;
+
+using S = MachineState;
+using E = MachineEvent;
+
+const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
+const double kClearanceHeight = 0.031 * kTanCone + 0.005;  // of the paper's job
+const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0005;
+
+/// Ready, with the wheel in the work after a fault.
+void bringIntoTheWork(Rig<FakeDrive>& rig) {
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  ASSERT_NO_FATAL_FAILURE(rig.enable());
+  ASSERT_TRUE(rig.last().wheel_in_work);
+  rig.drive.on_read = nullptr;
+}
+
+class InTheWork : public ::testing::Test {
+ protected:
+  void SetUp() override { ASSERT_NO_FATAL_FAILURE(bringIntoTheWork(rig_)); }
+
+  Rig<FakeDrive> rig_;
+};
+
+TEST_F(InTheWork, StartAndHomeAreRefusedUntilItIsLifted) {
+  rig_.stream.emplace(rig_.paperStream());
+  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+  rig_.runUntil(S::kReady);
+  EXPECT_TRUE(rig_.ask(E::kHome).accepted);
+}
+
+TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
+  const std::size_t before = rig_.log.size() - 1;
+  const Axes from = rig_.last().command;
+  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+  EXPECT_EQ(rig_.last().state, S::kLifting);
+  const std::uint64_t written = rig_.loop->status().setpoints_written;
+  while (rig_.last().state == S::kLifting) {
+    const CycleRecord& record = rig_.last();
+    ASSERT_TRUE(record.has_setpoint);
+    ASSERT_EQ(record.job, 0u);
+    ASSERT_EQ(record.setpoint.move, MoveKind::kLift);
+    ASSERT_TRUE(record.wheel_in_work);
+    ASSERT_TRUE(sameBits(record.command, Axes(from[kX], record.command[kY], from[kZ], from[kA])));
+    ASSERT_GE(record.command[kY], rig_.log[rig_.log.size() - 2].command[kY]);
+    ASSERT_FALSE(rig_.drive.written_drive.spindle);
+    rig_.cycle();
+  }
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_EQ(rig_.last().command[kY], rig_.loop->status().wheel.clear_y);
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+  EXPECT_FALSE(rig_.last().job_ended);
+  EXPECT_EQ(rig_.last().job, 1u) << "the last job's, where there is no setpoint";
+  EXPECT_EQ(rig_.loop->status().setpoints_written, written);
+  EXPECT_EQ(rig_.loop->status().jobs_started, 1u);
+  EXPECT_TRUE(smooth({rig_.log.begin() + static_cast<std::ptrdiff_t>(before), rig_.log.end()}));
+  EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel does not stand in the work");
+}
+
+TEST_F(InTheWork, AJobRunsAfterTheLift) {
+  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+  rig_.runUntil(S::kReady);
+  rig_.stream.emplace(rig_.paperStream());
+  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
+  rig_.runToEnd();
+  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
+}
+
+TEST_F(InTheWork, StaysSoWithoutPowerAndThroughFaults) {
+  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
+  rig_.run(20);
+  EXPECT_TRUE(rig_.last().wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  rig_.drive.status.emergency_stop = true;
+  rig_.run(5);
+  EXPECT_TRUE(rig_.last().wheel_in_work);
+}
+
+TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
+  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
+  const auto seeAt = [&](double y, bool homed) {
+    rig_.drive.position[kY] = y;
+    rig_.drive.status.homed = homed;
+    return rig_.cycle().wheel_in_work;
+  };
+  EXPECT_TRUE(seeAt(kClearanceHeight - 1e-9, true));
+  EXPECT_TRUE(seeAt(0.05, false)) << "the position means nothing";
+  EXPECT_TRUE(seeAt(std::numeric_limits<double>::quiet_NaN(), true));
+  EXPECT_TRUE(seeAt(std::numeric_limits<double>::infinity(), true));
+  EXPECT_FALSE(seeAt(0.05, true));
+  EXPECT_FALSE(seeAt(0, true)) << "and nothing brings it back but a job";
+}
+
+class StopsTheLift : public TestWithParam<E> {};
+
+TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
+  const auto is_lift = [](const CycleRecord& r) { return r.state == S::kLifting; };
+  const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
+  const auto before = begun - rig.log.begin() - 1;
+  ASSERT_TRUE(rig.ask(GetParam()).accepted);
+  EXPECT_EQ(rig.last().state, S::kLifting) << "an axis does not stop at once";
+  EXPECT_TRUE(rig.drive.written_drive.enable);
+  while (rig.last().state == S::kLifting) rig.cycle();
+  EXPECT_EQ(rig.last().state, GetParam() == E::kDisable ? S::kDisabled : S::kReady);
+  EXPECT_EQ(rig.drive.written_drive.enable, GetParam() != E::kDisable);
+  EXPECT_LT(rig.last().command[kY], kClearanceHeight - 1e-4);
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  EXPECT_TRUE(smooth({rig.log.begin() + before, rig.log.end()}));
+  const std::size_t stopped = rig.log.size() - 1;
+  rig.run(50);
+  EXPECT_TRUE(atRestFrom(rig.log, stopped));
+  if (GetParam() == E::kDisable) rig.enable();
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
+INSTANTIATE_TEST_SUITE_P(, StopsTheLift, Values(E::kHold, E::kCancel, E::kDisable),
+                         [](const TestParamInfo<E>& info) { return std::string(toString(info.param)); });
+
+TEST(Lift, AFaultEndsItWithTheWheelStillInTheWork) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
+  rig.drive.on_read = [](FakeDrive& d) { d.position[kX] += 0.002; };
+  rig.cycle();
+  EXPECT_EQ(rig.last().state, S::kFault);
+  EXPECT_EQ(rig.last().fault.kind, FaultKind::kFollowingError);
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  EXPECT_FALSE(rig.last().job_ended);
+  EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kDriveFault) << "the job's own";
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// After a restart
+
+TEST(AfterARestart, TheWheelIsStillInTheWork) {
+  const Wheel wheel{true, kClearanceHeight, kLift};
+  Rig<FakeDrive> rig(machineConfig(), wheel);
+  EXPECT_TRUE(rig.loop->status().wheel.in_work) << "before the first cycle";
+  rig.drive.position[kY] = -0.0005;
+  rig.cycle();
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  rig.enable();
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_EQ(rig.last().command[kY], kClearanceHeight);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
+TEST(AfterARestart, AWheelThatStandsAboveByNowIsNotInTheWork) {
+  Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift});
+  EXPECT_FALSE(rig.cycle().wheel_in_work) << "the park position is clear";
+}
+
+TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
+  Rig<SimulatedDrive> rig(machineConfig(), [](SimulatedDrive& d) {
+    SimulatedDrive::Model model = driveModel();
+    model[kY].start_position = -0.0005;
+    d.init(model, {false, 0});
+  });
+  rig.loop = std::make_unique<ControlLoop>(rig.drive, machineConfig(), Wheel{true, kClearanceHeight, kLift});
+  rig.run(2);
+  rig.enable();
+  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
+  const double from = rig.last().command[kY];
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+  EXPECT_TRUE(rig.ask(E::kHome).accepted);
+}
+
+TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
+  for (const double far : {0.2, std::numeric_limits<double>::quiet_NaN()}) {
+    Rig<FakeDrive> rig(machineConfig(), Wheel{true, far, 0.01});
+    rig.cycle();
+    rig.enable();
+    EXPECT_CONTAINS(rig.ask(E::kLift).text, "m; allowed: up to 0.15 m");
+    EXPECT_EQ(rig.last().state, S::kReady);
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder

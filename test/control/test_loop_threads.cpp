@@ -1,0 +1,157 @@
+#include "control/fixtures.h"
+
+#include <atomic>
+#include <chrono>
+#include <random>
+#include <thread>
+#include <vector>
+
+// Everything that other threads may do to the loop, all at once and at random moments, with drives that fail: no data
+// race, no request without an answer, no job that is not ended. Made for ThreadSanitizer.
+namespace flute_grinder {
+namespace {
+
+using testing::FakeDrive;
+using testing::machineConfig;
+
+using E = MachineEvent;
+using S = MachineState;
+
+constexpr std::uint64_t kCycles = 60000;
+
+/// Fails now and then, for a while.
+class Unreliable {
+ public:
+  void operator()(FakeDrive& drive) {
+    if (left_-- > 0) return spoil(drive);
+    drive.status.emergency_stop = drive.status.fault = false;
+    kind_ = static_cast<int>(random_() % 5);
+    left_ = random_() % 3000 == 0 ? 30 : 0;
+  }
+
+ private:
+  void spoil(FakeDrive& drive) const {
+    if (kind_ == 0) drive.status.emergency_stop = true;
+    if (kind_ == 1) drive.status.fault = true;
+    if (kind_ == 2) drive.status.spindle_at_speed = false;
+    if (kind_ == 3) drive.status.enabled = false;
+    if (kind_ == 4) --drive.status.feedback_count;
+  }
+
+  std::mt19937 random_{1};
+  int left_ = 0, kind_ = 0;
+};
+
+class LoopThreads : public ::testing::Test {
+ protected:
+  LoopThreads() {
+    testing::setUp(drive_, machineConfig());
+    drive_.on_read = Unreliable{};
+    loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
+  }
+
+  template <typename Work>
+  void spawn(unsigned seed, const Work& work) {
+    threads_.emplace_back([this, seed, work] {
+      std::mt19937 random(seed);
+      while (busy_) work(random);
+    });
+  }
+
+  template <typename Condition>
+  static bool soon(const Condition& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::yield();
+    }
+    return true;
+  }
+
+  /// Starts a job, waits for its end, and lets its stream go.
+  void startOne() {
+    const LoopStatus before = loop_->status();
+    if (before.state != S::kReady) return std::this_thread::yield();
+    Axes at;
+    std::copy(before.command.begin(), before.command.end(), at.data());
+    const auto stream = std::make_unique<SetpointStream>(GrindProgram(job_, machineConfig().machine, at));
+    ASSERT_TRUE(loop_->postStart(stream.get()));
+    std::optional<RequestReply> reply;
+    ASSERT_TRUE(soon([&] { return (reply = loop_->startReply()).has_value(); }));
+    if (!reply->accepted) return;
+    ++accepted_;
+    ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
+  }
+
+  const GrindJob job_ = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  FakeDrive drive_;
+  std::unique_ptr<ControlLoop> loop_;
+  std::atomic<bool> busy_{true}, cycling_{true};
+  std::vector<std::thread> threads_;
+  std::uint64_t accepted_ = 0;  ///< jobs
+};
+
+TEST_F(LoopThreads, AskAtRandomMoments) {
+  std::thread cycles([this] {
+    const ros::Duration period(0.001);
+    ros::Time time(1000);
+    while (cycling_) loop_->cycle(time += period, period);
+  });
+  spawn(2, [this](std::mt19937&) { startOne(); });
+  spawn(3, [this](std::mt19937& random) {
+    constexpr std::array<E, 6> events{E::kEnable, E::kReset, E::kLift, E::kResume, E::kRetract, E::kHome};
+    const std::size_t i = random() % 40;
+    // Home rarely: this drive does not find its reference.
+    EXPECT_TRUE(loop_->request(i < 39 ? events[i % 5] : E::kHome).answered);
+  });
+  spawn(4, [this](std::mt19937& random) {
+    if (random() % 50 == 0) {
+      EXPECT_TRUE(loop_->stop(StopRoad::kStops[random() % 3]).text.find("no answer") == std::string::npos);
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+  });
+  spawn(5, [this](std::mt19937& random) {
+    if (random() % 300 == 0) loop_->postStop(random() % 4 == 0 ? E::kCancel : E::kHold);
+    loop_->setFeedOverride(static_cast<double>(random() % 13) / 10);
+    std::this_thread::sleep_for(std::chrono::microseconds(20));
+  });
+  std::atomic<std::uint64_t> bad{0}, taken{0};
+  spawn(6, [&](std::mt19937&) {
+    const LoopStatus status = loop_->status();
+    bad += status.jobs_ended > status.jobs_started || status.jobs_started > status.jobs_ended + 1;
+    bad += (status.end == JobEnd::kNone) != (status.jobs_started != status.jobs_ended) && status.jobs_started > 0;
+  });
+  spawn(7, [&](std::mt19937&) {
+    CycleRecord record;
+    while (loop_->pop(record)) {
+      ++taken;
+      bad += record.has_setpoint && !record.drive.enabled;
+      bad += record.state == S::kDisabled && record.has_setpoint;
+    }
+  });
+  EXPECT_TRUE(soon([&] { return loop_->status().cycles > kCycles && loop_->status().jobs_ended > 2; }));
+  busy_ = false;
+  // Whoever waits for a job's end.
+  EXPECT_TRUE(soon([&] {
+    loop_->postStop(E::kDisable);
+    return loop_->status().jobs_ended == loop_->status().jobs_started;
+  }));
+  for (std::thread& thread : threads_) thread.join();
+  // What the last ones asked for is over too.
+  EXPECT_TRUE(soon([&] {
+    loop_->postStop(E::kDisable);
+    const S state = loop_->status().state;
+    return state == S::kDisabled || state == S::kFault;
+  }));
+  cycling_ = false;
+  cycles.join();
+  EXPECT_EQ(bad, 0u);
+  EXPECT_GT(taken, 0u);
+  const LoopStatus end = loop_->status();
+  EXPECT_EQ(end.jobs_started, accepted_);
+  EXPECT_EQ(end.jobs_ended, accepted_);
+  EXPECT_GT(accepted_, 2u) << "no job ran while all this was asked";
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,79 @@
+#include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/control/seq_lock.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+/// Every word the same, so that a torn value shows.
+struct Row {
+  std::array<std::uint64_t, 33> words{};
+};
+
+Row rowOf(std::uint64_t number) {
+  Row row;
+  row.words.fill(number);
+  return row;
+}
+
+TEST(SeqLock, HoldsTheDefaultAtFirst) {
+  struct Named {
+    double number = 2.5;
+    std::uint8_t flag = 7;
+  };
+  const SeqLock<Named> lock;
+  EXPECT_EQ(lock.load().number, 2.5);
+  EXPECT_EQ(lock.load().flag, 7);
+}
+
+TEST(SeqLock, GivesBackWhatWasStoredToTheLastByte) {
+  struct Odd {
+    char text[13] = {};
+  };
+  SeqLock<Odd> lock;
+  Odd odd;
+  for (std::size_t i = 0; i < sizeof odd.text; ++i) odd.text[i] = static_cast<char>('a' + i);
+  lock.store(odd);
+  EXPECT_EQ(std::string(lock.load().text, sizeof odd.text), "abcdefghijklm");
+}
+
+TEST(SeqLock, ReadersSeeWholeValuesInTheirOrder) {
+  SeqLock<Row> lock;
+  std::atomic<bool> writing{true};
+  std::atomic<int> ready{0};
+  std::vector<std::thread> readers;
+  std::array<std::uint64_t, 3> torn{}, back{}, seen{};
+  for (std::size_t r = 0; r < torn.size(); ++r) {
+    readers.emplace_back([&, r] {
+      std::uint64_t last = 0;
+      ++ready;
+      while (writing) {
+        const Row row = lock.load();
+        for (const std::uint64_t word : row.words) torn[r] += word != row.words[0];
+        back[r] += row.words[0] < last;
+        seen[r] += row.words[0] != last;
+        last = row.words[0];
+      }
+    });
+  }
+  while (ready < 3) std::this_thread::yield();
+  constexpr std::uint64_t kLast = 300000;
+  for (std::uint64_t n = 1; n <= kLast; ++n) lock.store(rowOf(n));
+  writing = false;
+  for (std::thread& reader : readers) reader.join();
+  for (std::size_t r = 0; r < torn.size(); ++r) {
+    EXPECT_EQ(torn[r], 0u);
+    EXPECT_EQ(back[r], 0u);
+  }
+  EXPECT_GT(seen[0] + seen[1] + seen[2], 0u) << "nobody read while it was written";
+  EXPECT_EQ(lock.load().words[0], kLast);
+}
+
+}  // namespace
+}  // namespace flute_grinder

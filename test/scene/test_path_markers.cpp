@@ -1,0 +1,131 @@
+#include "flute_grinder/scene/path_markers.h"
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/job_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+Machine machine() {
+  Machine m;
+  m.limits.min_position << -0.3, -0.2, -0.2, -200;
+  m.limits.max_position << 0.3, 0.2, 0.2, 200;
+  m.limits.max_velocity << 0.2, 0.1, 0.1, 20;
+  m.limits.max_acceleration << 2, 2, 2, 200;
+  m.limits.max_jerk << 50, 50, 50, 5000;
+  m.period = 1e-3;
+  m.park << 0, 0.05, 0, 0;
+  return m;
+}
+
+GrindProgram program() { return GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), machine(), machine().park); }
+
+/// What a drive must never say, and may all the same.
+std::vector<double> hostileValues() {
+  using Limits = std::numeric_limits<double>;
+  return {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), Limits::max(), Limits::lowest(), 1e30, -1e30};
+}
+
+void expectFinite(const MarkerArray& array) {
+  for (const Marker& m : array.markers) {
+    for (const geometry_msgs::Point& p : m.points) {
+      ASSERT_TRUE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) << m.ns;
+    }
+    for (const std_msgs::ColorRGBA& c : m.colors) ASSERT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.b >= 0) << m.ns;
+  }
+}
+
+/// The largest error measured and all markers of the paper's job, with every so-many-th position of an axis replaced.
+struct Shown {
+  double largest = 0;
+  MarkerArray flutes, executed;
+};
+
+Shown show(int every, int axis, double value) {
+  const GrindProgram job = program();
+  ToolPath flutes(job);
+  ExecutedPath executed(job);
+  SetpointStream stream(job);
+  Shown result;
+  for (Setpoint p; stream.next(p);) {
+    Axes actual = p.position;
+    actual[kA] += 1e-6;
+    if (every > 0 && p.cycle % static_cast<unsigned>(every) == 0) actual[axis] = value;
+    flutes.follow(p, actual);
+    executed.follow(p, actual);
+  }
+  result.largest = flutes.largestMeasured();
+  result.flutes = flutes.markers();
+  executed.append(result.executed);
+  return result;
+}
+
+TEST(PathMarkers, LeaveOutPositionsThatAreNone) {
+  const Shown clean = show(0, kX, 0);
+  ASSERT_GT(clean.largest, 0);
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                               -std::numeric_limits<double>::infinity()}) {
+      SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
+      const Shown spoiled = show(7, axis, value);
+      EXPECT_GT(spoiled.largest, 0.9 * clean.largest);
+      EXPECT_LE(spoiled.largest, clean.largest);
+      expectFinite(spoiled.flutes);
+      expectFinite(spoiled.executed);
+      EXPECT_EQ(spoiled.flutes.markers.size(), clean.flutes.markers.size());
+    }
+  }
+}
+
+TEST(PathMarkers, StayFiniteWhateverTheDriveSays) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    for (const double value : hostileValues()) {
+      SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
+      for (const int every : {1, 7}) {
+        const Shown spoiled = show(every, axis, value);
+        EXPECT_TRUE(std::isfinite(spoiled.largest));
+        expectFinite(spoiled.flutes);
+        expectFinite(spoiled.executed);
+      }
+    }
+  }
+}
+
+TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
+  for (const double value : hostileValues()) {
+    SCOPED_TRACE(value);
+    const GrindProgram job = program();
+    PathErrorMarkers errors(job.cutter());
+    SetpointStream stream(job);
+    for (Setpoint p; stream.next(p);) {
+      if (p.cycle % 7 == 0) p.path_error = value;
+      if (p.cycle % 11 == 0) p.position[kX] = value;
+      errors.add(p);
+    }
+    expectFinite(errors.markers());
+  }
+}
+
+TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
+  job.process.depth = job.process.infeed = 0.01e-3;
+  const MarkerArray array = ToolPath(GrindProgram(job, machine(), machine().park)).markers();
+  std::size_t points = 0;
+  for (const Marker& m : array.markers) points += m.points.size();
+  EXPECT_GT(points, 1000u);
+  EXPECT_LT(points, 5000u);
+}
+
+}  // namespace
+}  // namespace flute_grinder

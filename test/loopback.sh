@@ -72,7 +72,7 @@ launch_grinder() {
   while [ "$1" != -- ]; do variables+=("$1"); shift; done
   shift
   local port
-  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("", 0)); print(s.getsockname()[1])')
+  port=$("$root/test/free_port.py")
   local address=127.0.0.1
   [[ " ${variables[*]} " == *ROS_IPV6=on* ]] && address=localhost
   [[ " ${variables[*]} " == *"ROS_IP=$own"* ]] && address=$own

@@ -6,13 +6,17 @@ import pathlib
 import re
 import shutil
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 import xmlrpc.client
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / 'test'))
+
+from free_port import free_port  # noqa: E402
+
 PATIENCE = 240
 # States that pass by themselves.
 PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing'}
@@ -20,12 +24,6 @@ PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing
 
 class Failure(Exception):
     pass
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 def poll(condition, what, interval=0.1):

@@ -97,6 +97,13 @@ TEST_F(OnStage, AStateThatIsUnknownAllowsNothing) {
   EXPECT_EQ(panel.enabledRequests(), Names());
 }
 
+TEST_F(OnStage, EveryTextHasRoomBeforeAStateHasCome) {
+  stage.change([&] { stage.silent = true; });
+  Panel panel("cell/stage", kPaper);
+  WAIT_FOR(panel.state() == "No answer");
+  panel.picture("no_answer_yet");
+}
+
 TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   Panel panel("cell/stage", kPaper);
   stage.be(GrinderState::RUNNING, "running");
@@ -107,6 +114,7 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   for (const char* name : {"choose", "plan", "dry_run", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
   EXPECT_EQ(panel.label("meaning"), "No grinder answers as /cell/stage. Does its node run?");
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;
+  panel.picture("no_answer");
   panel.click("hold");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
   stage.change([&] { stage.silent = false; });

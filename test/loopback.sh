@@ -22,8 +22,8 @@ cleanup() {
 trap cleanup EXIT
 
 if ! ip netns add "$space" 2>"$folder/refusal"; then
-  echo "skipped: no network namespace may be made here ($(cat "$folder/refusal"))"
-  exit 0
+  echo "no network namespace may be made here ($(cat "$folder/refusal"))"
+  exit 77
 fi
 ip link add "veth_$$" type veth peer name outside netns "$space"
 ip address add "$own/24" dev "veth_$$"

@@ -23,13 +23,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperJob;
-using testing::plainMachine;
-using testing::Real;
-using testing::ReferenceCurve;
-using testing::ReferencePair;
-using testing::uniform;
-using testing::Work;
+using namespace test_support;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kCycles = 1500;  ///< of a stroke: long enough for all phases, short enough for a hundred jobs
@@ -127,7 +121,7 @@ std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const Gri
     const Real slope = scale * curve.slope(x);
     const Real l = (s.odd.position[kX] - x) * std::sqrt(1 + slope * slope);
     if (l == 0) continue;
-    const ReferencePair expected = testing::referencePair(job.interpolation.even_step, curve, scale, x, l);
+    const ReferencePair expected = test_support::referencePair(job.interpolation.even_step, curve, scale, x, l);
     const Real x2 = s.even.position[kX] - x;
     const Real a1 = Real(s.odd.position[kA]) - s.start.position[kA];
     const Real a2 = Real(s.even.position[kA]) - s.start.position[kA];
@@ -250,12 +244,12 @@ TEST(SetpointStream, EveryToothStandsAtItsAngle) {
 
 RC_GTEST_PROP(SetpointStreamProperty, CyclesCountFromZeroWithoutGap, ()) {
   std::uint64_t expected = 0;
-  for (const Setpoint& p : all(*testing::work(kCycles))) RC_ASSERT(p.cycle == expected++);
+  for (const Setpoint& p : all(*test_support::work(kCycles))) RC_ASSERT(p.cycle == expected++);
   RC_ASSERT(expected % 2 == 1u);  // the start and then pairs
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, EveryMoveTakesAnEvenNumberOfCycles, ()) {
-  const auto setpoints = all(*testing::work(kCycles));
+  const auto setpoints = all(*test_support::work(kCycles));
   for (std::size_t i = 1; i + 1 < setpoints.size(); ++i) {
     const Setpoint& p = setpoints[i];
     const Setpoint& q = setpoints[i + 1];
@@ -264,7 +258,7 @@ RC_GTEST_PROP(SetpointStreamProperty, EveryMoveTakesAnEvenNumberOfCycles, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, StrokesGoOddAndEvenByTurnsAndOtherMovesDoNot, ()) {
-  for (const Setpoint& p : all(*testing::work(kCycles))) {
+  for (const Setpoint& p : all(*test_support::work(kCycles))) {
     if (p.cycle == 0 || p.move != MoveKind::kStroke) {
       RC_ASSERT(p.step == StepKind::kNone);
       RC_ASSERT(p.path_error == 0);
@@ -276,7 +270,7 @@ RC_GTEST_PROP(SetpointStreamProperty, StrokesGoOddAndEvenByTurnsAndOtherMovesDoN
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const GrindProgram program = work.program();
   const auto setpoints = all(work);
   const ReferenceCurve curve(work.job.cutter);
@@ -307,7 +301,7 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const auto setpoints = all(work);
   const double clear = clearHeight(work.job) - 1e-15;
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
@@ -325,7 +319,7 @@ RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, WearNeverMovesYWithinAPass, ()) {
-  Work work = *testing::toothedWork(kCycles / 3);
+  Work work = *test_support::toothedWork(kCycles / 3);
   work.job.process.wheel_wear = *uniform(0, 1e-3);
   work.job.process.wheel_wear_per_pass = *uniform(1e-6, 1e-4);
   const auto setpoints = all(work);
@@ -341,12 +335,12 @@ RC_GTEST_PROP(SetpointStreamProperty, WearNeverMovesYWithinAPass, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxes, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   RC_ASSERT(beyondLimits(all(work), work.machine) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, TellsTheMeanVelocityOfTheCycle, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
     const Axes moved = setpoints[i].position - setpoints[i - 1].position;
@@ -355,7 +349,7 @@ RC_GTEST_PROP(SetpointStreamProperty, TellsTheMeanVelocityOfTheCycle, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const ReferenceCurve curve(work.job.cutter);
   const auto setpoints = all(work);
   const Axes noise = roundingOf(setpoints);
@@ -367,17 +361,17 @@ RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) 
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstruction, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   RC_ASSERT(offTheConstruction(all(work), work.job, 37) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, OddPointsLeaveTheCurveByTheTangentsErrorOnly, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   RC_ASSERT(offTheTangent(all(work), work.job) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, ExactEvenPointsAreOnTheCurve, ()) {
-  Work work = *testing::work(kCycles);
+  Work work = *test_support::work(kCycles);
   work.job.interpolation.even_step = EvenStepRule::kExact;
   const auto setpoints = all(work);
   const double rounding = 4 * roundingOf(setpoints)[kA] + 1e-15;
@@ -387,7 +381,7 @@ RC_GTEST_PROP(SetpointStreamProperty, ExactEvenPointsAreOnTheCurve, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, ExactNeverLeavesTheTolerance, ()) {
-  Work work = *testing::work(kCycles);
+  Work work = *test_support::work(kCycles);
   work.job.interpolation.even_step = EvenStepRule::kExact;
   const CutterGeometry& g = work.job.cutter;
   const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
@@ -399,9 +393,9 @@ RC_GTEST_PROP(SetpointStreamProperty, ExactNeverLeavesTheTolerance, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeed, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const GrindProgram program = work.program();
-  const double edge = testing::edgePerTravel(work.job.cutter);
+  const double edge = test_support::edgePerTravel(work.job.cutter);
   const double speed = program.schedule().feedSpeed();
   if (program.schedule().cuts().empty()) {
     RC_ASSERT(std::abs(speed * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
@@ -418,7 +412,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeed, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathOnly, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const double step = work.program().schedule().feedSpeed() * work.machine.period;
   const auto setpoints = all(work);
   const double rounding = 2 * roundingOf(setpoints)[kX];
@@ -448,7 +442,7 @@ TEST(SetpointStream, GoesAtFeedForMostOfThePapersStroke) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HeldItStopsOnThePathUnderTheLimits, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const auto undisturbed = all(work);
   SetpointStream stream(work.program());
   std::vector<Setpoint> setpoints;
@@ -470,7 +464,7 @@ RC_GTEST_PROP(SetpointStreamProperty, HeldItStopsOnThePathUnderTheLimits, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HeldInTheStrokeItStaysInTheStroke, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const GrindProgram program = work.program();
   const auto undisturbed = all(work);
   std::size_t first = 0;
@@ -505,7 +499,7 @@ RC_GTEST_PROP(SetpointStreamProperty, HeldInTheStrokeItStaysInTheStroke, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const auto one = all(work);
   const auto other = all(work);
   RC_ASSERT(one.size() == other.size());
@@ -790,7 +784,7 @@ void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& work) {
   const Axes rounding = 2 * roundingOf(setpoints);
   const double growth = std::tan(g.cone_angle);
   const double sin_rake = std::sin(g.rake_angle);
-  const double feed = kMaxFeedOverride * work.job.process.feed / testing::edgePerTravel(g);
+  const double feed = kMaxFeedOverride * work.job.process.feed / test_support::edgePerTravel(g);
   const double step = feed * work.machine.period;
   const ReferenceCurve curve(g);
   const auto thin = static_cast<double>(std::min(curve.u(from), curve.u(to)));
@@ -817,7 +811,7 @@ void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& work) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const auto undisturbed = all(work);
   const auto moments = momentsInStrokes(undisturbed, 3);
   const Ride ride = rideWithHoldsAndOverrides(work, moments);
@@ -831,7 +825,7 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ())
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
-  Work work = *testing::work(kCycles / 3);
+  Work work = *test_support::work(kCycles / 3);
   work.job.interpolation.even_step = *rc::gen::element(EvenStepRule::kThirdOrder, EvenStepRule::kExact);
   const double without = largestDeviation(all(work), work.job);
   RC_PRE(without > 1e-12);
@@ -845,7 +839,7 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightToler
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4));
   RC_ASSERT(ride.requests_in_strokes >= 4);
   RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
@@ -854,12 +848,12 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, (
 
 /// Slowed down at random moments, held and brought up again now and then.
 RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxesThatStood, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   SetpointStream stream(work.program());
   LimitCheck check(work.machine.limits, work.machine.period);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
-  const double share = *testing::logUniform(1e-3, 0.3);
+  const double share = *test_support::logUniform(1e-3, 0.3);
   std::vector<Setpoint> setpoints;
   Setpoint p;
   for (int cycle = 0; cycle < 100000 && !stream.finished(); ++cycle) {
@@ -907,7 +901,7 @@ TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstruction, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const auto setpoints = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4)).setpoints();
   RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
   RC_ASSERT(offTheTangent(setpoints, work.job) == "");
@@ -971,7 +965,7 @@ void checkDetours(const Ride& ride, const Work& work) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveTheWorkRadiallyAndComeBackAheadOfThePlace, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const auto undisturbed = all(work);
   const Ride ride = rideWithRetracts(work, undisturbed, 6);
   checkDetours(ride, work);
@@ -983,7 +977,7 @@ RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveTheWorkRadiallyAndComeBackAhe
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveOutNoMove, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const GrindProgram program = work.program();
   const auto undisturbed = all(work);
   const Ride ride = rideWithRetracts(work, undisturbed, 6);
@@ -1003,14 +997,14 @@ RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveOutNoMove, ()) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, RetractsKeepAllLimitsOfAllAxes, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   const Ride ride = rideWithRetracts(work, all(work), 6);
   RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
   RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, BackInTheStrokeItIsAtFeedFromThePlaceOnWhereItWasLeft, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const GrindProgram program = work.program();
   const auto undisturbed = all(work);
   std::vector<Setpoint> at_feed;
@@ -1043,7 +1037,7 @@ RC_GTEST_PROP(SetpointStreamProperty, BackInTheStrokeItIsAtFeedFromThePlaceOnWhe
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, ARetractWhileItMovesIsNotTaken, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   const auto undisturbed = all(work);
   SetpointStream stream(work.program());
   Setpoint p;
@@ -1080,7 +1074,7 @@ class PaperStroke {
 TEST(SetpointStream, HeldItRestsAsSoonAsTheLimitsAllow) {
   PaperStroke ride(10e-3);
   const MotionLimits limits = ride.stream().program().schedule().limits();
-  const double speed = 0.01 / testing::edgePerTravel(paperJob().cutter);
+  const double speed = 0.01 / test_support::edgePerTravel(paperJob().cutter);
   ASSERT_LT(speed, limits.acceleration * limits.acceleration / limits.jerk);
   const double way = speed * std::sqrt(speed / limits.jerk);
   const double x = ride.last().position[kX];
@@ -1252,7 +1246,7 @@ TEST_P(EvenFeed, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
   const Work work = gentleWork(GetParam() * units::kMillimetrePerMinute);
   // The quickest way from rest to rest over 32 mm that X's limits allow: full acceleration is reached at both feeds or
   // not by v j against a^2. The other axes' limits can only make it slower.
-  const double v = work.job.process.feed / testing::edgePerTravel(work.job.cutter);
+  const double v = work.job.process.feed / test_support::edgePerTravel(work.job.cutter);
   const double a = 0.5;
   const double j = 10;
   const double ramp = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
@@ -1269,7 +1263,7 @@ TEST_P(EvenFeed, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
 INSTANTIATE_TEST_SUITE_P(MillimetresPerMinute, EvenFeed, ::testing::Values(600, 1800));
 
 /// Of the paper's job where nothing cuts the feed, in X. [m/s]
-double paperSpeed() { return 0.01 / testing::edgePerTravel(paperJob().cutter); }
+double paperSpeed() { return 0.01 / test_support::edgePerTravel(paperJob().cutter); }
 
 TEST(SetpointStream, AnotherFeedTakesEffectWithTheNextPair) {
   for (const bool at_pair_end : {true, false}) {
@@ -1385,14 +1379,14 @@ std::map<std::uint32_t, int> rapidsOf(const std::vector<Setpoint>& setpoints) {
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, RapidsKeepTheirSpeedWhateverTheFeed, ()) {
-  const Work work = *testing::toothedWork(kCycles / 3);
+  const Work work = *test_support::toothedWork(kCycles / 3);
   SetpointStream stream(work.program());
   stream.setFeedOverride(*uniform(0.1, 1.2));
   RC_ASSERT(rapidsOf(all(stream)) == rapidsOf(all(work)));
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, AtAnotherFeedEveryPairGoesAtThatFeed, ()) {
-  const Work work = *testing::work(kCycles);
+  const Work work = *test_support::work(kCycles);
   SetpointStream stream(work.program());
   const double fraction = *uniform(0.1, 1.2);
   stream.setFeedOverride(fraction);
@@ -1410,7 +1404,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtAnotherFeedEveryPairGoesAtThatFeed, ()) 
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAskedFor, ()) {
-  Work work = *testing::work(kCycles);
+  Work work = *test_support::work(kCycles);
   work.machine.limits.max_velocity.setConstant(1e3);
   work.machine.limits.max_acceleration.setConstant(1e6);
   work.machine.limits.max_jerk.setConstant(1e9);

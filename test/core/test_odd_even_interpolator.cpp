@@ -186,7 +186,8 @@ struct Place {
     const double longest = std::min(0.5 * kMm, advanceOfGrowth(curve, x, growth));
     const double u = curve.u(x);
     const double slope = scale * curve.k() / u;
-    return *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-4 * longest, longest) * std::sqrt(1 + slope * slope);
+    return *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-4 * longest, longest) *
+           std::sqrt(1 + slope * slope);
   }
 
   Real errorOfOdd(const CurvePoint& odd) const {

@@ -161,7 +161,7 @@ def poll(condition, what, timeout=PATIENCE, interval=0.005):
         if value:
             return value
         if time.monotonic() > deadline:
-            raise AssertionError('in vain waited for: ' + what)
+            raise AssertionError('timed out waiting for: ' + what)
         time.sleep(interval)
 
 
@@ -293,7 +293,7 @@ class Grinder:
             while not condition():
                 left = deadline - time.monotonic()
                 if left <= 0:
-                    raise AssertionError('in vain waited for: ' + what)
+                    raise AssertionError('timed out waiting for: ' + what)
                 self._changed.wait(min(left, 0.1))
 
     def _call(self, service, kind, *arguments):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Counts the test cases in the JUnit files below a folder; names those that failed, and exits 1 if there are any."""
+"""Counts the test cases in the JUnit files below a folder; names the checks of scripts/test that were skipped and all that
+failed, and exits 1 if any has failed."""
 
 import pathlib
 import sys
 import xml.etree.ElementTree as ElementTree
 
-passed, failed = 0, []
+passed, failed, skipped = 0, [], []
 for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
     try:
         cases = list(ElementTree.parse(path).getroot().iter('testcase'))
@@ -16,12 +17,15 @@ for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
     if not cases:
         failed.append('%s: no test case' % path.name)
     for case in cases:
-        if case.find('skipped') is not None:
-            continue
-        if case.find('failure') is None and case.find('error') is None:
+        skip = case.find('skipped')
+        if skip is not None:
+            skipped += ['%s: %s' % (case.get('name'), skip.get('message'))] if case.get('classname') == 'checks' else []
+        elif case.find('failure') is None and case.find('error') is None:
             passed += 1
         else:
             failed.append('%s: %s.%s' % (path.name, case.get('classname'), case.get('name')))
+for name in skipped:
+    print('SKIPPED ' + name)
 for name in failed:
     print('FAILED ' + name)
 print('%d passed, %d failed' % (passed, len(failed)))

@@ -22,8 +22,8 @@ cleanup() {
 trap cleanup EXIT
 
 if ! ip netns add "$space" 2>"$folder/refusal"; then
-  echo "skipped: no network namespace may be made here ($(cat "$folder/refusal"))"
-  exit 0
+  echo "no network namespace may be made here ($(cat "$folder/refusal"))"
+  exit 77
 fi
 ip link add "veth_$$" type veth peer name outside netns "$space"
 ip address add "$own/24" dev "veth_$$"
@@ -72,7 +72,7 @@ launch_grinder() {
   while [ "$1" != -- ]; do variables+=("$1"); shift; done
   shift
   local port
-  port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("", 0)); print(s.getsockname()[1])')
+  port=$("$root/test/free_port.py")
   local address=127.0.0.1
   [[ " ${variables[*]} " == *ROS_IPV6=on* ]] && address=localhost
   [[ " ${variables[*]} " == *"ROS_IP=$own"* ]] && address=$own

@@ -19,6 +19,8 @@ namespace flute_grinder {
 
 namespace {
 
+constexpr const char* kContinue = "Continue where it was left";
+
 QPushButton* button(const char* name, const QString& text, const QString& hint) {
   auto* made = new QPushButton(text);
   made->setObjectName(name);
@@ -32,7 +34,7 @@ JobBox::JobBox(QWidget* parent)
     : QGroupBox("Job", parent),
       name_(new QLabel),
       choose_(button("choose", "Open...", "Choose a job file")),
-      continue_(new QCheckBox),
+      continue_(new QCheckBox(kContinue)),
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
@@ -188,7 +190,7 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   if (continue_->isChecked() && planned_ && planned_ != where_left_) forgetPlan();
   if (!where_left_) {
     continue_->setChecked(false);
-    continue_->setText("Continue where it was left");
+    continue_->setText(kContinue);
     return;
   }
   continue_->setText(

@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 // What the property tests draw from: cutters of both hands, machines and jobs.
-namespace flute_grinder::testing {
+namespace flute_grinder::test_support {
 
 /// Even over [low, high], whatever rapidcheck's size.
 inline rc::Gen<double> uniform(double low, double high) {
@@ -197,7 +197,7 @@ inline Machine plainMachine() {
   return m;
 }
 
-}  // namespace flute_grinder::testing
+}  // namespace flute_grinder::test_support
 
 namespace flute_grinder {
 
@@ -231,13 +231,13 @@ inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
              << toString(j.process.order);
 }
 
-namespace testing {
+namespace test_support {
 
 inline std::ostream& operator<<(std::ostream& out, const Work& w) {
   return out << w.job << "; " << w.machine << "; start " << w.start[0] << " " << w.start[1] << " " << w.start[2] << " "
              << w.start[3];
 }
 
-}  // namespace testing
+}  // namespace test_support
 
 }  // namespace flute_grinder

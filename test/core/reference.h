@@ -6,7 +6,7 @@
 #include <cmath>
 
 // The paper's formulas once more, in long double and by other ways than the code's, for tests to compare with.
-namespace flute_grinder::testing {
+namespace flute_grinder::test_support {
 
 using Real = long double;
 
@@ -101,4 +101,4 @@ inline ReferencePair referencePair(EvenStepRule rule, const ReferenceCurve& curv
   return {};
 }
 
-}  // namespace flute_grinder::testing
+}  // namespace flute_grinder::test_support

@@ -14,9 +14,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperCutter;
-using testing::Real;
-using testing::uniform;
+using namespace test_support;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -52,7 +50,7 @@ TEST(ConicalCutter, KeepsItsFigures) {
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
-  const CutterGeometry g = *testing::cutterGeometry();
+  const CutterGeometry g = *test_support::cutterGeometry();
   const ConicalCutter cutter(g);
   const double x = *uniform(-2e-3, g.flute_length);
   const Real tan_cone = std::tan(Real(g.cone_angle));
@@ -69,11 +67,11 @@ RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, ()) {
-  const CutterGeometry g = *testing::cutterGeometry();
+  const CutterGeometry g = *test_support::cutterGeometry();
   const ConicalCutter cutter(g);
   // The edge at X: R(X) (cos A, sin A) about the axis; its length over a short piece of the axis, by Simpson-free
   // chords.
-  const testing::ReferenceCurve curve(g);
+  const test_support::ReferenceCurve curve(g);
   const Real x = *uniform(0, g.flute_length);
   const Real h = g.flute_length * Real(1e-6) * std::min<Real>(1, curve.u(x));
   const auto radius = [&](Real at) { return Real(g.end_diameter) / 2 + at * std::tan(Real(g.cone_angle)); };
@@ -87,7 +85,7 @@ RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, 
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, HelixStandsToTheGeneratrixAtItsAngle, ()) {
-  const CutterGeometry g = *testing::cutterGeometry();
+  const CutterGeometry g = *test_support::cutterGeometry();
   const Real angle = std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle)));
   RC_ASSERT(std::abs(ConicalCutter(g).cosHelixToGeneratrix() - std::cos(angle)) <= 8 * kEps);
 }

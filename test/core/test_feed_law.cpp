@@ -17,9 +17,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::logUniform;
-using testing::uniform;
-using testing::whole;
+using namespace test_support;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();

@@ -15,12 +15,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperCutter;
-using testing::plainMachine;
-using testing::Real;
-using testing::ReferenceCurve;
-using testing::uniform;
-using testing::whole;
+using namespace test_support;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -46,12 +41,12 @@ struct Case {
 
   static Case draw() {
     Case c;
-    c.cutter = *testing::cutterGeometry();
-    c.machine = *testing::machine();
-    double from = -testing::openLength(c.cutter, -1, *uniform(0, 2e-3));
+    c.cutter = *test_support::cutterGeometry();
+    c.machine = *test_support::machine();
+    double from = -test_support::openLength(c.cutter, -1, *uniform(0, 2e-3));
     double to = c.cutter.flute_length;
     if (*rc::gen::arbitrary<bool>()) std::swap(from, to);
-    c.stroke = {from, to, *testing::logUniform(1e-3, 0.1), *testing::logUniform(0.1e-6, 1e-3)};
+    c.stroke = {from, to, *test_support::logUniform(1e-3, 0.1), *test_support::logUniform(0.1e-6, 1e-3)};
     return c;
   }
 
@@ -177,7 +172,7 @@ RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
   c.stroke.tolerance = 1e-3;
   const FeedSchedule schedule = c.schedule();
   RC_ASSERT(schedule.cuts().empty());
-  const double edge = testing::edgePerTravel(c.cutter);
+  const double edge = test_support::edgePerTravel(c.cutter);
   const double feed = c.stroke.surface_feed;
   RC_ASSERT(std::abs(schedule.feedSpeed() * edge - feed) <= 4 * kEps * feed);
   RC_ASSERT(std::abs(schedule.limits().velocity * edge - 1.2 * feed) <= 8 * kEps * feed);
@@ -188,7 +183,7 @@ RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
 RC_GTEST_PROP(FeedScheduleProperty, NeverAsksForMoreThanTheFeedAndAFifth, ()) {
   const Case c = Case::draw();
   const FeedSchedule schedule = c.schedule();
-  const double asked = c.stroke.surface_feed / testing::edgePerTravel(c.cutter);
+  const double asked = c.stroke.surface_feed / test_support::edgePerTravel(c.cutter);
   RC_ASSERT(schedule.feedSpeed() <= asked * (1 + 4 * kEps));
   RC_ASSERT(schedule.limits().velocity >= schedule.feedSpeed());
   RC_ASSERT(schedule.limits().velocity <= 1.2 * asked * (1 + 8 * kEps));
@@ -202,7 +197,7 @@ RC_GTEST_PROP(FeedScheduleProperty, LeavesNoRoomForMoreWhereSomethingHoldsTheFee
 
 RC_GTEST_PROP(FeedScheduleProperty, TellsWhereAHoldsTheFeedBack, ()) {
   Case c = Case::draw();
-  c.machine.limits.max_velocity[kA] *= *testing::logUniform(0.01, 1);
+  c.machine.limits.max_velocity[kA] *= *test_support::logUniform(0.01, 1);
   const FeedSchedule schedule = c.schedule();
   const bool forward = c.stroke.to > c.stroke.from;
   const auto ahead = [&](double x, double of) { return forward ? x > of : x < of; };
@@ -276,7 +271,7 @@ RC_GTEST_PROP(FeedScheduleProperty, AMotionWithStopsKeepsAllAxesWithinTheirLimit
   const double h = std::max(c.machine.period, law.timeLeft() / 4000);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> fraction(0, 1);
-  const double chance = *testing::logUniform(0.002, 0.1);
+  const double chance = *test_support::logUniform(0.002, 0.1);
   std::vector<double> xs(3, schedule.x(0));
   for (int i = 0; i < 6000 && !law.finished(); ++i) {
     if (i < 3000 && fraction(random) < chance)
@@ -348,7 +343,7 @@ TEST(FeedSchedule, TellsEveryCauseWithItsRange) {
   // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
   // and as much as X where the radius is v tan S / 5 rad/s.
   Machine machine = boundless();
-  const double asked = 0.01 / testing::edgePerTravel(thinCutter());
+  const double asked = 0.01 / test_support::edgePerTravel(thinCutter());
   machine.limits.max_velocity[kX] = asked / 2;
   machine.limits.max_velocity[kA] = 5;
   machine.period = 1e-6;
@@ -388,7 +383,7 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
     stroke.tolerance = tolerance;
     return causeOf(FeedSchedule(ConicalCutter(thinCutter()), stroke, machine));
   };
-  const double x_speed = 0.01 / testing::edgePerTravel(thinCutter());
+  const double x_speed = 0.01 / test_support::edgePerTravel(thinCutter());
   EXPECT_EQ(limitedBy(boundless()), "");
   EXPECT_EQ(limitedBy(boundless(), 1e-9), "interpolation tolerance");
   Machine m = boundless();

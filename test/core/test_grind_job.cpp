@@ -15,7 +15,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperJob;
+using test_support::paperJob;
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 constexpr double kDeg = kPi / 180;
@@ -434,10 +434,10 @@ TEST(PassOrder, IsThatOfTeethOrOfPasses) {
 
 RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
   GrindProcess p;
-  p.depth = *testing::logUniform(0.01e-3, 10e-3);
-  p.infeed = p.depth * *testing::logUniform(0.003, 2);
-  p.finish_infeed = *rc::gen::arbitrary<bool>() ? p.depth * *testing::uniform(0, 1) : 0;
-  p.spark_out = *testing::whole(0, 5);
+  p.depth = *test_support::logUniform(0.01e-3, 10e-3);
+  p.infeed = p.depth * *test_support::logUniform(0.003, 2);
+  p.finish_infeed = *rc::gen::arbitrary<bool>() ? p.depth * *test_support::uniform(0, 1) : 0;
+  p.spark_out = *test_support::whole(0, 5);
   const auto depths = passDepths(p);
   RC_ASSERT(!depths.empty());
   RC_ASSERT(depths.back() == p.depth);

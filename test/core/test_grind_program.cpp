@@ -18,9 +18,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperJob;
-using testing::plainMachine;
-using testing::Work;
+using namespace test_support;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -94,7 +92,7 @@ TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 2};
   const GrindProgram program = programOf(job, {1, 0});
-  const testing::ReferenceCurve curve(job.cutter);
+  const test_support::ReferenceCurve curve(job.cutter);
   const double growth = std::tan(5 * units::kDegree);
   const double sin_rake = std::sin(8 * units::kDegree);
   const Move& index = firstOf(program, MoveKind::kIndex);
@@ -272,7 +270,7 @@ TEST(GrindProgram, IndexesFromToothToToothAtTheStartOfTheirStrokes) {
       const GrindProgram program = programOf(job);
       const double from = direction == StrokeDirection::kFromEnd ? -1e-3 : 31e-3;
       const double to = 30e-3 - from;
-      const testing::ReferenceCurve curve(job.cutter);
+      const test_support::ReferenceCurve curve(job.cutter);
       std::vector<double> indexed;
       std::vector<double> reached;
       for (const Move& move : program.moves()) {
@@ -332,10 +330,10 @@ TEST(GrindProgram, CountsTheWearOfThePassesThatWereGroundBefore) {
 }
 
 RC_GTEST_PROP(GrindProgramProperty, WearMovesYOfInfeedsAndStrokesOnly, ()) {
-  Work work = *testing::toothedWork(3000);
-  work.job.process.wheel_wear = *testing::uniform(0, 1e-3);
+  Work work = *test_support::toothedWork(3000);
+  work.job.process.wheel_wear = *test_support::uniform(0, 1e-3);
   const GrindProgram without = work.program();
-  const double wear = *testing::uniform(1e-6, 1e-4);
+  const double wear = *test_support::uniform(1e-6, 1e-4);
   work.job.process.wheel_wear_per_pass = wear;
   const GrindProgram with = work.program();
   RC_ASSERT(with.moves().size() == without.moves().size());
@@ -371,7 +369,7 @@ std::vector<int> axesOf(MoveKind kind) {
 }
 
 RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnly, ()) {
-  const GrindProgram program = (*testing::toothedWork(3000)).program();
+  const GrindProgram program = (*test_support::toothedWork(3000)).program();
   Axes at = program.start();
   for (const Move& move : program.moves()) {
     const auto axes = axesOf(move.kind);
@@ -383,7 +381,7 @@ RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnly, ()) {
 }
 
 RC_GTEST_PROP(GrindProgramProperty, MovesXZAndABelowTheClearancePlaneInStrokesOnly, ()) {
-  const Work work = *testing::toothedWork(3000);
+  const Work work = *test_support::toothedWork(3000);
   const GrindProgram program = work.program();
   const double growth = std::tan(work.job.cutter.cone_angle);
   const double plane =
@@ -400,7 +398,7 @@ RC_GTEST_PROP(GrindProgramProperty, MovesXZAndABelowTheClearancePlaneInStrokesOn
 }
 
 RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {
-  const Work work = *testing::work(3000);
+  const Work work = *test_support::work(3000);
   const GrindProgram program = work.program();
   const bool low = work.start[kY] < work.machine.park[kY];
   RC_ASSERT((program.moves().front().kind == MoveKind::kLift) == low);
@@ -410,11 +408,11 @@ RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {
 
 RC_GTEST_PROP(GrindProgramProperty, EveryToothGetsEveryPassOnce, ()) {
   GrindJob job = paperJob();
-  job.process.depth = 1e-3 * *testing::uniform(0.1, 2);
-  job.process.infeed = job.process.depth / *testing::uniform(0.5, 6);
-  job.process.spark_out = *testing::whole(0, 2);
+  job.process.depth = 1e-3 * *test_support::uniform(0.1, 2);
+  job.process.infeed = job.process.depth / *test_support::uniform(0.5, 6);
+  job.process.spark_out = *test_support::whole(0, 2);
   job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
-  const int teeth = *testing::whole(1, 6);
+  const int teeth = *test_support::whole(1, 6);
   for (int i = 1; i < teeth; ++i) job.tooth_angles.push_back(i);
   const auto passes = static_cast<int>(passDepths(job.process).size());
   std::vector<int> seen(static_cast<std::size_t>(teeth * passes));

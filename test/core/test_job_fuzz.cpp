@@ -18,8 +18,8 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperJob;
-using testing::plainMachine;
+using test_support::paperJob;
+using test_support::plainMachine;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

@@ -21,11 +21,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperJob;
-using testing::plainMachine;
-using testing::Real;
-using testing::ReferenceCurve;
-using testing::Work;
+using namespace test_support;
 
 JobPlan planOf(const GrindJob& job, const Machine& machine = plainMachine()) {
   return planJob(job, machine, machine.park);
@@ -106,7 +102,7 @@ PlanStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob
     s.max_deviation = std::max(s.max_deviation, static_cast<double>(error * radius * normal));
     if (p.step == StepKind::kEven && p.at_feed) {
       const double feed =
-          std::abs(p.position[kX] - setpoints[i - 2].position[kX]) / (2 * period) * testing::edgePerTravel(g);
+          std::abs(p.position[kX] - setpoints[i - 2].position[kX]) / (2 * period) * test_support::edgePerTravel(g);
       s.min_feed = s.min_feed == 0 ? feed : std::min(s.min_feed, feed);
       s.max_feed = std::max(s.max_feed, feed);
     }
@@ -194,12 +190,12 @@ TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
 }
 
 RC_GTEST_PROP(JobPlanProperty, TellsWhereEveryMoveEnds, ()) {
-  const Work work = *testing::toothedWork(500);
+  const Work work = *test_support::toothedWork(500);
   expectMoveEnds(work.job, work.machine, work.start, true);
 }
 
 RC_GTEST_PROP(JobPlanProperty, MovesTakeTheWholeTime, ()) {
-  const Work work = *testing::toothedWork(500);
+  const Work work = *test_support::toothedWork(500);
   std::array<std::uint64_t, kMoveKindCount> cycles{};
   const JobPlan plan = planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
     if (p.cycle > 0) ++cycles.at(static_cast<std::size_t>(p.move));
@@ -218,7 +214,7 @@ RC_GTEST_PROP(JobPlanProperty, MovesTakeTheWholeTime, ()) {
 std::pair<double, double> slowRange(const JobPlan& plan, const std::vector<Setpoint>& setpoints) {
   const GrindJob& job = plan.program->job();
   const double period = plan.program->machine().period;
-  const double edge = testing::edgePerTravel(job.cutter);
+  const double edge = test_support::edgePerTravel(job.cutter);
   std::vector<double> slow;
   for (std::size_t i = 2; i < setpoints.size(); i += 2) {
     if (setpoints[i].step == StepKind::kNone) continue;
@@ -253,7 +249,8 @@ TEST(JobPlan, TellsWhereTheFeedIsCut) {
     EXPECT_NEAR(from_end ? cut.to : cut.from, from_end ? to : from, 0.1e-3);
     // Where v k/u = 0.8 rad/s, by hand.
     const double growth = std::tan(5 * units::kDegree);
-    const double x = (0.01 / testing::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
+    const double x =
+        (0.01 / test_support::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
     EXPECT_NEAR(from_end ? cut.to : cut.from, x, 0.1e-3);
   }
 }
@@ -287,7 +284,7 @@ TEST(JobPlan, ReportsTheRippleOfTheOddEvenSteps) {
   // A turns by 2 kappa dl once per pair: |k b| v^2 / u^2 on the mean, twice that by single cycles, at X = -1 mm.
   const JobPlan plan = planOf(paperJob());
   const ReferenceCurve curve(paperJob().cutter);
-  const Real speed = 0.01 / testing::edgePerTravel(paperJob().cutter);
+  const Real speed = 0.01 / test_support::edgePerTravel(paperJob().cutter);
   const Real thin = 2 * curve.k * curve.b * speed * speed;
   EXPECT_GE(plan.statistics.ripple_acceleration[kA], static_cast<double>(thin / (curve.u(0.001L) * curve.u(0.001L))));
 }
@@ -356,7 +353,7 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   EXPECT_EQ(plan.program, nullptr);
   EXPECT_EQ(looks, 0);
   ASSERT_EQ(plan.reasons.size(), 1u);
-  const double pass = (5 + 32 * testing::edgePerTravel(job.cutter)) / 0.1 * 60;
+  const double pass = (5 + 32 * test_support::edgePerTravel(job.cutter)) / 0.1 * 60;
   std::ostringstream text;
   text << "max_job_duration = 86400 s: the job takes " << 64 * 300 * pass
        << " s or more, with teeth 64, passes 300, process.feed_mm_min = 0.1 mm/min, process.infeed_mm = "
@@ -742,7 +739,7 @@ TEST(JobPlan, RefusesAFeedBelowTheSlowest) {
 
 /// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.
 RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
-  const Work work = *testing::work(2000);
+  const Work work = *test_support::work(2000);
   const JobPlan plan = planJob(work.job, work.machine, work.start);
   RC_ASSERT(reasonsWith(plan, "axis_").empty());
   RC_ASSERT(plan.good() == plan.reasons.empty());
@@ -751,7 +748,7 @@ RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
 }
 
 RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
-  Work work = *testing::work(2000);
+  Work work = *test_support::work(2000);
   work.job.interpolation.even_step = EvenStepRule::kExact;
   const JobPlan plan = planJob(work.job, work.machine, work.start);
   RC_ASSERT(plan.fault != PlanFault::kTolerance);

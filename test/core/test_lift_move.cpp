@@ -14,9 +14,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::plainMachine;
-using testing::uniform;
-using testing::whole;
+using namespace test_support;
 
 const Axes kFrom(0.01, -0.002, 0.003, 4);
 
@@ -69,10 +67,10 @@ TEST(LiftMove, FromAboveNothingMoves) {
 }
 
 RC_GTEST_PROP(LiftMoveProperty, KeepsTheLimitsHeldAndSlowedDownAtAnyMoment, ()) {
-  const Machine machine = *testing::machine();
+  const Machine machine = *test_support::machine();
   LiftMove lift(machine);
   LimitCheck check(machine.limits, machine.period);
-  const double to = kFrom[kY] + *testing::logUniform(1e-6, 0.1);
+  const double to = kFrom[kY] + *test_support::logUniform(1e-6, 0.1);
   lift.begin(kFrom, to);
   const int slow_down_at = *whole(1, 60);
   const int hold_at = *whole(0, 200);

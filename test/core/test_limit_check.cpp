@@ -404,8 +404,8 @@ TEST(LimitCheck, TellsTheUnitsOfEveryQuantity) {
 
 RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {
   // p = c (wt - sin wt) begins at rest; its derivatives reach 2 c w, c w^2 and c w^3, and so do its differences.
-  const int axis = *testing::whole(0, 3);
-  const double w = *testing::logUniform(1, 100);
+  const int axis = *test_support::whole(0, 3);
+  const double w = *test_support::logUniform(1, 100);
   const double c = 0.06 / w;
   AxisLimits l = plainLimits();
   l.max_velocity[axis] = 2 * c * w;

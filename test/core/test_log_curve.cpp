@@ -13,9 +13,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::Real;
-using testing::ReferenceCurve;
-using testing::uniform;
+using namespace test_support;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
@@ -26,20 +24,20 @@ struct Curves {
   double shortest, longest;  ///< X over which it exists with a fifth of its radius
 
   static Curves draw() {
-    const CutterGeometry g = *testing::cutterGeometry();
+    const CutterGeometry g = *test_support::cutterGeometry();
     const LogCurve curve{ConicalCutter(g)};
-    return {curve, ReferenceCurve(curve.b(), curve.k()), -testing::openLength(g, -1, 10e-3), g.flute_length};
+    return {curve, ReferenceCurve(curve.b(), curve.k()), -test_support::openLength(g, -1, 10e-3), g.flute_length};
   }
 };
 
 TEST(LogCurve, HasThePapersConstants) {
-  const LogCurve curve{ConicalCutter(testing::paperCutter())};
+  const LogCurve curve{ConicalCutter(test_support::paperCutter())};
   EXPECT_NEAR(curve.b(), 17.4977327, 1e-7);   // 2 tan 5 deg / 10 mm
   EXPECT_NEAR(curve.k(), 115.4700538, 1e-7);  // 2 tan 30 deg / 10 mm
 }
 
 TEST(LogCurve, EndsWhereThePapersTableDoes) {
-  const LogCurve curve{ConicalCutter(testing::paperCutter())};
+  const LogCurve curve{ConicalCutter(test_support::paperCutter())};
   EXPECT_NEAR(curve.a(30.2684e-3), 2.8048, 0.00006);
   EXPECT_NEAR(curve.a(1.7885e-3), 0.2033, 0.00006);
 }
@@ -95,7 +93,7 @@ RC_GTEST_PROP(LogCurveProperty, IsTheLogarithmInLongDouble, ()) {
 }
 
 RC_GTEST_PROP(LogCurveProperty, HasTheConstantsOfTheCutter, ()) {
-  const CutterGeometry g = *testing::cutterGeometry();
+  const CutterGeometry g = *test_support::cutterGeometry();
   const LogCurve curve{ConicalCutter(g)};
   const ReferenceCurve reference(g);
   RC_ASSERT(std::abs(curve.b() - reference.b) <= 4 * kEps * std::abs(reference.b));
@@ -106,7 +104,7 @@ RC_GTEST_PROP(LogCurveProperty, DeltaIsTheDifferenceAlsoOfCloseNeighbours, ()) {
   const Curves c = Curves::draw();
   const double x = *uniform(c.shortest, c.longest);
   const double end = *uniform(c.shortest, c.longest);
-  const double dx = (end - x) * *testing::logUniform(1e-12, 1);
+  const double dx = (end - x) * *test_support::logUniform(1e-12, 1);
   const Real expected = c.reference.delta(x, dx);
   // 1e-15 where the path goes, plus what rounding u(x) makes of 1 + bX where the radius nearly vanishes.
   const Real u = c.reference.u(x);

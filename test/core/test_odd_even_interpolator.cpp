@@ -13,11 +13,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperCutter;
-using testing::Real;
-using testing::ReferenceCurve;
-using testing::ReferencePair;
-using testing::uniform;
+using namespace test_support;
 
 constexpr double kPaperScale = 1e-3;  ///< X in mm, A in rad
 constexpr double kMm = units::kMillimetre;
@@ -180,9 +176,9 @@ struct Place {
   double x;
 
   static Place draw() {
-    const CutterGeometry g = *testing::cutterGeometry();
-    const double x = *uniform(-testing::openLength(g, -1, 2e-3), g.flute_length);
-    return {g, curveOf(g), ReferenceCurve(g), *testing::logUniform(0.1e-3, 10e-3), x};
+    const CutterGeometry g = *test_support::cutterGeometry();
+    const double x = *uniform(-test_support::openLength(g, -1, 2e-3), g.flute_length);
+    return {g, curveOf(g), ReferenceCurve(g), *test_support::logUniform(0.1e-3, 10e-3), x};
   }
 
   /// A step over which the radius grows or shrinks by `growth` at most, up to 0.5 mm, of either sign.
@@ -190,7 +186,8 @@ struct Place {
     const double longest = std::min(0.5 * kMm, advanceOfGrowth(curve, x, growth));
     const double u = curve.u(x);
     const double slope = scale * curve.k() / u;
-    return *rc::gen::element(-1.0, 1.0) * *testing::logUniform(1e-4 * longest, longest) * std::sqrt(1 + slope * slope);
+    return *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-4 * longest, longest) *
+           std::sqrt(1 + slope * slope);
   }
 
   Real errorOfOdd(const CurvePoint& odd) const {
@@ -202,7 +199,7 @@ void expectSame(const Place& place, EvenStepRule rule, double step) {
   OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
   const CurvePoint start = interpolator.position();
   const OddEvenPair pair = interpolator.next(step);
-  const ReferencePair expected = testing::referencePair(rule, place.reference, place.scale, place.x, step);
+  const ReferencePair expected = test_support::referencePair(rule, place.reference, place.scale, place.x, step);
   const Real x_tolerance = 1e-13 * std::abs(step) + 4 * kEps * std::abs(place.x);
   RC_ASSERT(std::abs(Real(pair.odd.x) - place.x - expected.x1) <= x_tolerance);
   RC_ASSERT(std::abs(Real(pair.even.x) - place.x - expected.x2) <= x_tolerance);
@@ -230,20 +227,20 @@ EvenStepRule drawRule() {
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, WholePathsFollowTheFormulasWithStepsThatChange, ()) {
-  const CutterGeometry g = *testing::cutterGeometry();
+  const CutterGeometry g = *test_support::cutterGeometry();
   const ReferenceCurve reference(g);
-  const double scale = *testing::logUniform(0.1e-3, 10e-3);
+  const double scale = *test_support::logUniform(0.1e-3, 10e-3);
   const EvenStepRule rule = drawRule();
   const LogCurve curve = curveOf(g);
   OddEvenInterpolator interpolator(curve, scale, rule, 0);
   CurvePoint start = interpolator.position();
-  const int pairs = *testing::whole(10, 60);
+  const int pairs = *test_support::whole(10, 60);
   for (int i = 0; i < pairs; ++i) {
     const Real slope = scale * reference.slope(start.x);
     const double longest = std::min(g.flute_length / pairs / 4, advanceOfGrowth(curve, start.x, 0.1));
     const double step = longest * *uniform(0.2, 1) * static_cast<double>(std::sqrt(1 + slope * slope));
     const OddEvenPair pair = interpolator.next(step);
-    const ReferencePair expected = testing::referencePair(rule, reference, scale, start.x, step);
+    const ReferencePair expected = test_support::referencePair(rule, reference, scale, start.x, step);
     RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
     RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
     RC_ASSERT(pair.even.x == interpolator.position().x);
@@ -281,9 +278,9 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, ExactEvenPointsAreOnTheCurve, ()) {
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, ACylinderIsFollowedWithoutError, ()) {
-  CutterGeometry g = *testing::cutterGeometry();
+  CutterGeometry g = *test_support::cutterGeometry();
   g.cone_angle = 0;
-  const double step = *testing::logUniform(1e-7, 1e-3);
+  const double step = *test_support::logUniform(1e-7, 1e-3);
   OddEvenInterpolator interpolator(curveOf(g), kPaperScale, drawRule(), 0);
   const double k = 2 * std::tan(g.spiral_angle) / g.end_diameter;
   const double dx = step / std::sqrt(1 + k * k * kPaperScale * kPaperScale);
@@ -296,7 +293,7 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, ACylinderIsFollowedWithoutError, ()) 
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, AStraightFluteNeedsNoTurn, ()) {
-  CutterGeometry g = *testing::cutterGeometry();
+  CutterGeometry g = *test_support::cutterGeometry();
   g.spiral_angle = 0;
   const double step = g.flute_length / 100;
   OddEvenInterpolator interpolator(curveOf(g), kPaperScale, drawRule(), 0);
@@ -312,7 +309,7 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, StepLengthForAdvanceAdvancesByThat, (
   const Place place = Place::draw();
   const EvenStepRule rule = drawRule();
   const double longest = std::min(1 * kMm, 0.1 * place.curve.u(place.x) / std::max(std::abs(place.curve.b()), 1e-9));
-  const double dx = *rc::gen::element(-1.0, 1.0) * *testing::logUniform(1e-6 * longest, longest);
+  const double dx = *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-6 * longest, longest);
   OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
   const OddEvenPair pair = interpolator.next(interpolator.stepLengthForAdvance(dx));
   const Real advance = Real(pair.even.x) - place.x;
@@ -328,7 +325,7 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, NoAdvanceNeedsNoStep, ()) {
 RC_GTEST_PROP(OddEvenInterpolatorProperty, LargestStepLengthUsesUpTheErrorAllowed, ()) {
   const Place place = Place::draw();
   RC_PRE(std::abs(place.curve.k() * place.curve.b()) > 1e-3);
-  const double allowed = *testing::logUniform(1e-10, 1e-4);
+  const double allowed = *test_support::logUniform(1e-10, 1e-4);
   const double step = OddEvenInterpolator::largestStepLength(place.curve, place.scale, place.x, allowed);
   const Real u = place.reference.u(place.x);
   const Real slope = place.scale * place.reference.slope(place.x);

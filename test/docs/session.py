@@ -6,26 +6,25 @@ import pathlib
 import re
 import shutil
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 import time
 import xmlrpc.client
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-PATIENCE = 240
+sys.path.insert(0, str(ROOT / 'test'))
+
+from free_port import free_port  # noqa: E402
+
+# Much longer than any command takes, even on a host that stalls.
+PATIENCE = 600
 # States that pass by themselves.
-PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing'}
+PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing', 'lifting'}
 
 
 class Failure(Exception):
     pass
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 def poll(condition, what, interval=0.1):
@@ -35,7 +34,7 @@ def poll(condition, what, interval=0.1):
         if value:
             return value
         if time.monotonic() > deadline:
-            raise Failure('in vain waited for: ' + what)
+            raise Failure('timed out waiting for: ' + what)
         time.sleep(interval)
 
 
@@ -89,22 +88,37 @@ class Session:
         if self.in_hal and command.startswith('halcmd -f'):
             # A host that stalls is not to end a test.
             self.type('halcmd setp watchdog.timeout-0 1000')
+        pressed = re.fullmatch('halcmd sets emergency-stop (true|false)', command)
+        if pressed:
+            # The node sees it with its next cycle.
+            seen = 'emergency stop +' + {'true': 'pressed', 'false': 'released'}[pressed.group(1)]
+            poll(lambda: re.search(seen, self.grind('status')), seen)
 
-    def patient_machine(self):
-        """The machine as shipped, on a host that may stall."""
-        shipped = (ROOT / 'config/grinder.yaml').read_text()
-        patient = (ROOT / 'test/patient.yaml').read_text()
-        path = self.folder / 'machine.yaml'
-        path.write_text(re.sub(r'(?m)^late_cycle:.*', '', shipped) + patient)
-        return path
+    def grind(self, arguments, node=''):
+        """What a command prints that no page asks for; without rosrun, which takes its time."""
+        command = ' '.join([str(ROOT / 'build/devel/lib/flute_grinder/grind'), node, arguments])
+        self.type(command)
+        return self.outputs[command]
+
+    def state(self, node=''):
+        return re.search(r'(?m)^state +(\w+)', self.grind('status', node)).group(1)
+
+    def patient(self, command):
+        """A launch with its machine, be it as shipped or the page's own, on a host that may stall."""
+        own = re.search(r' config:=(\S+)', command)
+        config = pathlib.Path(own.group(1).replace('$HOME', str(self.home))) if own else ROOT / 'config/grinder.yaml'
+        path = self.folder / ('machine_%d.yaml' % len(self.launched))
+        path.write_text(re.sub(r'(?m)^late_cycle:.*', '', config.read_text()) + (ROOT / 'test/patient.yaml').read_text())
+        command = command.replace(own.group(), '') if own else command
+        if self.in_hal:
+            command += ' hal_config:=%s' % (ROOT / 'test/hal/patient.yaml')
+        return command + ' config:=%s' % path
 
     def launch(self, command):
         self.type(command.replace('roslaunch', 'roslaunch --nodes', 1))
         nodes = self.outputs[command.replace('roslaunch', 'roslaunch --nodes', 1)].split()
-        if self.in_hal:
-            command += ' hal_config:=%s' % (ROOT / 'test/hal/patient.yaml')
-        elif 'grinder.launch' in command and 'config:=' not in command:
-            command += ' config:=%s' % self.patient_machine()
+        grinders = [node for node in nodes if node.endswith('/grinder')]
+        command = self.patient(command)
         log = self.folder / ('launched_%d' % len(self.launched))
         process = self._start(command, log)
         self.launched.append((command, process, log))
@@ -114,7 +128,8 @@ class Session:
                 raise Failure('%s: has ended\n%s' % (command, log.read_text()))
             try:
                 master = xmlrpc.client.ServerProxy(self.master)
-                return all(master.lookupNode('/test', node)[0] == 1 for node in nodes)
+                return (all(master.lookupNode('/test', node)[0] == 1 for node in nodes) and
+                        all(master.lookupService('/test', node + '/plan')[0] == 1 for node in grinders))
             except OSError:
                 return False
 
@@ -123,30 +138,28 @@ class Session:
     def type_while(self, other, commands, broken_off=False):
         """Types commands while another runs: once its job is under way, and each when the state before has passed. Then waits
         for its end, or breaks it off."""
-        grind = ' '.join(['rosrun flute_grinder grind'] + re.findall(r'--node \S+', other))
+        node = ' '.join(re.findall(r'--node \S+', other))
         log = self.folder / 'other'
-
-        def state():
-            self.type(grind + ' status')
-            return re.search(r'(?m)^state +(\w+)', self.outputs[grind + ' status']).group(1)
 
         def under_way():
             if process.poll() is not None:
                 raise Failure('%s: has ended too early\n%s' % (other, log.read_text()))
-            return state() == 'running'
+            return self.state(node) == 'running'
 
-        canceled = broken_off or commands[-1:] == [grind + ' cancel']
+        canceled = broken_off or commands[-1:] and commands[-1].endswith(' cancel')
         # The job is to last as long as the typing takes, however slow the host is.
-        self.type(grind + ' override 4')
+        self.grind('override 4', node)
         process = self._start(other, log)
         try:
             poll(under_way, 'the job of ' + other)
             for command in commands:
                 self.type(command)
-                poll(lambda: state() not in PASSING, 'the end of a passing state')
+                if ' override ' in command:
+                    self.grind('override 4', node)
+                poll(lambda: self.state(node) not in PASSING, 'the end of a passing state')
             if broken_off:
                 process.send_signal(signal.SIGINT)
-            self.type(grind + ' override 100')
+            self.grind('override 100', node)
             self._end(process, log, other, 1 if canceled else 0)
             self.outputs[other] = log.read_text()
         finally:

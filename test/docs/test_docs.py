@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 import traceback
 
 import figures
@@ -114,9 +115,9 @@ def run_page(page):
             last = item.lines[-1] if item.kind == 'commands' else last
         session.end_launched()
     except Failure as failure:
-        return '%s: %s' % (page, failure)
+        return textwrap.indent(str(failure), page + ': ')
     except Exception:
-        return '%s: %s' % (page, traceback.format_exc())
+        return textwrap.indent(traceback.format_exc(), page + ': ')
     finally:
         session.close()
     return ''

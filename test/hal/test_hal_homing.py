@@ -11,6 +11,7 @@ from flute_grinder.msg import GrinderState, GrindResult
 
 import hal_bench
 from hal_bench import gc
+import path_checks as checks
 from grinder_client import MM, MM_MIN
 
 RECORDER = hal_bench.Recorder()
@@ -119,8 +120,8 @@ class TestHoming(unittest.TestCase):
         self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
         for told, expected in zip(run.setpoints[0].position, reading):
             self.assertAlmostEqual(told, expected, delta=1e-12)
-        self.assertTrue(gc.is_gapless(run.setpoints))
-        self.assertEqual(gc.excesses(run.setpoints, self.limits, self.period), [])
+        self.assertTrue(checks.is_gapless(run.setpoints))
+        self.assertEqual(checks.excesses(run.setpoints, self.limits, self.period), [])
         self.check_reading(self.grinder.park())
         self.check_steps(RECORDER.read()[first:])
 

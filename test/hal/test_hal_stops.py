@@ -13,6 +13,7 @@ from flute_grinder.msg import GrinderState, GrindResult
 
 import hal_bench
 from hal_bench import gc
+import path_checks as checks
 from grinder_client import A, DEG, MM, STROKE, X, Y, Z
 
 RECORDER = hal_bench.Recorder()
@@ -182,7 +183,7 @@ class TestUnderrun(Stop, unittest.TestCase):
         self.grinder.fresh_state()
         setpoints = self.goal_run.setpoints
         self.assertEqual(setpoints[-1].cycle, last)
-        self.assertTrue(gc.is_gapless(setpoints))
+        self.assertTrue(checks.is_gapless(setpoints))
         # All of them were played, and the axes stand at the last one.
         self.assertEqual(self.rows_from_stop()[0].command, tuple(setpoints[-1].position))
         self.check_standing()
@@ -221,7 +222,7 @@ class TestHold(Stop, unittest.TestCase):
         self.assertTrue(self.grinder._call('resume', gc.Trigger).success)
         self.goal_run.wait_complete()
         self.assertEqual((self.goal_run.status, self.goal_run.text), ('SUCCEEDED', ''))
-        self.assertTrue(gc.is_gapless(self.goal_run.setpoints))
+        self.assertTrue(checks.is_gapless(self.goal_run.setpoints))
         self.check_steps(RECORDER.read()[self.first:])
 
     def test_cancel_stops_on_the_path_and_lifts(self):
@@ -238,7 +239,7 @@ class TestHold(Stop, unittest.TestCase):
         self.assertGreater(len(setpoints) - stroke_end, 2, 'the wheel was lifted')
         for axis in (X, Z, A):
             self.assertEqual(len({s.position[axis] for s in setpoints[stroke_end:]}), 1)
-        self.assertEqual(gc.excesses(self.goal_run.setpoints, self.limits, self.period), [])
+        self.assertEqual(checks.excesses(self.goal_run.setpoints, self.limits, self.period), [])
 
 
 class TestHoming(Stop, unittest.TestCase):

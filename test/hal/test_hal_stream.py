@@ -10,6 +10,7 @@ from flute_grinder.msg import GrinderState
 
 import hal_bench
 from hal_bench import gc
+import path_checks as checks
 
 RECORDER = hal_bench.Recorder()
 # Long, so that a host that stalls does not decide the test.
@@ -43,7 +44,7 @@ class TestStream(unittest.TestCase):
         RECORDER.over(10)
         rows = RECORDER.read()[first:]
         setpoints = [bits(s.position) for s in run.setpoints]
-        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertTrue(checks.is_gapless(run.setpoints))
         # The first setpoints are where the axes stand; the first that is not shows where they begin.
         start = setpoints[0]
         standing = next(i for i, s in enumerate(setpoints) if s != start)

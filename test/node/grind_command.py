@@ -1,7 +1,8 @@
-"""The command line in a process of its own, for tests of what it does while it waits."""
+"""The command line for tests: run to its end, and in a process of its own for what it does while it waits."""
 
 import contextlib
 import fcntl
+import json
 import os
 import pty
 import shutil
@@ -23,6 +24,39 @@ def default_signals():
     """Whatever started the test may have had them ignored."""
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGPIPE, signal.SIGTSTP):
         signal.signal(number, signal.SIG_DFL)
+
+
+class CommandLine(unittest.TestCase):
+    """Runs commands to their end."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), 'w') as file:
+            file.write(text)
+        return self.path(name)
+
+    def grind(self, status, *arguments):
+        done = gc.grind(*arguments)
+        self.assertEqual(done.returncode, status, '%s\n%s' % (done.stdout, done.stderr))
+        if status != 0:
+            self.assertNotEqual(done.stderr.strip(), '', 'no reason is given')
+        return done
+
+    def json(self, status, *arguments):
+        """What a command prints with --json, which must be nothing else."""
+        done = self.grind(status, *arguments, '--json')
+        return json.loads(done.stdout), done.stderr
+
+    def csv(self, path):
+        with open(path) as lines:
+            header, *rows = [line.rstrip('\n').split(',') for line in lines]
+        return [dict(zip(header, row)) for row in rows]
 
 
 class Command:

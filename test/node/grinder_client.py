@@ -1,5 +1,4 @@
-"""What the tests share: a client of the grinder that records all it says, and an evaluation of the cutter's mathematics
-that is independent of the grinder's own."""
+"""What the tests share: jobs, the package's programs and files, and a client of the grinder that records all it says."""
 
 import atexit
 import contextlib
@@ -22,7 +21,7 @@ import rospkg
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from flute_grinder.msg import GrindAction, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
+from flute_grinder.msg import GrindAction, GrindActionResult, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
 from flute_grinder.srv import InjectFault, Plan, SetFeedOverride
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
@@ -38,8 +37,6 @@ MOVES = ['lift', 'index', 'position', 'approach', 'infeed', 'stroke', 'retract',
 STEPS = ['none', 'odd', 'even']
 LIFT, INDEX, POSITION, APPROACH, INFEED, STROKE, RETRACT, RETURN = range(8)
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
-
-EPSILON = 2.0 ** -52
 
 # Much longer than anything takes, even on a host that stalls.
 PATIENCE = 60
@@ -93,50 +90,6 @@ def goal_of(job, **fields):
         part, name = path.split('.')
         setattr(getattr(goal, part), name, value)
     return goal
-
-
-class Helix:
-    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 X tan C / D1), kX for a cylinder."""
-
-    def __init__(self, job):
-        self.diameter = job['cutter.end_diameter']
-        self.tan_cone = math.tan(job['cutter.cone_angle'])
-        self.tan_spiral = math.tan(job['cutter.spiral_angle'])
-        self.sin_rake = math.sin(job['cutter.rake_angle'])
-        self.scale = job['interpolation.rotary_scale']
-        self.b = 2 * self.tan_cone / self.diameter
-        self.k = 2 * self.tan_spiral / self.diameter
-        # Surface feed over dX/dt, and the part of a deviation around the axis that is normal to the helix.
-        self.edge = math.sqrt(1 + self.tan_cone ** 2 + self.tan_spiral ** 2)
-        self.normal = math.cos(math.atan(self.tan_spiral * math.cos(job['cutter.cone_angle'])))
-
-    def radius(self, x):
-        return self.diameter / 2 + x * self.tan_cone
-
-    def a(self, x):
-        return self.k * x if self.b == 0 else self.k / self.b * math.log1p(self.b * x)
-
-    def y(self, x):
-        return x * self.tan_cone
-
-    def z(self, x):
-        return x * self.tan_cone * self.sin_rake
-
-    def tangent_error(self, x, dx):
-        """Theory - commanded of A at the end of a step along the tangent that starts on the curve at x."""
-        z = self.b * dx / (1 + self.b * x)
-        return self.k / self.b * (math.log1p(z) - z)
-
-    def tangent_bound(self, x, dx):
-        """The leading order of that in size, |k b| dX^2 / (2 u^2)."""
-        return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * x) ** 2)
-
-    def pair_unevenness(self, x, step_length):
-        """How much longer in X the even step of a pair is than the odd one, relatively: 2 |kappa| dl tan(theta)."""
-        u = 1 + self.b * x
-        slope = self.scale * self.k
-        curvature = abs(slope * self.b * u) / math.hypot(u, slope) ** 3
-        return 2 * curvature * step_length * abs(slope) / u
 
 
 def program(name):
@@ -208,7 +161,7 @@ def poll(condition, what, timeout=PATIENCE, interval=0.005):
         if value:
             return value
         if time.monotonic() > deadline:
-            raise AssertionError('in vain waited for: ' + what)
+            raise AssertionError('timed out waiting for: ' + what)
         time.sleep(interval)
 
 
@@ -300,11 +253,12 @@ class Grinder:
         # What stands beside the node, in the same namespace.
         self.namespace = ('/' + name).rpartition('/')[0]
         self._changed = threading.Condition()
-        self.states, self.batches, self.joints = [], [], []
+        self.states, self.batches, self.joints, self.results = [], [], [], []
         self._subscribers = [
             self._record('/%s/state' % name, GrinderState, self.states),
             self._record('/%s/setpoints' % name, SetpointBatch, self.batches),
             self._record(joint_states or self.namespace + '/joint_states', JointState, self.joints),
+            self._record('/%s/grind/result' % name, GrindActionResult, self.results),
         ]
         self.client = actionlib.ActionClient('/%s/grind' % name, GrindAction)
         assert self.client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
@@ -339,7 +293,7 @@ class Grinder:
             while not condition():
                 left = deadline - time.monotonic()
                 if left <= 0:
-                    raise AssertionError('in vain waited for: ' + what)
+                    raise AssertionError('timed out waiting for: ' + what)
                 self._changed.wait(min(left, 0.1))
 
     def _call(self, service, kind, *arguments):
@@ -398,6 +352,22 @@ class Grinder:
     def run(self, job, **fields):
         """Sends a job and waits for its end and all of its setpoints."""
         return self.send(job, **fields).wait_complete()
+
+    def batches_of_goal(self, seen):
+        """All setpoints of the goal that was the first to begin after `seen` batches, once it has ended and they are here:
+        each client gets them by a connection of its own, and later than the result as may be."""
+
+        def batches():
+            new = self.batches[seen:]
+            return [batch for batch in new if batch.goal_id == new[0].goal_id]
+
+        def complete():
+            known = batches()
+            results = [r.result for r in self.results if known and r.status.goal_id.id == known[0].goal_id]
+            return results and sum(len(batch.setpoints) for batch in known) >= results[0].setpoints_written
+
+        self.wait_for(complete, 'all setpoints')
+        return batches()
 
     def limits(self):
         """What the axes may do, from the robot description and the parameters; each a list in axis order."""
@@ -570,65 +540,3 @@ class NodeProcess:
         shutil.rmtree(self.folder)
         if rospy.has_param('/' + self.name):
             rospy.delete_param('/' + self.name)
-
-
-def stroke_pairs(setpoints):
-    """The stroke's odd-even pairs as (start, odd, even) setpoints."""
-    pairs = []
-    for i, setpoint in enumerate(setpoints):
-        if setpoint.move == STROKE and setpoint.step == EVEN:
-            pairs.append(tuple(setpoints[i - 2:i + 1]))
-    return pairs
-
-
-def excesses(setpoints, limits, period, rest_after=True):
-    """What exceeds a limit by more than rounding, one text each: positions and velocities at every setpoint,
-    accelerations and jerks at the pair ends by differences over two cycles, with rest before the first and, unless
-    said otherwise, after the last."""
-    found = []
-
-    def check(name, axis, cycle, value, limit, rounding):
-        if not abs(value) <= limit * (1 + 1e-9) + rounding:
-            found.append('%s %s %.9g of %.9g at cycle %d' % (JOINTS[axis], name, value, limit, cycle))
-
-    for axis in range(4):
-        positions = [s.position[axis] for s in setpoints]
-        low, high = limits['min_position'][axis], limits['max_position'][axis]
-        found += ['%s position %.9g at cycle %d' % (JOINTS[axis], p, i) for i, p in enumerate(positions)
-                  if not low <= p <= high]
-        largest = max(abs(p) for p in positions)
-        # Each position is rounded to half an epsilon, as is each of the few numbers that it is the sum of.
-        noise = 4 * EPSILON * largest
-        for i in range(1, len(positions)):
-            check('velocity', axis, i, (positions[i] - positions[i - 1]) / period, limits['max_velocity'][axis],
-                  noise / period)
-        pair = 2 * period
-        ends = positions[::2]
-        ends = [ends[0]] * 3 + ends + ([ends[-1]] * 3 if rest_after else [])
-        for i in range(3, len(ends)):
-            p3, p2, p1, p0 = ends[i - 3:i + 1]
-            check('acceleration', axis, 2 * (i - 3), (p0 - 2 * p1 + p2) / pair ** 2, limits['max_acceleration'][axis],
-                  2 * noise / pair ** 2)
-            check('jerk', axis, 2 * (i - 3), (p0 - 3 * p1 + 3 * p2 - p3) / pair ** 3, limits['max_jerk'][axis],
-                  4 * noise / pair ** 3)
-    return found
-
-
-def off_path(setpoints, helix, tooth_angle=0.0):
-    """What leaves the theoretical path by more than the odd-even steps may, one text each."""
-    found = []
-    for start, odd, even in stroke_pairs(setpoints):
-        error = {s.cycle: helix.a(s.position[X]) - (s.position[A] - tooth_angle) for s in (start, odd, even)}
-        dx = odd.position[X] - start.position[X]
-        bound = helix.tangent_bound(start.position[X], dx) * (1 + 1e-3) + 1e-14
-        if not abs(error[odd.cycle] - error[start.cycle]) <= bound:
-            found.append('odd error %g at cycle %d, bound %g' % (error[odd.cycle], odd.cycle, bound))
-        # One pair's even error is third order: a small part of the odd error.
-        if not abs(error[even.cycle] - error[start.cycle]) <= 0.05 * bound + 1e-14:
-            found.append('even error grew by %g at cycle %d' % (error[even.cycle] - error[start.cycle], even.cycle))
-    return found
-
-
-def is_gapless(setpoints):
-    """Whether the cycles go from 0 up by one."""
-    return len(setpoints) > 0 and [s.cycle for s in setpoints] == list(range(len(setpoints)))

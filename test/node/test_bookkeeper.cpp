@@ -1,6 +1,8 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/node/bookkeeper.h"
 
+#include "control/fixtures.h"
+
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,23 +15,12 @@ namespace {
 
 const ToothPass kFirst{0, 0};
 
-Machine machine() {
-  Machine m;
-  m.period = 1e-3;
-  m.limits.min_position << -0.1, -0.1, -0.1, -1e3;
-  m.limits.max_position << 0.4, 0.2, 0.1, 1e3;
-  m.limits.max_velocity << 0.1, 0.1, 0.1, 63;
-  m.limits.max_acceleration << 0.5, 0.5, 0.5, 63;
-  m.limits.max_jerk << 10, 10, 10, 1257;
-  m.park << -0.05, 0.05, 0, 0;
-  return m;
-}
-
 /// One tooth in as many passes.
 GrindProgram program(int passes) {
   GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
   job.process.infeed = job.process.depth / passes;
-  return {job, machine(), machine().park};
+  const Machine machine = testing::machineConfig().machine;
+  return {job, machine, machine.park};
 }
 
 /// Index of the stroke of a pass.
@@ -42,13 +33,13 @@ std::uint32_t strokeOf(const GrindProgram& program, int pass) {
   throw std::logic_error("no such stroke");
 }
 
-class BookkeeperTest : public testing::Test {
+class BookkeeperTest : public ::testing::Test {
  protected:
   BookkeeperTest() : folder_(makeFolder()), keeper_(folder_ / "journal", "/test"), books_(keeper_) {}
   ~BookkeeperTest() override { std::filesystem::remove_all(folder_); }
 
   static std::filesystem::path makeFolder() {
-    std::string name = testing::TempDir() + "bookkeeper_XXXXXX";
+    std::string name = ::testing::TempDir() + "bookkeeper_XXXXXX";
     if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
     return name;
   }

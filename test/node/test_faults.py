@@ -12,11 +12,12 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, X, Y, Z, grinder
 
 # Steep enough for every axis to move by more than its following error may be.
 STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM)
-STEEP_CLEAR = gc.Helix(STEEP).y(31 * MM) + 1 * MM
+STEEP_CLEAR = checks.Helix(STEEP).y(31 * MM) + 1 * MM
 # The same cutter once more, and clear of all of its flute.
 AGAIN = dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.feed': 3000 * MM_MIN, 'process.clearance': 12 * MM})
 
@@ -93,9 +94,9 @@ class FaultMidStroke:
         self.assertFalse(self.still_fault.enabled)
 
     def test_setpoints_end_without_a_gap_or_a_jump(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
-        self.assertEqual(gc.off_path(self.setpoints, gc.Helix(STEEP)), [])
-        self.assertEqual(gc.excesses(self.setpoints, self.limits, self.period, rest_after=False), [])
+        self.assertTrue(checks.is_gapless(self.setpoints))
+        self.assertEqual(checks.off_path(self.setpoints, checks.Helix(STEEP)), [])
+        self.assertEqual(checks.excesses(self.setpoints, self.limits, self.period, rest_after=False), [])
 
     def test_no_setpoint_comes_after_the_end(self):
         self.assertEqual(self.late_setpoints, [])
@@ -150,9 +151,9 @@ class FaultMidStroke:
 
     def test_next_goal_lifts_first_and_runs_to_its_end(self):
         self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0))
-        self.assertTrue(gc.is_gapless(self.next_run.setpoints))
+        self.assertTrue(checks.is_gapless(self.next_run.setpoints))
         check_lift(self, self.next_run.setpoints)
-        self.assertEqual(gc.excesses(self.next_run.setpoints, self.limits, self.period), [])
+        self.assertEqual(checks.excesses(self.next_run.setpoints, self.limits, self.period), [])
 
 
 def check_lift(test, setpoints):
@@ -306,15 +307,15 @@ class CancelledGoal:
         self.assertFalse(self.state.wheel_in_work)
 
     def test_stop_is_short_of_the_end(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
+        self.assertTrue(checks.is_gapless(self.setpoints))
         self.assertLess(len(self.setpoints), self.goal_run.result.statistics.setpoints)
 
     def test_axes_come_to_rest_within_their_limits(self):
-        self.assertEqual(gc.excesses(self.setpoints, self.limits, self.period, rest_after=True), [])
+        self.assertEqual(checks.excesses(self.setpoints, self.limits, self.period, rest_after=True), [])
         self.assertEqual(len(self.setpoints) % 2, 1, 'the last ends a pair')
 
     def test_stop_is_on_the_path(self):
-        self.assertEqual(gc.off_path(self.setpoints, gc.Helix(self.job)), [])
+        self.assertEqual(checks.off_path(self.setpoints, checks.Helix(self.job)), [])
 
     def test_axes_rest_at_the_last_setpoint(self):
         for position, commanded, resolution in zip(self.rest, self.setpoints[-1].position, RESOLUTION):
@@ -322,7 +323,7 @@ class CancelledGoal:
 
     def test_next_goal_goes_on_from_there(self):
         self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0))
-        self.assertTrue(gc.is_gapless(self.next_run.setpoints))
+        self.assertTrue(checks.is_gapless(self.next_run.setpoints))
         self.assertEqual(list(self.next_run.setpoints[0].position), list(self.setpoints[-1].position))
 
 
@@ -341,17 +342,10 @@ class TestCancelMidStroke(CancelledGoal, unittest.TestCase):
 
     def test_axes_rest_on_the_stroke_first(self):
         self.assertEqual(len(self.ground) % 2, 1, 'the last ends a pair')
-        self.assertEqual(gc.excesses(self.ground, self.limits, self.period, rest_after=True), [])
+        self.assertEqual(checks.excesses(self.ground, self.limits, self.period, rest_after=True), [])
 
     def test_wheel_is_lifted_before_the_goal_ends(self):
-        lift = self.setpoints[len(self.ground):]
-        self.assertEqual({s.move for s in lift}, {LIFT})
-        stop = self.ground[-1].position
-        for axis in (X, Z, A):
-            self.assertEqual({s.position[axis] for s in lift}, {stop[axis]})
-        heights = [stop[Y]] + [s.position[Y] for s in lift]
-        self.assertEqual(heights, sorted(heights))
-        self.assertAlmostEqual(heights[-1], STEEP_CLEAR, delta=1e-12)
+        checks.check_lifted(self, self.ground[-1], self.setpoints[len(self.ground):], STEEP_CLEAR)
 
     def test_wheel_turns_and_coolant_flows_until_it_is_lifted(self):
         self.assertTrue(self.canceling)

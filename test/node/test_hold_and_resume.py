@@ -12,12 +12,13 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import (A, DEG, INDEX, INFEED, LIFT, MM, MM_MIN, POSITION, RETRACT, RETURN, STROKE, UM, X, Y, Z,
                             grinder)
 
 # Every axis moves in the stroke, and there is time to interfere.
 JOB = gc.paper(cone_angle=10 * DEG, feed=2000 * MM_MIN)
-HELIX = gc.Helix(JOB)
+HELIX = checks.Helix(JOB)
 END = 31 * MM
 CLEAR = HELIX.y(END) + 5 * MM
 
@@ -82,17 +83,17 @@ class Interference:
         self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
 
     def test_no_cycle_is_missing(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
+        self.assertTrue(checks.is_gapless(self.setpoints))
         self.assertEqual(len(self.setpoints), self.job_run.result.setpoints_written)
 
     def test_no_axis_exceeds_a_limit(self):
-        self.assertEqual(gc.excesses(self.setpoints, self.limits, self.period), [])
+        self.assertEqual(checks.excesses(self.setpoints, self.limits, self.period), [])
 
     def test_job_ends_at_the_park_position(self):
         self.assertEqual(list(self.setpoints[-1].position), grinder().park())
 
     def test_stroke_keeps_the_tolerance(self):
-        self.assertEqual(gc.off_path(self.setpoints, HELIX), [])
+        self.assertEqual(checks.off_path(self.setpoints, HELIX), [])
         for s in self.setpoints:
             if s.move == STROKE:
                 error = HELIX.a(s.position[X]) - s.position[A]
@@ -228,7 +229,7 @@ class TestRetractInTheStroke(Interference, unittest.TestCase):
 
     def test_feed_is_reached_where_the_stroke_was_left(self):
         left = parts(self.setpoints, STROKE)[0][-1].position[X]
-        feeds = [(pair[0].position[X], speed(pair, self.period)) for pair in gc.stroke_pairs(self.setpoints)]
+        feeds = [(pair[0].position[X], speed(pair, self.period)) for pair in checks.stroke_pairs(self.setpoints)]
         second = [i for i, (x, _) in enumerate(feeds) if i and x < feeds[i - 1][0]]
         self.assertEqual(len(second), 1)
         feed = next(feed for x, feed in feeds[second[0]:] if x >= left)
@@ -268,7 +269,7 @@ class TestOverride(Interference, unittest.TestCase):
         self.assertEqual(self.states, ['starting', 'running', 'ready'])
 
     def test_feed_of_the_setpoints_is_the_one_asked_for(self):
-        feeds = [speed(pair, self.period) / self.job['process.feed'] for pair in gc.stroke_pairs(self.setpoints)]
+        feeds = [speed(pair, self.period) / self.job['process.feed'] for pair in checks.stroke_pairs(self.setpoints)]
         for level in self.levels:
             self.assertTrue(any(abs(feed - level) < 1e-6 for feed in feeds), level)
         self.assertLess(max(feeds), 1.2 * (1 + 1e-6))
@@ -295,11 +296,11 @@ class TestOverrideBeforeTheJob(unittest.TestCase):
         run = g.run(gc.SHORT)
         self.assertEqual(run.status, 'SUCCEEDED')
         feed = 0.5 * gc.SHORT['process.feed']
-        helix = gc.Helix(gc.SHORT)
+        helix = checks.Helix(gc.SHORT)
         infeed = max(abs(s.velocity[Y]) for s in run.setpoints if s.move == INFEED)
         self.assertLessEqual(infeed, feed * (1 + 1e-9))
         stroke = max(abs(e.position[X] - s.position[X]) / (2 * g.period()) * helix.edge
-                     for s, _, e in gc.stroke_pairs(run.setpoints))
+                     for s, _, e in checks.stroke_pairs(run.setpoints))
         self.assertAlmostEqual(stroke, feed, delta=1e-6 * feed)
         for move in (INDEX, POSITION, gc.APPROACH, RETRACT, RETURN):
             cycles = sum(s.move == move for s in run.setpoints[1:])
@@ -441,8 +442,8 @@ class CancelAtRest:
         self.assertGreaterEqual(self.end[Y], CLEAR - RESOLUTION[Y])
 
     def test_no_axis_exceeds_a_limit(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
-        self.assertEqual(gc.excesses(self.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertTrue(checks.is_gapless(self.setpoints))
+        self.assertEqual(checks.excesses(self.setpoints, grinder().limits(), grinder().period()), [])
 
     def test_job_cannot_be_resumed(self):
         self.assertFalse(self.resume.success)
@@ -461,13 +462,7 @@ class TestCancelWhileHeld(CancelAtRest, unittest.TestCase):
         pass
 
     def test_wheel_is_lifted_before_the_goal_ends(self):
-        self.assertEqual({s.move for s in self.new}, {LIFT})
-        held = self.setpoints[-len(self.new) - 1].position
-        for axis in (X, Z, A):
-            self.assertEqual({s.position[axis] for s in self.new}, {held[axis]})
-        heights = [held[Y]] + [s.position[Y] for s in self.new]
-        self.assertEqual(heights, sorted(heights))
-        self.assertAlmostEqual(heights[-1], CLEAR, delta=1e-12)
+        checks.check_lifted(self, self.setpoints[-len(self.new) - 1], self.new, CLEAR)
 
     def test_wheel_turns_and_coolant_flows_until_it_is_lifted(self):
         self.assertTrue(self.canceling)

@@ -12,11 +12,12 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import A, DEG, INFEED, LIFT, MM, MM_MIN, POSITION, STROKE, X, Y, Z
 
 # Every axis moves in the stroke, and there is time for something to be lost.
 JOB = gc.paper(cone_angle=10 * DEG, flute_length=20 * MM, feed=1500 * MM_MIN)
-HELIX = gc.Helix(JOB)
+HELIX = checks.Helix(JOB)
 CLEAR = HELIX.y(21 * MM) + 5 * MM
 
 RESOLUTION = (1e-7, 1e-7, 1e-7, 1e-6)
@@ -117,11 +118,11 @@ class LostMidStroke(OwnNode):
         self.assertEqual(self.after_return.state_name, 'retracted')
 
     def test_no_axis_exceeds_a_limit(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
-        self.assertEqual(gc.excesses(self.setpoints, self.limits, self.period), [])
+        self.assertTrue(checks.is_gapless(self.setpoints))
+        self.assertEqual(checks.excesses(self.setpoints, self.limits, self.period), [])
 
     def test_stroke_stays_on_its_path(self):
-        self.assertEqual(gc.off_path(self.setpoints, HELIX), [])
+        self.assertEqual(checks.off_path(self.setpoints, HELIX), [])
 
 
 class LostAndBack(LostMidStroke):

@@ -34,7 +34,7 @@ class JournalKeeperTest : public testing::JournalTest {
   static void waitFor(const std::function<bool()>& condition, const char* what) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (!condition()) {
-      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "in vain waited for " << what;
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "timed out waiting for " << what;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
   }

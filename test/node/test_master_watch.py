@@ -5,7 +5,6 @@ action, without being started anew. The masters are the test's own."""
 import os
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -18,15 +17,13 @@ import rostest
 
 import grinder_client as gc
 
+sys.path.insert(0, gc.package_file('test'))
+
+from free_port import free_port  # noqa: E402
+
 NODE = '/grinder'
 CALLER = '/test_master_watch'
 CANCEL = NODE + '/grind/cancel'
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
 
 
 def wait_for(condition, what):
@@ -51,6 +48,7 @@ class TestMasterWatch(unittest.TestCase):
         self.api = rosgraph.Master(CALLER, self.environment['ROS_MASTER_URI'])
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
+        self.master = None
         self.start_master()
         self.addCleanup(lambda: self.master.poll() is not None or self.kill_master())
         parameters = dict(gc.machine(), journal=os.path.join(self.folder, 'journal'))
@@ -67,9 +65,15 @@ class TestMasterWatch(unittest.TestCase):
         return process
 
     def start_master(self):
-        self.master = subprocess.Popen(['rosmaster', '--core', '-p', str(self.port)], env=self.environment,
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        wait_for(self.api.getPid, 'master')
+        """Starts a master, again if it could not have the port, until it answers."""
+
+        def answers():
+            if self.master is None or self.master.poll() is not None:
+                self.master = subprocess.Popen(['rosmaster', '--core', '-p', str(self.port)], env=self.environment,
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            return self.api.getPid()
+
+        wait_for(answers, 'master')
 
     def kill_master(self):
         self.master.kill()

@@ -23,6 +23,7 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import LIFT, MM, STROKE, X
 
 
@@ -279,14 +280,14 @@ class TestInterrupt(OwnNode):
         run.wait()
         self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
         setpoints = run.setpoints
-        self.assertTrue(gc.is_gapless(setpoints))
+        self.assertTrue(checks.is_gapless(setpoints))
         stopped = [s for s in setpoints if s.move != LIFT][-1]
         self.assertEqual(stopped.move, STROKE)
         self.assertLess(stopped.position[X], 30 * MM)
         self.assertEqual(setpoints[-1].move, LIFT)
-        self.assertEqual(gc.off_path(setpoints, gc.Helix(gc.PAPER)), [])
+        self.assertEqual(checks.off_path(setpoints, checks.Helix(gc.PAPER)), [])
         # That they come to rest within the limits shows that none of the stop is missing.
-        self.assertEqual(gc.excesses(setpoints, limits, period, rest_after=True), [])
+        self.assertEqual(checks.excesses(setpoints, limits, period, rest_after=True), [])
         self.assertRegex(run.text, r'canceled; stopped on the path \(at stroke of tooth 1, pass 1, X = ')
 
     def test_sigint_stops_on_the_path(self):

@@ -1,6 +1,8 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/node/planner.h"
 
+#include "control/fixtures.h"
+
 #include <gtest/gtest.h>
 
 #include <future>
@@ -10,15 +12,9 @@ namespace {
 
 constexpr std::chrono::seconds kPatience(60);
 
+/// On which a job may take months.
 Machine machine() {
-  Machine m;
-  m.period = 1e-3;
-  m.limits.min_position << -0.1, -0.1, -0.1, -1e3;
-  m.limits.max_position << 0.4, 0.2, 0.1, 1e3;
-  m.limits.max_velocity << 0.1, 0.1, 0.1, 63;
-  m.limits.max_acceleration << 0.5, 0.5, 0.5, 63;
-  m.limits.max_jerk << 10, 10, 10, 1257;
-  m.park << -0.05, 0.05, 0, 0;
+  Machine m = testing::machineConfig().machine;
   m.max_job_duration = 1e7;
   return m;
 }

@@ -11,6 +11,7 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder
 
 # Long enough for something to happen meanwhile.
@@ -229,10 +230,10 @@ class TestState(unittest.TestCase):
         self.assertFalse(first.done)
         first.wait_complete()
         self.assertEqual((first.status, first.code), ('SUCCEEDED', 0))
-        self.assertTrue(gc.is_gapless(first.setpoints))
+        self.assertTrue(checks.is_gapless(first.setpoints))
         self.assertEqual(len(first.setpoints), first.result.statistics.setpoints)
         self.assertEqual(second.setpoints, [])
-        self.assertEqual(gc.excesses(first.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(checks.excesses(first.setpoints, grinder().limits(), grinder().period()), [])
 
     def test_bad_goal_and_dry_run_are_busy_too(self):
         first = grinder().send(LONG).wait_in_stroke(0)
@@ -265,7 +266,7 @@ class TestState(unittest.TestCase):
                              r'refused: the machine is in state running; allowed: disable, hold, cancel$')
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
-        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertTrue(checks.is_gapless(run.setpoints))
 
     def test_disable_while_running_cancels_first(self):
         run = grinder().send(LONG).wait_in_stroke(2 * MM)
@@ -275,14 +276,14 @@ class TestState(unittest.TestCase):
         self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
         state = grinder().wait_state(GrinderState.DISABLED)
         self.assertEqual((state.enabled, state.wheel_in_work, state.fault), (False, False, ''))
-        self.assertTrue(gc.is_gapless(run.setpoints))
-        self.assertEqual(gc.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
-        self.assertEqual(gc.off_path(run.setpoints, gc.Helix(LONG)), [])
+        self.assertTrue(checks.is_gapless(run.setpoints))
+        self.assertEqual(checks.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(checks.off_path(run.setpoints, checks.Helix(LONG)), [])
         stop = [s for s in run.setpoints if s.move == STROKE][-1]
         lifted = run.setpoints[-1]
         self.assertEqual(lifted.move, LIFT)
         self.assertEqual([lifted.position[i] for i in (X, Z, A)], [stop.position[i] for i in (X, Z, A)])
-        self.assertAlmostEqual(lifted.position[Y], gc.Helix(LONG).y(31 * MM) + 5 * MM, delta=1e-12)
+        self.assertAlmostEqual(lifted.position[Y], checks.Helix(LONG).y(31 * MM) + 5 * MM, delta=1e-12)
 
     def test_lift_off_the_work(self):
         rest = grinder().wait_rest()
@@ -317,7 +318,7 @@ class TestState(unittest.TestCase):
         self.assertFalse(run.done)
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
-        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertTrue(checks.is_gapless(run.setpoints))
 
 
 class TestAfterwards(unittest.TestCase):
@@ -327,7 +328,7 @@ class TestAfterwards(unittest.TestCase):
             gc.Run(grinder(), gc.goal_of(dict(gc.PAPER, **changes), **fields)).wait()
         run = grinder().run(gc.SHORT)
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
-        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertAlmostEqual(max(s.position[X] for s in run.setpoints if s.move == STROKE), 6 * MM, delta=1e-9)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
 

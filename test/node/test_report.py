@@ -20,7 +20,8 @@ import rospy
 import rostest
 
 import grinder_client as gc
-from grinder_client import A, DEG, JOINTS, MM, MM_MIN, MOVES, ODD, STEPS, STROKE, UM, X
+import path_checks as checks
+from grinder_client import DEG, JOINTS, MM, ODD, STROKE, UM, X
 
 PAPER_JOB = gc.package_file('jobs/paper.yaml')
 SVG = '{http://www.w3.org/2000/svg}'
@@ -242,7 +243,7 @@ class TestTable(ReportCase):
 
     def test_pictures_show_the_points(self):
         page = self.report(FILES['table 0.2'])
-        helix = gc.Helix(gc.PAPER)
+        helix = checks.Helix(gc.PAPER)
         points = [(float(row['x_mm']), float(row['a_rad'])) for row in read_csv(FILES['table 0.2'])]
         self.assertEqual(len(points), 153)
         for name, first, last in (('path', 0, 152), ('path-start', 0, 9), ('path-end', 143, 152)):
@@ -389,7 +390,7 @@ class TestBag(ReportCase):
             self.assertEqual(self.page.rows['largest %s error' % name], ['%.4e rad' % largest])
 
     def test_deviation_is_that_at_the_surface(self):
-        helix = gc.Helix(gc.PAPER)
+        helix = checks.Helix(gc.PAPER)
         largest = max(abs(s.path_error) * helix.radius(s.position[X]) * helix.normal for s in self.setpoints)
         self.assertAlmostEqual(self.figure(self.page, 'largest deviation'), largest / UM, delta=0.01 * largest / UM)
 

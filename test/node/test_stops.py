@@ -22,6 +22,7 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import A, MM, MM_MIN, STROKE, X, Y, Z
 
 SEED = 20
@@ -46,7 +47,7 @@ def machine():
 
 def clear_height(job):
     """Y at which the wheel is clear of the whole stroke of a cutter that grows toward its shank."""
-    helix = gc.Helix(job)
+    helix = checks.Helix(job)
     return helix.y(job['cutter.flute_length'] + job['process.overtravel_shank']) + job['process.clearance']
 
 
@@ -75,17 +76,11 @@ class NodeTest(unittest.TestCase):
     def check_stopped_on_path_and_lifted(self, run, job=SLOW):
         """By its setpoints: on the path to the stop, then radially up to the clearance, at rest at the end."""
         setpoints = run.setpoints
-        self.assertTrue(gc.is_gapless(setpoints))
-        self.assertEqual(gc.excesses(setpoints, self.client.limits(), self.client.period()), [])
-        self.assertEqual(gc.off_path(setpoints, gc.Helix(job)), [])
+        self.assertTrue(checks.is_gapless(setpoints))
+        self.assertEqual(checks.excesses(setpoints, self.client.limits(), self.client.period()), [])
+        self.assertEqual(checks.off_path(setpoints, checks.Helix(job)), [])
         last_stroke = max(i for i, s in enumerate(setpoints) if s.move == STROKE)
-        lift = setpoints[last_stroke:]
-        self.assertGreater(len(lift), 2, 'it was lifted')
-        for axis in (X, Z, A):
-            self.assertEqual({s.position[axis] for s in lift}, {lift[0].position[axis]})
-        heights = [s.position[Y] for s in lift]
-        self.assertEqual(heights, sorted(heights))
-        self.assertAlmostEqual(heights[-1], clear_height(job), delta=1e-9)
+        checks.check_lifted(self, setpoints[last_stroke], setpoints[last_stroke + 1:], clear_height(job))
 
     def assert_rests(self):
         rest = self.client.wait_rest()
@@ -255,7 +250,7 @@ class TestTheWayDown(NodeTest):
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
         self.assertEqual(run.result.setpoints_written, run.result.statistics.setpoints)
-        self.assertTrue(gc.is_gapless(run.setpoints))
+        self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertFalse(self.client.fresh_state().progress.finished)
         self.release_disk()
         gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end in the journal')
@@ -420,7 +415,7 @@ class TestStates(NodeTest):
         gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
         after = self.client.wait_rest()
         self.assertAlmostEqual(after[Y] - before[Y], clear_height(SLOW) + SLOW['process.depth'] - 0 +
-                               gc.Helix(SLOW).tan_cone * SLOW['process.overtravel_end'], delta=1e-5)
+                               checks.Helix(SLOW).tan_cone * SLOW['process.overtravel_end'], delta=1e-5)
         self.assertTrue(self.client.home().success)
         gc.poll(lambda: self.client.fresh_state().homed, 'the reference')
 

@@ -15,6 +15,7 @@ from flute_grinder.msg import GrinderState
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import (A, APPROACH, EVEN, INDEX, INFEED, MM, MM_MIN, MOVES, ODD, POSITION, RETRACT, RETURN, STEPS,
                             STROKE, X, Y, Z, grinder)
 
@@ -39,11 +40,11 @@ class PaperJob:
     @classmethod
     def setUpClass(cls):
         cls.job = gc.paper(feed=cls.feed_mm_min * MM_MIN)
-        cls.helix = gc.Helix(cls.job)
+        cls.helix = checks.Helix(cls.job)
         cls.job_run = stream(cls.feed_mm_min)
         cls.setpoints = cls.job_run.setpoints
         cls.stroke = [s for s in cls.setpoints if s.move == STROKE]
-        cls.pairs = gc.stroke_pairs(cls.setpoints)
+        cls.pairs = checks.stroke_pairs(cls.setpoints)
         cls.period = grinder().period()
         cls.statistics = cls.job_run.result.statistics
         cls.feed = cls.feed_mm_min * MM_MIN
@@ -65,7 +66,7 @@ class PaperJob:
         self.assertEqual((self.job_run.status, self.job_run.code, self.job_run.text), ('SUCCEEDED', 0, ''))
 
     def test_no_setpoint_is_missing(self):
-        self.assertTrue(gc.is_gapless(self.setpoints))
+        self.assertTrue(checks.is_gapless(self.setpoints))
 
     def test_statistics_count_the_setpoints(self):
         self.assertEqual(self.statistics.setpoints, len(self.setpoints))
@@ -192,7 +193,7 @@ class PaperJob:
                          {(infeed[0].position[X], infeed[0].position[Z], infeed[0].position[A])})
 
     def test_no_axis_exceeds_a_limit(self):
-        self.assertEqual(gc.excesses(self.setpoints, grinder().limits(), self.period), [])
+        self.assertEqual(checks.excesses(self.setpoints, grinder().limits(), self.period), [])
 
     def test_statistics_tell_the_largest_velocities(self):
         for axis in range(4):
@@ -318,7 +319,7 @@ class TestRepetition(unittest.TestCase):
         job.update({'cutter.tooth_angles': angles, 'cutter.flute_length': 2 * MM, 'process.infeed': 0.3 * MM})
         run = grinder().run(job)
         self.assertEqual(run.status, 'SUCCEEDED')
-        helix = gc.Helix(job)
+        helix = checks.Helix(job)
         strokes = []
         for s in run.setpoints:
             if s.move != STROKE:
@@ -330,7 +331,7 @@ class TestRepetition(unittest.TestCase):
             self.assertAlmostEqual(a, angles[s.tooth] + helix.a(x), delta=1e-5)
             self.assertAlmostEqual(y, helix.y(x) - (0.3 * MM, 0.5 * MM)[s.pass_], delta=1e-12)
         self.assertEqual(strokes, [(tooth, i) for tooth in range(4) for i in range(2)])
-        self.assertEqual(gc.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(checks.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
 
     def test_stroke_toward_the_end_is_the_same_curve(self):
         grinder().make_ready()
@@ -338,11 +339,11 @@ class TestRepetition(unittest.TestCase):
         job['process.direction'] = 1
         run = grinder().run(job)
         self.assertEqual(run.status, 'SUCCEEDED')
-        pairs = gc.stroke_pairs(run.setpoints)
+        pairs = checks.stroke_pairs(run.setpoints)
         self.assertAlmostEqual(pairs[0][0].position[X], 6 * MM, delta=1e-12)
         self.assertAlmostEqual(pairs[-1][2].position[X], -1 * MM, delta=1e-9)
-        self.assertEqual(gc.off_path(run.setpoints, gc.Helix(job)), [])
-        self.assertEqual(gc.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(checks.off_path(run.setpoints, checks.Helix(job)), [])
+        self.assertEqual(checks.excesses(run.setpoints, grinder().limits(), grinder().period()), [])
 
 
 class TestDryRun(unittest.TestCase):
@@ -379,7 +380,7 @@ class TestMarkers(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.helix = gc.Helix(gc.PAPER)
+        cls.helix = checks.Helix(gc.PAPER)
         cls.setpoints = stream(600).setpoints
         grinder().make_ready_at_park()
         # The one shown last may be of another test's job.

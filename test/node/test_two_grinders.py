@@ -23,6 +23,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import MM
 
 NAMES = ('left/grinder', 'right/grinder')
@@ -187,7 +188,7 @@ class TestFaultOfOne(unittest.TestCase):
         self.assertEqual(right.fresh_state().state, GrinderState.RUNNING)
         runs[1].wait_complete()
         self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0))
-        self.assertTrue(gc.is_gapless(runs[1].setpoints))
+        self.assertTrue(checks.is_gapless(runs[1].setpoints))
         self.assertEqual(runs[1].result.setpoints_written, runs[1].result.statistics.setpoints)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
         self.assertEqual(left.fresh_state().state, GrinderState.FAULT)

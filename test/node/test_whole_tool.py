@@ -21,6 +21,7 @@ from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
+import path_checks as checks
 from grinder_client import A, DEG, MM, UM, X, Y, Z, grinder
 
 # Two teeth at unequal angles in two passes, over soon.
@@ -111,7 +112,7 @@ class WholeTool:
         with open(cls.job_path) as text:
             cls.file = yaml.safe_load(text)
         cls.job = gc.job_from_file(cls.job_path)
-        cls.helix = gc.Helix(cls.job)
+        cls.helix = checks.Helix(cls.job)
         cls.segments = read_setpoints(cls.csv)
         cls.strokes = [s for s in cls.segments if s.move == 'stroke']
         process = cls.file['process']
@@ -377,7 +378,7 @@ class TestShortTool(WholeTool, unittest.TestCase):
     def test_none_is_missed(self):
         self.assertRegex(self.grind_run.stdout, r'streamed +%d setpoints in \S+ s, 0 missed\n' % self.count)
         self.assertEqual(len(self.setpoints), self.count)
-        self.assertTrue(gc.is_gapless(self.setpoints))
+        self.assertTrue(checks.is_gapless(self.setpoints))
 
     def test_topic_tells_what_the_file_has(self):
         points = [self.segments[0].before] + [p for s in self.segments for p in s.points]
@@ -386,7 +387,7 @@ class TestShortTool(WholeTool, unittest.TestCase):
                 self.assertAlmostEqual(setpoint.position[axis], point[axis], delta=1e-15)
 
     def test_no_axis_exceeds_a_limit(self):
-        self.assertEqual(gc.excesses(self.setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(checks.excesses(self.setpoints, grinder().limits(), grinder().period()), [])
 
     def test_journal_says_finished(self):
         self.assertIs(self.journal['finished'], True)
@@ -428,7 +429,7 @@ class ToolPath:
         cls.angles = [i * 2 * math.pi / 10 for i in range(10)]
         cls.job = gc.paper(end_diameter=6 * MM, cone_angle=cls.cone * DEG, spiral_angle=cls.spiral * DEG,
                            flute_length=40 * MM, tooth_angles=cls.angles)
-        cls.helix = gc.Helix(cls.job)
+        cls.helix = checks.Helix(cls.job)
         grinder().make_ready()
         run = grinder().send(cls.job, dry_run=True).wait()
         assert run.status == 'SUCCEEDED', run.text

@@ -5,8 +5,8 @@ are missing."""
 import os
 import re
 import signal
-import socket
 import subprocess
+import sys
 import tempfile
 
 import rosgraph
@@ -15,14 +15,16 @@ import rostest
 import grinder_client as gc
 from grind_command import PAPER_JOB, RunTest
 
+sys.path.insert(0, gc.package_file('test'))
+
+from free_port import free_port  # noqa: E402
+
 
 class Master:
     """A ROS master of one's own, with a grinder."""
 
     def __init__(self, **parameters):
-        with socket.socket() as probe:
-            probe.bind(('127.0.0.1', 0))
-            port = probe.getsockname()[1]
+        port = free_port()
         self.environment = {'ROS_MASTER_URI': 'http://127.0.0.1:%d' % port}
         self.log = tempfile.TemporaryFile()
         self.process = self.start(['rosmaster', '--core', '-p', str(port)])

@@ -62,7 +62,7 @@ Panel::Panel(const QString& node, const QString& job)
   // What it gets where it is docked in a window of 1280 x 900.
   panel_->resize(330, 800);
   panel_->show();
-  EXPECT_TRUE(QTest::qWaitForWindowExposed(panel_.get()));
+  EXPECT_TRUE(QTest::qWaitForWindowExposed(panel_.get(), kPatience));
 }
 
 Names Panel::enabledRequests() {

@@ -97,16 +97,24 @@ TEST_F(OnStage, AStateThatIsUnknownAllowsNothing) {
   EXPECT_EQ(panel.enabledRequests(), Names());
 }
 
+TEST_F(OnStage, EveryTextHasRoomBeforeAStateHasCome) {
+  stage.change([&] { stage.silent = true; });
+  Panel panel("cell/stage", kPaper);
+  WAIT_FOR(panel.state() == "No answer");
+  panel.picture("no_answer_yet");
+}
+
 TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   Panel panel("cell/stage", kPaper);
   stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.enabled("hold"));
+  WAIT_FOR(panel.state() == "Running");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
   for (const char* name : {"choose", "plan", "dry_run", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
   EXPECT_EQ(panel.label("meaning"), "No grinder answers as /cell/stage. Does its node run?");
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;
+  panel.picture("no_answer");
   panel.click("hold");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
   stage.change([&] { stage.silent = false; });
@@ -145,13 +153,13 @@ TEST_F(OnStage, APanelMayBeClosedWhileARequestHangs) {
 TEST_F(OnStage, StopsGoByTheirTopic) {
   Panel panel("cell/stage");
   stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.enabled("hold"));
+  WAIT_FOR(panel.state() == "Running");  // before any state has come the stops are enabled too
   panel.click("hold");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
   panel.click("cancel");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL}));
   stage.be(GrinderState::READY, "ready");
-  WAIT_FOR(panel.enabled("disable"));
+  WAIT_FOR(panel.state() == "Ready");
   panel.click("disable");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL, Stop::DISABLE}));
   EXPECT_EQ(panel.text("messages"), "");
@@ -161,7 +169,7 @@ TEST_F(OnStage, AStopThatNobodyHearsIsTold) {
   Panel panel("cell/stage");
   stage.stopListening();
   stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.enabled("hold"));
+  WAIT_FOR(panel.state() == "Running");
   panel.click("hold");
   WAIT_FOR(panel.text("messages") != "");
   EXPECT_NE(panel.text("messages").find("Hold was not sent: the grinder /cell/stage is not connected"),

@@ -5,10 +5,9 @@
 #include "panel_fixture.h"
 #include "stage.h"
 
-#include <arpa/inet.h>
 #include <ros/master.h>
+#include <ros/package.h>
 #include <ros/ros.h>
-#include <sys/socket.h>
 #include <QApplication>
 #include <QLineEdit>
 #include <QProcess>
@@ -43,15 +42,10 @@ int runGrinder() {
 }
 
 QString freePort() {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t length = sizeof address;
-  const int probe = socket(AF_INET, SOCK_STREAM, 0);
-  EXPECT_EQ(bind(probe, reinterpret_cast<sockaddr*>(&address), length), 0);
-  EXPECT_EQ(getsockname(probe, reinterpret_cast<sockaddr*>(&address), &length), 0);
-  close(probe);
-  return QString::number(ntohs(address.sin_port));
+  QProcess chooser;
+  chooser.start(QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/free_port.py", QStringList());
+  EXPECT_TRUE(chooser.waitForFinished(kPatience));
+  return QString::fromLocal8Bit(chooser.readAllStandardOutput()).trimmed();
 }
 
 /// A process that can be killed and started again; killed at the end.
@@ -66,6 +60,7 @@ class Mortal {
     process_.start(program_, arguments_);
     ASSERT_TRUE(process_.waitForStarted());
   }
+  bool runs() const { return process_.state() != QProcess::NotRunning; }
   void kill() {
     process_.kill();
     process_.waitForFinished();
@@ -86,6 +81,14 @@ Mortal& master() {
   return the;
 }
 
+/// Starts the master, again where it could not have its port, until it answers.
+void startMaster() {
+  WAIT_FOR([] {
+    if (!master().runs()) master().start();
+    return ros::master::check();
+  }());
+}
+
 class WithoutMaster : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -96,8 +99,7 @@ class WithoutMaster : public ::testing::Test {
   void TearDown() override {
     grinder.kill();
     master().signal(SIGCONT);
-    if (!ros::master::check()) master().start();
-    WAIT_FOR(ros::master::check());
+    startMaster();
     WAIT_FOR(panel.label("meaning") == kNoGrinder);
   }
   void loseMaster() {
@@ -156,7 +158,7 @@ TEST_F(WithoutMaster, AGrinderThatIsStartedAgainIsFound) {
 
 TEST_F(WithoutMaster, AMasterThatIsStartedAgainIsFound) {
   loseMaster();
-  master().start();
+  startMaster();
   WAIT_FOR(panel.label("meaning").find("master") == std::string::npos);
   EXPECT_EQ(panel.state(), "Running") << "the connections are the old ones";
   // The next grinder is found by the panel only if the new master knows the panel.
@@ -172,7 +174,7 @@ TEST_F(WithoutMaster, BothAreFoundAfterBothWereLost) {
   WAIT_FOR(panel.label("meaning") == "No ROS master answers, and nothing comes from the grinder /cell/stage.");
   EXPECT_EQ(panel.state(), "No answer");
   panel.picture("no_master_no_grinder");
-  master().start();
+  startMaster();
   WAIT_FOR(panel.label("meaning") == kNoGrinder);
   grinder.start();
   findBoth();
@@ -188,7 +190,7 @@ TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
     EXPECT_EQ(panel.state(), "No answer");
   }
   EXPECT_EQ(panel.label("grinder"), "/cell/stage");
-  master().start();
+  startMaster();
   findBoth();
 }
 
@@ -198,11 +200,11 @@ TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
 int main(int argc, char** argv) {
   using namespace flute_grinder;
   const bool is_grinder = argc > 1 && std::strcmp(argv[1], kGrinder) == 0;
-  if (!is_grinder) qputenv("ROS_MASTER_URI", ("http://127.0.0.1:" + freePort()).toLocal8Bit());
   ::testing::InitGoogleTest(&argc, argv);
   const QApplication application(argc, argv);
-  if (!is_grinder) master().start();
+  if (!is_grinder) qputenv("ROS_MASTER_URI", ("http://127.0.0.1:" + freePort()).toLocal8Bit());
   ros::init(argc, argv, is_grinder ? "stage" : "test_panel_without_master");
+  if (!is_grinder) startMaster();
   const ros::NodeHandle keeps_ros_up;
   ros::AsyncSpinner spinner(4);
   spinner.start();

@@ -23,14 +23,15 @@ from visualization_msgs.msg import Marker, MarkerArray
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'node'))
 
 import grinder_client as gc  # noqa: E402
-from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder  # noqa: E402
+import path_checks as checks  # noqa: E402
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, grinder  # noqa: E402
 
 # Unequal teeth in two passes, over soon, with all that moves the wheel: cone, rake, wear.
 TEETH = [0, 88 * DEG, 180 * DEG, 268 * DEG]
 JOB = gc.paper(end_diameter=12 * MM, spiral_angle=38 * DEG, flute_length=26 * MM, tooth_angles=TEETH, feed=3000 * MM_MIN,
                infeed=0.3 * MM, wheel_width=10 * MM, wheel_wear=0.02 * MM, wheel_wear_per_pass=0.001 * MM,
                even_step=1)
-HELIX = gc.Helix(JOB)
+HELIX = checks.Helix(JOB)
 DEPTHS = [0.3 * MM, 0.5 * MM]
 HELD = 2  # the tooth in whose last pass the job is held
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')

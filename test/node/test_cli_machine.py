@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+"""Shows what those commands of `grind` print that need the grinder, and their exit status: 0 done, 1 the machine or the job
+said no, 2 an unreadable file."""
+
+import re
+import signal
+import subprocess
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState
+
+import grinder_client as gc
+import path_checks as checks
+from grind_command import PAPER_JOB, CommandLine
+from grinder_client import DEG, LIFT, MM, MM_MIN, STROKE, X, grinder
+
+
+class TestMachine(CommandLine):
+    """The calls that need the grinder."""
+
+    def setUp(self):
+        super().setUp()
+        grinder().make_ready()
+
+    def test_status(self):
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'state +ready\n')
+        self.assertRegex(printed, r'enabled +yes\n')
+        self.assertRegex(printed, r'emergency stop +released\n')
+        self.assertRegex(printed, r'wheel in work +no\n')
+        self.assertNotIn('fault ', printed)
+
+    def test_status_as_json(self):
+        run = grinder().run(gc.SHORT)
+        self.assertEqual(run.status, 'SUCCEEDED')
+        told, _ = self.json(0, 'status')
+        progress = grinder().fresh_state().progress
+        digest = told['last_job'].pop('digest')
+        self.assertRegex(digest, '^[0-9a-f]{64}$')
+        self.assertEqual(digest, progress.job_digest)
+        self.assertEqual(told['last_job'].pop('x_mm'), progress.x / MM)
+        cutter = told['last_job'].pop('cutter')
+        self.assertEqual(cutter.pop('teeth'), len(progress.cutter.tooth_angles))
+        self.assertEqual(cutter, {
+            'end_diameter_mm': progress.cutter.end_diameter / MM, 'cone_angle_deg': progress.cutter.cone_angle / DEG,
+            'spiral_angle_deg': progress.cutter.spiral_angle / DEG, 'rake_angle_deg': progress.cutter.rake_angle / DEG,
+            'flute_length_mm': progress.cutter.flute_length / MM})
+        self.assertEqual(told, {
+            'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
+            'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'feed_mm_min': 0,
+            'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
+            'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})
+
+    def test_disable_and_enable(self):
+        self.grind(0, 'disable')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
+        self.assertRegex(self.grind(0, 'status').stdout, r'state +disabled\nenabled +no\n')
+        self.grind(0, 'enable')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def test_reset(self):
+        self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the machine is in state ready; allowed: ')
+        grinder().inject('emergency_stop')
+        grinder().wait_state(GrinderState.FAULT)
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'state +fault\n')
+        self.assertRegex(printed, r'emergency stop +pressed\n')
+        self.assertRegex(printed, r'fault +emergency stop\n')
+        told, _ = self.json(0, 'status')
+        self.assertEqual((told['fault'], told['emergency_stop'], told['enabled']), ('emergency stop', True, False))
+        self.assertRegex(self.grind(1, 'enable').stderr,
+                         r'^enable refused: the machine is in state fault; allowed: disable, reset\n$')
+        self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the emergency stop is pressed')
+        grinder().inject('none')
+        gc.poll(lambda: not grinder().fresh_state().emergency_stop, 'the emergency stop released')
+        self.grind(0, 'reset')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
+
+    def test_run_streams_what_plan_lists(self):
+        grinder().make_ready_at_park()
+        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
+        batches = len(grinder().batches)
+        self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
+        printed = self.grind(0, 'run', job, '--discard', '--csv', self.path('run.csv'))
+        with open(self.path('plan.csv'), 'rb') as plan, open(self.path('run.csv'), 'rb') as run:
+            planned, streamed = plan.read(), run.read()
+        self.assertTrue(planned == streamed, 'the files differ')
+        # From the first setpoint to the last, by the clock of the grinder.
+        new = grinder().batches_of_goal(batches)
+        duration = (new[-1].end_stamp - new[0].header.stamp).to_sec()
+        self.assertRegex(printed.stdout, r'streamed +%d setpoints in %s s, 0 missed\n'
+                         % (planned.count(b'\n') - 1, re.escape('%.3f' % duration)))
+        self.assertRegex(printed.stderr, r'100 %')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def check_refused(self, command):
+        self.assertEqual(self.grind(1, command).stderr,
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift\n'
+                         % command)
+
+    def test_hold_without_a_job_is_refused(self):
+        self.check_refused('hold')
+
+    def test_resume_without_a_job_is_refused(self):
+        self.check_refused('resume')
+
+    def test_retract_without_a_job_is_refused(self):
+        self.check_refused('retract')
+
+    def test_home_while_disabled_is_refused(self):
+        self.grind(0, 'disable')
+        self.assertEqual(self.grind(1, 'home').stderr,
+                         'home refused: the machine is in state disabled; allowed: enable, disable, reset\n')
+
+    def test_home(self):
+        self.grind(0, 'home')
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^homed +yes$')
+        home = rospy.get_param('/grinder/hardware')
+        for joint, position in zip(gc.JOINTS, grinder().wait_rest()):
+            self.assertAlmostEqual(position, home[joint]['home_position'], delta=1e-6)
+
+    def test_override(self):
+        self.addCleanup(grinder().set_feed_override, 1)
+        for percent in ('50', '0', '120', '12.5'):
+            self.grind(0, 'override', percent)
+            self.assertEqual(grinder().fresh_state().override, float(percent) / 100)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^feed +0\.0 mm/min, override 1[23] %$')
+
+    def test_hold_retract_and_resume(self):
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        self.grind(0, 'override', '10')
+        self.addCleanup(grinder().set_feed_override, 1)
+        self.grind(0, 'hold')
+        grinder().wait_state(GrinderState.HELD)
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'(?m)^state +held$')
+        self.assertRegex(printed, r'(?m)^spindle +at speed$')
+        self.assertRegex(printed, r'(?m)^coolant +on$')
+        self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 10 %$')
+        self.assertRegex(printed, r'(?m)^last job +paper\.yaml: D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth; '
+                                  r'tooth 1, pass 1 not finished, X \d+\.\d{3} mm \([0-9a-f]{12}\)$')
+        self.grind(0, 'retract')
+        grinder().wait_state(GrinderState.RETRACTED)
+        self.grind(0, 'override', '120')
+        self.grind(0, 'resume')
+        printed, shown = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 0, shown)
+        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
+        for state in ('running', 'held', 'retracted'):
+            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, shown)
+
+    def test_status_tells_why_the_job_is_held(self):
+        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        told, _ = self.json(0, 'status')
+        self.assertEqual((told['state'], told['tooth'], told['pass'], told['last_job']['finished'], told['coolant_on']),
+                         ('running', 1, 1, False, True))
+        self.assertIn(told['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
+        grinder().inject('coolant_lost')
+        grinder().wait_state(GrinderState.RETRACTED)
+        self.assertEqual(self.json(0, 'status')[0]['hold_reason'], 'no coolant flows')
+        printed = self.grind(0, 'status').stdout
+        self.assertRegex(printed, r'(?m)^state +retracted$')
+        self.assertRegex(printed, r'(?m)^coolant +off$')
+        self.assertRegex(printed, r'(?m)^held because +no coolant flows$')
+        self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
+        run.cancel()
+        run.wait()
+
+    def test_dry_run_moves_nothing(self):
+        batches = len(grinder().batches)
+        rest = grinder().positions()
+        printed = self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout
+        self.assertRegex(printed, r'setpoints +\d{4}')
+        self.assertNotIn('streamed', printed)
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        self.assertEqual(len(grinder().batches), batches)
+        self.assertEqual(grinder().positions(), rest)
+
+    def test_run_while_disabled(self):
+        self.grind(0, 'disable')
+        self.assertRegex(self.grind(1, 'run', PAPER_JOB).stderr, r'the machine is in state disabled; allowed: .*enable')
+
+    def test_run_outside_of_the_limits(self):
+        job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
+        self.assertRegex(self.grind(1, 'run', job, '--discard').stderr,
+                         r'axis_x position .* beyond its limit 0\.3 m.*\(code -6\)')
+
+    def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
+        run = grinder().send(gc.PAPER, job_name='left.yaml').wait_in_stroke(2 * MM)
+        run.cancel()
+        run.wait()
+        batches = len(grinder().batches)
+        job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1)
+        self.assertRegex(self.grind(1, 'run', job).stderr,
+                         r'^the journal keeps a job that is not finished: left\.yaml \(.*\(code -7\)\n$')
+        self.assertEqual(grinder().fresh_state().progress.job_name, 'left.yaml')
+        self.assertEqual(len(grinder().batches), batches)
+        self.grind(0, 'run', job, '--discard')
+        self.assertEqual(grinder().fresh_state().progress.job_name, 'short.yaml')
+
+    def test_run_of_a_bad_file(self):
+        self.grind(2, 'run', self.path('nothing.yaml'))
+
+    def test_fault_ends_the_run(self):
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        grinder().inject('emergency_stop')
+        _, reason = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 1)
+        self.assertRegex(reason, r'emergency stop \(at stroke .*\(code -9\)')
+
+    def start_run(self):
+        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard'], stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(self.kill, process)
+        return process
+
+    @staticmethod
+    def kill(process):
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+
+    @staticmethod
+    def wait_in_stroke(batches):
+        def past():
+            new = grinder().batches[batches:]
+            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
+
+        grinder().wait_for(past, 'the stroke')
+
+    def test_interrupt_cancels_the_run(self):
+        batches = len(grinder().batches)
+        process = self.start_run()
+        self.wait_in_stroke(batches)
+        process.send_signal(signal.SIGINT)
+        printed, reason = process.communicate(timeout=gc.PATIENCE)
+        self.assertEqual(process.returncode, 1, reason)
+        self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
+        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        setpoints = [s for batch in grinder().batches_of_goal(batches) for s in batch.setpoints]
+        self.assertTrue(checks.is_gapless(setpoints))
+        stopped = [s for s in setpoints if s.move != LIFT][-1]
+        self.assertEqual(stopped.move, STROKE)
+        self.assertLess(stopped.position[X], 30 * MM)
+        self.assertEqual(setpoints[-1].move, LIFT)
+        self.assertFalse(grinder().fresh_state().wheel_in_work)
+        self.assertEqual(checks.excesses(setpoints, grinder().limits(), grinder().period()), [])
+        self.assertEqual(len(grinder().positions_over(0.1)) > 5 and len(set(grinder().positions_over(0.1))), 1)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_cli_machine')
+    rostest.rosrun('flute_grinder', 'cli_machine', '__main__')

@@ -34,3 +34,5 @@ grep -q '3\.9785e-05 rad' "$staging/table.html"
 rosrun flute_grinder grind enable || { cat "$log"; exit 1; }
 rosrun flute_grinder grind run "$job" --dry-run
 rosrun flute_grinder grind status | grep -q '^state *ready'
+# It does not start without parameters.
+{ ! rosrun flute_grinder grinder __name:=second 2>&1; } | grep -q 'parameter /second/'

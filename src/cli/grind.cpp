@@ -55,9 +55,9 @@ void addTable(CLI::App& app, TableOptions& options) {
       });
   std::map<std::string, EvenStepRule> rules;
   std::string names;
-  for (const EvenStepRule rule : {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
-    rules[toString(rule)] = rule;
-    names += (names.empty() ? "" : "|") + std::string(toString(rule));
+  for (const auto& [rule, name] : kEvenStepRules) {
+    rules[name] = rule;
+    names += (names.empty() ? "" : "|") + std::string(name);
   }
   command
       .add_option_function<EvenStepRule>(
@@ -125,20 +125,22 @@ void addReport(CLI::App& app, ReportOptions& options) {
   addMachine(command, options.parameters, options.urdf);
 }
 
+/// How a command waits for the end of what it requests.
+std::string waiting(MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kHome: return "; waits until it is found, and Ctrl-C switches the power off";
+    case MachineEvent::kLift: return "; waits until it is lifted, and Ctrl-C and Ctrl-Z hold it";
+    case MachineEvent::kCancel: return ", whoever has started it; waits for the end";
+    default: return "";
+  }
+}
+
 /// The commands without arguments.
 void addCalls(CLI::App& app, bool& status_json) {
   addJson(addCommand(app, "status", "print what the grinder is doing"), status_json);
-  addCommand(app, "enable", "switch the drive's power on");
-  addCommand(app, "disable", "switch the drive's power off; a job is stopped on the path and the wheel lifted first");
-  addCommand(app, "home", "find the axes' reference, and wait until it is found; Ctrl-C switches the power off");
-  addCommand(app, "lift",
-             "without a job, lift the wheel off the work, and wait until it is; Ctrl-C and Ctrl-Z hold it");
-  addCommand(app, "hold", "stop on the path");
-  addCommand(app, "resume", "go on after hold or retract");
-  addCommand(app, "retract", "after hold, lift the wheel off the work");
-  addCommand(app, "cancel",
-             "stop on the path, lift the wheel and end the job, whoever has started it; waits for the end");
-  addCommand(app, "reset", "reset a fault; the machine is then disabled");
+  for (const EventRow& row : kMachineEvents) {
+    if (isTrigger(row.value) || isStop(row.value)) addCommand(app, row.name, row.help + waiting(row.value));
+  }
 }
 
 void addCompletion(CLI::App& app, std::string& shell) {
@@ -185,11 +187,8 @@ int carryOut(const CLI::App& app, const Options& options) {
   const std::string& node = options.run.node;
   if (command == "run") return runJob(options.run);
   if (command == "status") return printStatus(node, options.status_json);
-  if (command == "home") return home(node);
-  if (command == "lift") return lift(node);
-  if (command == "cancel") return cancelJob(node);
   if (command == "override") return setFeedOverride(node, options.percent);
-  return callTrigger(node, command == "reset" ? "reset_fault" : command);
+  return request(node, valueOf<MachineEvent>(command).value());
 }
 
 int run(int argc, char** argv) {

@@ -21,9 +21,8 @@ Json axes(const Axes& value, const std::string& per_time) {
 
 Json moveDurations(const PlanStatistics& statistics) {
   Json json = Json::object();
-  for (int i = 0; i < kMoveKindCount; ++i) {
-    json[std::string(toString(static_cast<MoveKind>(i))) + "_s"] =
-        statistics.move_duration[static_cast<std::size_t>(i)];
+  for (const MoveRow& move : kMoveKinds) {
+    json[std::string(move.name) + "_s"] = statistics.move_duration[static_cast<std::size_t>(move.value)];
   }
   return json;
 }

@@ -4,10 +4,9 @@
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/machine_file.h"
 #include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/step_table.h"
 #include "flute_grinder/core/units.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -17,50 +16,10 @@ namespace {
 
 using namespace units;
 
-/// A stroke of a curve with a fixed step length.
-struct Table {
-  struct Row {
-    CurvePoint point;
-    double theory = 0;  ///< of A [rad]
-    double error() const { return theory - point.a; }
-  };
-  std::vector<Row> rows;
-  double largest_odd_error = 0;   ///< [rad]
-  double largest_even_error = 0;  ///< [rad]
-  double largestError() const { return std::max(largest_odd_error, largest_even_error); }
-
-  void add(const LogCurve& curve, const CurvePoint& point) {
-    double& largest = rows.size() % 2 == 1 ? largest_odd_error : largest_even_error;
-    rows.push_back({point, curve.a(point.x)});
-    largest = std::max(largest, std::abs(rows.back().error()));
-  }
-};
-
-/// Interpolates from X = 0 until a pair ends at or past the flute's end; nothing if the steps are too long for the
-/// curve.
-std::optional<Table> interpolate(const GrindJob& job, EvenStepRule rule, double step_length_mm) {
-  const LogCurve curve{ConicalCutter(job.cutter)};
-  OddEvenInterpolator interpolator(curve, job.interpolation.rotary_scale, rule, 0);
-  Table table;
-  table.add(curve, interpolator.position());
-  while (interpolator.position().x < job.cutter.flute_length) {
-    const double x = interpolator.position().x;
-    const OddEvenPair pair = interpolator.next(step_length_mm * kMillimetre);
-    if (!(pair.even.x > x && curve.u(pair.odd.x) > 0 && curve.u(pair.even.x) > 0 && std::isfinite(pair.even.a))) {
-      std::fprintf(stderr, "--step-length %g mm is too long for this curve at X = %g mm\n", step_length_mm,
-                   x / kMillimetre);
-      return std::nullopt;
-    }
-    table.add(curve, pair.odd);
-    table.add(curve, pair.even);
-  }
-  return table;
-}
-
-void printText(const Table& table) {
+void printText(const StepTable& table) {
   std::printf("%6s  %12s  %10s  %10s  %12s\n", "point", "X mm", "A rad", "theory rad", "error 1e-4");
   int number = 0;
-  for (const Table::Row& row : table.rows) {
+  for (const StepTable::Row& row : table.rows) {
     std::printf("%6d  %12.4f  %10.4f  %10.4f  %12.4f\n", number++, row.point.x / kMillimetre, row.point.a, row.theory,
                 row.error() / 1e-4);
   }
@@ -70,9 +29,9 @@ void printText(const Table& table) {
   std::printf("largest at even points %.4e rad\n", table.largest_even_error);
 }
 
-Json toJson(const Table& table, EvenStepRule rule, double step_length_mm) {
+Json toJson(const StepTable& table, EvenStepRule rule, double step_length_mm) {
   Json points = Json::array();
-  for (const Table::Row& row : table.rows) {
+  for (const StepTable::Row& row : table.rows) {
     points.push_back(Json{{"point", points.size()},
                           {"x_mm", row.point.x / kMillimetre},
                           {"a_rad", row.point.a},
@@ -87,10 +46,10 @@ Json toJson(const Table& table, EvenStepRule rule, double step_length_mm) {
           {"largest_even_error_rad", table.largest_even_error}};
 }
 
-void writeCsv(const Table& table, const std::string& path) {
+void writeCsv(const StepTable& table, const std::string& path) {
   TableCsv csv(path);
   int number = 0;
-  for (const Table::Row& row : table.rows) csv.write(number++, row.point, row.theory);
+  for (const StepTable::Row& row : table.rows) csv.write(number++, row.point, row.theory);
   csv.close();
 }
 
@@ -99,13 +58,17 @@ void writeCsv(const Table& table, const std::string& path) {
 int runTable(const TableOptions& options) {
   const GrindJob job = readJobFile(options.job);
   const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
-  const auto table = interpolate(job, rule, options.step_length_mm);
-  if (!table) return 1;
-  if (!options.csv.empty()) writeCsv(*table, options.csv);
+  const StepTable table = interpolateBySteps(job, rule, options.step_length_mm * kMillimetre);
+  if (!table.complete) {
+    std::fprintf(stderr, "--step-length %g mm is too long for this curve at X = %g mm\n", options.step_length_mm,
+                 table.rows.back().point.x / kMillimetre);
+    return 1;
+  }
+  if (!options.csv.empty()) writeCsv(table, options.csv);
   if (options.json) {
-    print(toJson(*table, rule, options.step_length_mm));
+    print(toJson(table, rule, options.step_length_mm));
   } else {
-    printText(*table);
+    printText(table);
   }
   return 0;
 }
@@ -113,9 +76,9 @@ int runTable(const TableOptions& options) {
 void printStatistics(const PlanStatistics& s) {
   std::printf("setpoints            %llu\n", static_cast<unsigned long long>(s.setpoints));
   std::printf("duration             %.3f s:", s.duration);
-  for (int i = 0; i < kMoveKindCount; ++i) {
-    const double duration = s.move_duration[static_cast<std::size_t>(i)];
-    if (duration > 0) std::printf(" %s %.3f", toString(static_cast<MoveKind>(i)), duration);
+  for (const MoveRow& move : kMoveKinds) {
+    const double duration = s.move_duration[static_cast<std::size_t>(move.value)];
+    if (duration > 0) std::printf(" %s %.3f", move.name, duration);
   }
   std::printf("\nlargest odd error    %.4e rad\n", s.max_odd_error);
   std::printf("largest even error   %.4e rad\n", s.max_even_error);

@@ -109,11 +109,9 @@ int printStatus(const std::string& node, bool json) {
   return 0;
 }
 
-int callTrigger(const std::string& node, const std::string& service) {
-  ros::NodeHandle nh(node);
-  return call<std_srvs::Trigger>(nh, service, {});
-}
+namespace {
 
+/// Waits until homing is over; Ctrl-C breaks it off by switching the power off.
 int home(const std::string& node) {
   ros::NodeHandle nh(node);
   ros::AsyncSpinner spinner(1);
@@ -121,18 +119,20 @@ int home(const std::string& node) {
   const StateWatch watch(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   catchInterrupts();
-  const int status = carryOutMotion(nh, watch, "home", GrinderState::HOMING, [] { return interrupts() == 0; });
+  const int status =
+      carryOutMotion(nh, watch, serviceOf(MachineEvent::kHome), GrinderState::HOMING, [] { return interrupts() == 0; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::HOMING) {
     // To switch the power off is what ends homing.
-    const int refused = call<std_srvs::Trigger>(nh, "disable", {});
+    const int refused = call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kDisable), {});
     return refused != 0 ? refused : fail("homing was broken off; the power is off");
   }
   if (state.homed) return 0;
   return fail(state.fault.empty() ? "homing was broken off" : state.fault);
 }
 
+/// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
 int lift(const std::string& node) {
   ros::NodeHandle nh(node);
   ros::AsyncSpinner spinner(1);
@@ -143,7 +143,8 @@ int lift(const std::string& node) {
   catchInterrupts();
   catchHolds();
   keys.start([&] { keys.hold(); });
-  const int status = carryOutMotion(nh, watch, "lift", GrinderState::LIFTING, [] { return true; });
+  const int status =
+      carryOutMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::FAULT) return fail(state.fault);
@@ -151,6 +152,7 @@ int lift(const std::string& node) {
   return fail("the lift was broken off: the wheel stands in the work; 'grind lift' lifts it");
 }
 
+/// Stops the job that runs, whoever has started it, and waits for the stop.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
   ros::AsyncSpinner spinner(1);
@@ -169,6 +171,19 @@ int cancelJob(const std::string& node) {
   if (watch.lost()) return fail(kLinkLost);
   const GrinderState state = watch.newest();
   return state.fault.empty() ? 0 : fail(state.fault);
+}
+
+}  // namespace
+
+int request(const std::string& node, MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kHome: return home(node);
+    case MachineEvent::kLift: return lift(node);
+    case MachineEvent::kCancel: return cancelJob(node);
+    default: break;
+  }
+  ros::NodeHandle nh(node);
+  return call<std_srvs::Trigger>(nh, serviceOf(event), {});
 }
 
 int setFeedOverride(const std::string& node, double percent) {

@@ -1,5 +1,7 @@
 #include "flute_grinder/cli/state_watch.h"
 
+#include "flute_grinder/core/machine_state.h"
+
 namespace flute_grinder {
 
 namespace {
@@ -11,9 +13,7 @@ const ros::WallDuration kLongestSilence(3);
 const char* const kLinkLost =
     "the link to the grinder is lost: nothing was heard of it for 3 s, and what the machine does is not known";
 
-bool inJob(const GrinderState& state) {
-  return state.state >= GrinderState::STARTING && state.state <= GrinderState::CANCELING;
-}
+bool inJob(const GrinderState& state) { return isInJob(static_cast<MachineState>(state.state)); }
 
 StateWatch::StateWatch(ros::NodeHandle& nh) {
   const boost::function<void(const GrinderState::ConstPtr&)> on_state = [this](const GrinderState::ConstPtr& state) {

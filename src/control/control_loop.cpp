@@ -120,8 +120,7 @@ void ControlLoop::takeRequests() {
 }
 
 void ControlLoop::takeRequest(MachineEvent event) {
-  const bool other = !isRequest(event) || isStop(event) || event == MachineEvent::kStart;
-  const Refusal refusal = other ? Refusal::kState : carryOut(event);
+  const Refusal refusal = isTrigger(event) ? carryOut(event) : Refusal::kState;
   // Power takes its time: awaitPower() answers.
   if (!awaiting_power_) requests_.answer(answerTo(event, refusal));
 }

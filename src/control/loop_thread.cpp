@@ -87,9 +87,8 @@ void ControlLoop::run() {
 }
 
 RequestReply ControlLoop::request(MachineEvent event) {
-  if (!isRequest(event) || isStop(event) || event == MachineEvent::kStart) {
-    return {false, std::string(toString(event)) + " refused: allowed: enable, home, resume, retract, lift, reset",
-            true};
+  if (!isTrigger(event)) {
+    return {false, std::string(toString(event)) + " refused: allowed: " + namesOf<MachineEvent>(isTrigger), true};
   }
   bool posted = false;
   return await(event, kAnswerTimeout + config_.enable_timeout, [&]() -> std::optional<RequestReply> {

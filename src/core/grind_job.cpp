@@ -113,20 +113,13 @@ void checkTogether(Checker& checker, const GrindJob& job) {
 }
 
 template <typename Enum>
-void checkChoice(Checker& checker, const char* path, Enum value, int count) {
+void checkChoice(Checker& checker, const char* path, Enum value) {
   const int v = static_cast<int>(value);
+  constexpr int count = countOf<Enum>();
   checker.require(v >= 0 && v < count, path, std::to_string(v), "0 to " + std::to_string(count - 1));
 }
 
 }  // namespace
-
-const char* toString(GrindOrder order) noexcept {
-  return order == GrindOrder::kToothMajor ? "tooth_major" : "pass_major";
-}
-
-const char* toString(StrokeDirection direction) noexcept {
-  return direction == StrokeDirection::kFromEnd ? "from_end" : "to_end";
-}
 
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
   char text[200];
@@ -196,9 +189,9 @@ std::vector<JobError> validate(const GrindJob& job, UnitSystem units) {
   checkTeeth(checker, job);
   checker.require(job.process.spark_out >= 0 && job.process.spark_out <= kMaxSparkOut, "process.spark_out",
                   std::to_string(job.process.spark_out), "0 to " + std::to_string(kMaxSparkOut));
-  checkChoice(checker, "process.order", job.process.order, 2);
-  checkChoice(checker, "process.direction", job.process.direction, 2);
-  checkChoice(checker, "interpolation.even_step", job.interpolation.even_step, 3);
+  checkChoice(checker, "process.order", job.process.order);
+  checkChoice(checker, "process.direction", job.process.direction);
+  checkChoice(checker, "interpolation.even_step", job.interpolation.even_step);
   if (checker.good()) checkTogether(checker, job);
   return checker.take();
 }

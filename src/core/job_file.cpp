@@ -46,20 +46,15 @@ class FlatFile {
     }
   }
 
-  /// Takes a value that must be one of some words.
+  /// Takes a value that must be one of an enum's names.
   template <typename Enum>
-  void takeChoice(const std::string& key, std::initializer_list<Enum> choices, Enum& value) {
-    std::string allowed;
-    for (const Enum choice : choices) allowed += (allowed.empty() ? "" : ", ") + std::string(toString(choice));
+  void takeChoice(const std::string& key, Enum& value) {
+    const std::string allowed = namesOf<Enum>();
     std::string word;
     if (!take(key, allowed, word)) return;
-    for (const Enum choice : choices) {
-      if (word == toString(choice)) {
-        value = choice;
-        return;
-      }
-    }
-    fail(line(key), key + " = " + word + "; allowed: " + allowed);
+    const auto choice = valueOf<Enum>(word);
+    if (!choice) return fail(line(key), key + " = " + word + "; allowed: " + allowed);
+    value = *choice;
   }
 
   void drop(const std::string& key) { entries_.erase(key); }
@@ -191,11 +186,9 @@ GrindJob parseJob(const std::string& text, const std::string& name) {
   }
   takeTeeth(file, job);
   file.take("process.spark_out", "0 to " + std::to_string(kMaxSparkOut), job.process.spark_out);
-  file.takeChoice("process.order", {GrindOrder::kToothMajor, GrindOrder::kPassMajor}, job.process.order);
-  file.takeChoice("process.direction", {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}, job.process.direction);
-  file.takeChoice("interpolation.even_step",
-                  {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact},
-                  job.interpolation.even_step);
+  file.takeChoice("process.order", job.process.order);
+  file.takeChoice("process.direction", job.process.direction);
+  file.takeChoice("interpolation.even_step", job.interpolation.even_step);
   file.refuseTheRest();
   file.throwErrors();
 

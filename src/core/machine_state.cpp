@@ -96,44 +96,6 @@ constexpr Transition kTransitions[]{
 
 }  // namespace
 
-const char* toString(MachineState state) noexcept {
-  switch (state) {
-    case S::kDisabled: return "disabled";
-    case S::kReady: return "ready";
-    case S::kHoming: return "homing";
-    case S::kStarting: return "starting";
-    case S::kRunning: return "running";
-    case S::kHolding: return "holding";
-    case S::kHeld: return "held";
-    case S::kRetracting: return "retracting";
-    case S::kRetracted: return "retracted";
-    case S::kResuming: return "resuming";
-    case S::kCanceling: return "canceling";
-    case S::kFault: return "fault";
-    case S::kLifting: return "lifting";
-  }
-  return "unknown";
-}
-
-const char* toString(MachineEvent event) noexcept {
-  switch (event) {
-    case E::kEnable: return "enable";
-    case E::kDisable: return "disable";
-    case E::kHome: return "home";
-    case E::kStart: return "start";
-    case E::kHold: return "hold";
-    case E::kResume: return "resume";
-    case E::kRetract: return "retract";
-    case E::kLift: return "lift";
-    case E::kCancel: return "cancel";
-    case E::kReset: return "reset";
-    case E::kDone: return "done";
-    case E::kAtRest: return "at rest";
-    case E::kFault: return "fault";
-  }
-  return "unknown";
-}
-
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept {
   for (const Transition& t : kTransitions) {
     if (t.from == state && t.event == event) return t.to;

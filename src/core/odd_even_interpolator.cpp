@@ -24,15 +24,6 @@ double solveNearlyLinear(double guess, double goal, double inverse_slope, double
 
 }  // namespace
 
-const char* toString(EvenStepRule rule) noexcept {
-  switch (rule) {
-    case EvenStepRule::kPublished: return "published";
-    case EvenStepRule::kThirdOrder: return "third_order";
-    case EvenStepRule::kExact: return "exact";
-  }
-  return "unknown";
-}
-
 OddEvenInterpolator::OddEvenInterpolator(const LogCurve& curve, double rotary_scale, EvenStepRule rule,
                                          double start_x) noexcept
     : curve_(curve),

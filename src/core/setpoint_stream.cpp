@@ -19,8 +19,6 @@ MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
           (limits.max_jerk / size).minCoeff()};
 }
 
-bool goesAtFeed(MoveKind kind) noexcept { return kind == MoveKind::kInfeed || kind == MoveKind::kStroke; }
-
 }  // namespace
 
 SetpointStream::SetpointStream(GrindProgram program)
@@ -174,7 +172,7 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   }
   MotionLimits limits = limitsAlong(way_, program_->machine().limits);
   double speed = limits.velocity;
-  if (goesAtFeed(kind)) {
+  if (isAtFeed(kind)) {
     speed = std::min(speed, program_->job().process.feed / linear_way_);
     limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
   }
@@ -197,7 +195,7 @@ void SetpointStream::beginLaw(const MotionLimits& limits, double distance, doubl
 
 double SetpointStream::targetSpeed() const noexcept {
   if (holding_) return 0;
-  return goesAtFeed(current_.move) ? std::min(override_ * feed_speed_, law_.limits().velocity) : feed_speed_;
+  return isAtFeed(current_.move) ? std::min(override_ * feed_speed_, law_.limits().velocity) : feed_speed_;
 }
 
 double SetpointStream::strokeParameter() const noexcept {

@@ -1,4 +1,5 @@
 #include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/node/grinder_node.h"
 #include "flute_grinder/node/output.h"
 
@@ -22,11 +23,11 @@ void waitForEnd(const sigset_t& signals) {
 
 /// Of the node and its drive.
 std::vector<std::string> services() {
-  std::vector<std::string> names;
-  for (const char* name : {"enable", "disable", "home", "hold", "resume", "retract", "lift", "reset_fault",
-                           "set_feed_override", "plan", "hardware/inject_fault"}) {
-    names.push_back(ros::names::resolve(std::string("~") + name));
+  std::vector<std::string> names{"~set_feed_override", "~plan", "~hardware/inject_fault"};
+  for (const flute_grinder::EventRow& request : flute_grinder::kMachineEvents) {
+    if (request.service) names.push_back(std::string("~") + request.service);
   }
+  for (std::string& name : names) name = ros::names::resolve(name);
   return names;
 }
 

@@ -6,16 +6,13 @@ RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, J
     : loop_(loop), gate_(gate) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
-  serve(nh, "enable", MachineEvent::kEnable);
-  serve(nh, "home", MachineEvent::kHome);
-  serve(nh, "resume", MachineEvent::kResume);
-  serve(nh, "retract", MachineEvent::kRetract);
-  serve(nh, "lift", MachineEvent::kLift);
-  serve(nh, "reset_fault", MachineEvent::kReset);
+  for (const EventRow& request : kMachineEvents) {
+    if (isTrigger(request.value)) serve(nh, request.value);
+  }
   thread_.start();
 }
 
-void RequestDesk::serve(ros::NodeHandle& nh, const char* name, MachineEvent event) {
+void RequestDesk::serve(ros::NodeHandle& nh, MachineEvent event) {
   const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
       [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         const RequestReply reply = carryOut(event);
@@ -24,7 +21,7 @@ void RequestDesk::serve(ros::NodeHandle& nh, const char* name, MachineEvent even
         if (!reply.accepted) ROS_WARN_STREAM(reply.text);
         return true;
       };
-  services_.push_back(nh.advertiseService(name, callback));
+  services_.push_back(nh.advertiseService(serviceOf(event), callback));
 }
 
 RequestReply RequestDesk::carryOut(MachineEvent event) {

@@ -7,8 +7,8 @@ namespace flute_grinder {
 StopDesk::StopDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate) : loop_(loop), gate_(gate) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
-  services_.push_back(nh.advertiseService("hold", &StopDesk::onHold, this));
-  services_.push_back(nh.advertiseService("disable", &StopDesk::onDisable, this));
+  services_.push_back(nh.advertiseService(serviceOf(MachineEvent::kHold), &StopDesk::onHold, this));
+  services_.push_back(nh.advertiseService(serviceOf(MachineEvent::kDisable), &StopDesk::onDisable, this));
   services_.push_back(nh.advertiseService("set_feed_override", &StopDesk::onFeedOverride, this));
   const auto hints = ros::TransportHints().tcpNoDelay();
   // Beside actionlib, whose own handling waits for what it publishes, and which forwards no cancel of a goal that it

@@ -27,7 +27,7 @@ double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_e
 }
 
 double strokeFraction(const Setpoint& p, const GrindProgram& program) {
-  if (p.move != MoveKind::kStroke) return p.move > MoveKind::kStroke ? 1 : 0;
+  if (p.move != MoveKind::kStroke) return phaseOf(p.move) == PassPhase::kAfter ? 1 : 0;
   return fraction(p.position[kX] - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
 }
 

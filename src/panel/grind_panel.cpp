@@ -14,6 +14,13 @@ namespace {
 
 constexpr int kRefreshInterval = 50;  ///< as often as the grinder tells its state [ms]
 constexpr int kMessages = 200;        ///< that are kept
+constexpr int kButtonColumns = 4;
+
+QString capitalized(const std::string& text) {
+  QString words = QString::fromStdString(text);
+  if (!words.isEmpty()) words[0] = words[0].toUpper();
+  return words;
+}
 
 /// One for the process, however many panels there are.
 std::shared_ptr<MasterWatch> masterWatch() {
@@ -57,22 +64,14 @@ GrindPanel::GrindPanel(QWidget* parent)
 
 void GrindPanel::layOut() {
   auto* buttons = new QGridLayout;
-  addButton(*buttons, 0, 0, 3, MachineEvent::kEnable, "Enable", "Switch the drive's power on; nothing moves");
-  addButton(*buttons, 0, 3, 3, MachineEvent::kDisable, "Disable",
-            "Switch the drive's power off; a job is stopped and its wheel lifted first");
-  addButton(*buttons, 0, 6, 3, MachineEvent::kHome, "Home", "The drive finds the axes' reference; the axes may move");
-  addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Take a fault back; the power stays off");
-  addButton(*buttons, 1, 0, 6, MachineEvent::kStart, "Start", "Grind the planned job");
-  addButton(*buttons, 1, 6, 6, MachineEvent::kHold, "Hold", "Stop on the path; the wheel turns on");
-  addButton(*buttons, 2, 0, 3, MachineEvent::kRetract, "Retract", "Lift the held wheel off the work");
-  addButton(*buttons, 2, 3, 3, MachineEvent::kResume, "Resume", "Go on where the job was held");
-  addButton(*buttons, 2, 6, 3, MachineEvent::kCancel, "Cancel", "Stop on the path, lift the wheel and end the job");
-  addButton(*buttons, 2, 9, 3, MachineEvent::kLift, "Lift", "Lift the wheel off the work, without a job");
-  for (const MachineEvent event : {MachineEvent::kStart, MachineEvent::kHold}) {
-    QFont bold = font();
-    bold.setBold(true);
-    buttons_[event]->setFont(bold);
-    buttons_[event]->setMinimumHeight(2 * fontMetrics().height() + 6);
+  int place = 0;
+  for (const EventRow& request : kMachineEvents) {
+    if (!isRequest(request.value)) continue;
+    // What the hand finds in a hurry.
+    const bool large = request.value == MachineEvent::kStart || request.value == MachineEvent::kHold;
+    const int columns = large ? 2 : 1;
+    buttons->addWidget(addButton(request, large), place / kButtonColumns, place % kButtonColumns, 1, columns);
+    place += columns;
   }
 
   auto* node = new QHBoxLayout;
@@ -90,16 +89,22 @@ void GrindPanel::layOut() {
   layout->addLayout(node);
 }
 
-void GrindPanel::addButton(QGridLayout& layout, int row, int column, int columns, MachineEvent event,
-                           const QString& text, const QString& hint) {
-  auto* button = new QPushButton(text);
-  button->setObjectName(toString(event));
-  button->setToolTip(hint);
+QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
+  auto* button = new QPushButton(capitalized(request.name));
+  button->setObjectName(request.name);
+  button->setToolTip(capitalized(request.help));
   button->setEnabled(false);
   button->setMinimumWidth(10);
-  layout.addWidget(button, row, column, 1, columns);
+  if (large) {
+    QFont bold = font();
+    bold.setBold(true);
+    button->setFont(bold);
+    button->setMinimumHeight(2 * fontMetrics().height() + 6);
+  }
+  const MachineEvent event = request.value;
   buttons_[event] = button;
   connect(button, &QPushButton::clicked, this, [this, event] { ask(event); });
+  return button;
 }
 
 void GrindPanel::load(const rviz::Config& config) {
@@ -241,9 +246,7 @@ void GrindPanel::setFeedOverride(double fraction) {
 }
 
 void GrindPanel::say(const std::string& text) {
-  QString told = QString::fromStdString(inShopUnits(text));
-  if (!told.isEmpty()) told[0] = told[0].toUpper();
-  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + told);
+  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(inShopUnits(text)));
 }
 
 }  // namespace flute_grinder

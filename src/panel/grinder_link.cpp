@@ -24,8 +24,6 @@ constexpr double kPlanTimeout = 60;
 /// For which a stop waits for a connection: longer than it takes to make it after grinder or master have come back.
 const ros::WallDuration kStopTimeout(2);
 
-const char* serviceOf(MachineEvent event) { return event == MachineEvent::kReset ? "reset_fault" : toString(event); }
-
 Stop stopFor(MachineEvent event) {
   Stop stop;
   stop.request = event == MachineEvent::kHold     ? Stop::HOLD

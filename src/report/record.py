@@ -5,6 +5,8 @@ import tempfile
 
 import numpy as np
 
+from flute_grinder.msg import WrittenSetpoint
+
 MM = 1e-3
 MM_MIN = 1e-3 / 60
 UM = 1e-6
@@ -12,9 +14,20 @@ DEG = np.pi / 180
 
 AXES = 'XYZA'
 X, A = 0, 3
-MOVES = ['lift', 'index', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
-STEPS = ['none', 'odd', 'even']
-ODD, EVEN = 1, 2
+
+
+def names_of_constants(message):
+    """The constants of a message in small letters, in a list for each field: the values of one field count from 0."""
+    lists = []
+    for name, value in vars(message).items():
+        if name.isupper():
+            lists += [[]] if value == 0 else []
+            lists[-1].append(name.lower())
+    return lists
+
+
+MOVES, STEPS = names_of_constants(WrittenSetpoint)
+ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
 # SI units: m, A in rad; m/s. What a source does not have is 0.
 ROW = np.dtype([('cycle', 'i8'), ('position', 'f8', 4), ('error', 'f8'), ('feed', 'f8'), ('move', 'u1'), ('step', 'u1'),

@@ -82,7 +82,8 @@ double ToolPath::x(std::size_t i) const {
 
 bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
   const std::optional<std::size_t> before = active_;
-  if (p.move != MoveKind::kRetract && p.move != MoveKind::kReturn && p.move != MoveKind::kLift) active_ = p.tooth;
+  const PassPhase phase = phaseOf(p.move);
+  if (phase == PassPhase::kBefore || phase == PassPhase::kStroke) active_ = p.tooth;
   if (p.move != MoveKind::kStroke) return active_ != before;
   if (p.step != StepKind::kNone) measure(p, actual);
   if (p.progress < 1) return active_ != before;

@@ -15,6 +15,8 @@ import textwrap
 import traceback
 
 import figures
+import links
+from links import PAGES
 from pages import COMMAND, read_page
 from session import ROOT, Failure, Session, missing_line
 
@@ -40,7 +42,6 @@ NOT_RUN = {
 IN_HAL = {'docs/shop-floor-pc.md'}
 # What a new user reads, so that nothing may have been typed before.
 FROM_THE_BEGINNING = {'README.md', 'docs/first-cutter.md'}
-PAGES = ['README.md'] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / 'docs').glob('*.md'))
 
 
 def run_commands(session, item):
@@ -156,30 +157,9 @@ def check_coverage():
     return wrong + ['NOT_RUN: %s is not in the documentation' % command for command in NOT_RUN if command not in seen]
 
 
-def anchors(text):
-    """Of a page's headings, as GitHub names them."""
-    return {re.sub(r'[^\w -]', '', heading.lower()).replace(' ', '-') for heading in re.findall(r'(?m)^#+ (.*)$', text)}
-
-
-def check_links():
-    """Links and pictures that lead nowhere, one text each."""
-    wrong = []
-    for page in PAGES:
-        text = (ROOT / page).read_text()
-        for link in re.findall(r'\]\(([^)\s]+)\)|(?:src|href)="([^"]+)"', text):
-            link = ''.join(link)
-            path, _, anchor = link.partition('#')
-            file = (ROOT / page).parent / path if path else ROOT / page
-            if '://' in link:
-                continue
-            if not file.exists() or anchor and anchor not in anchors(file.read_text()):
-                wrong.append('%s: a link to %s' % (page, link))
-    return wrong
-
-
 def main():
     pages = sys.argv[1:] or PAGES
-    wrong = [] if sys.argv[1:] else check_coverage() + check_links()
+    wrong = [] if sys.argv[1:] else check_coverage() + links.wrong()
     with concurrent.futures.ThreadPoolExecutor(3) as pool:
         wrong += filter(None, pool.map(run_page, pages))
     print('\n'.join(wrong))

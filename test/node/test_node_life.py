@@ -209,6 +209,13 @@ class TestStartFailsClosed(unittest.TestCase):
         self.assertEqual(node.end(), 1, node.output)
         self.assertIn('parameter /nothing_here is missing; allowed: a URDF', node.output)
 
+    def test_rosrun_finds_the_program(self):
+        done = subprocess.run(['rosrun', 'flute_grinder', 'grinder', '__name:=doubtful', 'robot_description:=/nothing_here'],
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True, timeout=gc.PATIENCE)
+        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertIn('parameter /nothing_here is missing; allowed: a URDF', done.stdout)
+
     def test_drive_was_left_out_of_the_build(self):
         parameters = gc.machine()
         parameters['hardware']['type'] = 'flute_grinder/HalHardware'

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/core/machine_state.h"
+
 #include <ros/node_handle.h>
 
 #include <string>
@@ -29,21 +31,12 @@ int noGrinder(const ros::NodeHandle& nh);
 /// @return the exit status. @throw FileError, before anything is sent, if a file cannot be opened.
 int runJob(const RunOptions& options);
 
-/// Stops the job that runs, whoever has started it, and waits for the stop. @return the exit status.
-int cancelJob(const std::string& node);
-
 /// Prints what the grinder is doing. @param json in JSON. @return the exit status.
 int printStatus(const std::string& node, bool json);
 
-/// Calls one of the grinder's services without arguments. @return the exit status.
-int callTrigger(const std::string& node, const std::string& service);
-
-/// Homes the axes, and waits until that is over; Ctrl-C breaks it off by switching the power off. @return the exit
-/// status.
-int home(const std::string& node);
-
-/// Lifts the wheel off the work, and waits until it is; Ctrl-C and Ctrl-Z hold it. @return the exit status.
-int lift(const std::string& node);
+/// Has the grinder carry out a trigger or a stop. Waits for the end of homing, of a lift and of a canceled job.
+/// @return the exit status.
+int request(const std::string& node, MachineEvent event);
 
 /// Sets the feed override. @param percent 0 to 120. @return the exit status.
 int setFeedOverride(const std::string& node, double percent);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/core/conical_cutter.h"
+#include "flute_grinder/core/enum_table.h"
 #include "flute_grinder/core/odd_even_interpolator.h"
 
 #include <cstdint>
@@ -14,8 +15,17 @@ enum class GrindOrder { kToothMajor, kPassMajor };
 /// Which way the strokes go.
 enum class StrokeDirection { kFromEnd, kToEnd };
 
-const char* toString(GrindOrder order) noexcept;           ///< e.g. "tooth_major"
-const char* toString(StrokeDirection direction) noexcept;  ///< e.g. "from_end"
+/// With the names used in job files.
+inline constexpr EnumRow<GrindOrder> kGrindOrders[]{
+    {GrindOrder::kToothMajor, "tooth_major"},
+    {GrindOrder::kPassMajor, "pass_major"},
+};
+inline constexpr EnumRow<StrokeDirection> kStrokeDirections[]{
+    {StrokeDirection::kFromEnd, "from_end"},
+    {StrokeDirection::kToEnd, "to_end"},
+};
+constexpr auto& rowsOf(GrindOrder) noexcept { return kGrindOrders; }
+constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
 
 /// How the flutes are ground.
 struct GrindProcess {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/core/enum_table.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,33 +25,78 @@ enum class MachineState : std::uint8_t {
   kLifting,     ///< lifting the wheel off the work, without a job
 };
 
-/// What may change the state: requests from outside, and what the loop sees by itself.
+inline constexpr EnumRow<MachineState> kMachineStates[]{
+    {MachineState::kDisabled, "disabled"},   {MachineState::kReady, "ready"},
+    {MachineState::kHoming, "homing"},       {MachineState::kStarting, "starting"},
+    {MachineState::kRunning, "running"},     {MachineState::kHolding, "holding"},
+    {MachineState::kHeld, "held"},           {MachineState::kRetracting, "retracting"},
+    {MachineState::kRetracted, "retracted"}, {MachineState::kResuming, "resuming"},
+    {MachineState::kCanceling, "canceling"}, {MachineState::kFault, "fault"},
+    {MachineState::kLifting, "lifting"},
+};
+constexpr auto& rowsOf(MachineState) noexcept { return kMachineStates; }
+
+/// What may change the state: requests from outside, in the order in which people are offered them, and what the loop
+/// sees by itself.
 enum class MachineEvent : std::uint8_t {
   kEnable,
   kDisable,
   kHome,
+  kReset,
   kStart,
   kHold,
-  kResume,
   kRetract,
-  kLift,
+  kResume,
   kCancel,
-  kReset,
+  kLift,
   kDone,    ///< what the state waited for has come: the reference, spindle and coolant, the path
   kAtRest,  ///< the axes have come to rest
   kFault,
 };
 
-const char* toString(MachineState state) noexcept;  ///< e.g. "ready"
-const char* toString(MachineEvent event) noexcept;  ///< e.g. "enable"
+/// How an event gets to the machine.
+enum class EventKind : std::uint8_t {
+  kSeen,     ///< the loop sees it by itself
+  kTrigger,  ///< a request without arguments
+  kStop,     ///< a request that stops the axes
+  kStart,    ///< a request that brings a job
+};
+
+/// A request's name is its sub-command of `grind` too.
+struct EventRow : EnumRow<MachineEvent> {
+  EventKind kind = EventKind::kSeen;
+  const char* service = nullptr;  ///< of the node, in its own namespace; null for none
+  const char* help = "";          ///< what a request does, for people
+};
+
+inline constexpr EventRow kMachineEvents[]{
+    {{MachineEvent::kEnable, "enable"}, EventKind::kTrigger, "enable", "switch the drive's power on; nothing moves"},
+    {{MachineEvent::kDisable, "disable"},
+     EventKind::kStop,
+     "disable",
+     "switch the drive's power off; a job is stopped on the path and the wheel lifted first"},
+    {{MachineEvent::kHome, "home"}, EventKind::kTrigger, "home", "find the axes' reference, for which they may move"},
+    {{MachineEvent::kReset, "reset"}, EventKind::kTrigger, "reset_fault", "reset a fault; the power stays off"},
+    {{MachineEvent::kStart, "start"}, EventKind::kStart, nullptr, "grind the planned job"},
+    {{MachineEvent::kHold, "hold"}, EventKind::kStop, "hold", "stop on the path; the wheel turns on"},
+    {{MachineEvent::kRetract, "retract"}, EventKind::kTrigger, "retract", "after hold, lift the wheel off the work"},
+    {{MachineEvent::kResume, "resume"}, EventKind::kTrigger, "resume", "go on after hold or retract"},
+    {{MachineEvent::kCancel, "cancel"}, EventKind::kStop, nullptr, "stop on the path, lift the wheel and end the job"},
+    {{MachineEvent::kLift, "lift"}, EventKind::kTrigger, "lift", "without a job, lift the wheel off the work"},
+    {{MachineEvent::kDone, "done"}},
+    {{MachineEvent::kAtRest, "at rest"}},
+    {{MachineEvent::kFault, "fault"}},
+};
+constexpr auto& rowsOf(MachineEvent) noexcept { return kMachineEvents; }
 
 /// Whether an event is a request from outside.
-constexpr bool isRequest(MachineEvent event) noexcept { return event < MachineEvent::kDone; }
-
+constexpr bool isRequest(MachineEvent event) noexcept { return rowOf(event).kind != EventKind::kSeen; }
 /// Whether an event is a request that stops the axes.
-constexpr bool isStop(MachineEvent event) noexcept {
-  return event == MachineEvent::kHold || event == MachineEvent::kCancel || event == MachineEvent::kDisable;
-}
+constexpr bool isStop(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kStop; }
+/// Whether an event is a request that neither stops the axes nor brings a job.
+constexpr bool isTrigger(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kTrigger; }
+/// The node's service for a request; null where there is none.
+constexpr const char* serviceOf(MachineEvent event) noexcept { return rowOf(event).service; }
 
 /// The state after an event, or nothing where the state does not allow it. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;

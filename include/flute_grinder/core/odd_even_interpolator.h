@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/core/enum_table.h"
 #include "flute_grinder/core/log_curve.h"
 
 namespace flute_grinder {
@@ -11,8 +12,13 @@ enum class EvenStepRule {
   kExact,       ///< the circle's intersection with the curve; even points on the curve to rounding
 };
 
-/// The name used in job files, e.g. "third_order".
-const char* toString(EvenStepRule rule) noexcept;
+/// With the names used in job files.
+inline constexpr EnumRow<EvenStepRule> kEvenStepRules[]{
+    {EvenStepRule::kPublished, "published"},
+    {EvenStepRule::kThirdOrder, "third_order"},
+    {EvenStepRule::kExact, "exact"},
+};
+constexpr auto& rowsOf(EvenStepRule) noexcept { return kEvenStepRules; }
 
 /// A point in the X-A plane.
 struct CurvePoint {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/enum_table.h"
 
 #include <cstdint>
 
@@ -18,16 +19,43 @@ enum class MoveKind : std::uint8_t {
   kReturn,    ///< rapid to the park position
 };
 
-constexpr int kMoveKindCount = 8;
+/// Where in its pass a move is.
+enum class PassPhase : std::uint8_t {
+  kNone,    ///< of no pass
+  kBefore,  ///< on the way to the stroke
+  kStroke,
+  kAfter,
+};
 
-/// e.g. "stroke".
-const char* toString(MoveKind kind) noexcept;
+struct MoveRow : EnumRow<MoveKind> {
+  bool at_feed = false;  ///< else rapid
+  PassPhase phase = PassPhase::kNone;
+};
+
+inline constexpr MoveRow kMoveKinds[]{
+    {{MoveKind::kLift, "lift"}, false, PassPhase::kNone},
+    {{MoveKind::kIndex, "index"}, false, PassPhase::kBefore},
+    {{MoveKind::kPosition, "position"}, false, PassPhase::kBefore},
+    {{MoveKind::kApproach, "approach"}, false, PassPhase::kBefore},
+    {{MoveKind::kInfeed, "infeed"}, true, PassPhase::kBefore},
+    {{MoveKind::kStroke, "stroke"}, true, PassPhase::kStroke},
+    {{MoveKind::kRetract, "retract"}, false, PassPhase::kAfter},
+    {{MoveKind::kReturn, "return"}, false, PassPhase::kAfter},
+};
+constexpr auto& rowsOf(MoveKind) noexcept { return kMoveKinds; }
+constexpr int kMoveKindCount = countOf<MoveKind>();
+constexpr bool isAtFeed(MoveKind kind) noexcept { return rowOf(kind).at_feed; }
+constexpr PassPhase phaseOf(MoveKind kind) noexcept { return rowOf(kind).phase; }
 
 /// Which step of an odd-even pair a setpoint is; kNone off the stroke.
 enum class StepKind : std::uint8_t { kNone, kOdd, kEven };
 
-/// e.g. "odd".
-const char* toString(StepKind kind) noexcept;
+inline constexpr EnumRow<StepKind> kStepKinds[]{
+    {StepKind::kNone, "none"},
+    {StepKind::kOdd, "odd"},
+    {StepKind::kEven, "even"},
+};
+constexpr auto& rowsOf(StepKind) noexcept { return kStepKinds; }
 
 /// What the axes are to do in one control cycle.
 struct Setpoint {

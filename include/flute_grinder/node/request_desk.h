@@ -11,8 +11,8 @@
 
 namespace flute_grinder {
 
-/// What an operator asks of the machine beside stops and jobs: `~enable`, `~home`, `~resume`, `~retract`, `~lift`,
-/// `~reset_fault`. It has a thread of its own, which waits for the control loop's answer, one request at a time.
+/// What an operator asks of the machine beside stops and jobs: a service for each trigger of kMachineEvents. It has a
+/// thread of its own, which waits for the control loop's answer, one request at a time.
 class RequestDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -20,7 +20,7 @@ class RequestDesk {
   RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
 
  private:
-  void serve(ros::NodeHandle& nh, const char* name, MachineEvent event);
+  void serve(ros::NodeHandle& nh, MachineEvent event);
   RequestReply carryOut(MachineEvent event);
 
   ControlLoop& loop_;

@@ -17,8 +17,6 @@
 #include <optional>
 #include <string>
 
-class QGridLayout;
-
 namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
@@ -44,8 +42,7 @@ class GrindPanel : public rviz::Panel {
   };
 
   void layOut();
-  void addButton(QGridLayout& layout, int row, int column, int columns, MachineEvent event, const QString& text,
-                 const QString& hint);
+  QPushButton* addButton(const EventRow& request, bool large);
   void setNode(const QString& node);
   void refresh();
   void connectLink();

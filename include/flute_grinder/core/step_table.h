@@ -1,0 +1,31 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/odd_even_interpolator.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A cutter's curve interpolated with a fixed step length, as the paper's Table 1.
+struct StepTable {
+  struct Row {
+    CurvePoint point;
+    double theory = 0;  ///< A of the curve at the point's X [rad]
+    double error() const { return theory - point.a; }
+  };
+  std::vector<Row> rows;          ///< the start at X = 0, then odd and even points in turn
+  double largest_odd_error = 0;   ///< [rad]
+  double largest_even_error = 0;  ///< [rad]
+  bool complete = false;          ///< false if the steps are too long for the curve beyond the last row
+
+  double largestError() const { return std::max(largest_odd_error, largest_even_error); }
+};
+
+/// Interpolates a job's curve from X = 0 until a pair ends at or past the flute's end.
+/// @param rule in place of the job's own.
+/// @param step_length in the metric of OddEvenInterpolator, positive [m].
+StepTable interpolateBySteps(const GrindJob& job, EvenStepRule rule, double step_length);
+
+}  // namespace flute_grinder

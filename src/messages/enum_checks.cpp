@@ -1,0 +1,80 @@
+// Holds the messages' constants to the tables of core's enums: the same values, by the same names in capitals, and no
+// others. There is nothing to run: it compiles, or does not.
+
+#include "flute_grinder/PathStatistics.h"
+#include "flute_grinder/core/enum_table.h"
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/setpoint.h"
+#include "message_texts.h"
+
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr std::string_view kType = "uint8 ";
+
+constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
+constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+
+/// Takes the next line off a text.
+constexpr std::string_view takeLine(std::string_view& text) {
+  const std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(line.size() < text.size() ? line.size() + 1 : line.size());
+  return line;
+}
+
+/// Whether a line is `uint8 NAME=value`.
+constexpr bool isConstant(std::string_view line, std::string_view name, std::size_t value) {
+  if (line.substr(0, kType.size()) != kType) return false;
+  line.remove_prefix(kType.size());
+  for (const char c : name) {
+    if (line.empty() || line.front() != upper(c)) return false;
+    line.remove_prefix(1);
+  }
+  if (line.size() < 2 || line[0] != '=' || !isDigit(line[1])) return false;
+  std::size_t number = 0;
+  for (std::size_t i = 1; i < line.size() && isDigit(line[i]); ++i) {
+    number = 10 * number + static_cast<std::size_t>(line[i] - '0');
+  }
+  return number == value;
+}
+
+constexpr int countConstants(std::string_view text) {
+  int count = 0;
+  while (!text.empty()) {
+    const std::string_view line = takeLine(text);
+    count += line.substr(0, line.find('#')).find('=') != std::string_view::npos ? 1 : 0;
+  }
+  return count;
+}
+
+template <typename Enum>
+constexpr bool hasAllOf(std::string_view text) {
+  for (const auto& row : rowsOf(Enum{})) {
+    bool found = false;
+    for (std::string_view rest = text; !rest.empty();) {
+      found |= isConstant(takeLine(rest), row.name, static_cast<std::size_t>(row.value));
+    }
+    if (!found) return false;
+  }
+  return true;
+}
+
+/// Whether a message's constants are the values of these enums.
+template <typename... Enums>
+constexpr bool has(std::string_view text) {
+  return (hasAllOf<Enums>(text) && ...) && countConstants(text) == (countOf<Enums>() + ...);
+}
+
+static_assert(has<EvenStepRule>(message_text::kInterpolation));
+static_assert(has<GrindOrder, StrokeDirection>(message_text::kProcess));
+static_assert(has<MachineState>(message_text::kGrinderState));
+static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
+static_assert(PathStatistics::_move_duration_type::static_size == kMoveKindCount, "PathStatistics.move_duration");
+
+}  // namespace
+
+}  // namespace flute_grinder

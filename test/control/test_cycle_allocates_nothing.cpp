@@ -1,4 +1,6 @@
 #include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -69,14 +71,8 @@ void free(void* memory) noexcept {
 
 }  // extern "C"
 
-namespace flute_grinder {
+namespace flute_grinder::test_support {
 namespace {
-
-using testing::driveModel;
-using testing::equipment;
-using testing::machineConfig;
-using ::testing::TestWithParam;
-using ::testing::Values;
 
 /// What a piece of code asked of the heap.
 struct HeapUse {
@@ -193,7 +189,7 @@ TEST(HeapUse, IsNothingWhereNothingIsAsked) {
 // ---------------------------------------------------------------------------------------------------------------------
 // The stream
 
-class StreamAllocatesNothing : public TestWithParam<EvenStepRule> {
+class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
  protected:
   StreamAllocatesNothing() : stream_(program()) {}
 
@@ -252,15 +248,15 @@ TEST_P(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
-                         Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
-                         [](const ::testing::TestParamInfo<EvenStepRule>& info) {
+                         testing::Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
+                         [](const testing::TestParamInfo<EvenStepRule>& info) {
                            return std::string(toString(info.param));
                          });
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The loop
 
-class CycleAllocatesNothing : public ::testing::Test {
+class CycleAllocatesNothing : public testing::Test {
  protected:
   CycleAllocatesNothing() {
     drive_.init(driveModel(), equipment());
@@ -288,16 +284,16 @@ class CycleAllocatesNothing : public ::testing::Test {
     std::uint32_t ticket = 0;
     used_ += heapUse([&] {
       if (stream) {
-        loop_->postStart(stream);
+        loop_->startJob(stream);
       } else if (isStop(event)) {
-        ticket = loop_->postAskedStop(event);
+        ticket = loop_->postStopWithReply(event);
       } else {
         loop_->post(event);
       }
     });
     for (int i = 0; i < 10; ++i) {
       cycle();
-      const auto answer = stream          ? loop_->startReply()
+      const auto answer = stream          ? loop_->startJobReply()
                           : isStop(event) ? loop_->stopReply(event, ticket)
                                           : loop_->reply();
       if (answer) return answer->accepted;
@@ -312,7 +308,7 @@ class CycleAllocatesNothing : public ::testing::Test {
     return record_.state == state;
   }
 
-  /// Enables, starts a job and runs to the midst of its stroke.
+  /// Enables, starts a job and runs to the middle of its stroke.
   bool grinds(SetpointStream& stream) {
     if (!accepted(MachineEvent::kEnable) || !accepted(MachineEvent::kStart, &stream)) return false;
     for (int i = 0; i < 100000 && !(record_.has_setpoint && record_.setpoint.move == MoveKind::kStroke); ++i) cycle();
@@ -544,4 +540,4 @@ TEST_F(CycleAllocatesNothing, WhileNobodyTakesTheRecords) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

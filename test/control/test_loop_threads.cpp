@@ -1,4 +1,6 @@
 #include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
 
 #include <atomic>
 #include <chrono>
@@ -8,15 +10,10 @@
 
 // Everything that other threads may do to the loop, all at once and at random moments, with drives that fail: no data
 // race, no request without an answer, no job that is not ended. Made for ThreadSanitizer.
-namespace flute_grinder {
+namespace flute_grinder::test_support {
 namespace {
 
-using testing::FakeDrive;
-using testing::machineConfig;
-
 using E = MachineEvent;
-using S = MachineState;
-
 constexpr std::uint64_t kCycles = 60000;
 
 /// Fails now and then, for a while.
@@ -42,10 +39,10 @@ class Unreliable {
   int left_ = 0, kind_ = 0;
 };
 
-class LoopThreads : public ::testing::Test {
+class LoopThreads : public testing::Test {
  protected:
   LoopThreads() {
-    testing::setUp(drive_, machineConfig());
+    setUp(drive_, machineConfig());
     drive_.on_read = Unreliable{};
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
   }
@@ -75,9 +72,9 @@ class LoopThreads : public ::testing::Test {
     Axes at;
     std::copy(before.command.begin(), before.command.end(), at.data());
     const auto stream = std::make_unique<SetpointStream>(GrindProgram(job_, machineConfig().machine, at));
-    ASSERT_TRUE(loop_->postStart(stream.get()));
+    ASSERT_TRUE(loop_->startJob(stream.get()));
     std::optional<RequestReply> reply;
-    ASSERT_TRUE(soon([&] { return (reply = loop_->startReply()).has_value(); }));
+    ASSERT_TRUE(soon([&] { return (reply = loop_->startJobReply()).has_value(); }));
     if (!reply->accepted) return;
     ++accepted_;
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
@@ -106,7 +103,7 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   });
   spawn(4, [this](std::mt19937& random) {
     if (random() % 50 == 0) {
-      EXPECT_TRUE(loop_->stop(StopRoad::kStops[random() % 3]).text.find("no answer") == std::string::npos);
+      EXPECT_TRUE(loop_->stop(StopRequests::kStops[random() % 3]).text.find("no answer") == std::string::npos);
     }
     std::this_thread::sleep_for(std::chrono::microseconds(20));
   });
@@ -154,4 +151,4 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

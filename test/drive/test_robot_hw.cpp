@@ -44,7 +44,7 @@ int clock_nanosleep(clockid_t id, int flags, const timespec* until, timespec* le
 
 }  // extern "C"
 
-namespace flute_grinder {
+namespace flute_grinder::test_support {
 namespace {
 
 template <typename Work>
@@ -62,7 +62,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 // ---------------------------------------------------------------------------------------------------------------------
 // Handles
 
-class Handles : public ::testing::Test {
+class Handles : public testing::Test {
  protected:
   double position_ = 1, velocity_ = 2, effort_ = 3, command_ = 4;
   JointStateHandle state_{"axis_x", &position_, &velocity_, &effort_};
@@ -217,7 +217,7 @@ TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
 constexpr std::int64_t kMillisecond = 1000000;
 constexpr std::int64_t kStart = 5000 * 1000 * kMillisecond + 999 * kMillisecond;  ///< just before a full second
 
-class Pacing : public ::testing::Test {
+class Pacing : public testing::Test {
  protected:
   Pacing() {
     clock_ns = kStart;
@@ -301,4 +301,4 @@ TEST(RobotHW, WaitsOnTheMonotonicClock) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -42,9 +42,9 @@ inline testing::AssertionResult sameSetpoints(const std::vector<Setpoint>& a, co
   return testing::AssertionSuccess();
 }
 
-/// Whether a log shows nothing but motion that the axes can make, and every setpoint of a job once and in order: no
-/// step beyond the velocity limit, no bend or jerk beyond its limit over pairs - within one the odd-even steps are not
-/// the path's - cycle numbers without a gap, and commands that stand where there is no setpoint.
+/// Whether a log shows only motion within the axes' limits, and every setpoint of a job once and in order: no step
+/// beyond the velocity limit; no acceleration or jerk beyond its limit, over pairs, since the odd and even steps within
+/// a pair differ from the path's; cycle numbers without a gap; and constant commands where there is no setpoint.
 inline testing::AssertionResult smooth(const std::vector<CycleRecord>& log,
                                        const AxisLimits& limits = machineConfig().machine.limits) {
   constexpr double kPeriod = 0.001;

@@ -98,7 +98,7 @@ inline Axes toAxes(const std::array<double, kAxisCount>& values) {
   return axes;
 }
 
-/// Every bit the same, so that -0 is not 0 and nan is itself.
+/// Whether every bit is the same: -0 differs from 0, and nan equals itself.
 inline bool sameBits(const Axes& a, const Axes& b) {
   return std::memcmp(a.data(), b.data(), sizeof(double) * kAxisCount) == 0;
 }

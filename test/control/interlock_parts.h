@@ -10,7 +10,7 @@
 // What a job needs to grind, and how a drive loses it.
 namespace flute_grinder::test_support {
 
-/// One that can be lost.
+/// A part of the machine that grinding needs and that can be lost.
 struct Part {
   const char* name;
   Interlock interlock;
@@ -30,8 +30,8 @@ inline const std::vector<Part>& parts() {
 }
 inline std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
 
-/// All is well: spindle and coolant are there when they are asked for, as the drive has them anyway.
-inline void allWell(FakeDrive& drive) { drive.status.homed = drive.status.probe_free = true; }
+/// Restores every part; spindle and coolant follow their commands by themselves.
+inline void restoreParts(FakeDrive& drive) { drive.status.homed = drive.status.probe_free = true; }
 
 inline std::string partName(const testing::TestParamInfo<Part>& info) { return info.param.name; }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-// The paper's job: its dimensions, its setpoints as planned, and checks of how it was ground.
+// The paper's job: its dimensions, its planned setpoints, and checks of the path.
 namespace flute_grinder::test_support {
 
 // D1 = 10 mm, C = 5 degrees, S = 30 degrees, rake 8 degrees, 1 mm of overtravel at either end of 30 mm, 0.5 mm deep,
@@ -27,7 +27,7 @@ inline SetpointStream paperFromPark() {
   return SetpointStream(GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
 }
 
-/// The job's setpoints when nobody interferes.
+/// The job's setpoints without interference.
 inline const std::vector<Setpoint>& planned() {
   static const std::vector<Setpoint> all = allSetpoints(paperFromPark());
   return all;
@@ -78,8 +78,8 @@ inline std::vector<Moment> moments(const std::vector<int>& per_mille) {
   return all;
 }
 
-/// Whether a setpoint lies on the path that the job is to take: on the straight way of its move, or on the helix, 1 um
-/// across it at the cutter's surface.
+/// Whether a setpoint lies on the job's path: on the straight line of its move, or on the helix, within 1 um across it
+/// at the cutter's surface.
 inline testing::AssertionResult onPath(const Setpoint& p) {
   const auto failure = [&] {
     return testing::AssertionFailure() << "cycle " << p.cycle << " in " << toString(p.move) << ": "
@@ -99,7 +99,7 @@ inline testing::AssertionResult onPath(const Setpoint& p) {
   const Axes way = span.to - span.from;
   const double done = ((p.position - span.from) * way).sum() / (way * way).sum();
   if (!(done >= -1e-9 && done <= 1 + 1e-9)) return failure() << " is beyond its move";
-  // After the stroke A comes from where the odd-even steps have led it.
+  // After the stroke A starts where the odd-even steps ended.
   const Axes off = (p.position - span.from - done * way).abs();
   const double a_tolerance = p.move == MoveKind::kRetract ? 1e-6 / (0.008 * std::cos(30 * kDegree)) : 1e-12;
   if (!((off.head<3>() <= 1e-12).all() && off[kA] <= a_tolerance)) return failure() << " is off its straight";

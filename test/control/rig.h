@@ -29,7 +29,7 @@ class Rig {
     loop = std::make_unique<ControlLoop>(drive, config);
   }
 
-  /// @param periods that have passed since the last cycle.
+  /// @param periods since the last cycle.
   const CycleRecord& cycle(double periods = 1) {
     const ros::Duration period(periods * config_.machine.period);
     time_ += period;
@@ -45,8 +45,8 @@ class Rig {
     return log.back();
   }
 
-  /// Asks for something by its own road, and runs cycles until it is answered.
-  /// @param job of kStart.
+  /// Posts a request and runs cycles until it is answered.
+  /// @param job for kStart.
   RequestReply ask(MachineEvent event, SetpointStream* job = nullptr) {
     if (event == MachineEvent::kStart) return askToStart(*job);
     if (isStop(event)) {
@@ -57,7 +57,7 @@ class Rig {
     return answerOf([&] { return loop->reply(); });
   }
 
-  /// Asks for a start and runs cycles until it is answered.
+  /// Requests to start a job and runs cycles until the request is answered.
   RequestReply askToStart(SetpointStream& job) {
     EXPECT_TRUE(loop->startJob(&job)) << "the start was not taken";
     return answerOf([&] { return loop->startJobReply(); });
@@ -165,8 +165,8 @@ class Rig {
 /// Names a test by its state.
 inline std::string stateName(const testing::TestParamInfo<S>& info) { return toString(info.param); }
 
-/// Requests and cycles until the machine is in a state; if that takes a job, the paper's is in the middle
-/// of its stroke.
+/// Brings the machine to a state by requests and cycles; if that takes a job, it is the paper's, in the middle of its
+/// stroke.
 inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
   rig.cycle();
   if (state == S::kDisabled) return;

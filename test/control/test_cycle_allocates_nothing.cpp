@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <memory>
 
-// Every way to the heap is led through a counter: the executable's malloc and its kin stand before the C library's, for
-// the shared libraries too, and the C++ library's operator new calls them.
+// Counts every access to the heap: the executable's malloc and related functions replace the C library's, for the
+// shared libraries too, and the C++ library's operator new calls them.
 
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -19,7 +19,7 @@ void __libc_free(void* memory);
 
 namespace {
 
-// Of plain types, since they are used before any constructor runs.
+// Plain types, since they are used before any constructor runs.
 thread_local bool counting = false;
 thread_local int allocations = 0;
 thread_local int releases = 0;
@@ -64,7 +64,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
 }
 
 void free(void* memory) noexcept {
-  // To release nothing is no work for the heap.
+  // Releasing a null pointer does not use the heap.
   if (counting && memory) ++releases;
   __libc_free(memory);
 }
@@ -74,7 +74,7 @@ void free(void* memory) noexcept {
 namespace flute_grinder::test_support {
 namespace {
 
-/// What a piece of code asked of the heap.
+/// Heap calls of a piece of code.
 struct HeapUse {
   int allocations = 0;
   int releases = 0;
@@ -103,9 +103,9 @@ void expectNone(const HeapUse& use) {
 GrindJob paperJob() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// That the counter sees what it is to see, or the tests below would pass whatever happens.
+// The counter must see every allocation, or the tests below would pass whatever happens.
 
-/// Keeps the compiler from leaving an allocation out.
+/// Keeps the compiler from optimising an allocation away.
 void* volatile kept = nullptr;
 
 TEST(HeapUse, SeesMallocAndFree) {
@@ -264,7 +264,7 @@ class CycleAllocatesNothing : public testing::Test {
     cycle();
   }
 
-  /// @param periods that have passed since the last cycle.
+  /// @param periods since the last cycle.
   void cycle(double periods = 1) {
     const ros::Duration period(0.001 * periods);
     time_ += period;
@@ -279,7 +279,7 @@ class CycleAllocatesNothing : public testing::Test {
     for (int i = 0; i < cycles; ++i) cycle();
   }
 
-  /// Asks by the event's own road. All that a thread calls but cannot wait for is counted too.
+  /// Posts a request. The calls of the requesting thread count too, except its waiting.
   bool accepted(MachineEvent event, SetpointStream* stream = nullptr) {
     std::uint32_t ticket = 0;
     used_ += heapUse([&] {

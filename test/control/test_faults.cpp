@@ -41,7 +41,7 @@ std::vector<FaultCase> faultCases() {
        FaultKind::kPowerLost,
        0,
        {"switched its power off"}},
-      // Fresh positions are allowed to stay away for 2.5 periods.
+      // Fresh positions may be missing for 2.5 periods.
       {"StaleFeedback",
        [](FakeDrive& d) { --d.status.feedback_count; },
        3,
@@ -169,7 +169,7 @@ TEST_P(FaultWhileRunning, NothingMovesAfterReset) {
 
 TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
   rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
-  // Where a human pushed the axes meanwhile.
+  // Someone has pushed the axes meanwhile.
   const Axes pushed(-0.04, 0.04, 0.001, 0.3);
   rig_.drive.place(pushed);
   ASSERT_TRUE(rig_.ask(E::kReset).accepted);
@@ -315,7 +315,7 @@ TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Faults of the simulated drive, as an operator can bring them about
+// Faults injected into the simulated drive
 
 struct InjectedCase {
   const char* name;

@@ -212,7 +212,7 @@ TEST_P(RetractAt, IsResumingUntilItIsOnThePathThenRunning) {
 
 INSTANTIATE_TEST_SUITE_P(, RetractAt, testing::ValuesIn(moments({0, 300, 990})), momentName);
 
-/// A number of cycles on the way off the work, or back.
+/// A number of cycles into the lift off the work, or into the way back.
 class OnTheDetour : public testing::TestWithParam<int> {
  protected:
   void SetUp() override { bringTo(rig_, S::kRetracting); }

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-// The drive looks for the machine's reference by itself, while the loop only watches.
+// Homing: the drive finds the machine's reference by itself while the loop only monitors it.
 namespace flute_grinder::test_support {
 namespace {
 
@@ -48,7 +48,7 @@ class Incremental : public testing::Test {
     ASSERT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
   }
 
-  /// Where the axes really are, while their encoders do not know.
+  /// True positions of the axes, which the encoders do not know yet.
   Axes reading(const Axes& at) const { return at - (home_ + kFromHome); }
 
   Rig<SimulatedDrive> rig_;
@@ -73,7 +73,7 @@ TEST_F(Incremental, HomingLeadsToTheHomePosition) {
   int cycles = 0;
   while (rig_.cycle().state == S::kHoming && cycles < 1000) ++cycles;
   EXPECT_EQ(rig_.last().state, S::kReady);
-  // 38 periods, and some until command and answer are through.
+  // 38 periods, and a few for command and answer.
   EXPECT_GE(cycles, 37);
   EXPECT_LE(cycles, 42);
   EXPECT_TRUE(rig_.last().drive.homed);
@@ -208,7 +208,7 @@ TEST(Homing, OfAxesThatStandAtHomeEndsToo) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Drives that do not do as they should
+// Drives that fail to home
 
 class HomingFake : public testing::Test {
  protected:

@@ -50,7 +50,7 @@ TEST_P(WaitsFor, AsksForSpindleAndCoolantAndStreamsNothing) {
 
 TEST_P(WaitsFor, StreamsTheWholeJobOnceItIsThere) {
   rig_.run(15);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   EXPECT_EQ(rig_.cycle().state, S::kRunning);
   EXPECT_FALSE(rig_.last().has_setpoint);
   rig_.cycle();
@@ -84,7 +84,7 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
   EXPECT_FALSE(rig_.drive.written_drive.coolant);
   EXPECT_TRUE(rig_.drive.written_drive.enable);
   rig_.stream.reset();
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady) << "what comes late starts nothing";
   EXPECT_EQ(rig_.jobsEnded(), 1);
@@ -95,7 +95,7 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
 
 TEST_P(WaitsFor, AfterGivingUpANewJobRuns) {
   rig_.runUntil(S::kReady);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
   rig_.log.front().job_ended = false;
   rig_.cycle();
@@ -165,7 +165,7 @@ TEST(BeforeAJob, SpindleThatIsTooSlowOnTheSimulatedDriveEndsIt) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// What the drive is told
+// Commands to the drive
 
 class ToldIn : public testing::TestWithParam<std::tuple<S, bool>> {};
 

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <random>
 
-// Cycles that come too late.
+// Late cycles.
 namespace flute_grinder::test_support {
 namespace {
 
-/// With positions that may stay away for long, so that nothing but the lateness itself is a fault.
+/// Allows stale positions for long, so that only the lateness itself is a fault.
 LoopConfig patient() {
   LoopConfig config = machineConfig();
   config.feedback_timeout = 1;
@@ -117,7 +117,7 @@ TEST(LateCycle, JustBelowTwoPeriodsIsNotLate) {
   EXPECT_TRUE(sameBits(rig.last().command, punctual.last().command));
 }
 
-// The loop's own check of limits goes on, told of every late cycle.
+// The loop's own limit check continues, and takes every late cycle into account.
 TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
@@ -129,7 +129,7 @@ TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
     Axes last = rig.last().command;
     for (int i = 0; i < 1000000 && !rig.last().job_ended; ++i) {
       rig.cycle(chance(random) < probability ? periods(random) : 1);
-      // Each setpoint a new one: nothing is ever made up for.
+      // Every setpoint is new: missed cycles are never made up for.
       const Axes moved = (rig.last().command - last).abs();
       ASSERT_TRUE((moved <= machineConfig().machine.limits.max_velocity * 0.001 * (1 + 1e-9)).all());
       last = rig.last().command;

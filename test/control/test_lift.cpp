@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-// The wheel in the work: how that is known, what is refused until it is off, and the lift without a job.
+// The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
 namespace flute_grinder::test_support {
 namespace {
 

@@ -114,7 +114,7 @@ TEST(ControlLoopEnable, NeverWritesACommandThatIsNotANumber) {
   rig.cycle();
   ASSERT_TRUE(rig.loop->post(E::kEnable));
   rig.cycle();
-  // The encoder fails in the very cycle in which power comes.
+  // The encoder fails in the same cycle in which the power comes.
   rig.drive.on_read = [](FakeDrive& d) { d.position[kY] = kNan; };
   for (int i = 0; i < 5; ++i) {
     rig.cycle();
@@ -161,7 +161,7 @@ std::string requestName(const testing::TestParamInfo<RequestCase>& info) {
   return std::string(toString(info.param.event)) + "_in_" + toString(info.param.state);
 }
 
-/// Every request in every state that does not list it.
+/// Every request in every state that does not allow it.
 std::vector<RequestCase> refusedRequests() {
   const std::vector<std::pair<S, const char*>> allowed{{S::kDisabled, "enable, disable, reset"},
                                                        {S::kReady, "enable, disable, home, start, lift"},
@@ -227,7 +227,7 @@ INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
                                          RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable}),
                          requestName);
 
-// What the loop alone may find: taken from outside, these would part the state from the stream and from the power.
+// Events of the loop itself: from outside they would make the state inconsistent with the stream and the power.
 class NotARequest : public testing::TestWithParam<E> {};
 
 TEST_P(NotARequest, IsRefusedFromOutside) {

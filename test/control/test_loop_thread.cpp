@@ -58,7 +58,7 @@ TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
     ASSERT_TRUE(popInTime(record));
     sum += record.period;
   }
-  // Seconds since 1970 as a double are good for a quarter of a microsecond.
+  // Seconds since 1970 have a resolution of a quarter of a microsecond as a double.
   EXPECT_NEAR(record.time - first, sum, 1e-6);
 }
 

@@ -8,15 +8,15 @@
 #include <thread>
 #include <vector>
 
-// Everything that other threads may do to the loop, all at once and at random moments, with drives that fail: no data
-// race, no request without an answer, no job that is not ended. Made for ThreadSanitizer.
+// Everything that other threads may do to the loop, concurrently and at random times, with drives that fail: no data
+// race, no request without an answer, no job that does not end. Made for ThreadSanitizer.
 namespace flute_grinder::test_support {
 namespace {
 
 using E = MachineEvent;
 constexpr std::uint64_t kCycles = 60000;
 
-/// Fails now and then, for a while.
+/// Fails at times, for a while.
 class Unreliable {
  public:
   void operator()(FakeDrive& drive) {
@@ -65,7 +65,7 @@ class LoopThreads : public testing::Test {
     return true;
   }
 
-  /// Starts a job, waits for its end, and lets its stream go.
+  /// Starts a job, waits for its end, and destroys its stream.
   void startOne() {
     const LoopStatus before = loop_->status();
     if (before.state != S::kReady) return std::this_thread::yield();
@@ -98,7 +98,7 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   spawn(3, [this](std::mt19937& random) {
     constexpr std::array<E, 6> events{E::kEnable, E::kReset, E::kLift, E::kResume, E::kRetract, E::kHome};
     const std::size_t i = random() % 40;
-    // Home rarely: this drive does not find its reference.
+    // Home rarely, because this drive does not find its reference.
     EXPECT_TRUE(loop_->request(i < 39 ? events[i % 5] : E::kHome).answered);
   });
   spawn(4, [this](std::mt19937& random) {
@@ -128,13 +128,13 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   });
   EXPECT_TRUE(soon([&] { return loop_->status().cycles > kCycles && loop_->status().jobs_ended > 2; }));
   busy_ = false;
-  // Whoever waits for a job's end.
+  // A thread that waits for the end of a job.
   EXPECT_TRUE(soon([&] {
     loop_->postStop(E::kDisable);
     return loop_->status().jobs_ended == loop_->status().jobs_started;
   }));
   for (std::thread& thread : threads_) thread.join();
-  // What the last ones asked for is over too.
+  // The last requests have taken effect too.
   EXPECT_TRUE(soon([&] {
     loop_->postStop(E::kDisable);
     const S state = loop_->status().state;

@@ -10,7 +10,7 @@
 namespace flute_grinder::test_support {
 namespace {
 
-/// A moment at which something is lost, and the state of the cycle that sees it.
+/// When a part is lost, and the state in the cycle that detects it.
 struct LossMoment {
   std::string name;
   std::function<void(Rig<FakeDrive>&)> bring;
@@ -109,7 +109,7 @@ TEST_P(Lost, TakesTheWheelOffTheWorkByItself) {
   EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
   EXPECT_EQ(rig_.last().interlock, part_.interlock);
   EXPECT_EQ(rig_.jobsEnded(), 0);
-  // Nowhere but along the path that it was on, and then radially.
+  // Only along its path, and then radially.
   bool lifting = false;
   for (std::size_t i = before_ + 1; i < rig_.log.size(); ++i) {
     lifting |= rig_.log[i].state == S::kRetracting;
@@ -138,7 +138,7 @@ TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
 TEST_P(Lost, NothingMovesByItselfWhenItIsBack) {
   awaitRetracted();
   const std::size_t lifted = rig_.log.size() - 1;
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.run(200);
   EXPECT_EQ(rig_.last().state, S::kRetracted);
   EXPECT_EQ(rig_.last().interlock, part_.interlock) << "told until the job is resumed";
@@ -147,7 +147,7 @@ TEST_P(Lost, NothingMovesByItselfWhenItIsBack) {
 
 TEST_P(Lost, ResumeCompletesTheJobOnceItIsBack) {
   awaitRetracted();
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.run(20);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
@@ -156,7 +156,7 @@ TEST_P(Lost, ResumeCompletesTheJobOnceItIsBack) {
 }
 
 TEST_P(Lost, ForASinglePeriodIsAsGoodAsForLong) {
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   awaitRetracted();
   EXPECT_EQ(rig_.last().interlock, part_.interlock);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
@@ -215,7 +215,7 @@ TEST_P(LostPart, BackBeforeItRestsLetsItResumeWithoutARetraction) {
   ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
   rig_.drive.on_read = GetParam().lose;
   rig_.run(3);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
   EXPECT_EQ(rig_.last().state, S::kRunning);
@@ -241,7 +241,7 @@ TEST_P(LostPart, AgainAfterResumeRetractsAgain) {
     rig_.drive.on_read = GetParam().lose;
     rig_.runUntil(S::kRetracted);
     EXPECT_EQ(rig_.last().interlock, GetParam().interlock);
-    rig_.drive.on_read = allWell;
+    rig_.drive.on_read = restoreParts;
     rig_.cycle();
     ASSERT_TRUE(rig_.ask(E::kResume).accepted);
     EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
@@ -255,7 +255,7 @@ TEST_P(LostPart, DoesNotLetANewJobInheritTheReason) {
   ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
   rig_.drive.on_read = GetParam().lose;
   rig_.runUntil(S::kRetracted);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
   if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
   rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
@@ -281,7 +281,7 @@ TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// On the simulated drive, as an operator can bring them about
+// On the simulated drive
 
 class LostOnTheSimulatedDrive : public testing::TestWithParam<std::tuple<SimulatedDrive::Fault, Interlock>> {
  protected:

@@ -190,7 +190,7 @@ TEST(Cancel, AgainDuringTheLiftChangesNothing) {
   EXPECT_TRUE(sameSetpoints(often.setpoints(), once.setpoints()));
 }
 
-/// Whatever moves can be stopped.
+/// Every motion can be stopped.
 TEST(Cancel, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
   for (const double lifted : {0.0, 1e-4, 1e-3}) {
     Rig<FakeDrive> rig;
@@ -354,7 +354,7 @@ TEST(Status, OfASpindleThatDidNotComeTellsIt) {
   EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kInterlock);
 }
 
-// Held in its last braking the stroke rests at its very end, and the retraction enters it again.
+// Held while it brakes at its end, the stroke rests exactly there, and the retraction enters it again.
 TEST(Status, AStrokeThatHasEndedStaysEndedWhenARetractionEntersItAgain) {
   Rig<FakeDrive> probe;
   probe.cycle();
@@ -413,7 +413,7 @@ TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
       rig.cycle();
       const LoopStatus status = rig.loop->status();
       ASSERT_EQ(status.jobs_started, static_cast<std::uint64_t>(job));
-      // At the positions of this cycle; none of this job at first, in which the wheel stands.
+      // As of this cycle's positions; at first no command of this job has reached the axes.
       const auto at = std::find_if(written.rbegin(), written.rend(),
                                    [&](const Setpoint& p) { return sameBits(p.position, rig.last().position); });
       if (at == written.rend() || written.size() < 60) {

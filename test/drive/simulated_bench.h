@@ -9,7 +9,7 @@ namespace flute_grinder::test_support {
 
 using Fault = SimulatedDrive::Fault;
 
-/// A drive used by its handles alone, as the control loop does.
+/// Uses a drive through its handles alone, as the control loop does.
 class Bench {
  public:
   explicit Bench(const SimulatedDrive::Model& model = driveModel(), double period = 0.001,

@@ -2,7 +2,7 @@
 
 #include <deque>
 
-// The control loop with a drive that buffers commands, as one does that plays them by a clock of its own.
+// The control loop with a drive that buffers commands and plays them by a clock of its own.
 namespace flute_grinder::test_support {
 namespace {
 

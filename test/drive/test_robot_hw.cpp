@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// A clock that stands still unless a test moves it, in place of the C library's; so nothing here waits, and nothing
+// Replaces the C library's clock by one that stands still unless a test moves it: nothing here waits, and nothing
 // depends on how fast the computer is.
 namespace {
 
@@ -286,8 +286,8 @@ TEST_F(Pacing, FollowsAPeriodThatChanges) {
   EXPECT_EQ(sleeps_ns.back(), kStart + 5 * kMillisecond);
 }
 
-// With the real clock: n waits take no less than n - 1 periods, whatever the computer is busy with, since at most one
-// of them returns at once.
+// With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them
+// returns at once.
 TEST(RobotHW, WaitsOnTheMonotonicClock) {
   const auto now_ns = [] {
     timespec now;

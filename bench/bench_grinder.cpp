@@ -137,8 +137,8 @@ void cycle(benchmark::State& state) {
     if (!moving) {
       state.PauseTiming();
       stream = std::make_unique<SetpointStream>(program);
-      loop->postStart(stream.get());
-      moving = accepted([&] { return loop->startReply(); });
+      loop->startJob(stream.get());
+      moving = accepted([&] { return loop->startJobReply(); });
       if (!moving) state.SkipWithError("the job could not be started");
       state.ResumeTiming();
     }

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Holds every room to the includes that the table in docs/architecture.md allows it, and core to the standard library, Eigen
-and yaml-cpp. No room may include one below it in the table. Prints what is wrong; exits with 1 if something is."""
+and yaml-cpp. No room may include one below it in the table, and the drive plugin of docs/drive-plugin.md none but drive. Prints what is
+wrong; exits with 1 if something is."""
 
 import pathlib
 import re
@@ -53,6 +54,10 @@ def main():
                 include = INCLUDE.match(line)
                 if include and not allowed(room, include.group(1), rooms):
                     wrong.append('%s:%d: %s may not include %s' % (path.relative_to(ROOT), number, room, include.group(1)))
+    plugin = re.findall(r'^#include <flute_grinder/.+>$', (ROOT / 'docs/drive-plugin.md').read_text(), re.MULTILINE)
+    wrong += ['docs/drive-plugin.md: a plugin may not need ' + line for line in plugin if '/drive/' not in line]
+    if not plugin:
+        wrong.append('docs/drive-plugin.md: no plugin found')
     print('\n'.join(wrong) or 'every include is allowed')
     return bool(wrong)
 

@@ -23,6 +23,10 @@ for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugin
   [ -f "share/flute_grinder/$file" ]
 done
 
+# What a drive plugin includes, and not the drives' own headers.
+[ -f include/flute_grinder/drive/axes_hw.h ]
+[ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
+
 port=${ROS_MASTER_URI##*:}
 roslaunch -p "$port" flute_grinder grinder.launch journal:="$staging/journal" >"$log" 2>&1 &
 launch=$!

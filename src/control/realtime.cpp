@@ -15,11 +15,11 @@ namespace {
 /// Above every ordinary thread, below the kernel's own.
 constexpr int kRealtimePriority = 80;
 
-/// More than the loop's calls take by far.
+/// Far more than the loop uses.
 constexpr std::size_t kStack = std::size_t{256} * 1024;
 constexpr std::size_t kPage = 4096;
 
-/// Memory that is locked as it is touched must be touched before it counts.
+/// Memory that is locked on its first access must be accessed before the first cycle.
 __attribute__((noinline)) void touchStack() {
   volatile char stack[kStack];
   for (std::size_t i = 0; i < kStack; i += kPage) stack[i] = 0;
@@ -31,14 +31,14 @@ __attribute__((noinline)) void touchStack() {
 bool lockMemory() {
   rlimit limit{};
   const bool unlimited = geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
-  // What is there is the loop's and is made resident. What comes later is the ROS side's: a claim of 2 GB, which a few
-  // bytes from outside can cause, must not take the memory before it is filled.
+  // Memory allocated so far is the loop's and becomes resident now. Later allocations are made by the ROS side: one of
+  // 2 GB, which a few bytes from a peer can cause, must not take memory before it is filled.
   return unlimited && mlockall(MCL_CURRENT) == 0 && mlockall(MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
 bool becomeRealtime() {
-  // A signal to the process, also one that tells of a crash elsewhere, is for another thread to take: this one has the
-  // axes to stop. A crash of its own ends the process as ever, since such a signal cannot be kept back.
+  // Other threads take the process' signals, even one for a crash elsewhere: this thread has to stop the axes. A crash
+  // of its own still ends the process, since that signal cannot be blocked.
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);

@@ -13,8 +13,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kResetCycles = 100;    ///< as long as the reset is shown, so that every servo cycle and drive sees it
-constexpr int kNapsPerCycle = 4;     ///< looks at the FIFO in a period
+constexpr int kResetCycles = 100;    ///< length of the reset pulse, so that every servo cycle and drive sees it
+constexpr int kNapsPerCycle = 4;     ///< checks of the FIFO per period
 constexpr int kLongestWait = 10;     ///< periods after which a cycle begins even if HAL plays nothing
 constexpr double kRateError = 1e-3;  ///< relative, between HAL's thread and the control loop
 
@@ -32,7 +32,7 @@ bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
   const ParameterReader p(parameters, robot_hw_nh.getNamespace());
   const double control_rate =
       ParameterReader(root_parameters, root_nh.getNamespace()).number("control_rate", 10, 20000);
-  // Half of what the loop remembers: HAL may stall, and a cycle begin without room, a few times.
+  // Half of the loop's history, since a stalled HAL may let a few cycles begin without room in the FIFO.
   constexpr double most = kMaxCommandsWaiting / 2.0;
   buffer_ =
       static_cast<std::uint32_t>(std::lround(p.number("buffer", 2 / control_rate, most / control_rate) * control_rate));
@@ -42,7 +42,6 @@ bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
   fifo_ = std::make_unique<HalFifo>(component_->id(), streamer, 2 * buffer_);
   makePins();
   checkServoThread(control_rate);
-  registerHandles();
   return true;
 }
 
@@ -89,20 +88,8 @@ void HalHardware::checkServoThread(double control_rate) const {
   throw ParameterError(text.str());
 }
 
-void HalHardware::registerHandles() {
-  for (std::size_t i = 0; i < position_.size(); ++i) {
-    const JointStateHandle state(kJointNames[i], &position_[i], &velocity_[i], &effort_[i]);
-    joint_states_.registerHandle(state);
-    joint_commands_.registerHandle(JointHandle(state, &command_[i]));
-  }
-  drive_.registerHandle(DriveHandle("drive", &status_, &drive_command_));
-  registerInterface(&joint_states_);
-  registerInterface(&joint_commands_);
-  registerInterface(&drive_);
-}
-
 void HalHardware::read(const ros::Time&, const ros::Duration&) {
-  // First, so that what has switched the power off is seen too.
+  // Read first: whatever has just switched the power off then shows in what is read next.
   status_.enabled = *pins_->enabled;
   status_.emergency_stop = *pins_->emergency_stop;
   status_.underruns = static_cast<std::uint32_t>(*pins_->underruns);
@@ -132,7 +119,7 @@ void HalHardware::readJoints() {
 void HalHardware::readHoming() {
   const bool homing = *pins_->homing;
   if (homing_ && !homing) {
-    // What waits in the FIFO has the old reference: the axes must not get it when commands count again.
+    // Queued commands have the old reference: they must have left the FIFO before commands take effect again.
     settling_ = true;
     settled_ = sent_ + 1;
   }
@@ -171,7 +158,7 @@ void HalHardware::writeSwitches() {
 
 void HalHardware::switchOff() {
   *pins_->enable = false;
-  if (*pins_->enabled) return;  // the streamer may still read
+  if (*pins_->enabled) return;  // the streamer may still be reading
   fifo_->drain();
   sent_ = *pins_->played;
   settling_ = false;
@@ -179,7 +166,7 @@ void HalHardware::switchOff() {
 
 void HalHardware::switchOn() {
   if (*pins_->enabled) return;  // HAL has not switched off yet
-  // The first commands are there before the power is: the streamer's pins still show where a job was broken off.
+  // The first commands are queued before the power comes: the streamer's pins still show where a job was aborted.
   fifo_->drain();
   sent_ = *pins_->played;
   for (std::uint32_t i = 0; i < buffer_; ++i) send();

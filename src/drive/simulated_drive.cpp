@@ -58,14 +58,7 @@ void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
     motor_[axis] = model[i].start_position;
     offset_[axis] = status_.homed ? 0 : motor_[axis];
     position_[i] = command_[i] = sent_[i] = motor_[axis] - offset_[axis];
-    const JointStateHandle state(kJointNames[i], &position_[i], &velocity_[i], &effort_[i]);
-    joint_states_.registerHandle(state);
-    joint_commands_.registerHandle(JointHandle(state, &command_[i]));
   }
-  drive_.registerHandle(DriveHandle("drive", &status_, &drive_command_));
-  registerInterface(&joint_states_);
-  registerInterface(&joint_commands_);
-  registerInterface(&drive_);
 }
 
 void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
@@ -112,7 +105,7 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
   home_was_commanded_ = drive_command_.home;
   if (home_is_new) status_.homed = false;
   status_.homing = status_.enabled && drive_command_.home && (home_is_new || status_.homing);
-  // However short the way, homing shows in one reading at least.
+  // Homing shows in at least one reading, however short the distance.
   if (!status_.enabled || home_is_new) return;
   const double stuck = motor_[failing_axis];
   if (status_.homing) {
@@ -127,13 +120,13 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
 }
 
 void SimulatedDrive::home(double dt) {
-  // One after the other, and first the one that takes the wheel away from the work.
+  // One after the other, beginning with Y, which moves the wheel away from the work.
   for (const int i : {kY, kX, kZ, kA}) {
     const AxisModel& axis = model_[static_cast<std::size_t>(i)];
-    const double way = axis.home_position - motor_[i];
-    if (way == 0) continue;
+    const double distance = axis.home_position - motor_[i];
+    if (distance == 0) continue;
     const double step = axis.homing_velocity * dt;
-    motor_[i] = std::abs(way) <= step ? axis.home_position : motor_[i] + std::copysign(step, way);
+    motor_[i] = std::abs(distance) <= step ? axis.home_position : motor_[i] + std::copysign(step, distance);
     return;
   }
   offset_.setZero();

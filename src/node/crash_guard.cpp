@@ -14,16 +14,11 @@ constexpr timespec kBetweenLooks{0, 10'000'000};  ///< [s, ns]
 
 std::atomic<ControlLoop*> guarded{nullptr};
 
-bool atRest(const ControlLoop& loop) {
-  const MachineState state = loop.status().state;
-  return state == MachineState::kDisabled || state == MachineState::kFault;
-}
-
 /// Uses nothing but atomics and system calls: whatever the thread was in the midst of is in ruins.
 void onCrash(int signal) {
   if (ControlLoop* loop = guarded) {
     loop->postStop(MachineEvent::kDisable);
-    for (int i = 0; i < kLongestStop && !atRest(*loop); ++i) nanosleep(&kBetweenLooks, nullptr);
+    for (int i = 0; i < kLongestStop && isPowered(loop->status().state); ++i) nanosleep(&kBetweenLooks, nullptr);
   }
   std::signal(signal, SIG_DFL);
   std::raise(signal);

@@ -36,8 +36,6 @@ void keepLargest(double& largest, double value) {
   if (!(value <= largest) && !std::isnan(largest)) largest = value;
 }
 
-bool powered(MachineState state) { return state != MachineState::kDisabled && state != MachineState::kFault; }
-
 std::string joint(int axis) { return kJointNames[static_cast<std::size_t>(axis)]; }
 
 template <typename... Parts>
@@ -88,12 +86,12 @@ void Diagnostics::watch(const CycleRecord& record) {
   if (!(record.period <= kLate * config_.machine.period)) ++loop_.late;
 
   watchDrive(record);
-  const bool was_powered = powered(last_.state);
-  if (!was_powered && powered(record.state)) fullest_ = 0;
+  const bool was_powered = isPowered(last_.state);
+  if (!was_powered && isPowered(record.state)) fullest_ = 0;
   // The cycle that ends in a fault still shows what was amiss.
-  if (was_powered || powered(record.state)) {
+  if (was_powered || isPowered(record.state)) {
     for (int i = 0; i < kAxisCount; ++i) {
-      keepLargest(following_error_[i], std::abs(record.target[i] - record.position[i]));
+      keepLargest(following_error_[i], std::abs(record.command_in_effect[i] - record.position[i]));
     }
     watchBuffer(record.drive);
   }
@@ -106,8 +104,7 @@ void Diagnostics::watch(const CycleRecord& record) {
 
 void Diagnostics::watchDrive(const CycleRecord& record) {
   const DriveStatus& drive = record.drive;
-  feedback_age_ = drive.feedback_count == last_.drive.feedback_count ? feedback_age_ + record.period : 0;
-  keepLargest(drive_.feedback_age, feedback_age_);
+  keepLargest(drive_.feedback_age, record.feedback_age);
   drive_.emergency_stop |= drive.emergency_stop;
   drive_.fault |= drive.fault;
   if (record.interlock != Interlock::kNone) drive_.interlock = record.interlock;

@@ -179,7 +179,7 @@ void GoalDesk::startWhenEntered() {
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    posted = loop_.postStart(stream);
+    posted = loop_.startJob(stream);
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   goal_->phase = Phase::kStarting;
@@ -188,7 +188,7 @@ void GoalDesk::startWhenEntered() {
 }
 
 void GoalDesk::awaitStart() {
-  const auto reply = loop_.startReply();
+  const auto reply = loop_.startJobReply();
   if (!reply) return;
   if (!reply->accepted) return refuseStart(reply->text);
   goal_->phase = Phase::kRunning;

@@ -86,10 +86,7 @@ void GrinderNode::loadDrive(const ParameterReader& parameters) {
 void GrinderNode::shutDown() {
   gate_.shut();
   loop_->postStop(MachineEvent::kDisable);
-  await(kLongestStop, [this] {
-    const MachineState state = loop_->status().state;
-    return state == MachineState::kDisabled || state == MachineState::kFault;
-  });
+  await(kLongestStop, [this] { return !isPowered(loop_->status().state); });
   await(kLongestGoodbye, [this] { return !goals_->busy(); });
   planner_->end();
   loop_->stopThread();

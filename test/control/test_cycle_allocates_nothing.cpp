@@ -1,11 +1,13 @@
 #include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
 
 #include <cerrno>
 #include <cstdlib>
 #include <memory>
 
-// Every way to the heap is led through a counter: the executable's malloc and its kin stand before the C library's, for
-// the shared libraries too, and the C++ library's operator new calls them.
+// Counts every access to the heap: the executable's malloc and related functions replace the C library's, for the
+// shared libraries too, and the C++ library's operator new calls them.
 
 extern "C" {
 void* __libc_malloc(std::size_t size);
@@ -17,7 +19,7 @@ void __libc_free(void* memory);
 
 namespace {
 
-// Of plain types, since they are used before any constructor runs.
+// Plain types, since they are used before any constructor runs.
 thread_local bool counting = false;
 thread_local int allocations = 0;
 thread_local int releases = 0;
@@ -62,23 +64,17 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexc
 }
 
 void free(void* memory) noexcept {
-  // To release nothing is no work for the heap.
+  // Releasing a null pointer does not use the heap.
   if (counting && memory) ++releases;
   __libc_free(memory);
 }
 
 }  // extern "C"
 
-namespace flute_grinder {
+namespace flute_grinder::test_support {
 namespace {
 
-using testing::driveModel;
-using testing::equipment;
-using testing::machineConfig;
-using ::testing::TestWithParam;
-using ::testing::Values;
-
-/// What a piece of code asked of the heap.
+/// Heap calls of a piece of code.
 struct HeapUse {
   int allocations = 0;
   int releases = 0;
@@ -107,9 +103,9 @@ void expectNone(const HeapUse& use) {
 GrindJob paperJob() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// That the counter sees what it is to see, or the tests below would pass whatever happens.
+// The counter must see every allocation, or the tests below would pass whatever happens.
 
-/// Keeps the compiler from leaving an allocation out.
+/// Keeps the compiler from optimising an allocation away.
 void* volatile kept = nullptr;
 
 TEST(HeapUse, SeesMallocAndFree) {
@@ -193,7 +189,7 @@ TEST(HeapUse, IsNothingWhereNothingIsAsked) {
 // ---------------------------------------------------------------------------------------------------------------------
 // The stream
 
-class StreamAllocatesNothing : public TestWithParam<EvenStepRule> {
+class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
  protected:
   StreamAllocatesNothing() : stream_(program()) {}
 
@@ -252,15 +248,15 @@ TEST_P(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
-                         Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
-                         [](const ::testing::TestParamInfo<EvenStepRule>& info) {
+                         testing::Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
+                         [](const testing::TestParamInfo<EvenStepRule>& info) {
                            return std::string(toString(info.param));
                          });
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The loop
 
-class CycleAllocatesNothing : public ::testing::Test {
+class CycleAllocatesNothing : public testing::Test {
  protected:
   CycleAllocatesNothing() {
     drive_.init(driveModel(), equipment());
@@ -268,7 +264,7 @@ class CycleAllocatesNothing : public ::testing::Test {
     cycle();
   }
 
-  /// @param periods that have passed since the last cycle.
+  /// @param periods since the last cycle.
   void cycle(double periods = 1) {
     const ros::Duration period(0.001 * periods);
     time_ += period;
@@ -283,21 +279,21 @@ class CycleAllocatesNothing : public ::testing::Test {
     for (int i = 0; i < cycles; ++i) cycle();
   }
 
-  /// Asks by the event's own road. All that a thread calls but cannot wait for is counted too.
+  /// Posts a request. The calls of the requesting thread count too, except its waiting.
   bool accepted(MachineEvent event, SetpointStream* stream = nullptr) {
     std::uint32_t ticket = 0;
     used_ += heapUse([&] {
       if (stream) {
-        loop_->postStart(stream);
+        loop_->startJob(stream);
       } else if (isStop(event)) {
-        ticket = loop_->postAskedStop(event);
+        ticket = loop_->postStopWithReply(event);
       } else {
         loop_->post(event);
       }
     });
     for (int i = 0; i < 10; ++i) {
       cycle();
-      const auto answer = stream          ? loop_->startReply()
+      const auto answer = stream          ? loop_->startJobReply()
                           : isStop(event) ? loop_->stopReply(event, ticket)
                                           : loop_->reply();
       if (answer) return answer->accepted;
@@ -312,7 +308,7 @@ class CycleAllocatesNothing : public ::testing::Test {
     return record_.state == state;
   }
 
-  /// Enables, starts a job and runs to the midst of its stroke.
+  /// Enables, starts a job and runs to the middle of its stroke.
   bool grinds(SetpointStream& stream) {
     if (!accepted(MachineEvent::kEnable) || !accepted(MachineEvent::kStart, &stream)) return false;
     for (int i = 0; i < 100000 && !(record_.has_setpoint && record_.setpoint.move == MoveKind::kStroke); ++i) cycle();
@@ -544,4 +540,4 @@ TEST_F(CycleAllocatesNothing, WhileNobodyTakesTheRecords) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

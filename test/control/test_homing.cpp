@@ -1,26 +1,14 @@
 #include "flute_grinder/control/control_loop.h"
 
-#include "control/fixtures.h"
+#include "control/checks.h"
+#include "control/rig.h"
 
 #include <algorithm>
 #include <cmath>
 
-// The drive looks for the machine's reference by itself, while the loop only watches.
-namespace flute_grinder {
+// Homing: the drive finds the machine's reference by itself while the loop only monitors it.
+namespace flute_grinder::test_support {
 namespace {
-
-using testing::atRestFrom;
-using testing::bringTo;
-using testing::driveModel;
-using testing::FakeDrive;
-using testing::machineConfig;
-using testing::Rig;
-using testing::sameBits;
-using testing::smooth;
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using testing::toAxes;
-using ::testing::Values;
 
 using S = MachineState;
 using E = MachineEvent;
@@ -40,7 +28,7 @@ SimulatedDrive::Model awayFromHome() {
   return model;
 }
 
-class Incremental : public ::testing::Test {
+class Incremental : public testing::Test {
  protected:
   Incremental()
       : rig_(machineConfig(),
@@ -60,7 +48,7 @@ class Incremental : public ::testing::Test {
     ASSERT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
   }
 
-  /// Where the axes really are, while their encoders do not know.
+  /// True positions of the axes, which the encoders do not know yet.
   Axes reading(const Axes& at) const { return at - (home_ + kFromHome); }
 
   Rig<SimulatedDrive> rig_;
@@ -85,7 +73,7 @@ TEST_F(Incremental, HomingLeadsToTheHomePosition) {
   int cycles = 0;
   while (rig_.cycle().state == S::kHoming && cycles < 1000) ++cycles;
   EXPECT_EQ(rig_.last().state, S::kReady);
-  // 38 periods, and some until command and answer are through.
+  // 38 periods, and a few for command and answer.
   EXPECT_GE(cycles, 37);
   EXPECT_LE(cycles, 42);
   EXPECT_TRUE(rig_.last().drive.homed);
@@ -171,7 +159,7 @@ struct InjectedCase {
 };
 std::ostream& operator<<(std::ostream& out, const InjectedCase& c) { return out << c.name; }
 
-class IncrementalFault : public Incremental, public ::testing::WithParamInterface<InjectedCase> {};
+class IncrementalFault : public Incremental, public testing::WithParamInterface<InjectedCase> {};
 
 TEST_P(IncrementalFault, EndsHomingForGood) {
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
@@ -196,13 +184,14 @@ TEST_P(IncrementalFault, EndsHomingForGood) {
   EXPECT_TRUE((rig_.last().position == home_).all());
 }
 
-INSTANTIATE_TEST_SUITE_P(, IncrementalFault,
-                         Values(InjectedCase{"EmergencyStop", Fault::kEmergencyStop, FaultKind::kEmergencyStop},
-                                InjectedCase{"DriveFault", Fault::kDriveFault, FaultKind::kDriveFault},
-                                InjectedCase{"StaleFeedback", Fault::kStaleFeedback, FaultKind::kStaleFeedback},
-                                InjectedCase{"NanFeedback", Fault::kNanFeedback, FaultKind::kInvalidFeedback},
-                                InjectedCase{"StuckAxis", Fault::kStuckAxis, FaultKind::kHoming}),
-                         [](const TestParamInfo<InjectedCase>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    , IncrementalFault,
+    testing::Values(InjectedCase{"EmergencyStop", Fault::kEmergencyStop, FaultKind::kEmergencyStop},
+                    InjectedCase{"DriveFault", Fault::kDriveFault, FaultKind::kDriveFault},
+                    InjectedCase{"StaleFeedback", Fault::kStaleFeedback, FaultKind::kStaleFeedback},
+                    InjectedCase{"NanFeedback", Fault::kNanFeedback, FaultKind::kInvalidFeedback},
+                    InjectedCase{"StuckAxis", Fault::kStuckAxis, FaultKind::kHoming}),
+    [](const testing::TestParamInfo<InjectedCase>& info) { return std::string(info.param.name); });
 
 // As config/grinder.yaml has it: the axes are switched on where they are to go.
 TEST(Homing, OfAxesThatStandAtHomeEndsToo) {
@@ -219,19 +208,20 @@ TEST(Homing, OfAxesThatStandAtHomeEndsToo) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Drives that do not do as they should
+// Drives that fail to home
 
-class HomingFake : public ::testing::Test {
+class HomingFake : public testing::Test {
  protected:
   void SetUp() override {
     rig_.cycle();
     rig_.enable();
   }
 
-  /// Makes the drive say something while it is told to home, each time one reading further.
-  void homingSays(const std::function<void(FakeDrive&, int)>& what) {
+  /// Changes what the drive reports while it is commanded to home.
+  /// @param change gets the number of the reading, from 1.
+  void changeHoming(const std::function<void(FakeDrive&, int)>& change) {
     rig_.drive.on_read = [=, reading = 0](FakeDrive& d) mutable {
-      if (d.written_drive.home) what(d, ++reading);
+      if (d.written_drive.home) change(d, ++reading);
     };
   }
 
@@ -247,7 +237,7 @@ class HomingFake : public ::testing::Test {
 };
 
 TEST_F(HomingFake, IsToldToHomeAsLongAsItDoes) {
-  homingSays([](FakeDrive& d, int reading) { d.status.homing = reading <= 7; });
+  changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 7; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   for (int i = 0; i < 7; ++i) {
     EXPECT_TRUE(rig_.drive.written_drive.home);
@@ -261,7 +251,7 @@ TEST_F(HomingFake, IsToldToHomeAsLongAsItDoes) {
 }
 
 TEST_F(HomingFake, CommandsFollowThePositionsHoweverTheyJump) {
-  homingSays([](FakeDrive& d, int reading) {
+  changeHoming([](FakeDrive& d, int reading) {
     d.status.homing = reading <= 10;
     d.place({0.1 * reading, -0.01 * reading, 0.02 * reading, -3.0 * reading});
   });
@@ -286,8 +276,8 @@ TEST_F(HomingFake, ThatNeverEndsFaultsAfterTheTimeout) {
 }
 
 TEST_F(HomingFake, ThatNeverBeginsFaultsAfterTheTimeout) {
-  // It says that it is homed, as it was before.
-  homingSays([](FakeDrive& d, int) { d.status.homing = false; });
+  // It reports that it is homed, as before.
+  changeHoming([](FakeDrive& d, int) { d.status.homing = false; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   for (int i = 2; i <= 50; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming) << "in cycle " << i;
   rig_.cycle();
@@ -295,7 +285,7 @@ TEST_F(HomingFake, ThatNeverBeginsFaultsAfterTheTimeout) {
 }
 
 TEST_F(HomingFake, ThatEndsWithoutTheReferenceFaultsAtOnce) {
-  homingSays([](FakeDrive& d, int reading) {
+  changeHoming([](FakeDrive& d, int reading) {
     d.status.homing = reading <= 6;
     d.status.homed = false;
   });
@@ -307,7 +297,7 @@ TEST_F(HomingFake, ThatEndsWithoutTheReferenceFaultsAtOnce) {
 
 TEST_F(HomingFake, TheTimeCountsAnewForEveryRequest) {
   for (int i = 0; i < 3; ++i) {
-    homingSays([](FakeDrive& d, int reading) { d.status.homing = reading <= 40; });
+    changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 40; });
     ASSERT_TRUE(rig_.ask(E::kHome).accepted);
     for (int cycle = 0; cycle < 100 && rig_.last().state == S::kHoming; ++cycle) rig_.cycle();
     ASSERT_EQ(rig_.last().state, S::kReady) << "round " << i;
@@ -315,11 +305,11 @@ TEST_F(HomingFake, TheTimeCountsAnewForEveryRequest) {
 }
 
 TEST_F(HomingFake, ThatWasSeenInAnEarlierRequestDoesNotCount) {
-  homingSays([](FakeDrive& d, int reading) { d.status.homing = reading <= 4; });
+  changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 4; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   rig_.runUntil(S::kReady);
   // Now it takes three periods to begin.
-  homingSays([](FakeDrive& d, int reading) { d.status.homing = reading > 3 && reading <= 8; });
+  changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading > 3 && reading <= 8; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   for (int i = 0; i < 8; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming);
   EXPECT_EQ(rig_.cycle().state, S::kReady);
@@ -336,7 +326,7 @@ TEST_F(HomingFake, LosingPowerIsAFault) {
 }
 
 TEST_F(HomingFake, AFollowingErrorCountsAgainAfterwards) {
-  homingSays([](FakeDrive& d, int reading) { d.status.homing = reading <= 4; });
+  changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 4; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   rig_.runUntil(S::kReady);
   rig_.drive.on_read = [](FakeDrive& d) { d.position[kX] += 0.0011; };
@@ -345,4 +335,4 @@ TEST_F(HomingFake, AFollowingErrorCountsAgainAfterwards) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -1,77 +1,17 @@
-#include "flute_grinder/control/control_loop.h"
+#include "control/checks.h"
+#include "control/interlock_parts.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
 
-#include "control/fixtures.h"
-
-#include <algorithm>
-#include <cmath>
+#include <chrono>
+#include <thread>
 #include <tuple>
 
-// Reference, spindle, coolant and probe: what a job waits for, what it asks for, and what becomes of it when one is
-// lost.
-namespace flute_grinder {
+// What a job waits for before it begins, and what the loop commands to spindle and coolant.
+namespace flute_grinder::test_support {
 namespace {
 
-using testing::allSetpoints;
-using testing::atRestFrom;
-using testing::bringTo;
-using ::testing::Combine;
-using testing::driveModel;
-using testing::FakeDrive;
-using testing::machineConfig;
-using testing::Rig;
-using testing::sameBits;
-using testing::smooth;
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using ::testing::Values;
-using ::testing::ValuesIn;
-
-using S = MachineState;
-using E = MachineEvent;
-
-/// Of the paper's cutter: 5 mm over its radius where the stroke ends, 31 mm from the small end, over that at the end.
-const double kClearanceHeight = 0.031 * std::tan(5 * std::acos(-1.0) / 180) + 0.005;
-
-/// One that can be lost.
-struct Part {
-  const char* name;
-  Interlock interlock;
-  std::function<void(FakeDrive&)> lose;
-  const char* words;
-};
-
-const std::vector<Part>& parts() {
-  static const std::vector<Part> all{
-      {"Reference", Interlock::kNotHomed, [](FakeDrive& d) { d.status.homed = false; }, "the axes are not homed"},
-      {"Spindle", Interlock::kSpindle, [](FakeDrive& d) { d.status.spindle_at_speed = false; },
-       "the spindle is not at speed"},
-      {"Coolant", Interlock::kCoolant, [](FakeDrive& d) { d.status.coolant_on = false; }, "no coolant flows"},
-      {"Probe", Interlock::kProbe, [](FakeDrive& d) { d.status.probe_free = false; },
-       "the measuring probe is in the way"}};
-  return all;
-}
-std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
-
-/// All is well: spindle and coolant are there when they are asked for, as the drive has them anyway.
-void allWell(FakeDrive& drive) { drive.status.homed = drive.status.probe_free = true; }
-
-std::string partName(const TestParamInfo<Part>& info) { return info.param.name; }
-
-void expectCompleted(const Rig<FakeDrive>& rig) {
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_EQ(rig.jobsEnded(), 1);
-  EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone) << rig.last().fault.text();
-  EXPECT_EQ(rig.last().interlock, Interlock::kNone);
-  EXPECT_TRUE((rig.last().command == machineConfig().machine.park).all()) << rig.last().command.transpose();
-  EXPECT_TRUE(smooth(rig.log));
-  const auto setpoints = rig.setpoints();
-  const bool ground = std::any_of(setpoints.begin(), setpoints.end(), [](const Setpoint& p) {
-    return p.move == MoveKind::kStroke && p.position[kX] == 0.031;
-  });
-  EXPECT_TRUE(ground) << "the stroke's end was not ground";
-}
-
-TEST(InterlockText, SaysWhatIsAmiss) {
+TEST(InterlockText, SaysWhatIsWrong) {
   EXPECT_STREQ(toString(Interlock::kNone), "");
   for (const Part& part : parts()) EXPECT_STREQ(toString(part.interlock), part.words);
   EXPECT_STREQ(toString(static_cast<Interlock>(99)), "unknown");
@@ -80,15 +20,15 @@ TEST(InterlockText, SaysWhatIsAmiss) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Before a job
 
-class WaitsFor : public TestWithParam<Part> {
+class WaitsFor : public testing::TestWithParam<Part> {
  protected:
   void SetUp() override {
     rig_.cycle();
     rig_.enable();
     rig_.stream.emplace(rig_.paperStream());
-    ASSERT_TRUE(rig_.loop->postStart(&*rig_.stream));
+    ASSERT_TRUE(rig_.loop->startJob(&*rig_.stream));
     rig_.cycle();
-    const auto answer = rig_.loop->startReply();
+    const auto answer = rig_.loop->startJobReply();
     ASSERT_TRUE(answer && answer->accepted);
     ASSERT_EQ(rig_.last().state, S::kStarting);
     rig_.drive.on_read = GetParam().lose;
@@ -110,7 +50,7 @@ TEST_P(WaitsFor, AsksForSpindleAndCoolantAndStreamsNothing) {
 
 TEST_P(WaitsFor, StreamsTheWholeJobOnceItIsThere) {
   rig_.run(15);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   EXPECT_EQ(rig_.cycle().state, S::kRunning);
   EXPECT_FALSE(rig_.last().has_setpoint);
   rig_.cycle();
@@ -118,10 +58,7 @@ TEST_P(WaitsFor, StreamsTheWholeJobOnceItIsThere) {
   EXPECT_EQ(rig_.last().setpoint.cycle, 0u);
   rig_.runToEnd();
   expectCompleted(rig_);
-  const LoopConfig config = machineConfig();
-  const SetpointStream stream(
-      GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
-  EXPECT_TRUE(testing::sameSetpoints(rig_.setpoints(), allSetpoints(stream)));
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
 
 TEST_P(WaitsFor, GivesUpAfterTheTimeout) {
@@ -147,7 +84,7 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
   EXPECT_FALSE(rig_.drive.written_drive.coolant);
   EXPECT_TRUE(rig_.drive.written_drive.enable);
   rig_.stream.reset();
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady) << "what comes late starts nothing";
   EXPECT_EQ(rig_.jobsEnded(), 1);
@@ -158,7 +95,7 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
 
 TEST_P(WaitsFor, AfterGivingUpANewJobRuns) {
   rig_.runUntil(S::kReady);
-  rig_.drive.on_read = allWell;
+  rig_.drive.on_read = restoreParts;
   rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
   rig_.log.front().job_ended = false;
   rig_.cycle();
@@ -178,7 +115,7 @@ TEST_P(WaitsFor, CancelEndsTheWait) {
   EXPECT_FALSE(rig_.drive.written_drive.spindle);
 }
 
-INSTANTIATE_TEST_SUITE_P(, WaitsFor, ValuesIn(parts()), partName);
+INSTANTIATE_TEST_SUITE_P(, WaitsFor, testing::ValuesIn(parts()), partName);
 
 TEST(BeforeAJob, TheFirstThatIsMissingIsTold) {
   for (std::size_t first = 0; first < parts().size(); ++first) {
@@ -228,9 +165,9 @@ TEST(BeforeAJob, SpindleThatIsTooSlowOnTheSimulatedDriveEndsIt) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// What the drive is told
+// Commands to the drive
 
-class ToldIn : public TestWithParam<std::tuple<S, bool>> {};
+class ToldIn : public testing::TestWithParam<std::tuple<S, bool>> {};
 
 TEST_P(ToldIn, TurnsTheWheelWhileAJobHasTheMachine) {
   const auto [state, on] = GetParam();
@@ -242,13 +179,16 @@ TEST_P(ToldIn, TurnsTheWheelWhileAJobHasTheMachine) {
   EXPECT_EQ(rig.drive.written_drive.enable, state != S::kDisabled && state != S::kFault);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    , ToldIn,
-    Values(std::tuple(S::kDisabled, false), std::tuple(S::kReady, false), std::tuple(S::kHoming, false),
-           std::tuple(S::kStarting, true), std::tuple(S::kRunning, true), std::tuple(S::kHolding, true),
-           std::tuple(S::kHeld, true), std::tuple(S::kRetracting, true), std::tuple(S::kRetracted, true),
-           std::tuple(S::kResuming, true), std::tuple(S::kCanceling, true), std::tuple(S::kFault, false)),
-    [](const TestParamInfo<std::tuple<S, bool>>& info) { return std::string(toString(std::get<0>(info.param))); });
+INSTANTIATE_TEST_SUITE_P(, ToldIn,
+                         testing::Values(std::tuple(S::kDisabled, false), std::tuple(S::kReady, false),
+                                         std::tuple(S::kHoming, false), std::tuple(S::kStarting, true),
+                                         std::tuple(S::kRunning, true), std::tuple(S::kHolding, true),
+                                         std::tuple(S::kHeld, true), std::tuple(S::kRetracting, true),
+                                         std::tuple(S::kRetracted, true), std::tuple(S::kResuming, true),
+                                         std::tuple(S::kCanceling, true), std::tuple(S::kFault, false)),
+                         [](const testing::TestParamInfo<std::tuple<S, bool>>& info) {
+                           return std::string(toString(std::get<0>(info.param)));
+                         });
 
 TEST(Told, SpindleAndCoolantThroughAWholeJob) {
   Rig<FakeDrive> rig;
@@ -256,7 +196,7 @@ TEST(Told, SpindleAndCoolantThroughAWholeJob) {
   rig.enable();
   EXPECT_FALSE(rig.drive.written_drive.spindle);
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.loop->postStart(&*rig.stream));
+  ASSERT_TRUE(rig.loop->startJob(&*rig.stream));
   for (int i = 0; i < 100000; ++i) {
     rig.cycle();
     ASSERT_EQ(rig.drive.written_drive.spindle, !rig.last().job_ended) << "record " << i;
@@ -295,12 +235,12 @@ TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
   LoopConfig config = machineConfig();
   config.following_error.setConstant(1);
   config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
-  testing::setUp(drive, config);
-  SetpointStream stream(GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), config.machine, config.machine.park));
+  setUp(drive, config);
+  SetpointStream stream = paperFromPark();
   ControlLoop loop(drive, config);
   loop.startThread();
   ASSERT_TRUE(loop.request(E::kEnable).accepted);
-  ASSERT_TRUE(loop.postStart(&stream));
+  ASSERT_TRUE(loop.startJob(&stream));
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   while (loop.status().jobs_started == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   EXPECT_EQ(loop.status().jobs_started, 1u);
@@ -310,334 +250,5 @@ TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
   EXPECT_FALSE(drive.written_drive.coolant);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Lost in the midst of a job
-
-/// A moment at which something is lost, and the state of the cycle that sees it.
-struct Moment {
-  std::string name;
-  std::function<void(Rig<FakeDrive>&)> bring;
-  S then;
-};
-std::ostream& operator<<(std::ostream& out, const Moment& moment) { return out << moment.name; }
-
-std::vector<Moment> moments() {
-  std::vector<Moment> all;
-  for (const MoveKind move : {MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
-                              MoveKind::kStroke, MoveKind::kRetract, MoveKind::kReturn}) {
-    for (const int cycles : {50, 51}) {
-      const auto bring = [=](Rig<FakeDrive>& rig) {
-        rig.cycle();
-        rig.startPaper();
-        rig.runTo(move);
-        rig.run(cycles);
-        ASSERT_EQ(rig.last().setpoint.move, move);
-      };
-      all.push_back({std::string(toString(move)) + (cycles % 2 ? "_odd" : "_even"), bring, S::kHolding});
-    }
-  }
-  const std::vector<std::pair<S, S>> states{{S::kRunning, S::kHolding},     {S::kHolding, S::kHolding},
-                                            {S::kHeld, S::kRetracting},     {S::kRetracting, S::kRetracting},
-                                            {S::kRetracted, S::kRetracted}, {S::kResuming, S::kHolding}};
-  for (const auto& [state, then] : states) {
-    const S in = state;
-    all.push_back({std::string("in_") + toString(in), [=](Rig<FakeDrive>& rig) { bringTo(rig, in); }, then});
-  }
-  all.push_back({"before_the_first_setpoint",
-                 [](Rig<FakeDrive>& rig) {
-                   rig.cycle();
-                   rig.startPaper();
-                 },
-                 S::kHolding});
-  all.push_back({"on_the_way_back_to_the_work",
-                 [](Rig<FakeDrive>& rig) {
-                   bringTo(rig, S::kResuming);
-                   rig.runTo(MoveKind::kInfeed);
-                   rig.run(300);
-                   ASSERT_EQ(rig.last().setpoint.move, MoveKind::kInfeed);
-                   ASSERT_EQ(rig.last().state, S::kResuming);
-                 },
-                 S::kHolding});
-  all.push_back({"at_a_feed_override_of_0",
-                 [](Rig<FakeDrive>& rig) {
-                   bringTo(rig, S::kRunning);
-                   rig.loop->setFeedOverride(0);
-                   rig.run(500);
-                   ASSERT_FALSE(rig.last().has_setpoint);
-                 },
-                 S::kHeld});
-  for (const int before_end : {0, 1, 2, 9}) {
-    all.push_back({std::to_string(before_end) + "_before_the_end",
-                   [=](Rig<FakeDrive>& rig) {
-                     rig.cycle();
-                     rig.startPaper();
-                     const std::uint64_t last = allSetpoints(*rig.stream).back().cycle;
-                     rig.runToCycle(last - static_cast<std::uint64_t>(before_end));
-                   },
-                   before_end == 0 ? S::kHeld : S::kHolding});
-  }
-  return all;
-}
-
-class Lost : public TestWithParam<std::tuple<Part, Moment>> {
- protected:
-  const Part part_ = std::get<0>(GetParam());
-
-  void SetUp() override {
-    ASSERT_NO_FATAL_FAILURE(std::get<1>(GetParam()).bring(rig_));
-    rig_.drive.on_read = part_.lose;
-    before_ = rig_.log.size() - 1;
-    rig_.cycle();
-  }
-
-  void awaitRetracted() {
-    if (rig_.last().state != S::kRetracted) rig_.runUntil(S::kRetracted);
-    rig_.loop->setFeedOverride(1);
-  }
-
-  Rig<FakeDrive> rig_;
-  std::size_t before_ = 0;  ///< last record before the loss
-};
-
-TEST_P(Lost, IsToldAndActedUponInTheSameCycle) {
-  EXPECT_EQ(rig_.log[before_].interlock, Interlock::kNone);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  EXPECT_EQ(rig_.last().state, std::get<1>(GetParam()).then);
-  EXPECT_FALSE(rig_.last().job_ended);
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-}
-
-TEST_P(Lost, TakesTheWheelOffTheWorkByItself) {
-  awaitRetracted();
-  EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  EXPECT_EQ(rig_.jobsEnded(), 0);
-  // Nowhere but along the path that it was on, and then radially.
-  bool lifting = false;
-  for (std::size_t i = before_ + 1; i < rig_.log.size(); ++i) {
-    lifting |= rig_.log[i].state == S::kRetracting;
-    if (!lifting) continue;
-    for (const int axis : {kX, kZ, kA}) ASSERT_EQ(rig_.log[i].command[axis], rig_.log[i - 1].command[axis]);
-  }
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
-  const auto expectRefused = [&] {
-    const RequestReply answer = rig_.ask(E::kResume);
-    EXPECT_FALSE(answer.accepted);
-    EXPECT_EQ(answer.text, std::string("resume refused: ") + part_.words);
-  };
-  awaitRetracted();
-  const std::size_t lifted = rig_.log.size() - 1;
-  expectRefused();
-  rig_.run(100);
-  expectRefused();
-  EXPECT_EQ(rig_.last().state, S::kRetracted);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, NothingMovesByItselfWhenItIsBack) {
-  awaitRetracted();
-  const std::size_t lifted = rig_.log.size() - 1;
-  rig_.drive.on_read = allWell;
-  rig_.run(200);
-  EXPECT_EQ(rig_.last().state, S::kRetracted);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock) << "told until the job is resumed";
-  EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, ResumeCompletesTheJobOnceItIsBack) {
-  awaitRetracted();
-  rig_.drive.on_read = allWell;
-  rig_.run(20);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
-  if (rig_.jobsEnded() == 0) rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(Lost, ForASinglePeriodIsAsGoodAsForLong) {
-  rig_.drive.on_read = allWell;
-  awaitRetracted();
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  if (rig_.jobsEnded() == 0) rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(Lost, CancelEndsTheJob) {
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
-  EXPECT_FALSE(rig_.drive.written_drive.spindle);
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-INSTANTIATE_TEST_SUITE_P(, Lost, Combine(ValuesIn(parts()), ValuesIn(moments())),
-                         [](const TestParamInfo<std::tuple<Part, Moment>>& info) {
-                           return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param).name;
-                         });
-
-class LostPart : public TestWithParam<Part> {
- protected:
-  Rig<FakeDrive> rig_;
-};
-
-TEST_P(LostPart, WhileCancelingDoesNotKeepTheJobFromEnding) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kCanceling));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.runUntil(S::kReady);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  for (const CycleRecord& record : rig_.log) {
-    ASSERT_NE(record.state, S::kRetracting);
-    ASSERT_EQ(record.interlock, Interlock::kNone) << "it was not the loop that stopped the job";
-  }
-}
-
-TEST_P(LostPart, WithoutAJobIsNothing) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kReady));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.run(50);
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
-}
-
-TEST_P(LostPart, RefusesToResumeFromHoldingToo) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.run(3);
-  ASSERT_EQ(rig_.last().state, S::kHolding);
-  EXPECT_EQ(rig_.ask(E::kResume).text, std::string("resume refused: ") + GetParam().words);
-  EXPECT_EQ(rig_.last().state, S::kHolding);
-}
-
-TEST_P(LostPart, BackBeforeItRestsLetsItResumeWithoutARetraction) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.run(3);
-  rig_.drive.on_read = allWell;
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
-  EXPECT_EQ(rig_.last().state, S::kRunning);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(LostPart, AHoldDuringTheRetractionDoesNotLeaveTheWheelAtTheWork) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.runUntil(S::kRetracting);
-  rig_.run(20);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  EXPECT_EQ(rig_.last().state, S::kHolding);
-  rig_.runUntil(S::kRetracted);
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(LostPart, AgainAfterResumeRetractsAgain) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  for (int i = 0; i < 4; ++i) {
-    rig_.drive.on_read = GetParam().lose;
-    rig_.runUntil(S::kRetracted);
-    EXPECT_EQ(rig_.last().interlock, GetParam().interlock);
-    rig_.drive.on_read = allWell;
-    rig_.cycle();
-    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-    EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
-    rig_.run(500 * i);
-  }
-  rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(LostPart, DoesNotLetANewJobInheritTheReason) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.runUntil(S::kRetracted);
-  rig_.drive.on_read = allWell;
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.log.front().job_ended = false;
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  expectCompleted(rig_);
-  for (const CycleRecord& record : rig_.log) ASSERT_EQ(record.interlock, Interlock::kNone);
-}
-
-INSTANTIATE_TEST_SUITE_P(, LostPart, ValuesIn(parts()), partName);
-
-TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
-  rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
-  rig.run(5);
-  rig.drive.on_read = [](FakeDrive& d) { d.status.coolant_on = false; };
-  rig.runUntil(S::kRetracted);
-  EXPECT_EQ(rig.last().interlock, Interlock::kSpindle);
-  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: no coolant flows");
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// On the simulated drive, as an operator can bring them about
-
-class LostOnTheSimulatedDrive : public TestWithParam<std::tuple<SimulatedDrive::Fault, Interlock>> {
- protected:
-  void SetUp() override {
-    rig_.cycle();
-    rig_.startPaper();
-    rig_.runTo(MoveKind::kStroke);
-    rig_.run(700);
-    rig_.drive.inject(std::get<0>(GetParam()));
-    rig_.runUntil(S::kRetracted);
-    EXPECT_EQ(rig_.last().interlock, std::get<1>(GetParam()));
-    EXPECT_FALSE(rig_.ask(E::kResume).accepted);
-    rig_.drive.inject(SimulatedDrive::Fault::kNone);
-    rig_.run(10);
-  }
-
-  Rig<SimulatedDrive> rig_;
-};
-
-TEST_P(LostOnTheSimulatedDrive, TheJobGoesOnOnceItIsBack) {
-  const bool accepted = rig_.ask(E::kResume).accepted;
-  if (std::get<1>(GetParam()) == Interlock::kNotHomed) {
-    EXPECT_FALSE(accepted) << "a reference comes back by homing only";
-    return;
-  }
-  ASSERT_TRUE(accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == machineConfig().machine.park).all());
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(LostOnTheSimulatedDrive, CancelLetsTheMachineHomeAndGrindAgain) {
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  rig_.run(50);
-  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  for (int i = 0; i < 1000 && rig_.last().state == S::kHoming; ++i) rig_.cycle();
-  ASSERT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == machineConfig().machine.park).all());
-}
-
-INSTANTIATE_TEST_SUITE_P(, LostOnTheSimulatedDrive,
-                         Values(std::tuple(SimulatedDrive::Fault::kReferenceLost, Interlock::kNotHomed),
-                                std::tuple(SimulatedDrive::Fault::kSpindleLost, Interlock::kSpindle),
-                                std::tuple(SimulatedDrive::Fault::kCoolantLost, Interlock::kCoolant)),
-                         [](const TestParamInfo<std::tuple<SimulatedDrive::Fault, Interlock>>& info) {
-                           return std::string(parts()[static_cast<std::size_t>(std::get<1>(info.param)) - 1].name);
-                         });
-
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -1,31 +1,20 @@
-#include "control/fixtures.h"
+#include "control/rig.h"
 
 #include <cmath>
 #include <random>
 
-// Cycles that come too late.
-namespace flute_grinder {
+// Late cycles.
+namespace flute_grinder::test_support {
 namespace {
 
-using testing::bringTo;
-using testing::FakeDrive;
-using testing::machineConfig;
-using testing::Rig;
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using ::testing::Values;
-
-using S = MachineState;
-using E = MachineEvent;
-
-/// With positions that may stay away for long, so that nothing but the lateness itself is a fault.
+/// Allows stale positions for long, so that only the lateness itself is a fault.
 LoopConfig patient() {
   LoopConfig config = machineConfig();
   config.feedback_timeout = 1;
   return config;
 }
 
-class LateWhileMovingIn : public TestWithParam<S> {
+class LateWhileMovingIn : public testing::TestWithParam<S> {
  protected:
   void SetUp() override {
     ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
@@ -54,10 +43,11 @@ TEST_P(LateWhileMovingIn, ComesAfterTheEmergencyStop) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, LateWhileMovingIn,
-                         Values(S::kRunning, S::kHolding, S::kRetracting, S::kResuming, S::kCanceling, S::kLifting),
-                         [](const TestParamInfo<S>& info) { return std::string(toString(info.param)); });
+                         testing::Values(S::kRunning, S::kHolding, S::kRetracting, S::kResuming, S::kCanceling,
+                                         S::kLifting),
+                         [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
-class LateAtRestIn : public TestWithParam<S> {};
+class LateAtRestIn : public testing::TestWithParam<S> {};
 
 TEST_P(LateAtRestIn, IsNoFault) {
   LoopConfig config = patient();
@@ -69,8 +59,8 @@ TEST_P(LateAtRestIn, IsNoFault) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, LateAtRestIn,
-                         Values(S::kDisabled, S::kReady, S::kHoming, S::kStarting, S::kHeld, S::kRetracted),
-                         [](const TestParamInfo<S>& info) { return std::string(toString(info.param)); });
+                         testing::Values(S::kDisabled, S::kReady, S::kHoming, S::kStarting, S::kHeld, S::kRetracted),
+                         [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
 TEST(LateCycle, IsNothingToADriveThatHasCommandsWaiting) {
   Rig<FakeDrive> late(patient()), punctual(patient());
@@ -82,7 +72,7 @@ TEST(LateCycle, IsNothingToADriveThatHasCommandsWaiting) {
   late.cycle(50);
   for (int i = 0; i < 10; ++i) {
     ASSERT_EQ(late.last().state, S::kRunning) << late.last().fault.text();
-    ASSERT_TRUE(testing::sameBits(late.last().command, punctual.last().command));
+    ASSERT_TRUE(sameBits(late.last().command, punctual.last().command));
     late.cycle();
     punctual.cycle();
   }
@@ -124,10 +114,10 @@ TEST(LateCycle, JustBelowTwoPeriodsIsNotLate) {
   punctual.cycle();
   rig.run(10);
   punctual.run(10);
-  EXPECT_TRUE(testing::sameBits(rig.last().command, punctual.last().command));
+  EXPECT_TRUE(sameBits(rig.last().command, punctual.last().command));
 }
 
-// The loop's own check of limits goes on, told of every late cycle.
+// The loop's own limit check continues, and takes every late cycle into account.
 TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
@@ -139,7 +129,7 @@ TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
     Axes last = rig.last().command;
     for (int i = 0; i < 1000000 && !rig.last().job_ended; ++i) {
       rig.cycle(chance(random) < probability ? periods(random) : 1);
-      // Each setpoint a new one: nothing is ever made up for.
+      // Every setpoint is new: missed cycles are never made up for.
       const Axes moved = (rig.last().command - last).abs();
       ASSERT_TRUE((moved <= machineConfig().machine.limits.max_velocity * 0.001 * (1 + 1e-9)).all());
       last = rig.last().command;
@@ -167,4 +157,4 @@ TEST(LateCycle, ALiftTakesItsSpeedUpAnewToo) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -1,27 +1,13 @@
-#include "control/fixtures.h"
+#include "control/checks.h"
+#include "control/rig.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-// The wheel in the work: how that is known, what is refused until it is off, and the lift without a job.
-namespace flute_grinder {
+// The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
+namespace flute_grinder::test_support {
 namespace {
-
-using testing::atRestFrom;
-using testing::bringTo;
-using testing::driveModel;
-using testing::FakeDrive;
-using testing::machineConfig;
-using testing::Rig;
-using testing::sameBits;
-using testing::smooth;
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using ::testing::Values;
-
-using S = MachineState;
-using E = MachineEvent;
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
 const double kClearanceHeight = 0.031 * kTanCone + 0.005;  // of the paper's job
@@ -36,7 +22,7 @@ void bringIntoTheWork(Rig<FakeDrive>& rig) {
   rig.drive.on_read = nullptr;
 }
 
-class InTheWork : public ::testing::Test {
+class InTheWork : public testing::Test {
  protected:
   void SetUp() override { ASSERT_NO_FATAL_FAILURE(bringIntoTheWork(rig_)); }
 
@@ -116,7 +102,7 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   EXPECT_FALSE(seeAt(0, true)) << "and nothing brings it back but a job";
 }
 
-class StopsTheLift : public TestWithParam<E> {};
+class StopsTheLift : public testing::TestWithParam<E> {};
 
 TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
   Rig<FakeDrive> rig;
@@ -142,8 +128,8 @@ TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
   EXPECT_FALSE(rig.last().wheel_in_work);
 }
 
-INSTANTIATE_TEST_SUITE_P(, StopsTheLift, Values(E::kHold, E::kCancel, E::kDisable),
-                         [](const TestParamInfo<E>& info) { return std::string(toString(info.param)); });
+INSTANTIATE_TEST_SUITE_P(, StopsTheLift, testing::Values(E::kHold, E::kCancel, E::kDisable),
+                         [](const testing::TestParamInfo<E>& info) { return std::string(toString(info.param)); });
 
 TEST(Lift, AFaultEndsItWithTheWheelStillInTheWork) {
   Rig<FakeDrive> rig;
@@ -208,4 +194,4 @@ TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

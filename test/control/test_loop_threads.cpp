@@ -1,4 +1,6 @@
 #include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
 
 #include <atomic>
 #include <chrono>
@@ -6,20 +8,15 @@
 #include <thread>
 #include <vector>
 
-// Everything that other threads may do to the loop, all at once and at random moments, with drives that fail: no data
-// race, no request without an answer, no job that is not ended. Made for ThreadSanitizer.
-namespace flute_grinder {
+// Everything that other threads may do to the loop, concurrently and at random times, with drives that fail: no data
+// race, no request without an answer, no job that does not end. Made for ThreadSanitizer.
+namespace flute_grinder::test_support {
 namespace {
 
-using testing::FakeDrive;
-using testing::machineConfig;
-
 using E = MachineEvent;
-using S = MachineState;
-
 constexpr std::uint64_t kCycles = 60000;
 
-/// Fails now and then, for a while.
+/// Fails at times, for a while.
 class Unreliable {
  public:
   void operator()(FakeDrive& drive) {
@@ -42,10 +39,10 @@ class Unreliable {
   int left_ = 0, kind_ = 0;
 };
 
-class LoopThreads : public ::testing::Test {
+class LoopThreads : public testing::Test {
  protected:
   LoopThreads() {
-    testing::setUp(drive_, machineConfig());
+    setUp(drive_, machineConfig());
     drive_.on_read = Unreliable{};
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
   }
@@ -68,16 +65,16 @@ class LoopThreads : public ::testing::Test {
     return true;
   }
 
-  /// Starts a job, waits for its end, and lets its stream go.
+  /// Starts a job, waits for its end, and destroys its stream.
   void startOne() {
     const LoopStatus before = loop_->status();
     if (before.state != S::kReady) return std::this_thread::yield();
     Axes at;
     std::copy(before.command.begin(), before.command.end(), at.data());
     const auto stream = std::make_unique<SetpointStream>(GrindProgram(job_, machineConfig().machine, at));
-    ASSERT_TRUE(loop_->postStart(stream.get()));
+    ASSERT_TRUE(loop_->startJob(stream.get()));
     std::optional<RequestReply> reply;
-    ASSERT_TRUE(soon([&] { return (reply = loop_->startReply()).has_value(); }));
+    ASSERT_TRUE(soon([&] { return (reply = loop_->startJobReply()).has_value(); }));
     if (!reply->accepted) return;
     ++accepted_;
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
@@ -101,12 +98,12 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   spawn(3, [this](std::mt19937& random) {
     constexpr std::array<E, 6> events{E::kEnable, E::kReset, E::kLift, E::kResume, E::kRetract, E::kHome};
     const std::size_t i = random() % 40;
-    // Home rarely: this drive does not find its reference.
+    // Home rarely, because this drive does not find its reference.
     EXPECT_TRUE(loop_->request(i < 39 ? events[i % 5] : E::kHome).answered);
   });
   spawn(4, [this](std::mt19937& random) {
     if (random() % 50 == 0) {
-      EXPECT_TRUE(loop_->stop(StopRoad::kStops[random() % 3]).text.find("no answer") == std::string::npos);
+      EXPECT_TRUE(loop_->stop(StopRequests::kStops[random() % 3]).text.find("no answer") == std::string::npos);
     }
     std::this_thread::sleep_for(std::chrono::microseconds(20));
   });
@@ -131,13 +128,13 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   });
   EXPECT_TRUE(soon([&] { return loop_->status().cycles > kCycles && loop_->status().jobs_ended > 2; }));
   busy_ = false;
-  // Whoever waits for a job's end.
+  // A thread that waits for the end of a job.
   EXPECT_TRUE(soon([&] {
     loop_->postStop(E::kDisable);
     return loop_->status().jobs_ended == loop_->status().jobs_started;
   }));
   for (std::thread& thread : threads_) thread.join();
-  // What the last ones asked for is over too.
+  // The last requests have taken effect too.
   EXPECT_TRUE(soon([&] {
     loop_->postStop(E::kDisable);
     const S state = loop_->status().state;
@@ -154,4 +151,4 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

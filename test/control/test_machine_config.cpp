@@ -104,7 +104,7 @@ TEST_F(PackageMachine, HasTimeouts) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// A machine of its own, small enough to spoil: every axis has a figure of its own
+// A small machine to modify; every value differs by axis
 
 std::string joint(const std::string& name, const std::string& type, const std::string& limit) {
   return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"base\"/><child link=\"link_" + name +
@@ -147,7 +147,7 @@ XmlRpcValue parameters() {
   return p;
 }
 
-/// The parameter at a path, made if it is not there.
+/// The parameter at a path, created if it is missing.
 XmlRpcValue& at(XmlRpcValue& p, const std::string& path) {
   XmlRpcValue* value = &p;
   std::istringstream names(path);
@@ -155,7 +155,7 @@ XmlRpcValue& at(XmlRpcValue& p, const std::string& path) {
   return *value;
 }
 
-/// Without the parameter at a path; XmlRpcValue has no way to take one out.
+/// A copy without the parameter at a path; XmlRpcValue cannot remove one.
 XmlRpcValue without(XmlRpcValue p, const std::string& path) {
   XmlRpcValue copy;
   const std::string first = path.substr(0, path.find('/'));
@@ -253,7 +253,7 @@ TEST(MachineConfig, TakesTheEndsOfTheRanges) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Parameters that are refused, each by its full name and with what is allowed
+// Refused parameters: the error gives the full name and what is allowed
 
 struct BadParameter {
   std::string name;
@@ -262,7 +262,7 @@ struct BadParameter {
 };
 std::ostream& operator<<(std::ostream& out, const BadParameter& bad) { return out << bad.name; }
 
-/// A parameter that must be there.
+/// A required parameter.
 struct Number {
   std::string path;
   std::string range;  ///< as a message states it
@@ -421,7 +421,7 @@ INSTANTIATE_TEST_SUITE_P(, RefusedParameters, ValuesIn(badParameters()),
                          [](const TestParamInfo<BadParameter>& info) { return info.param.name; });
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Robot descriptions that are refused
+// Refused robot descriptions
 
 struct BadDescription {
   const char* name;
@@ -480,7 +480,7 @@ TEST_P(RefusedDescription, IsNamedWithWhatIsAllowed) {
 INSTANTIATE_TEST_SUITE_P(, RefusedDescription, ValuesIn(badDescriptions()),
                          [](const TestParamInfo<BadDescription>& info) { return std::string(info.param.name); });
 
-// Whether the URDF's reader takes such a number is its own affair; the machine must not get it as a limit.
+// Whether or not the URDF reader accepts such a number, the machine must not get it as a limit.
 class NotFiniteInTheUrdf : public TestWithParam<const char*> {};
 
 TEST_P(NotFiniteInTheUrdf, IsNoPositionLimit) {

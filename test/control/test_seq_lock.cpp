@@ -11,7 +11,7 @@
 namespace flute_grinder {
 namespace {
 
-/// Every word the same, so that a torn value shows.
+/// Every word the same, so that a torn copy shows.
 struct Row {
   std::array<std::uint64_t, 33> words{};
 };

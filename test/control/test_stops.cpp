@@ -1,39 +1,21 @@
-#include "control/fixtures.h"
+#include "control/checks.h"
+#include "control/rig.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
 
-// Stops in every state, and what the loop's status says of a job.
-namespace flute_grinder {
+// Stops in every state, and the job in the loop's status.
+namespace flute_grinder::test_support {
 namespace {
-
-using testing::allSetpoints;
-using testing::atRestFrom;
-using testing::bringTo;
-using testing::FakeDrive;
-using testing::machineConfig;
-using testing::Rig;
-using testing::sameBits;
-using testing::sameSetpoints;
-using testing::smooth;
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using testing::toAxes;
-using ::testing::Values;
-
-using S = MachineState;
-using E = MachineEvent;
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
 const double kClearanceHeight = 0.031 * kTanCone + 0.005;  // of the paper's job
 
-std::string stateName(const TestParamInfo<S>& info) { return toString(info.param); }
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Hold before the first setpoint
 
-class HoldWhileStarting : public ::testing::Test {
+class HoldWhileStarting : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kStarting));
@@ -42,7 +24,7 @@ class HoldWhileStarting : public ::testing::Test {
 
   void spindleComes() { rig_.drive.on_read = nullptr; }
 
-  /// That no axis has been told to move.
+  /// Expects that no axis was commanded to move.
   void expectStanding() const {
     for (const CycleRecord& record : rig_.log) {
       ASSERT_TRUE(sameBits(record.command, machineConfig().machine.park)) << toString(record.state);
@@ -96,7 +78,7 @@ TEST_F(HoldWhileStarting, CancelEndsTheJobWithoutASetpoint) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Disable
 
-class DisableIn : public TestWithParam<S> {
+class DisableIn : public testing::TestWithParam<S> {
  protected:
   void SetUp() override { ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam())); }
 
@@ -136,8 +118,8 @@ TEST_P(DisableIn, IsDoneWithTheNextEnable) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, DisableIn,
-                         Values(S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting, S::kRetracted,
-                                S::kResuming, S::kCanceling),
+                         testing::Values(S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
+                                         S::kRetracted, S::kResuming, S::kCanceling),
                          stateName);
 
 TEST(Disable, WhilePowerIsAwaitedTakesTheEnableBack) {
@@ -147,7 +129,7 @@ TEST(Disable, WhilePowerIsAwaitedTakesTheEnableBack) {
   ASSERT_TRUE(rig.loop->post(E::kEnable));
   rig.cycle();
   ASSERT_FALSE(rig.loop->reply());
-  const std::uint32_t ticket = rig.loop->postAskedStop(E::kDisable);
+  const std::uint32_t ticket = rig.loop->postStopWithReply(E::kDisable);
   rig.cycle();
   const auto stopped = rig.loop->stopReply(E::kDisable, ticket);
   ASSERT_TRUE(stopped) << "a stop waits for an enable";
@@ -161,7 +143,7 @@ TEST(Disable, WhilePowerIsAwaitedTakesTheEnableBack) {
   EXPECT_FALSE(rig.drive.written_drive.enable);
 }
 
-class EndsHoming : public TestWithParam<E> {};
+class EndsHoming : public testing::TestWithParam<E> {};
 
 TEST_P(EndsHoming, ByThePower) {
   Rig<FakeDrive> rig;
@@ -172,8 +154,8 @@ TEST_P(EndsHoming, ByThePower) {
   EXPECT_FALSE(rig.drive.written_drive.home);
 }
 
-INSTANTIATE_TEST_SUITE_P(, EndsHoming, Values(E::kHold, E::kCancel, E::kDisable),
-                         [](const TestParamInfo<E>& info) { return std::string(toString(info.param)); });
+INSTANTIATE_TEST_SUITE_P(, EndsHoming, testing::Values(E::kHold, E::kCancel, E::kDisable),
+                         [](const testing::TestParamInfo<E>& info) { return std::string(toString(info.param)); });
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Cancel
@@ -208,7 +190,7 @@ TEST(Cancel, AgainDuringTheLiftChangesNothing) {
   EXPECT_TRUE(sameSetpoints(often.setpoints(), once.setpoints()));
 }
 
-/// Whatever moves can be stopped.
+/// Every motion can be stopped.
 TEST(Cancel, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
   for (const double lifted : {0.0, 1e-4, 1e-3}) {
     Rig<FakeDrive> rig;
@@ -247,10 +229,10 @@ TEST(Cancel, InTheCycleOfTheStartEndsTheJobBeforeAnythingMoves) {
   rig.cycle();
   rig.enable();
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.loop->postStart(&*rig.stream));
+  ASSERT_TRUE(rig.loop->startJob(&*rig.stream));
   rig.loop->postStop(E::kCancel);
   rig.cycle();
-  const auto started = rig.loop->startReply();
+  const auto started = rig.loop->startJobReply();
   ASSERT_TRUE(started);
   EXPECT_TRUE(started->accepted) << started->text;
   rig.run(20);
@@ -278,7 +260,7 @@ TEST(Stops, WinOverARequestOfTheSameCycleWhicheverCameFirst) {
 TEST(Stops, AllAtOnceAreAllCarriedOutAndAllAnswered) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
-  const std::uint32_t ticket = rig.loop->postAskedStop(E::kHold);
+  const std::uint32_t ticket = rig.loop->postStopWithReply(E::kHold);
   rig.loop->postStop(E::kCancel);
   rig.loop->postStop(E::kDisable);
   rig.cycle();
@@ -294,7 +276,7 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
   rig.loop->postStop(E::kCancel);  // refused, to nobody
   rig.cycle();
-  const std::uint32_t ticket = rig.loop->postAskedStop(E::kCancel);
+  const std::uint32_t ticket = rig.loop->postStopWithReply(E::kCancel);
   EXPECT_FALSE(rig.loop->stopReply(E::kCancel, ticket));
   rig.cycle();
   const auto answer = rig.loop->stopReply(E::kCancel, ticket);
@@ -372,7 +354,7 @@ TEST(Status, OfASpindleThatDidNotComeTellsIt) {
   EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kInterlock);
 }
 
-// Held in its last braking the stroke rests at its very end, and the retraction enters it again.
+// Held while it brakes at its end, the stroke rests exactly there, and the retraction enters it again.
 TEST(Status, AStrokeThatHasEndedStaysEndedWhenARetractionEntersItAgain) {
   Rig<FakeDrive> probe;
   probe.cycle();
@@ -431,7 +413,7 @@ TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
       rig.cycle();
       const LoopStatus status = rig.loop->status();
       ASSERT_EQ(status.jobs_started, static_cast<std::uint64_t>(job));
-      // At the positions of this cycle; none of this job at first, in which the wheel stands.
+      // As of this cycle's positions; at first no command of this job has reached the axes.
       const auto at = std::find_if(written.rbegin(), written.rend(),
                                    [&](const Setpoint& p) { return sameBits(p.position, rig.last().position); });
       if (at == written.rend() || written.size() < 60) {
@@ -465,4 +447,4 @@ TEST(Status, IsRightThoughNobodyTakesTheRecords) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -119,6 +119,7 @@ TEST(MachineState, OnlyReadyStartsAJobHomesOrLifts) {
 TEST(MachineState, EveryStateUnderPowerCanFault) {
   for (const S state : kStates) {
     const bool powered = state != S::kDisabled && state != S::kFault;
+    EXPECT_EQ(isPowered(state), powered) << toString(state);
     EXPECT_EQ(after(state, E::kFault).has_value(), powered) << toString(state);
   }
 }

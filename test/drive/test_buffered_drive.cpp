@@ -1,17 +1,10 @@
-#include "control/fixtures.h"
+#include "control/rig.h"
 
 #include <deque>
 
-// The control loop with a drive that buffers commands, as one does that plays them by a clock of its own.
-namespace flute_grinder {
+// The control loop with a drive that buffers commands and plays them by a clock of its own.
+namespace flute_grinder::test_support {
 namespace {
-
-using testing::FakeDrive;
-using testing::Rig;
-using testing::sameBits;
-using testing::toAxes;
-
-using S = MachineState;
 
 constexpr std::size_t kDepth = 50;
 
@@ -29,7 +22,7 @@ struct Buffer {
   }
 };
 
-class BufferedDrive : public ::testing::Test {
+class BufferedDrive : public testing::Test {
  protected:
   BufferedDrive() {
     rig_.drive.status.spindle_at_speed = rig_.drive.status.coolant_on = true;
@@ -103,4 +96,4 @@ TEST_F(BufferedDrive, FollowsPositionsAnewAfterAFault) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

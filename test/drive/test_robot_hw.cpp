@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-// A clock that stands still unless a test moves it, in place of the C library's; so nothing here waits, and nothing
+// Replaces the C library's clock by one that stands still unless a test moves it: nothing here waits, and nothing
 // depends on how fast the computer is.
 namespace {
 
@@ -44,7 +44,7 @@ int clock_nanosleep(clockid_t id, int flags, const timespec* until, timespec* le
 
 }  // extern "C"
 
-namespace flute_grinder {
+namespace flute_grinder::test_support {
 namespace {
 
 template <typename Work>
@@ -62,7 +62,7 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 // ---------------------------------------------------------------------------------------------------------------------
 // Handles
 
-class Handles : public ::testing::Test {
+class Handles : public testing::Test {
  protected:
   double position_ = 1, velocity_ = 2, effort_ = 3, command_ = 4;
   JointStateHandle state_{"axis_x", &position_, &velocity_, &effort_};
@@ -217,7 +217,7 @@ TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
 constexpr std::int64_t kMillisecond = 1000000;
 constexpr std::int64_t kStart = 5000 * 1000 * kMillisecond + 999 * kMillisecond;  ///< just before a full second
 
-class Pacing : public ::testing::Test {
+class Pacing : public testing::Test {
  protected:
   Pacing() {
     clock_ns = kStart;
@@ -286,8 +286,8 @@ TEST_F(Pacing, FollowsAPeriodThatChanges) {
   EXPECT_EQ(sleeps_ns.back(), kStart + 5 * kMillisecond);
 }
 
-// With the real clock: n waits take no less than n - 1 periods, whatever the computer is busy with, since at most one
-// of them returns at once.
+// With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them
+// returns at once.
 TEST(RobotHW, WaitsOnTheMonotonicClock) {
   const auto now_ns = [] {
     timespec now;
@@ -301,4 +301,4 @@ TEST(RobotHW, WaitsOnTheMonotonicClock) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace flute_grinder::test_support

@@ -28,9 +28,15 @@ class DiagnosticsTest : public ::testing::Test {
 
   void watch(int cycles = 1) {
     for (; cycles > 0; --cycles) {
-      ++record_.drive.feedback_count;
+      record_.feedback_age = 0;
       diagnostics_.watch(record_);
     }
+  }
+
+  /// A cycle without fresh positions.
+  void watchStale() {
+    record_.feedback_age += record_.period;
+    diagnostics_.watch(record_);
   }
 
   Diagnostics::Status ask(Report report) {
@@ -56,7 +62,7 @@ class DiagnosticsTest : public ::testing::Test {
     record_.has_setpoint = false;
   }
 
-  LoopConfig config_ = testing::machineConfig();
+  LoopConfig config_ = test_support::machineConfig();
   Scheduling scheduling_{true, true};
   Diagnostics diagnostics_{config_, thresholds(), [this] { return scheduling_; }};
   CycleRecord record_;
@@ -186,14 +192,14 @@ TEST_F(DiagnosticsTest, FaultIsToldOnceAndWithAllElse) {
 
 TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
   watch();
-  diagnostics_.watch(record_);
-  diagnostics_.watch(record_);
+  watchStale();
+  watchStale();
   watch();
   auto status = ask(&Diagnostics::reportDrive);
   EXPECT_EQ(status.level, DiagnosticStatus::OK);  // 2 ms of 2.5 ms
   EXPECT_EQ(value(status, "Longest feedback age [s]"), "0.002");
   EXPECT_EQ(value(status, "Allowed feedback age [s]"), "0.0025");
-  for (int i = 0; i < 3; ++i) diagnostics_.watch(record_);
+  for (int i = 0; i < 3; ++i) watchStale();
   status = ask(&Diagnostics::reportDrive);
   EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
   EXPECT_EQ(status.message, "no fresh positions for 0.003 s");
@@ -213,7 +219,7 @@ TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorIsTheLargestOfEachAxis) {
-  record_.target << 0.1, 0, 0, 3;
+  record_.command_in_effect << 0.1, 0, 0, 3;
   record_.position << 0.1004, 0, 0, 3;
   watch();
   record_.position << 0.1, 0.0002, 0, 2.975;

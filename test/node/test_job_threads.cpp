@@ -1,5 +1,6 @@
 #include "control/fixtures.h"
-
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/planner.h"
 
@@ -17,8 +18,8 @@
 namespace flute_grinder {
 namespace {
 
-using testing::FakeDrive;
-using testing::machineConfig;
+using test_support::FakeDrive;
+using test_support::machineConfig;
 
 using E = MachineEvent;
 using S = MachineState;
@@ -46,7 +47,7 @@ bool soon(const Condition& condition) {
 class JobThreads : public ::testing::Test {
  protected:
   JobThreads() : planner_(machineConfig().machine) {
-    testing::setUp(drive_, machineConfig());
+    test_support::setUp(drive_, machineConfig());
     drive_.on_read = [this](FakeDrive& drive) { drive.status.emergency_stop = emergency_stop_; };
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
   }
@@ -86,7 +87,7 @@ class JobThreads : public ::testing::Test {
       return;
     }
     const bool started = gate_.start([&](bool held) {
-      ASSERT_TRUE(loop_->postStart(preview.stream.get()));
+      ASSERT_TRUE(loop_->startJob(preview.stream.get()));
       if (held) loop_->postStop(E::kHold);
     });
     if (!started) {
@@ -96,7 +97,7 @@ class JobThreads : public ::testing::Test {
       return;
     }
     std::optional<RequestReply> reply;
-    ASSERT_TRUE(soon([&] { return (reply = loop_->startReply()).has_value(); }));
+    ASSERT_TRUE(soon([&] { return (reply = loop_->startJobReply()).has_value(); }));
     if (!reply->accepted) return;
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == jobs_before + 1; }));
     const JobEnd end = loop_->status().end;

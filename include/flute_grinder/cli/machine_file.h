@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/loop_config.h"
 
 #include <string>
 

@@ -10,14 +10,14 @@
 
 namespace flute_grinder {
 
-/// Where a job is, by the setpoints written or got so far.
+/// How far a job has come, by the setpoints that were written or that reached the axes.
 struct JobTrack {
   std::uint64_t job = 0;        ///< its number; 0 for none
   std::uint64_t setpoints = 0;  ///< so far
   std::uint32_t strokes_ended_at = 0;
   Place place;
 
-  /// Takes the job's next setpoint.
+  /// Adds the job's next setpoint.
   void add(const Setpoint& p) noexcept {
     ++setpoints;
     place = {p.move_index, p.tooth, p.pass, p.move, p.position[kX], p.progress};
@@ -25,7 +25,7 @@ struct JobTrack {
   }
 };
 
-/// The commands written in the last cycles, as many as a drive may buffer, each with where its job was. Real-time safe.
+/// The commands written in the last cycles, as many as a drive may buffer, each with the job's track. Real-time safe.
 class CommandHistory {
  public:
   struct Entry {
@@ -33,7 +33,7 @@ class CommandHistory {
     JobTrack track;
   };
 
-  /// Forgets all: what comes does not follow from what was.
+  /// Discards all commands, because the next ones do not continue them.
   void clear() noexcept { count_ = 0; }
 
   bool empty() const noexcept { return count_ == 0; }
@@ -44,7 +44,8 @@ class CommandHistory {
     count_ = std::min(count_ + 1, entries_.size());
   }
 
-  /// The one that the axes have got, if `waiting` later ones wait in the drive. Not of an empty history.
+  /// The command in effect: the last one that reached the axes, if `waiting` later ones are in the drive's buffer. The
+  /// history must not be empty.
   const Entry& inEffect(std::uint32_t waiting) const noexcept {
     const std::size_t back = 1 + std::min<std::size_t>(waiting, count_ - 1);
     return entries_[(next_ + entries_.size() - back) % entries_.size()];
@@ -52,7 +53,7 @@ class CommandHistory {
 
  private:
   std::array<Entry, kMaxCommandsWaiting + 1> entries_;  ///< a ring
-  std::size_t next_ = 0;                                ///< where the next one goes
+  std::size_t next_ = 0;                                ///< where the next entry goes
   std::size_t count_ = 0;
 };
 

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "flute_grinder/control/command_history.h"
-#include "flute_grinder/control/loop_requests.h"
+#include "flute_grinder/control/cycle_record.h"
+#include "flute_grinder/control/drive_checks.h"
+#include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/control/request_box.h"
 #include "flute_grinder/control/seq_lock.h"
+#include "flute_grinder/control/wheel_watch.h"
 #include "flute_grinder/core/lift_move.h"
 #include "flute_grinder/core/limit_check.h"
-#include "flute_grinder/core/loop_fault.h"
-#include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/setpoint_stream.h"
 #include "flute_grinder/drive/robot_hw.h"
 
@@ -16,54 +18,18 @@
 
 #include <array>
 #include <atomic>
-#include <optional>
 #include <thread>
 
 namespace flute_grinder {
 
-/// What the control loop must know of the machine.
-struct LoopConfig {
-  Machine machine;
-  Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
-  double feedback_timeout = 0;          ///< longest time without fresh positions [s]
-  double enable_timeout = 0;            ///< longest time from the enable command to power [s]
-  double homing_timeout = 0;            ///< longest time that homing may take [s]
-  double spindle_timeout = 0;           ///< longest time until spindle and coolant are ready for a job [s]
-  double late_slow_down = 2;  ///< period from which on a cycle is late and the speed is taken up anew [periods]
-  double late_fault = 10;     ///< period from which on the machine stops [periods]
-};
-
-/// What happened in one cycle; what the rest of the program learns of the loop.
-struct CycleRecord {
-  double time = 0;    ///< since the epoch of ROS time, but monotonic [s]
-  double period = 0;  ///< since the cycle before [s]
-  MachineState state = MachineState::kDisabled;
-  DriveStatus drive;
-  Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
-  Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
-  Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
-  Axes target = Axes::Zero();    ///< the command that the positions are to follow; older if the drive buffers
-  bool has_setpoint = false;
-  Setpoint setpoint;       ///< that was written, if there was one
-  std::uint64_t job = 0;   ///< its number; 0 of a setpoint that lifts the wheel without a job. Else of the last job
-  bool job_ended = false;  ///< the job's stream is no longer in use; of a lost record, told by the next
-  bool wheel_in_work = false;
-  LoopFault fault;                         ///< of the state kFault, or why the last job did not begin
-  Interlock interlock = Interlock::kNone;  ///< why the loop has held the job by itself, until it is resumed
-  double feed_override = 1;                ///< fraction
-  std::uint64_t records_lost = 0;          ///< since the start, because nobody took them
-};
-
-/// The one thread that owns the setpoint stream and the drive. Per cycle: wait, read, check, next, check, write.
-/// Stops, starts and other requests go in by a slot of their own each, so that none waits for another; records and a
-/// status come out. In the cycle nothing is allocated, locked, logged or thrown, and nothing of ROS is called. The loop
-/// alone decides the machine's state, so that no request can cross a fault; of all that is asked for in one cycle,
-/// stops are carried out last.
-class ControlLoop {
+/// The one thread that owns the setpoint stream and the drive. Each cycle waits, reads the drive, checks what it
+/// reports, executes requests, computes the next setpoint, checks it, and writes it. The cycle does not allocate, lock,
+/// log, throw or call ROS. The loop alone decides the machine's state, so that no request can race with a fault; of the
+/// requests that arrive in one cycle, stops are executed last.
+class ControlLoop : public RequestBox {
  public:
   /// @param hw the drive, initialised; must outlive the loop.
-  /// @param config limits and tolerances.
-  /// @param wheel as it was left, if the program was started anew since.
+  /// @param wheel as the program before this one left it.
   /// @throw HardwareInterfaceException if the drive lacks an interface or a joint.
   /// @throw std::invalid_argument unless the limits of Y are finite and positive.
   ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel = {});
@@ -74,36 +40,12 @@ class ControlLoop {
   /// Ends the thread after its cycle; the drive is left without power.
   void stopThread();
 
-  /// The newest cycle's. For any thread; waits for nothing.
+  /// The status of the newest cycle. For any thread; never waits.
   LoopStatus status() const noexcept { return status_.load(); }
 
-  /// Asks to enable, home, resume, retract, lift or reset, and waits for the answer. For one thread at a time.
-  ///
-  /// Lift takes the wheel off the work where it was left, straight up: to Y where it is clear if the axes are homed,
-  /// else by the way from the deepest place of the last job. Until then no job starts, and nothing homes.
-  RequestReply request(MachineEvent event);
-
-  /// Asks for a stop - hold, cancel or disable - and waits for the answer, 100 ms at the most. For one thread at a
-  /// time.
-  ///
-  /// Hold stops a job on its path, before its first setpoint too; cancel stops it on its path, lifts the wheel off the
-  /// work and ends the job; disable does that and switches the power off. Each stops a lift on its way, a hold that of
-  /// a canceled job too, which ends there. Each ends homing by the power: the drive moves by itself then, and no
-  /// command of the loop's counts.
-  RequestReply stop(MachineEvent event);
-  /// The same without the answer. For any thread and for signal handlers; what is no stop is not taken.
-  void postStop(MachineEvent event) noexcept { stops_.post(event); }
-
-  /// Asks to start a job. For one thread at a time.
-  /// @param stream not null; must stay alive until the job has ended (LoopStatus::jobs_ended), or the start is refused.
-  /// @return false while the start before has not been answered; it is then not asked.
-  bool postStart(SetpointStream* stream) noexcept;
-  /// The answer to the last start, once the loop has given it. For one thread at a time.
-  std::optional<RequestReply> startReply();
-
-  /// Sets the feed override, of the running job and of those to come. Thread safe.
+  /// Sets the feed override of the running job and of the ones to come. Thread safe.
   /// @param fraction 0 to kMaxFeedOverride.
-  /// @return whether it is in that range; others are not taken.
+  /// @return false, and nothing changes, if it is out of that range.
   bool setFeedOverride(double fraction);
 
   /// Takes the oldest record; false if there is none. One consumer at a time.
@@ -111,75 +53,57 @@ class ControlLoop {
 
   /// One cycle without the wait. Real-time.
   /// @param time of the cycle, for stamps.
-  /// @param period since the last cycle, monotonic.
+  /// @param period since the previous cycle, monotonic.
   void cycle(const ros::Time& time, const ros::Duration& period);
-
-  /// request() without the wait: cycle() takes it up. False while the one before has not been answered.
-  bool post(MachineEvent event) noexcept { return requests_.post(event); }
-  /// The answer to the last post(), once there is one.
-  std::optional<RequestReply> reply();
-  /// stop() without the wait.
-  /// @return what to ask for the answer with.
-  std::uint32_t postAskedStop(MachineEvent event) noexcept { return stops_.ask(event); }
-  /// The answer to postAskedStop(), once there is one.
-  std::optional<RequestReply> stopReply(MachineEvent event, std::uint32_t ticket) const;
 
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
   const LoopConfig& config() const { return config_; }
 
  private:
-  struct Start {
-    SetpointStream* stream = nullptr;
-    Wheel wheel;  ///< of this job
-  };
-
   void run();
-  void observe();
-  void watchWheel();
-  bool powered() const;
 
-  void takeRequests();
-  void takeRequest(MachineEvent event);
-  Refusal carryOut(MachineEvent event);
+  void readDrive();
+  void trackMotion();
+  void checkDrive();
+  void writeDrive(const ros::Time& time, const ros::Duration& period);
+  void publish();
+
+  void executeRequests();
+  void executeRequest(MachineEvent event);
+  Refusal execute(MachineEvent event);
+  Refusal executeStop(MachineEvent event);
+  Answer answerTo(MachineEvent event, Refusal refusal) const;
   Refusal enable();
-  Refusal start(const Start& job);
+  void awaitPower();
+  void answerEnable(Refusal refusal);
+  void switchOff();
+  Refusal reset();
+  Refusal home();
+  Refusal beginJob(const JobStart& job);
+  Refusal resume();
+  Refusal retract();
   Refusal lift();
   double liftTarget() const;
-  Refusal stopMotion(MachineEvent event);
-  Refusal obstacleToPower() const;
-  Answer answerTo(MachineEvent event, Refusal refusal) const;
-  void answerEnable(Refusal refusal);
 
-  void checkDrive();
-  void checkFeedback();
-  void checkPositions();
-  void checkInterlocks();
-  Interlock openInterlock() const;
-  bool axesWaited() const;
-
-  void awaitPower();
   void awaitHoming();
   void awaitSpindle();
-  void takeUpSpeed();
   void advance();
+  void slowDownIfLate();
   void advanceJob();
   void advanceLift();
-  void write(const Setpoint& setpoint);
-  bool axesGotAll();
+  void checkInterlocks();
+  void command(const Setpoint& setpoint);
+  bool allReachedAxes();
   void restJob();
-  bool liftsOff();
+  bool beginLiftOff();
   void comeToRest();
   void endJob(JobEnd end);
   void fail(const LoopFault& fault);
   void apply(MachineEvent event);
-  void switchOff();
-
-  void writeDrive(const ros::Time& time, const ros::Duration& period);
-  void tell();
 
   RobotHW& hw_;
-  LoopConfig config_;
+  const LoopConfig config_;
   std::array<JointHandle, kAxisCount> joints_;
   DriveHandle drive_;
 
@@ -188,26 +112,22 @@ class ControlLoop {
   SetpointStream* stream_ = nullptr;
   LiftMove lift_;
   LimitCheck limit_check_;
+  DriveChecks drive_checks_;
+  WheelWatch wheel_;
   Axes command_ = Axes::Zero();
   CommandHistory history_;
-  JobTrack written_;                    ///< of the job that runs, or of the last one
-  bool moving_ = false;                 ///< the cycle before wrote a setpoint that moves an axis
-  bool lifts_off_ = true;               ///< the job is to lift the wheel when it has stopped for a cancel
-  bool power_off_next_ = false;         ///< once the axes rest
-  std::uint64_t rested_ = 0;            ///< cycles since the last setpoint
-  std::uint64_t underruns_before_ = 0;  ///< those that the drive had counted when the power came
+  JobTrack written_;                ///< of the running job, or of the last one
+  bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer has no further command
+  bool may_lift_off_ = true;        ///< the job lifts the wheel once it has stopped for a cancel
+  bool power_off_next_ = false;     ///< once the axes rest
+  std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
-  std::uint64_t last_feedback_ = 0;
-  double feedback_age_ = 0;
   double waited_ = 0;  ///< for power, the reference, or spindle and coolant [s]
   bool awaiting_power_ = false;
   bool homing_seen_ = false;
   CycleRecord record_;
-  LoopStatus now_;  ///< what is told next
+  LoopStatus next_status_;  ///< published at the end of the cycle
 
-  StopRoad stops_;
-  RequestSlot<Start> starts_;
-  RequestSlot<MachineEvent> requests_;
   SeqLock<LoopStatus> status_;
   boost::lockfree::spsc_queue<CycleRecord, boost::lockfree::capacity<8192>> records_;
 

@@ -14,33 +14,33 @@ namespace flute_grinder {
 
 /// Where the axes are in a job's program.
 struct Place {
-  std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the one that was interrupted
+  std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the interrupted move
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0
   MoveKind move = MoveKind::kLift;
   double x = 0;         ///< [m]
-  double progress = 0;  ///< done of the program's move, 0..1; exactly 1 at its end
+  double progress = 0;  ///< of the program's move, 0..1; exactly 1 at its end
 };
 
-/// Whether the wheel stands in the work, and how to lift it off.
+/// Whether the wheel stands in the work, and how far to lift it off.
 struct Wheel {
   bool in_work = false;
   double clear_y = 0;  ///< Y at which it is clear of the last job's work [m]
   double lift = 0;     ///< from the deepest place of that job to there [m]
 };
 
-/// How the wheel gets clear of a program's work, in which it does not stand yet.
+/// How to lift the wheel off a program's work; the wheel is not in the work yet.
 Wheel wheelOf(const GrindProgram& program);
 
 /// How a job ended.
 enum class JobEnd : std::uint8_t {
-  kNone,      ///< it runs
-  kDone,      ///< at its program's end
+  kNone,      ///< it is running
+  kDone,      ///< at the end of its program
   kCanceled,  ///< stopped on its path; the wheel is lifted off the work, unless a hold stopped that
   kFault,
 };
 
-/// What the loop knows of itself, whole and of one cycle. Counts are right however long nobody looked.
+/// The loop's state in one cycle. Its counts are complete even if cycles in between were not read.
 struct LoopStatus {
   std::uint64_t cycles = 0;  ///< since the start of the loop
   double time = 0;           ///< stamp of the cycle [s]
@@ -50,13 +50,14 @@ struct LoopStatus {
   double feed_override = 1;                  ///< fraction
   std::uint64_t jobs_started = 0;            ///< since the start of the loop
   std::uint64_t jobs_ended = 0;              ///< since the start of the loop
-  // Of the job that runs, or of the last one:
+  // Of the running job, or of the last one:
   std::uint64_t setpoints_written = 0;
   JobEnd end = JobEnd::kNone;
-  LoopFault fault;                     ///< why it ended, of JobEnd::kFault; kept until the next job starts
-  Place place;                         ///< of the last setpoint that the axes have got: a drive may buffer
-  std::uint32_t strokes_ended_at = 0;  ///< 1 + move_index of the last stroke that the axes have ended; 0 for none.
-                                       ///< Never goes back, though a retraction at a stroke's very end enters it again.
+  LoopFault fault;  ///< why it ended, of JobEnd::kFault; kept until the next job starts
+  Place place;      ///< of the last setpoint that reached the axes; a drive may buffer later ones
+  std::uint32_t strokes_ended_at =
+      0;  ///< 1 + move_index of the last stroke that the axes completed; 0 for none.
+          ///< Never decreases, although a retraction at the end of a stroke enters it again.
   Wheel wheel;
 };
 static_assert(std::is_trivially_copyable_v<LoopStatus>);

@@ -1,16 +1,16 @@
 #pragma once
 
-#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/drive/parameters.h"
 
 #include <string>
 
 namespace flute_grinder {
 
-/// The machine: limits from the URDF, and over them the parameters joint_limits/<joint>/..., as in ros_control;
+/// Reads the machine: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in ros_control;
 /// control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
-/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Fails closed: every axis
-/// needs limits of position, velocity, acceleration and jerk, and each is stated in full.
+/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Every axis must
+/// have limits of position, velocity, acceleration and jerk, each given in full.
 /// @param urdf the robot description, XML.
 /// @param parameters the node's parameters.
 /// @throw ParameterError

@@ -9,11 +9,11 @@
 
 namespace flute_grinder {
 
-/// A value that one thread writes and any number read, each a whole one: store() waits for nobody, load() tries again
-/// while a store is under way. Every word is an atomic, so that no access is a data race. Real-time safe.
+/// A value that one thread writes and any number of threads read consistently: store() never waits, load() retries
+/// while a store is in progress. Every word is atomic, so that no access is a data race. Real-time safe.
 template <typename T>
 class SeqLock {
-  static_assert(std::is_trivially_copyable_v<T>, "a value that is torn must be harmless");
+  static_assert(std::is_trivially_copyable_v<T>, "a torn copy must be harmless");
 
  public:
   SeqLock() noexcept { store(T{}); }
@@ -24,7 +24,7 @@ class SeqLock {
     std::memcpy(words.data(), &value, sizeof value);
     const std::uint64_t version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
-    // Who reads one of these words reads a version from here on: the new one is not taken for the old.
+    // Release: a reader that sees one of these words also sees the odd version.
     for (std::size_t i = 0; i < words.size(); ++i) words_[i].store(words[i], std::memory_order_release);
     version_.store(version + 2, std::memory_order_release);
   }
@@ -46,7 +46,7 @@ class SeqLock {
  private:
   using Words = std::array<std::uint64_t, (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)>;
 
-  std::atomic<std::uint64_t> version_{0};  ///< odd while a store is under way
+  std::atomic<std::uint64_t> version_{0};  ///< odd while a store is in progress
   std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words_{};
 };
 

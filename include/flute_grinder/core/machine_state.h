@@ -101,6 +101,11 @@ constexpr const char* serviceOf(MachineEvent event) noexcept { return rowOf(even
 /// The state after an event, or nothing where the state does not allow it. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;
 
+/// Whether the drive has power and the loop checks it.
+constexpr bool isPowered(MachineState state) noexcept {
+  return state != MachineState::kDisabled && state != MachineState::kFault;
+}
+
 /// Whether a job is under way, which a cancel would end.
 bool isInJob(MachineState state) noexcept;
 

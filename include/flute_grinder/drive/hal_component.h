@@ -8,13 +8,13 @@
 
 namespace flute_grinder {
 
-/// A user-space component of LinuxCNC's HAL. A pin `<component>.<pin>` belongs to the signal `<pin>`, which the HAL
-/// file makes: so the HAL file is loaded first and stays as it is when the program comes and goes. Not real-time.
+/// A user-space component of LinuxCNC's HAL. A pin `<component>.<pin>` is linked to the signal `<pin>`, which the HAL
+/// file creates: the HAL file is loaded first, and stays loaded when the program starts and ends. Not real-time.
 class HalComponent {
  public:
-  /// Attaches to HAL. A component of the same name that a dead program has left is removed; its signals stay.
+  /// Attaches to HAL. A component of the same name left by a dead program is removed; its signals stay.
   /// @param name of the component, up to 20 characters.
-  /// @throw ParameterError if HAL does not run, gives no permission, or has a living component of that name.
+  /// @throw ParameterError if HAL does not run, denies permission, or has a component of that name whose program runs.
   explicit HalComponent(const std::string& name);
   ~HalComponent();
   HalComponent(const HalComponent&) = delete;
@@ -23,22 +23,22 @@ class HalComponent {
   int id() const { return id_; }
   const std::string& name() const { return name_; }
 
-  /// Memory that HAL can reach, zeroed; pins' pointers must lie in it.
+  /// Zeroed memory that HAL can access, for the pins' pointers.
   /// @throw ParameterError if HAL has none left.
   void* allocate(std::size_t size) const;
 
-  /// Makes a pin and links it with its signal.
+  /// Creates a pin and links it to its signal.
   /// @param name of pin and signal.
   /// @param data where HAL puts the address of the value; from allocate().
-  /// @param required whether the signal must be there; a missing one is told by ready().
+  /// @param required whether the signal must exist; ready() reports the missing ones.
   /// @throw ParameterError if the signal is of another type or has another writer.
   template <typename Value>
   void addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
     addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)), required);
   }
 
-  /// Tells HAL that all pins are there.
-  /// @throw ParameterError that lists the signals that are missing.
+  /// Reports to HAL that all pins exist.
+  /// @throw ParameterError that lists the missing signals.
   void ready() const;
 
  private:
@@ -53,16 +53,16 @@ class HalComponent {
 
   std::string name_;
   int id_ = -1;
-  int helper_ = -1;  ///< a second component, where a dead one was removed
+  int helper_ = -1;  ///< a second component, if a dead one was removed
   std::vector<std::string> missing_;
 };
 
-/// What HAL's shared memory of a key is: there, missing, or not for this user.
+/// Checks that a shared memory of HAL exists and that this user may access it.
 /// @param key as of shmget().
 /// @param what it is, for the message, e.g. "HAL".
-/// @param remedy what to do if it is missing.
+/// @param remedy what to do if it does not exist.
 /// @return its size in bytes.
-/// @throw ParameterError unless it is there and may be read and written.
+/// @throw ParameterError unless it exists and may be read and written.
 std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy);
 
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@ class ParameterError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads parameters of one namespace, and refuses what is missing, of the wrong type or out of range.
+/// Reads parameters of one namespace; rejects one that is missing, of the wrong type or out of range.
 class ParameterReader {
  public:
   /// @param parameters all of the namespace, as a struct.

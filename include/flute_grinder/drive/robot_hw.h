@@ -14,18 +14,18 @@
 
 /// @file
 /// The drive interface, in the shape of ros_control's hardware_interface: the same names, argument orders and meanings,
-/// so that a ros_control driver becomes a driver for the grinder by changing its base class. Beyond it stand
-/// DriveHandle, for what a machine says and hears beside positions, and RobotHW::wait(), since the drive paces the
+/// so that a ros_control driver becomes a driver for the grinder by changing its base class. In addition there are
+/// DriveHandle, for the signals of the machine that belong to no joint, and RobotHW::wait(), since the drive paces the
 /// control loop.
 namespace flute_grinder {
 
-/// A handle or an interface that is not there, or that is there twice.
+/// A handle or an interface that is missing, or a handle with a null pointer.
 class HardwareInterfaceException : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Reads the state of a joint from the driver's memory. Getters are real-time safe.
+/// Reads the state of a joint from the driver's buffers. Getters are real-time safe.
 class JointStateHandle {
  public:
   JointStateHandle() = default;
@@ -53,7 +53,7 @@ class JointHandle : public JointStateHandle {
  public:
   JointHandle() = default;
   /// @param js the joint's state.
-  /// @param cmd where the driver takes the command from [m or rad].
+  /// @param cmd the driver's buffer for the command [m or rad].
   /// @throw HardwareInterfaceException if the pointer is null.
   JointHandle(const JointStateHandle& js, double* cmd);
 
@@ -64,32 +64,32 @@ class JointHandle : public JointStateHandle {
   double* cmd_ = nullptr;
 };
 
-/// What a drive says of itself, beside positions.
+/// What a drive reports besides the joints' states.
 struct DriveStatus {
   bool enabled = false;              ///< power is on, the axes follow their commands
   bool emergency_stop = false;       ///< the emergency stop is pressed
   bool fault = false;                ///< the drive reports a fault of its own
   bool homed = false;                ///< positions refer to the machine's reference
-  bool homing = false;               ///< the axes are looking for it, as they were told
-  bool spindle_at_speed = false;     ///< the wheel turns as fast as it is to grind
+  bool homing = false;               ///< the axes are looking for the reference, as commanded
+  bool spindle_at_speed = false;     ///< the wheel turns at its grinding speed
   bool coolant_on = false;           ///< coolant flows
   bool probe_free = true;            ///< the measuring probe, if there is one, is out of the wheel's way
-  std::uint64_t feedback_count = 0;  ///< goes up with each fresh set of positions
-  /// Of a drive that buffers: how many of the commands written the axes have not got yet, as of these positions.
+  std::uint64_t feedback_count = 0;  ///< incremented with each fresh set of positions
+  /// Of a drive that buffers: how many written commands had not reached the axes when the positions were read.
   std::uint32_t commands_waiting = 0;
   std::uint64_t underruns = 0;  ///< servo cycles since the start in which powered axes found no command
 };
 
-/// The most commands that may wait in a drive's buffer: the loop knows no older ones to compare the positions with.
+/// The most commands that a drive may buffer; the loop keeps as many, to compare the positions with.
 constexpr std::uint32_t kMaxCommandsWaiting = 4095;
 
-/// What a drive is told, beside positions.
+/// What a drive is commanded besides positions.
 struct DriveCommand {
-  bool enable = false;  ///< switch power on, or off: the axes are then stopped by the drive at once
-  bool reset = false;   ///< clear a fault of the drive, for the one cycle in which it is set
-  bool home = false;    ///< look for the machine's reference, as long as it is set; position commands do not count then
+  bool enable = false;   ///< power on; when false, the drive stops the axes at once
+  bool reset = false;    ///< clear a fault of the drive; set for one cycle
+  bool home = false;     ///< look for the machine's reference while set; position commands are then ignored
   bool spindle = false;  ///< turn the wheel
-  bool coolant = false;  ///< let coolant flow
+  bool coolant = false;  ///< coolant on
 };
 
 /// Connects the machine's signals that belong to no joint. Real-time safe but for the constructor.
@@ -157,19 +157,20 @@ class InterfaceManager {
   std::map<std::type_index, void*> interfaces_;
 };
 
-/// A drive. A plugin derives from it, registers a JointStateInterface and a PositionJointInterface with the joints
-/// axis_x, axis_y, axis_z and axis_a, and a DriveInterface with the handle "drive".
+/// A drive. A plugin derives from it, or from AxesHW, which registers a JointStateInterface and a
+/// PositionJointInterface with the joints axis_x, axis_y, axis_z and axis_a, and a DriveInterface with the handle
+/// "drive".
 class RobotHW : public InterfaceManager {
  public:
   virtual ~RobotHW() = default;
 
-  /// Sets the drive up; called once, before anything else, not in the control thread.
+  /// Initialises the drive; called once, before anything else, not in the control thread.
   /// @param root_nh the node's own namespace.
   /// @param robot_hw_nh the drive's namespace, ~hardware, with its parameters.
-  /// @return false if the drive is of no use; the reason belongs in the log, or in an exception.
+  /// @return false if the drive cannot be used; log the reason, or throw it.
   virtual bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) = 0;
 
-  /// Fetches positions and status. Real-time.
+  /// Reads positions and status. Real-time.
   /// @param time of the cycle, for stamps.
   /// @param period since the last cycle, monotonic.
   virtual void read(const ros::Time& time, const ros::Duration& period) = 0;
@@ -177,9 +178,9 @@ class RobotHW : public InterfaceManager {
   /// Sends the commands. Real-time; arguments as of read().
   virtual void write(const ros::Time& time, const ros::Duration& period) = 0;
 
-  /// Blocks until the next cycle is to begin. By default cycles follow the monotonic clock, and ones that were missed
-  /// are left out, never made up for: the axes would have to run faster than planned. A drive with a clock of its own
-  /// overrides this.
+  /// Blocks until the next cycle is due. By default cycles follow the monotonic clock, and missed cycles are skipped,
+  /// never made up for: the axes would have to move faster than planned. A drive with a clock of its own overrides
+  /// this.
   /// @param period nominal control period.
   virtual void wait(const ros::Duration& period);
 

@@ -1,22 +1,21 @@
 #pragma once
 
 #include "flute_grinder/InjectFault.h"
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/drive/axes_hw.h"
 
 #include <atomic>
 
 namespace flute_grinder {
 
-/// A tool grinder in software. Each axis follows its command with a first-order lag and is read through an encoder; an
-/// incremental one reads 0 where the axis stands at the start, until it is homed. Homing takes the axes to their home
-/// positions, one after the other: Y, X, Z, A; the spindle runs up in a given time; coolant flows at once. Tests make
-/// it fail through the service ~hardware/inject_fault.
+/// A simulated tool grinder. Each axis follows its command with a first-order lag and is read through an encoder; an
+/// incremental encoder reads 0 at the start position until the axis is homed. Homing moves the axes to their home
+/// positions, one after the other: Y, X, Z, A. The spindle runs up in a given time; coolant flows at once. The service
+/// ~hardware/inject_fault injects faults.
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
 /// `absolute_encoders`, `spindle_run_up_time` [s].
-class SimulatedDrive : public RobotHW {
+class SimulatedDrive : public AxesHW {
  public:
   /// How one axis behaves.
   struct AxisModel {
@@ -28,7 +27,7 @@ class SimulatedDrive : public RobotHW {
   };
   using Model = std::array<AxisModel, kAxisCount>;
 
-  /// How the rest behaves.
+  /// How encoders and spindle behave.
   struct Equipment {
     bool absolute_encoders = true;   ///< homed from the start
     double spindle_run_up_time = 0;  ///< [s]
@@ -50,11 +49,11 @@ class SimulatedDrive : public RobotHW {
   void read(const ros::Time& time, const ros::Duration& period) override;
   void write(const ros::Time& time, const ros::Duration& period) override;
 
-  /// Sets the drive up without ROS.
+  /// Initialises the drive without ROS.
   void init(const Model& model, const Equipment& equipment);
 
-  /// Makes the drive fail from the next read() on, or takes all faults back (kNone); a drive fault stays until it is
-  /// reset. Thread safe.
+  /// Injects a fault from the next read() on, or removes all (kNone); a drive fault stays until it is reset. Thread
+  /// safe.
   /// @param axis of kStuckAxis and kNanFeedback.
   void inject(Fault fault, int axis = kX);
 
@@ -70,18 +69,11 @@ class SimulatedDrive : public RobotHW {
   std::atomic<std::uint16_t> injected_{0};  ///< fault and axis in one word
   ros::ServiceServer inject_service_;
 
-  Axes motor_ = Axes::Zero();   ///< where the axes really are
-  Axes offset_ = Axes::Zero();  ///< of what the encoders read
+  Axes motor_ = Axes::Zero();   ///< true positions of the axes
+  Axes offset_ = Axes::Zero();  ///< of the encoders' readings
   bool home_was_commanded_ = false;
-  double spindle_speed_ = 0;  ///< of the full one
-  std::array<double, kAxisCount> position_{}, velocity_{}, effort_{}, command_{};
-  std::array<double, kAxisCount> sent_{};  ///< commands as of the last write()
-  DriveStatus status_;
-  DriveCommand drive_command_;
-
-  JointStateInterface joint_states_;
-  PositionJointInterface joint_commands_;
-  DriveInterface drive_;
+  double spindle_speed_ = 0;  ///< fraction of full speed
+  Buffer sent_{};             ///< commands as of the last write()
 };
 
 }  // namespace flute_grinder

@@ -102,7 +102,6 @@ class Diagnostics {
   std::mutex mutex_;  ///< guards all below
   CycleRecord last_;
   std::string journal_error_;
-  double feedback_age_ = 0;  ///< [s]
   LimitCheck limit_check_;
   std::uint64_t next_setpoint_ = 0;  ///< its cycle
   int unknown_setpoints_ = 0;        ///< how many are yet to come whose past is not all known

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "flute_grinder/control/loop_requests.h"
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+namespace flute_grinder {
+
+/// One request at a time from one thread to the control loop, and its answer. Neither side ever waits for the other.
+template <typename Request>
+class RequestSlot {
+ public:
+  /// For the requesting thread.
+  /// @return false while the previous request is unanswered; an answer that nobody has read is dropped.
+  bool post(const Request& request) noexcept {
+    const Stage stage = stage_.load(std::memory_order_acquire);
+    if (stage == Stage::kPosted || stage == Stage::kTaken) return false;
+    request_ = request;
+    stage_.store(Stage::kPosted, std::memory_order_release);
+    return true;
+  }
+  /// For the requesting thread: the answer, once.
+  std::optional<Answer> reply() noexcept {
+    if (stage_.load(std::memory_order_acquire) != Stage::kAnswered) return std::nullopt;
+    const Answer answer = answer_;
+    stage_.store(Stage::kFree, std::memory_order_relaxed);
+    return answer;
+  }
+
+  /// For the loop: the posted request, once.
+  std::optional<Request> take() noexcept {
+    if (stage_.load(std::memory_order_acquire) != Stage::kPosted) return std::nullopt;
+    stage_.store(Stage::kTaken, std::memory_order_relaxed);
+    return request_;
+  }
+  /// For the loop: answers the request that it took, in the same cycle or later.
+  void answer(const Answer& answer) noexcept {
+    answer_ = answer;
+    stage_.store(Stage::kAnswered, std::memory_order_release);
+  }
+
+ private:
+  enum class Stage : std::uint8_t { kFree, kPosted, kTaken, kAnswered };
+
+  std::atomic<Stage> stage_{Stage::kFree};
+  Request request_{};
+  Answer answer_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,176 @@
+#include "flute_grinder/control/control_loop.h"
+
+// How the cycle executes requests; all of it is real-time.
+namespace flute_grinder {
+
+void ControlLoop::executeRequests() {
+  // Taken first, executed last: a stop also stops whatever was requested before it.
+  const StopRequests::Taken stops = takeStops();
+  if (const auto job = takeJobStart()) answerJobStart(answerTo(MachineEvent::kStart, beginJob(*job)));
+  if (const auto event = takeRequest()) executeRequest(*event);
+  for (const MachineEvent stop : StopRequests::kStops) {
+    if (!stops.has(stop)) continue;
+    const Answer answer = answerTo(stop, execute(stop));
+    if (stops.wantsReply(stop)) answerStop(answer);
+  }
+}
+
+void ControlLoop::executeRequest(MachineEvent event) {
+  const Refusal refusal = isTrigger(event) ? execute(event) : Refusal::kState;
+  // Power takes its time: awaitPower() answers.
+  if (!awaiting_power_) answerRequest(answerTo(event, refusal));
+}
+
+Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
+  return {event, state_, refusal, openInterlock(record_.drive), liftTarget(), config_.machine.limits.max_position[kY]};
+}
+
+Refusal ControlLoop::execute(MachineEvent event) {
+  if (!after(state_, event)) return Refusal::kState;
+  if (isStop(event)) return executeStop(event);
+  switch (event) {
+    case MachineEvent::kEnable: return enable();
+    case MachineEvent::kHome: return home();
+    case MachineEvent::kResume: return resume();
+    case MachineEvent::kRetract: return retract();
+    case MachineEvent::kLift: return lift();
+    case MachineEvent::kReset: return reset();
+    default: return Refusal::kState;
+  }
+}
+
+Refusal ControlLoop::executeStop(MachineEvent event) {
+  const bool off = event == MachineEvent::kDisable;
+  if (stream_) {
+    power_off_next_ |= off;
+    // A wheel that is being lifted goes on to the height at which a canceled job leaves it.
+    const bool lifting = state_ == MachineState::kCanceling || state_ == MachineState::kRetracting;
+    const bool hold = event == MachineEvent::kHold;
+    if (hold || !lifting) stream_->hold();
+    if (hold && state_ == MachineState::kCanceling) may_lift_off_ = false;
+  } else if (state_ == MachineState::kLifting) {
+    power_off_next_ |= off;
+    lift_.hold();
+  } else if (state_ == MachineState::kFault) {
+    return Refusal::kNone;
+  } else {
+    switchOff();
+    return Refusal::kNone;
+  }
+  apply(event);
+  return Refusal::kNone;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Power
+
+Refusal ControlLoop::enable() {
+  const Refusal refusal = drive_checks_.powerRefusal(record_);
+  if (refusal != Refusal::kNone || isPowered(state_)) return refusal;
+  drive_command_.enable = true;
+  awaiting_power_ = true;
+  waited_ = 0;
+  return Refusal::kNone;
+}
+
+void ControlLoop::awaitPower() {
+  if (!awaiting_power_) return;
+  waited_ += record_.period;
+  const Refusal refusal = drive_checks_.powerRefusal(record_);
+  if (refusal != Refusal::kNone) {
+    drive_command_.enable = false;
+    answerEnable(refusal);
+  } else if (record_.drive.enabled) {
+    drive_checks_.powerOn(record_.drive);
+    apply(MachineEvent::kEnable);
+    answerEnable(Refusal::kNone);
+  } else if (!(waited_ <= config_.enable_timeout)) {
+    drive_command_.enable = false;
+    answerEnable(Refusal::kNoPower);
+  }
+}
+
+void ControlLoop::answerEnable(Refusal refusal) {
+  awaiting_power_ = false;
+  answerRequest(answerTo(MachineEvent::kEnable, refusal));
+}
+
+void ControlLoop::switchOff() {
+  drive_command_.enable = false;
+  if (awaiting_power_) answerEnable(Refusal::kWithdrawn);
+  power_off_next_ = false;
+  apply(MachineEvent::kDisable);
+}
+
+Refusal ControlLoop::reset() {
+  if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
+  drive_command_.reset = true;
+  record_.fault = LoopFault{};
+  apply(MachineEvent::kReset);
+  return Refusal::kNone;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Motion
+
+Refusal ControlLoop::home() {
+  if (wheel_.wheel().in_work) return Refusal::kInWork;
+  homing_seen_ = false;
+  waited_ = 0;
+  apply(MachineEvent::kHome);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::beginJob(const JobStart& job) {
+  if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
+  if (wheel_.wheel().in_work) return Refusal::kInWork;
+  if (!record_.drive.homed) return Refusal::kInterlock;
+  if (!(job.stream->program().start() == command_).all()) return Refusal::kMoved;
+  stream_ = job.stream;
+  wheel_.startJob(job.wheel);
+  limit_check_.restart();
+  record_.fault = LoopFault{};
+  record_.interlock = Interlock::kNone;
+  record_.job_ended = false;  // of a previous job whose record was lost
+  next_status_.end = JobEnd::kNone;
+  next_status_.fault = LoopFault{};
+  next_status_.place = Place{};
+  next_status_.strokes_ended_at = 0;
+  written_ = JobTrack{};
+  written_.job = record_.job = ++next_status_.jobs_started;
+  waited_ = 0;
+  may_lift_off_ = true;
+  power_off_next_ = false;
+  apply(MachineEvent::kStart);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::resume() {
+  // A job that has not begun goes on waiting for its interlocks.
+  const bool starting = state_ == MachineState::kStarting;
+  if (!starting && openInterlock(record_.drive) != Interlock::kNone) return Refusal::kInterlock;
+  record_.interlock = Interlock::kNone;
+  stream_->resume();
+  apply(MachineEvent::kResume);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::retract() {
+  stream_->retract();
+  apply(MachineEvent::kRetract);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::lift() {
+  if (!wheel_.wheel().in_work) return Refusal::kNotInWork;
+  if (!(liftTarget() <= config_.machine.limits.max_position[kY])) return Refusal::kLiftTooFar;
+  lift_.begin(command_, liftTarget());
+  limit_check_.restart();
+  power_off_next_ = false;
+  apply(MachineEvent::kLift);
+  return Refusal::kNone;
+}
+
+double ControlLoop::liftTarget() const { return wheel_.liftTarget(record_.drive.homed, command_[kY]); }
+
+}  // namespace flute_grinder

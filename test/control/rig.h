@@ -1,0 +1,218 @@
+#pragma once
+
+#include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/setpoint_stream.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+// Runs the control loop cycle by cycle, without its thread and without ROS.
+namespace flute_grinder::test_support {
+
+/// A drive and its loop; every cycle's record is popped into the log.
+template <typename Drive>
+class Rig {
+ public:
+  explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {}) : config_(config) {
+    setUp(drive, config);
+    loop = std::make_unique<ControlLoop>(drive, config, wheel);
+  }
+
+  /// With a drive that `prepare` sets up.
+  template <typename Prepare>
+  Rig(const LoopConfig& config, const Prepare& prepare) : config_(config) {
+    prepare(drive);
+    loop = std::make_unique<ControlLoop>(drive, config);
+  }
+
+  /// @param periods since the last cycle.
+  const CycleRecord& cycle(double periods = 1) {
+    const ros::Duration period(periods * config_.machine.period);
+    time_ += period;
+    loop->cycle(time_, period);
+    CycleRecord record;
+    if (!loop->pop(record)) ADD_FAILURE() << "a cycle left no record";
+    log.push_back(record);
+    return log.back();
+  }
+
+  const CycleRecord& run(int cycles) {
+    for (int i = 0; i < cycles; ++i) cycle();
+    return log.back();
+  }
+
+  /// Posts a request and runs cycles until it is answered.
+  /// @param job for kStart.
+  RequestReply ask(MachineEvent event, SetpointStream* job = nullptr) {
+    if (event == MachineEvent::kStart) return askToStart(*job);
+    if (isStop(event)) {
+      const std::uint32_t ticket = loop->postStopWithReply(event);
+      return answerOf([&] { return loop->stopReply(event, ticket); });
+    }
+    EXPECT_TRUE(loop->post(event)) << "the request was not taken";
+    return answerOf([&] { return loop->reply(); });
+  }
+
+  /// Requests to start a job and runs cycles until the request is answered.
+  RequestReply askToStart(SetpointStream& job) {
+    EXPECT_TRUE(loop->startJob(&job)) << "the start was not taken";
+    return answerOf([&] { return loop->startJobReply(); });
+  }
+
+  /// Runs cycles until there is an answer.
+  template <typename Poll>
+  RequestReply answerOf(const Poll& poll) {
+    for (int i = 0; i < 15; ++i) {
+      cycle();
+      if (const std::optional<RequestReply> answer = poll()) return *answer;
+    }
+    ADD_FAILURE() << "no answer within 15 cycles";
+    return {};
+  }
+
+  void enable() {
+    const RequestReply answer = ask(MachineEvent::kEnable);
+    ASSERT_TRUE(answer.accepted) << answer.text;
+  }
+
+  /// The paper's job from the commanded position; the machine may differ from the loop's.
+  SetpointStream paperStream(const Machine& machine) const {
+    static const GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+    return SetpointStream(GrindProgram(job, machine, last().command));
+  }
+  SetpointStream paperStream() const { return paperStream(config_.machine); }
+
+  /// Starts a job and runs until spindle and coolant let it run; the next cycle writes its first setpoint.
+  void start(SetpointStream& job) {
+    const RequestReply answer = askToStart(job);
+    ASSERT_TRUE(answer.accepted) << answer.text;
+    if (last().state != MachineState::kRunning) runUntil(MachineState::kRunning);
+  }
+
+  /// Enables and starts the paper's job.
+  void startPaper() {
+    enable();
+    stream.emplace(paperStream());
+    start(*stream);
+  }
+
+  /// Runs until a state is reached.
+  void runUntil(MachineState state) {
+    for (int i = 0; i < 100000; ++i) {
+      if (cycle().state == state) return;
+    }
+    FAIL() << "never " << toString(state) << ", but " << toString(last().state);
+  }
+
+  /// Runs the job that has been started until the setpoint of a cycle.
+  void runToCycle(std::uint64_t number) {
+    for (int i = 0; i < 100000; ++i) {
+      if (last().has_setpoint && last().setpoint.cycle == number) return;
+      cycle();
+    }
+    FAIL() << "no cycle " << number;
+  }
+
+  /// Runs the job that has been started until its first setpoint of a kind of move.
+  void runTo(MoveKind move) {
+    for (int i = 0; i < 100000; ++i) {
+      if (last().has_setpoint && last().setpoint.move == move) return;
+      const bool moves = last().state == MachineState::kRunning || last().state == MachineState::kResuming;
+      ASSERT_TRUE(moves) << toString(last().state) << ", and the job has no " << toString(move);
+      cycle();
+    }
+    FAIL() << "no " << toString(move);
+  }
+
+  /// Runs until the job has ended.
+  void runToEnd() {
+    for (int i = 0; i < 100000; ++i) {
+      if (cycle().job_ended) return;
+    }
+    FAIL() << "the job does not end";
+  }
+
+  const CycleRecord& last() const { return log.back(); }
+
+  int jobsEnded() const {
+    int count = 0;
+    for (const CycleRecord& record : log) count += record.job_ended;
+    return count;
+  }
+
+  std::vector<Setpoint> setpoints() const {
+    std::vector<Setpoint> all;
+    for (const CycleRecord& record : log) {
+      if (record.has_setpoint) all.push_back(record.setpoint);
+    }
+    return all;
+  }
+
+  Drive drive;
+  std::unique_ptr<ControlLoop> loop;
+  std::vector<CycleRecord> log;
+  std::optional<SetpointStream> stream;
+
+ private:
+  LoopConfig config_;
+  ros::Time time_{1000};
+};
+
+/// Names a test by its state.
+inline std::string stateName(const testing::TestParamInfo<S>& info) { return toString(info.param); }
+
+/// Brings the machine to a state by requests and cycles; if that takes a job, it is the paper's, in the middle of its
+/// stroke.
+inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
+  rig.cycle();
+  if (state == S::kDisabled) return;
+  if (state == S::kReady) return rig.enable();
+  if (state == S::kHoming) {
+    rig.enable();
+    ASSERT_TRUE(rig.ask(E::kHome).accepted);
+  } else if (state == S::kStarting) {
+    rig.enable();
+    rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
+    rig.stream.emplace(rig.paperStream());
+    ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
+  } else {
+    ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+    ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+    rig.run(1000);
+    const auto ask = [&](E event) {
+      const RequestReply answer = rig.ask(event);
+      ASSERT_TRUE(answer.accepted) << answer.text;
+    };
+    if (state == S::kCanceling) {
+      ask(E::kCancel);
+    } else if (state == S::kFault) {
+      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
+      rig.cycle();
+      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = false; };
+      rig.cycle();
+    } else if (state == S::kLifting) {
+      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
+      rig.cycle();
+      rig.drive.on_read = nullptr;
+      rig.drive.status.fault = false;
+      rig.cycle();
+      ask(E::kReset);
+      ask(E::kEnable);
+      ask(E::kLift);
+      rig.run(30);
+    } else if (state != S::kRunning) {
+      ask(E::kHold);
+      if (state != S::kHolding) rig.runUntil(S::kHeld);
+      if (state == S::kRetracting || state == S::kRetracted || state == S::kResuming) ask(E::kRetract);
+      if (state == S::kRetracted || state == S::kResuming) rig.runUntil(S::kRetracted);
+      if (state == S::kResuming) ask(E::kResume);
+    }
+  }
+  ASSERT_EQ(rig.last().state, state) << toString(rig.last().state);
+}
+
+}  // namespace flute_grinder::test_support

@@ -1,0 +1,161 @@
+#include "control/checks.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <cmath>
+#include <tuple>
+
+// Cancel.
+namespace flute_grinder::test_support {
+namespace {
+
+class Cancel : public testing::TestWithParam<std::tuple<MoveKind, int>> {
+ protected:
+  void SetUp() override {
+    rig_.cycle();
+    rig_.startPaper();
+    ASSERT_NO_FATAL_FAILURE(rig_.runTo(std::get<0>(GetParam())));
+    rig_.run(40 + std::get<1>(GetParam()));
+    ASSERT_EQ(rig_.last().setpoint.move, std::get<0>(GetParam()));
+    last_before_ = rig_.last().setpoint.cycle;
+    ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
+  }
+
+  Rig<SimulatedDrive> rig_;
+  std::uint64_t last_before_ = 0;
+};
+
+TEST_P(Cancel, StopsAsAStreamHeldInTheSameCycleAndLiftsTheWheelOffTheWork) {
+  EXPECT_EQ(rig_.last().state, S::kCanceling);
+  rig_.runToEnd();
+  SetpointStream stream = paperFromPark();
+  EXPECT_LT(rig_.setpoints().size(), planned().size());
+  std::vector<Setpoint> expected;
+  Setpoint p;
+  while (expected.size() <= last_before_ && stream.next(p)) expected.push_back(p);
+  stream.hold();
+  while (stream.next(p)) expected.push_back(p);
+  if (expected.back().position[kY] < kClearanceHeight - 1e-12) {
+    stream.retract();
+    while (stream.next(p)) expected.push_back(p);
+  }
+  EXPECT_NEAR(std::min(expected.back().position[kY], kClearanceHeight), kClearanceHeight, 1e-12);
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), expected));
+}
+
+TEST_P(Cancel, IsCancelingUntilTheAxesRestThenReady) {
+  const std::size_t from = rig_.log.size();
+  rig_.runToEnd();
+  for (std::size_t i = from; i + 1 < rig_.log.size(); ++i) {
+    ASSERT_EQ(rig_.log[i].state, S::kCanceling);
+    ASSERT_TRUE(rig_.log[i].has_setpoint);
+  }
+  EXPECT_GT(rig_.log.size(), from + 2) << "a moving axis takes some cycles to stop";
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_FALSE(rig_.last().has_setpoint);
+}
+
+TEST_P(Cancel, EndsTheJobOnceAndRests) {
+  rig_.runToEnd();
+  const Axes rest = rig_.last().command;
+  rig_.run(100);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
+  EXPECT_TRUE(sameBits(rig_.last().command, rest));
+  EXPECT_EQ(rig_.last().state, S::kReady);
+}
+
+TEST_P(Cancel, StopsWithinTheLimitsOfAcceleration) {
+  rig_.runToEnd();
+  rig_.run(4);
+  // Over pairs, since within one the odd-even steps are not the path's.
+  const Axes limit = machineConfig().machine.limits.max_acceleration;
+  const std::size_t last = rig_.log.size() - 1;
+  // An even number of setpoints after the first: the log's last setpoint ends a pair, and so does every second before.
+  for (std::size_t i = last - 4; i > last - 44; i -= 2) {
+    const Axes bend = rig_.log[i + 1].command - 2 * rig_.log[i - 1].command + rig_.log[i - 3].command;
+    ASSERT_TRUE((bend.abs() / (0.002 * 0.002) <= limit * 1.001).all()) << bend.transpose() / (0.002 * 0.002);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Cancel,
+                         testing::Combine(testing::Values(MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach,
+                                                          MoveKind::kInfeed, MoveKind::kStroke, MoveKind::kRetract,
+                                                          MoveKind::kReturn),
+                                          testing::Values(0, 1)),
+                         [](const testing::TestParamInfo<std::tuple<MoveKind, int>>& info) {
+                           return std::string(toString(std::get<0>(info.param))) +
+                                  (std::get<1>(info.param) ? "_mid_pair" : "_pair_end");
+                         });
+
+TEST(ControlLoopCancel, RestsOnTheHelix) {
+  Rig<SimulatedDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  rig.runTo(MoveKind::kStroke);
+  rig.run(500);
+  ASSERT_TRUE(rig.ask(E::kCancel).accepted);
+  rig.runToEnd();
+  const Axes rest = rig.last().command;
+  ASSERT_GT(rest[kX], 0.001) << "cancelled well within the flute";
+  ASSERT_LT(rest[kX], 0.030);
+  const double a = kK / kB * std::log1p(kB * rest[kX]);
+  // 1 um across the helix, at the largest radius of the flute, which gives the least angle.
+  const double radius = 0.005 + 0.030 * kTanCone;
+  EXPECT_NEAR(rest[kA], a, 1e-6 / (radius * std::cos(30 * kDegree)) * 1.2);
+}
+
+class CancelIn : public testing::TestWithParam<S> {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
+    before_ = rig_.log.size() - 1;
+    ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
+    EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
+    for (int i = 0; i < 1000 && rig_.last().state == S::kCanceling; ++i) rig_.cycle();
+  }
+
+  Rig<FakeDrive> rig_;
+  std::size_t before_ = 0;  ///< last record before the request
+};
+
+TEST_P(CancelIn, EndsTheJobReadyAndAtRest) {
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_TRUE(rig_.last().job_ended);
+  const std::size_t ended = rig_.log.size() - 1;
+  rig_.run(100);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
+  EXPECT_TRUE(atRestFrom(rig_.log, ended));
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(CancelIn, MovesNothingThatStoodButTheWheelOffTheWork) {
+  const Axes& before = rig_.log[before_].command;
+  const Axes& now = rig_.last().command;
+  EXPECT_GE(now[kY], kClearanceHeight - 1e-12);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+  if (GetParam() == S::kStarting || GetParam() == S::kRetracted) {
+    EXPECT_TRUE(sameBits(now, before));
+  } else if (GetParam() == S::kHeld) {
+    EXPECT_TRUE(sameBits(now, Axes(before[kX], now[kY], before[kZ], before[kA])));
+  }
+}
+
+TEST_P(CancelIn, LetsANewJobRun) {
+  rig_.drive.on_read = nullptr;
+  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
+  rig_.log.front().job_ended = false;
+  rig_.stream.emplace(rig_.paperStream());
+  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
+  rig_.runToEnd();
+  expectCompleted(rig_);
+}
+
+INSTANTIATE_TEST_SUITE_P(, CancelIn,
+                         testing::Values(S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
+                                         S::kRetracted, S::kResuming),
+                         stateName);
+
+}  // namespace
+}  // namespace flute_grinder::test_support

@@ -1,0 +1,458 @@
+#include "control/checks.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <cmath>
+#include <limits>
+
+// Faults, and how the machine recovers from them.
+namespace flute_grinder::test_support {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct FaultCase {
+  std::string name;
+  std::function<void(FakeDrive&)> spoil;
+  int cycles;  ///< until it is to be seen
+  FaultKind kind;
+  int axis;
+  std::vector<std::string> words;
+};
+std::ostream& operator<<(std::ostream& out, const FaultCase& c) { return out << c.name; }
+
+std::vector<FaultCase> faultCases() {
+  std::vector<FaultCase> cases{
+      {"EmergencyStop",
+       [](FakeDrive& d) { d.status.emergency_stop = true; },
+       1,
+       FaultKind::kEmergencyStop,
+       0,
+       {"emergency stop"}},
+      {"DriveFault",
+       [](FakeDrive& d) { d.status.fault = true; },
+       1,
+       FaultKind::kDriveFault,
+       0,
+       {"the drive reports a fault"}},
+      {"PowerLost",
+       [](FakeDrive& d) { d.status.enabled = false; },
+       1,
+       FaultKind::kPowerLost,
+       0,
+       {"switched its power off"}},
+      // Fresh positions may be missing for 2.5 periods.
+      {"StaleFeedback",
+       [](FakeDrive& d) { --d.status.feedback_count; },
+       3,
+       FaultKind::kStaleFeedback,
+       0,
+       {"no fresh positions", "for 0.003 s", "allowed 0.0025 s"}},
+      {"FullTurn",
+       [](FakeDrive& d) { d.position[kA] += 2 * std::acos(-1.0); },
+       1,
+       FaultKind::kFollowingError,
+       kA,
+       {"axis_a following error 6.2831", " rad", "limit 0.05 rad"}},
+      {"FullTurnBack",
+       [](FakeDrive& d) { d.position[kA] -= 2 * std::acos(-1.0); },
+       1,
+       FaultKind::kFollowingError,
+       kA,
+       {"axis_a following error 6.2831", " rad", "limit 0.05 rad"}},
+  };
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string letter(1, "XYZA"[axis]);
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    const auto n = static_cast<std::size_t>(axis);
+    cases.push_back({"Nan" + letter,
+                     [=](FakeDrive& d) { d.position[n] = kNan; },
+                     1,
+                     FaultKind::kInvalidFeedback,
+                     axis,
+                     {joint + " position", "nan"}});
+    cases.push_back({"Infinite" + letter,
+                     [=](FakeDrive& d) { d.position[n] = -HUGE_VAL; },
+                     1,
+                     FaultKind::kInvalidFeedback,
+                     axis,
+                     {joint + " position", "-inf"}});
+    const double limit = axis == kA ? 0.05 : 0.001;
+    const std::vector<std::string> words{joint + " following error", axis == kA ? "0.0501 rad" : "0.001002 m",
+                                         axis == kA ? "limit 0.05 rad" : "limit 0.001 m"};
+    for (const double side : {1.0, -1.0}) {
+      cases.push_back({"Following" + letter + (side > 0 ? "Ahead" : "Behind"),
+                       [=](FakeDrive& d) { d.position[n] += side * limit * 1.002; }, 1, FaultKind::kFollowingError,
+                       axis, words});
+    }
+  }
+  return cases;
+}
+
+class FaultWhileRunning : public testing::TestWithParam<FaultCase> {
+ protected:
+  void SetUp() override {
+    rig_.cycle();
+    rig_.startPaper();
+    ASSERT_NO_FATAL_FAILURE(rig_.runTo(MoveKind::kStroke));
+    rig_.run(100);
+    rig_.drive.on_read = GetParam().spoil;
+    for (int i = 1; i < GetParam().cycles; ++i) {
+      rig_.cycle();
+      ASSERT_EQ(rig_.last().state, S::kRunning) << "seen too early, in cycle " << i;
+    }
+    last_written_ = toAxes(rig_.drive.written);
+    rig_.cycle();
+  }
+
+  Rig<FakeDrive> rig_;
+  Axes last_written_ = Axes::Zero();
+};
+
+TEST_P(FaultWhileRunning, IsSeenInTheSameCycle) {
+  EXPECT_EQ(rig_.last().state, S::kFault);
+  EXPECT_EQ(rig_.last().fault.kind, GetParam().kind);
+  EXPECT_EQ(rig_.last().fault.axis, GetParam().axis);
+}
+
+TEST_P(FaultWhileRunning, SwitchesPowerOffInTheSameCycle) { EXPECT_FALSE(rig_.drive.written_drive.enable); }
+
+TEST_P(FaultWhileRunning, LeavesTheCommandsAsLastWritten) {
+  EXPECT_FALSE(rig_.last().has_setpoint);
+  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), last_written_));
+  EXPECT_TRUE(sameBits(rig_.last().command, last_written_));
+}
+
+TEST_P(FaultWhileRunning, NoSetpointIsEverWrittenAfterIt) {
+  for (int i = 0; i < 100; ++i) {
+    rig_.cycle();
+    ASSERT_EQ(rig_.last().state, S::kFault);
+    ASSERT_FALSE(rig_.last().has_setpoint);
+    ASSERT_FALSE(rig_.drive.written_drive.enable);
+    ASSERT_TRUE(sameBits(toAxes(rig_.drive.written), last_written_));
+  }
+}
+
+TEST_P(FaultWhileRunning, EndsTheJobOnce) {
+  EXPECT_TRUE(rig_.last().job_ended);
+  rig_.run(100);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
+}
+
+TEST_P(FaultWhileRunning, IsToldInWords) {
+  for (const std::string& word : GetParam().words) EXPECT_CONTAINS(rig_.last().fault.text(), word);
+}
+
+TEST_P(FaultWhileRunning, StaysWhenItsCauseGoesAway) {
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
+  rig_.run(100);
+  EXPECT_EQ(rig_.last().state, S::kFault);
+  EXPECT_EQ(rig_.last().fault.kind, GetParam().kind);
+  EXPECT_FALSE(rig_.drive.written_drive.enable);
+}
+
+TEST_P(FaultWhileRunning, NothingMovesAfterReset) {
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
+  rig_.cycle();
+  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+  EXPECT_EQ(rig_.last().state, S::kDisabled);
+  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
+  const std::size_t written = rig_.setpoints().size();
+  const Axes rest = toAxes(rig_.drive.position);
+  for (int i = 0; i < 100; ++i) {
+    rig_.cycle();
+    ASSERT_FALSE(rig_.drive.written_drive.enable);
+    ASSERT_TRUE(sameBits(toAxes(rig_.drive.written), rest) || !rest.isFinite().all());
+  }
+  EXPECT_EQ(rig_.setpoints().size(), written);
+}
+
+TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
+  // Someone has pushed the axes meanwhile.
+  const Axes pushed(-0.04, 0.04, 0.001, 0.3);
+  rig_.drive.place(pushed);
+  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  rig_.run(20);
+  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), pushed));
+  EXPECT_TRUE(sameBits(rig_.last().position, pushed));
+  const std::size_t before = rig_.setpoints().size();
+  SetpointStream stream = rig_.paperStream();
+  const std::vector<Setpoint> planned = allSetpoints(stream);
+  ASSERT_TRUE(rig_.askToStart(stream).accepted);
+  rig_.runToEnd();
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_EQ(rig_.setpoints().size() - before, planned.size());
+  EXPECT_EQ(rig_.jobsEnded(), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(, FaultWhileRunning, testing::ValuesIn(faultCases()),
+                         [](const testing::TestParamInfo<FaultCase>& info) { return info.param.name; });
+
+TEST(ControlLoopFault, IsSeenWhileCancelingToo) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
+  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig.cycle();
+  EXPECT_EQ(rig.last().state, S::kFault);
+  EXPECT_TRUE(rig.last().job_ended);
+  EXPECT_FALSE(rig.last().has_setpoint);
+}
+
+TEST(ControlLoopFault, AtRestEndsNoJob) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
+  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig.run(10);
+  EXPECT_EQ(rig.last().state, S::kFault);
+  EXPECT_EQ(rig.jobsEnded(), 0);
+}
+
+TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
+  SetpointStream stream = rig.paperStream();
+  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  const RequestReply answer = rig.askToStart(stream);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_CONTAINS(answer.text, "state fault");
+  rig.run(10);
+  EXPECT_TRUE(rig.setpoints().empty());
+}
+
+TEST(ControlLoopFault, KeepsItsFirstCause) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  rig.drive.on_read = [](FakeDrive& d) { d.position[kZ] += 0.01; };
+  rig.cycle();
+  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig.run(5);
+  EXPECT_EQ(rig.last().fault.kind, FaultKind::kFollowingError);
+}
+
+TEST(ControlLoopReset, IsRefusedWhileTheEmergencyStopIsPressed) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig.cycle();
+  const RequestReply answer = rig.ask(E::kReset);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_CONTAINS(answer.text, "emergency stop is pressed");
+  EXPECT_EQ(rig.last().state, S::kFault);
+  EXPECT_FALSE(rig.drive.written_drive.reset);
+}
+
+TEST(ControlLoopReset, TellsTheDriveForOneCycle) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
+  EXPECT_FALSE(rig.drive.written_drive.reset);
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  EXPECT_TRUE(rig.drive.written_drive.reset);
+  rig.cycle();
+  EXPECT_FALSE(rig.drive.written_drive.reset);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Following error, to the last bit. The limit is a power of two and the axes stand at zero: no rounding is in the way.
+
+class FollowingErrorLimit : public testing::TestWithParam<int> {
+ protected:
+  FollowingErrorLimit() : rig_(atZero()) {
+    rig_.cycle();
+    rig_.enable();
+  }
+
+  static LoopConfig atZero() {
+    LoopConfig config = machineConfig();
+    config.machine.park = Axes::Zero();
+    config.following_error.setConstant(0x1p-10);
+    return config;
+  }
+
+  S stateAt(double error) {
+    rig_.drive.on_read = [=](FakeDrive& d) { d.position[static_cast<std::size_t>(GetParam())] = error; };
+    return rig_.run(3).state;
+  }
+
+  Rig<FakeDrive> rig_;
+};
+
+TEST_P(FollowingErrorLimit, IsAllowedItself) {
+  EXPECT_EQ(stateAt(0x1p-10), S::kReady);
+  EXPECT_EQ(stateAt(-0x1p-10), S::kReady);
+}
+
+TEST_P(FollowingErrorLimit, NextNumberAboveIsAFault) { EXPECT_EQ(stateAt(std::nextafter(0x1p-10, 1.0)), S::kFault); }
+
+TEST_P(FollowingErrorLimit, NextNumberBelowItsNegativeIsAFault) {
+  EXPECT_EQ(stateAt(std::nextafter(-0x1p-10, -1.0)), S::kFault);
+}
+
+TEST_P(FollowingErrorLimit, IsTheAxisOwn) {
+  LoopConfig config = atZero();
+  config.following_error[GetParam()] = 0x1p-5;
+  Rig<FakeDrive> rig(config);
+  rig.cycle();
+  rig.enable();
+  rig.drive.on_read = [&](FakeDrive& d) { d.position[static_cast<std::size_t>(GetParam())] = 0x1p-6; };
+  EXPECT_EQ(rig.run(3).state, S::kReady);
+}
+
+INSTANTIATE_TEST_SUITE_P(Axis, FollowingErrorLimit, testing::Values(kX, kY, kZ, kA),
+                         [](const testing::TestParamInfo<int>& info) { return std::string(1, "XYZA"[info.param]); });
+
+TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
+  for (int i = 0; i < 5; ++i) {
+    rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
+    rig.run(2);
+    rig.drive.on_read = nullptr;
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.last().state, S::kReady);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Faults injected into the simulated drive
+
+struct InjectedCase {
+  const char* name;
+  SimulatedDrive::Fault fault;
+  int axis;
+  FaultKind kind;
+};
+std::ostream& operator<<(std::ostream& out, const InjectedCase& c) { return out << c.name; }
+
+class InjectedFault : public testing::TestWithParam<InjectedCase> {};
+
+TEST_P(InjectedFault, EndsTheJobAndTheMachineRecovers) {
+  Rig<SimulatedDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  rig.runTo(MoveKind::kStroke);
+  rig.run(500);
+  rig.drive.inject(GetParam().fault, GetParam().axis);
+  for (int i = 0; i < 1000 && rig.last().state == S::kRunning; ++i) rig.cycle();
+  ASSERT_EQ(rig.last().state, S::kFault);
+  EXPECT_EQ(rig.last().fault.kind, GetParam().kind);
+  EXPECT_EQ(rig.last().fault.axis, GetParam().axis);
+  EXPECT_EQ(rig.jobsEnded(), 1);
+  rig.cycle();
+  EXPECT_FALSE(rig.last().drive.enabled);
+
+  rig.drive.inject(SimulatedDrive::Fault::kNone);
+  rig.cycle();
+  const Axes rest = rig.last().position;
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  rig.cycle();
+  ASSERT_NO_FATAL_FAILURE(rig.enable());
+  rig.run(50);
+  EXPECT_TRUE(sameBits(rig.last().position, rest)) << "power on moved an axis";
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
+  rig.stream.emplace(rig.paperStream());
+  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
+  rig.runToEnd();
+  EXPECT_EQ(rig.last().state, S::kReady);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , InjectedFault,
+    testing::Values(InjectedCase{"EmergencyStop", SimulatedDrive::Fault::kEmergencyStop, 0, FaultKind::kEmergencyStop},
+                    InjectedCase{"StuckX", SimulatedDrive::Fault::kStuckAxis, kX, FaultKind::kFollowingError},
+                    InjectedCase{"StuckA", SimulatedDrive::Fault::kStuckAxis, kA, FaultKind::kFollowingError},
+                    InjectedCase{"StaleFeedback", SimulatedDrive::Fault::kStaleFeedback, 0, FaultKind::kStaleFeedback},
+                    InjectedCase{"NanZ", SimulatedDrive::Fault::kNanFeedback, kZ, FaultKind::kInvalidFeedback},
+                    InjectedCase{"DriveFault", SimulatedDrive::Fault::kDriveFault, 0, FaultKind::kDriveFault}),
+    [](const testing::TestParamInfo<InjectedCase>& info) { return std::string(info.param.name); });
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Faults, in every state under power
+
+class FaultIn : public testing::TestWithParam<S> {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
+    before_ = rig_.log.size() - 1;
+    rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+    rig_.cycle();
+    ASSERT_EQ(rig_.last().state, S::kFault);
+    rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = false; };
+  }
+
+  bool hadJob() const { return GetParam() != S::kReady && GetParam() != S::kHoming; }
+
+  Rig<FakeDrive> rig_;
+  std::size_t before_ = 0;  ///< last record before the fault
+};
+
+TEST_P(FaultIn, EndsTheJobIfThereIsOne) {
+  EXPECT_EQ(rig_.last().job_ended, hadJob());
+  rig_.stream.reset();  // it may go now
+  rig_.run(100);
+  EXPECT_EQ(rig_.jobsEnded(), hadJob() ? 1 : 0);
+}
+
+TEST_P(FaultIn, NothingMovesUntilResetEnableAndStart) {
+  const std::size_t standing = before_;
+  const auto expectStanding = [&] {
+    rig_.run(50);
+    EXPECT_TRUE(atRestFrom(rig_.log, standing + 1));
+    EXPECT_TRUE(sameBits(rig_.last().command, rig_.log[standing].command));
+    EXPECT_FALSE(rig_.drive.written_drive.spindle);
+    EXPECT_FALSE(rig_.drive.written_drive.coolant);
+    EXPECT_FALSE(rig_.drive.written_drive.home);
+  };
+  const auto expectRefused = [&](std::initializer_list<E> events) {
+    for (const E event : events) EXPECT_FALSE(rig_.ask(event, &*rig_.stream).accepted) << toString(event);
+  };
+  rig_.stream.emplace(rig_.paperStream());
+  expectStanding();
+  expectRefused({E::kEnable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
+  EXPECT_TRUE(rig_.ask(E::kDisable).accepted);
+  expectStanding();
+  EXPECT_FALSE(rig_.drive.written_drive.enable);
+  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+  expectRefused({E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
+  expectStanding();
+  EXPECT_EQ(rig_.last().state, S::kDisabled);
+  EXPECT_FALSE(rig_.drive.written_drive.enable);
+  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  expectRefused({E::kHold, E::kResume, E::kRetract, E::kCancel});
+  expectStanding();
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_EQ(rig_.jobsEnded(), hadJob() ? 1 : 0);
+
+  if (rig_.last().wheel_in_work) {
+    expectRefused({E::kHome, E::kStart});
+    ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+    rig_.runUntil(S::kReady);
+  }
+  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
+  rig_.stream.emplace(rig_.paperStream());
+  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
+  rig_.runToEnd();
+  expectCompleted(rig_);
+}
+
+INSTANTIATE_TEST_SUITE_P(, FaultIn,
+                         testing::Values(S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHolding, S::kHeld,
+                                         S::kRetracting, S::kRetracted, S::kResuming, S::kCanceling),
+                         stateName);
+
+TEST(FaultAtRest, AxisThatIsPushedWhileHeldOrRetractedIsAFollowingError) {
+  for (const S state : {S::kHeld, S::kRetracted}) {
+    Rig<FakeDrive> rig;
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig, state));
+    rig.drive.on_read = [](FakeDrive& d) { d.position[kZ] += 0.0011; };
+    rig.cycle();
+    EXPECT_EQ(rig.last().state, S::kFault);
+    EXPECT_EQ(rig.last().fault.kind, FaultKind::kFollowingError);
+    EXPECT_EQ(rig.last().fault.axis, kZ);
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

@@ -1,0 +1,198 @@
+#include "control/checks.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <chrono>
+#include <limits>
+#include <thread>
+
+// The feed override of a running job.
+namespace flute_grinder::test_support {
+namespace {
+
+TEST(FeedOverride, IsOneAtFirst) {
+  Rig<FakeDrive> rig;
+  EXPECT_EQ(rig.cycle().feed_override, 1);
+}
+
+TEST(FeedOverride, TakesWhatIsInItsRangeAndRefusesTheRest) {
+  Rig<FakeDrive> rig;
+  for (const double good : {0.0, 1.2, 0.5, 1.0, 0.7}) {
+    EXPECT_TRUE(rig.loop->setFeedOverride(good)) << good;
+    EXPECT_EQ(rig.cycle().feed_override, good);
+  }
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::nextafter(1.2, 2.0), std::nextafter(0.0, -1.0), -1.0, 50.0, infinity, -infinity,
+                           std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_FALSE(rig.loop->setFeedOverride(bad)) << bad;
+    EXPECT_EQ(rig.cycle().feed_override, 0.7) << "after " << bad;
+  }
+}
+
+class FeedOverrideOf : public testing::TestWithParam<double> {};
+
+TEST_P(FeedOverrideOf, GoesForInfeedAndStrokeAndNotForRapids) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  ASSERT_TRUE(rig.loop->setFeedOverride(GetParam()));
+  rig.startPaper();
+  rig.runToEnd();
+  expectCompleted(rig);
+  const std::vector<Setpoint> all = rig.setpoints();
+  double fastest_infeed = 0;
+  double least = 1, most = 0;  // way along X in a pair, well within the stroke
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool rapid_before = all[i].cycle <= spanOf(MoveKind::kApproach).last;
+    ASSERT_TRUE(!rapid_before || sameBits(all[i].position, planned()[i].position)) << "cycle " << i;
+    if (i == 0) continue;
+    const double down = all[i - 1].position[kY] - all[i].position[kY];
+    if (all[i].move == MoveKind::kInfeed) fastest_infeed = std::max(fastest_infeed, down / 0.001);
+    const double x = all[i].position[kX];
+    if (all[i].move == MoveKind::kStroke && all[i].cycle % 2 == 0 && x > 0.005 && x < 0.025) {
+      const double way = x - all[i - 2].position[kX];
+      least = std::min(least, way);
+      most = std::max(most, way);
+    }
+  }
+  EXPECT_NEAR(fastest_infeed, GetParam() * kFeed, 1e-9);
+  const double expected = GetParam() * kFeed / kEdgePerTravel * 0.002;
+  EXPECT_NEAR(least, expected, 1e-6 * expected);
+  EXPECT_NEAR(most, expected, 1e-6 * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(, FeedOverrideOf, testing::Values(0.25, 0.5, 1.0, 1.2),
+                         [](const testing::TestParamInfo<double>& info) {
+                           return std::to_string(static_cast<int>(100 * info.param)) + "_percent";
+                         });
+
+TEST(FeedOverride, StaysForTheJobsToCome) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  rig.runTo(MoveKind::kStroke);
+  rig.loop->setFeedOverride(0.5);
+  rig.runToEnd();
+  rig.log.erase(rig.log.begin(), rig.log.end() - 1);
+  rig.log.front().job_ended = false;
+  rig.stream.emplace(rig.paperStream());
+  ASSERT_NO_FATAL_FAILURE(rig.start(*rig.stream));
+  rig.runTo(MoveKind::kStroke);
+  rig.run(1000);
+  EXPECT_EQ(rig.last().feed_override, 0.5);
+  EXPECT_NEAR(rig.last().setpoint.feed, 0.5 * kFeed, 1e-6 * kFeed);
+}
+
+TEST(FeedOverride, MayChangeAtAnyMoment) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  rig.runTo(MoveKind::kInfeed);
+  const double fractions[]{0.5, 1.2, 0, 1, 0.1, 0.9, 0, 0.3, 1.1};
+  for (int i = 0; i < 90; ++i) {
+    rig.loop->setFeedOverride(fractions[i % 9]);
+    rig.run(17);
+    ASSERT_EQ(rig.last().state, S::kRunning);
+  }
+  rig.loop->setFeedOverride(1);
+  rig.runToEnd();
+  expectCompleted(rig);
+}
+
+/// Rests at a feed override of 0, in the middle of the stroke.
+class FeedOverrideOfZero : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
+    rig_.loop->setFeedOverride(0);
+    for (int i = 0; i < 1000 && rig_.cycle().has_setpoint; ++i) {
+    }
+    ASSERT_FALSE(rig_.last().has_setpoint) << "does not come to rest";
+    at_rest_ = rig_.log.size() - 1;
+  }
+
+  Rig<FakeDrive> rig_;
+  std::size_t at_rest_ = 0;
+};
+
+TEST_F(FeedOverrideOfZero, RestsInStateRunning) {
+  rig_.run(500);
+  EXPECT_TRUE(atRestFrom(rig_.log, at_rest_));
+  for (std::size_t i = at_rest_; i < rig_.log.size(); ++i) ASSERT_EQ(rig_.log[i].state, S::kRunning);
+  EXPECT_EQ(rig_.last().feed_override, 0);
+  EXPECT_EQ(rig_.jobsEnded(), 0);
+  EXPECT_TRUE(rig_.drive.written_drive.spindle);
+}
+
+TEST_F(FeedOverrideOfZero, GoesOnWithAnother) {
+  rig_.run(50);
+  rig_.loop->setFeedOverride(0.8);
+  EXPECT_TRUE(rig_.cycle().has_setpoint);
+  rig_.runToEnd();
+  expectCompleted(rig_);
+}
+
+TEST_F(FeedOverrideOfZero, CanBeHeldAndResumed) {
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  rig_.cycle();
+  EXPECT_EQ(rig_.last().state, S::kHeld);
+  rig_.loop->setFeedOverride(1);
+  rig_.run(50);
+  EXPECT_TRUE(atRestFrom(rig_.log, at_rest_)) << "the override moves what is held";
+  rig_.loop->setFeedOverride(0);
+  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+  rig_.run(50);
+  EXPECT_EQ(rig_.last().state, S::kRunning);
+  EXPECT_TRUE(atRestFrom(rig_.log, at_rest_));
+  rig_.loop->setFeedOverride(1);
+  rig_.runToEnd();
+  expectCompleted(rig_);
+}
+
+TEST_F(FeedOverrideOfZero, CanBeRetractedAndRestsAboveTheWorkOnTheWayBack) {
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
+  rig_.runUntil(S::kRetracted);
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12) << "a lift is no feed";
+  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+  rig_.run(2000);
+  EXPECT_EQ(rig_.last().state, S::kResuming);
+  EXPECT_FALSE(rig_.last().has_setpoint);
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
+  rig_.loop->setFeedOverride(1);
+  rig_.runToEnd();
+  expectCompleted(rig_);
+}
+
+TEST_F(FeedOverrideOfZero, CanBeCanceled) {
+  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
+  rig_.runToEnd();
+  rig_.run(3);
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
+  const Axes& stood = rig_.log[at_rest_].command;
+  EXPECT_TRUE(sameBits(rig_.last().command, Axes(stood[kX], rig_.last().command[kY], stood[kZ], stood[kA])));
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
+}
+
+TEST(FeedOverride, IsTakenFromAnotherThread) {
+  ros::Time::init();
+  FakeDrive drive;
+  setUp(drive, machineConfig());
+  ControlLoop loop(drive, machineConfig());
+  loop.startThread();
+  // The deadline only ends a test that has failed.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  for (const double fraction : {0.25, 1.2, 0.0}) {
+    ASSERT_TRUE(loop.setFeedOverride(fraction));
+    CycleRecord record;
+    record.feed_override = -1;
+    while (record.feed_override != fraction && std::chrono::steady_clock::now() < deadline) {
+      if (!loop.pop(record)) std::this_thread::yield();
+    }
+    EXPECT_EQ(record.feed_override, fraction);
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

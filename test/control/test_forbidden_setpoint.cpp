@@ -1,0 +1,140 @@
+#include "control/checks.h"
+#include "control/rig.h"
+
+#include <cmath>
+
+// A setpoint that a limit forbids: the stream is planned for a stronger machine than the loop's.
+namespace flute_grinder::test_support {
+namespace {
+
+struct LimitCase {
+  const char* name;
+  std::function<void(LoopConfig&)> tighten;
+  LimitedQuantity quantity;
+  int axis;
+  std::vector<std::string> words;
+  /// Index of the first setpoint that breaks the limit, from the positions alone.
+  std::function<std::size_t(const std::vector<Setpoint>&)> first;
+};
+std::ostream& operator<<(std::ostream& out, const LimitCase& c) { return out << c.name; }
+
+/// The first setpoint, of every `stride`-th, whose `order`-th difference over time exceeds the limit.
+std::size_t firstBeyond(const std::vector<Setpoint>& all, int axis, int order, std::size_t stride, double limit) {
+  const double dt = 0.001 * static_cast<double>(stride);
+  const auto at = [&](std::size_t i, std::size_t back) {
+    return all[i >= back * stride ? i - back * stride : 0].position[axis];
+  };
+  for (std::size_t i = 0; i < all.size(); i += stride) {
+    double value = at(i, 0);
+    if (order == 1) value = (at(i, 0) - at(i, 1)) / dt;
+    if (order == 2) value = (at(i, 0) - 2 * at(i, 1) + at(i, 2)) / dt / dt;
+    if (order == 3) value = (at(i, 0) - 3 * at(i, 1) + 3 * at(i, 2) - at(i, 3)) / dt / dt / dt;
+    if (std::abs(value) > limit) return i;
+  }
+  return all.size();
+}
+
+std::vector<LimitCase> limitCases() {
+  return {
+      {"PositionX",
+       [](LoopConfig& c) { c.machine.limits.max_position[kX] = 0.01; },
+       LimitedQuantity::kPosition,
+       kX,
+       {"axis_x position 0.01", "beyond its limit 0.01 m", "(stroke, cycle "},
+       [](const std::vector<Setpoint>& all) {
+         std::size_t i = 0;
+         while (i < all.size() && all[i].position[kX] <= 0.01) ++i;
+         return i;
+       }},
+      {"PositionY",
+       [](LoopConfig& c) { c.machine.limits.min_position[kY] = 0.0213; },
+       LimitedQuantity::kPosition,
+       kY,
+       {"axis_y position 0.021", "beyond its limit 0.0213 m", "(approach, cycle "},
+       [](const std::vector<Setpoint>& all) {
+         std::size_t i = 0;
+         while (i < all.size() && all[i].position[kY] >= 0.0213) ++i;
+         return i;
+       }},
+      {"VelocityX",
+       [](LoopConfig& c) { c.machine.limits.max_velocity[kX] = 0.05; },
+       LimitedQuantity::kVelocity,
+       kX,
+       {"axis_x velocity 0.05", "beyond its limit 0.05 m/s", "(position, cycle "},
+       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kX, 1, 1, 0.05); }},
+      {"AccelerationX",
+       [](LoopConfig& c) { c.machine.limits.max_acceleration[kX] = 0.21; },
+       LimitedQuantity::kAcceleration,
+       kX,
+       {"axis_x acceleration 0.2", "beyond its limit 0.21 m/s^2", "(position, cycle "},
+       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kX, 2, 2, 0.21); }},
+      {"JerkY",
+       [](LoopConfig& c) { c.machine.limits.max_jerk[kY] = 3; },
+       LimitedQuantity::kJerk,
+       kY,
+       {"axis_y jerk", "beyond its limit 3 m/s^3", "(approach, cycle "},
+       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kY, 3, 2, 3); }},
+  };
+}
+
+class ForbiddenSetpoint : public testing::TestWithParam<LimitCase> {
+ protected:
+  ForbiddenSetpoint() : rig_(tightened()), strong_(machineConfig().machine) {}
+
+  void SetUp() override {
+    rig_.cycle();
+    rig_.enable();
+    planned_ = allSetpoints(rig_.paperStream(strong_));
+    rig_.stream.emplace(rig_.paperStream(strong_));
+    ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
+    for (std::size_t i = 0; i < planned_.size() && rig_.last().state == S::kRunning; ++i) rig_.cycle();
+    ASSERT_EQ(rig_.last().state, S::kFault) << "the limit was not seen";
+    forbidden_ = GetParam().first(planned_);
+    ASSERT_GT(forbidden_, 0u);
+    ASSERT_LT(forbidden_, planned_.size());
+  }
+
+  static LoopConfig tightened() {
+    LoopConfig config = machineConfig();
+    GetParam().tighten(config);
+    return config;
+  }
+
+  Rig<FakeDrive> rig_;
+  Machine strong_;
+  std::vector<Setpoint> planned_;
+  std::size_t forbidden_ = 0;
+};
+
+TEST_P(ForbiddenSetpoint, IsAFaultOfKindLimit) {
+  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kLimit);
+  EXPECT_EQ(rig_.last().fault.axis, GetParam().axis);
+  EXPECT_EQ(rig_.last().fault.violation.axis, GetParam().axis);
+  EXPECT_EQ(rig_.last().fault.violation.quantity, GetParam().quantity);
+  EXPECT_EQ(rig_.last().fault.violation.cycle, forbidden_);
+}
+
+TEST_P(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAre) {
+  rig_.run(100);
+  const std::vector<Setpoint> good(planned_.begin(), planned_.begin() + static_cast<std::ptrdiff_t>(forbidden_));
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), good));
+  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), good.back().position));
+}
+
+TEST_P(ForbiddenSetpoint, EndsTheJobOnceWithoutPower) {
+  EXPECT_TRUE(rig_.last().job_ended);
+  EXPECT_FALSE(rig_.drive.written_drive.enable);
+  rig_.run(100);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
+}
+
+TEST_P(ForbiddenSetpoint, IsToldInWords) {
+  for (const std::string& word : GetParam().words) EXPECT_CONTAINS(rig_.last().fault.text(), word);
+  EXPECT_CONTAINS(rig_.last().fault.text(), "cycle " + std::to_string(forbidden_) + ",");
+}
+
+INSTANTIATE_TEST_SUITE_P(, ForbiddenSetpoint, testing::ValuesIn(limitCases()),
+                         [](const testing::TestParamInfo<LimitCase>& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace flute_grinder::test_support

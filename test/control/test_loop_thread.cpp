@@ -1,0 +1,178 @@
+#include "control/fixtures.h"
+#include "flute_grinder/control/control_loop.h"
+
+#include <pthread.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+// The thread. Whatever a test waits for comes at once; the deadline only ends a test that has failed.
+namespace flute_grinder::test_support {
+namespace {
+
+class ControlLoopThread : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { ros::Time::init(); }
+
+  ControlLoopThread() {
+    setUp(drive_, machineConfig());
+    loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
+  }
+
+  bool popInTime(CycleRecord& record) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!loop_->pop(record)) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      std::this_thread::yield();
+    }
+    return true;
+  }
+
+  FakeDrive drive_;
+  std::unique_ptr<ControlLoop> loop_;
+};
+
+TEST_F(ControlLoopThread, RunsCyclesWithMonotonicPositivePeriods) {
+  loop_->startThread();
+  CycleRecord record;
+  double last = 0;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(popInTime(record)) << "after " << i << " records";
+    EXPECT_GT(record.period, 0);
+    EXPECT_GE(record.time, last);
+    last = record.time;
+  }
+}
+
+TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  const double first = record.time;
+  double sum = 0;
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(popInTime(record));
+    sum += record.period;
+  }
+  // Seconds since 1970 have a resolution of a quarter of a microsecond as a double.
+  EXPECT_NEAR(record.time - first, sum, 1e-6);
+}
+
+TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
+  LoopConfig config = machineConfig();
+  config.following_error.setConstant(1);
+  config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
+  loop_ = std::make_unique<ControlLoop>(drive_, config);
+  loop_->startThread();
+  const RequestReply answer = loop_->request(E::kEnable);
+  ASSERT_TRUE(answer.accepted) << answer.text;
+  loop_->stopThread();
+  EXPECT_FALSE(drive_.written_drive.enable);
+  EXPECT_TRUE(sameBits(toAxes(drive_.written), machineConfig().machine.park)) << "stopping moved an axis";
+}
+
+TEST_F(ControlLoopThread, TellsTheComputersTime) {
+  ros::Time::setNow(ros::Time(5));  // as of a simulation
+  const double before = ros::WallTime::now().toSec();
+  loop_->startThread();
+  CycleRecord record;
+  const bool popped = popInTime(record);
+  loop_->stopThread();
+  ros::Time::init();
+  ASSERT_TRUE(popped);
+  EXPECT_GE(record.time, before - 1e-3);
+  EXPECT_LE(record.time, ros::WallTime::now().toSec());
+  EXPECT_GE(loop_->status().time, record.time);
+}
+
+TEST_F(ControlLoopThread, TakesNoSignal) {
+  std::atomic<int> open{-1};
+  drive_.on_read = [&](FakeDrive&) {
+    sigset_t blocked;
+    pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+    int count = 0;
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGALRM, SIGUSR1}) {
+      count += sigismember(&blocked, signal) == 0;
+    }
+    open = count;
+  };
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  loop_->stopThread();
+  EXPECT_EQ(open, 0);
+}
+
+/// Resident memory [bytes].
+std::size_t resident() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t size = 0, pages = 0;
+  statm >> size >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
+  loop_->startThread();
+  if (!loop_->memoryLocked()) GTEST_SKIP() << "the system does not grant locked memory";
+  constexpr std::size_t claim = std::size_t{1} << 28;
+  const std::size_t before = resident();
+  void* const memory = mmap(nullptr, claim, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
+  EXPECT_LT(resident(), before + claim / 4);
+  munmap(memory, claim);
+}
+
+TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {
+  loop_->startThread();
+  EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
+  const RequestReply answer = loop_->stop(E::kCancel);
+  EXPECT_TRUE(answer.answered);
+  EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");
+  EXPECT_GT(loop_->status().cycles, 0u);
+}
+
+TEST_F(ControlLoopThread, RefusesOnEachRoadWhatBelongsOnAnother) {
+  EXPECT_EQ(loop_->stop(E::kEnable).text, "enable refused: allowed: hold, cancel, disable");
+  for (const E event : {E::kHold, E::kStart, E::kFault}) {
+    EXPECT_CONTAINS(loop_->request(event).text, "allowed: enable, home, resume, retract, lift, reset");
+  }
+}
+
+TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
+  const RequestReply answer = loop_->stop(E::kHold);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_FALSE(answer.answered);
+  EXPECT_EQ(answer.text, "hold: the control loop does not answer");
+}
+
+TEST_F(ControlLoopThread, StopEndsTheCycles) {
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  loop_->stopThread();
+  while (loop_->pop(record)) {
+  }
+  const std::uint64_t cycles = drive_.status.feedback_count;
+  std::this_thread::yield();
+  EXPECT_FALSE(loop_->pop(record));
+  EXPECT_EQ(drive_.status.feedback_count, cycles);
+}
+
+TEST_F(ControlLoopThread, RequestTellsARefusal) {
+  loop_->startThread();
+  const RequestReply answer = loop_->request(E::kLift);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text, "lift refused: the machine is in state disabled; allowed: enable, disable, reset");
+}
+
+TEST_F(ControlLoopThread, StopWithoutAStartIsHarmless) {
+  loop_->stopThread();
+  EXPECT_FALSE(drive_.written_drive.enable);
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

@@ -3,6 +3,7 @@
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <sensor_msgs/JointState.h>
 
@@ -201,7 +202,9 @@ void Teller::publishState() {
     message.tooth = job->last.tooth;
     message.pass = job->last.pass;
   }
-  message.fault = record_.fault.text();
+  const core::Reason fault = reasonOf(record_.fault);
+  message.fault = text(fault, UnitSystem::kSi);
+  message.fault_reason = flute_grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
   message.progress = toMessage(journal_.told().on_disk);
   state_.publish(message);

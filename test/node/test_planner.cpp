@@ -76,7 +76,7 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
   const auto preview = asked.wait();
   EXPECT_EQ(preview->plan.fault, PlanFault::kInvalidJob);
   ASSERT_EQ(preview->plan.reasons.size(), 1U);
-  EXPECT_NE(preview->plan.reasons[0].find("process.feed"), std::string::npos);
+  EXPECT_NE(text(preview->plan.reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
   EXPECT_FALSE(preview->stream);
 }
 

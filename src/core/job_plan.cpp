@@ -172,7 +172,7 @@ class Supervisor {
       return false;
     }
     next_look_ = std::min(p.cycle + kSetpointsPerLook, last_ + 1);
-    const double done = (p.move_index + p.progress) / static_cast<double>(program.moves().size());
+    const double done = (p.move_index + p.move_fraction) / static_cast<double>(program.moves().size());
     if (!watch_ || watch_(done)) return true;
     core::Reason reason;
     reason.kind = core::ReasonKind::kGivenUp;

@@ -24,7 +24,7 @@ double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done
 /// How far a job has come, in cycles of its plan.
 double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_ends) {
   const auto begin = static_cast<double>(p.move_index == 0 ? 0 : move_ends[p.move_index - 1]);
-  return begin + p.progress * (static_cast<double>(move_ends[p.move_index]) - begin);
+  return begin + p.move_fraction * (static_cast<double>(move_ends[p.move_index]) - begin);
 }
 
 double strokeFraction(const Setpoint& p, const GrindProgram& program) {

@@ -288,10 +288,10 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
     RC_ASSERT(p.tooth == move.tooth);
     RC_ASSERT(p.pass == move.pass);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
-    RC_ASSERT(p.progress >= 0);
-    RC_ASSERT(p.progress <= 1);
+    RC_ASSERT(p.move_fraction >= 0);
+    RC_ASSERT(p.move_fraction <= 1);
     if (!ends) continue;
-    RC_ASSERT(p.progress == 1);
+    RC_ASSERT(p.move_fraction == 1);
     if (p.move == MoveKind::kStroke) {
       RC_ASSERT(std::abs(p.position[kX] - move.to[kX]) <= 1e-12);
       RC_ASSERT(std::abs(p.position[kY] - move.to[kY]) <= 1e-12);
@@ -722,7 +722,8 @@ Ride rideWithRetracts(const Work& work, const std::vector<Setpoint>& undisturbed
   for (const std::size_t cycle : cycles) {
     const Setpoint& moment = undisturbed[cycle];
     const auto before = [&](const Setpoint& p) {
-      return p.move_index < moment.move_index || (p.move_index == moment.move_index && p.progress < moment.progress);
+      return p.move_index < moment.move_index ||
+             (p.move_index == moment.move_index && p.move_fraction < moment.move_fraction);
     };
     while (rider.ride().given.empty() || before(rider.last())) {
       if (!rider.next()) break;
@@ -812,7 +813,7 @@ void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& work) {
     RC_ASSERT(std::abs(p.position[kZ] - x * growth * sin_rake) <= 2 * rounding[kZ] + 1e-18);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
     if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
-    if (ends) RC_ASSERT(p.progress == 1);
+    if (ends) RC_ASSERT(p.move_fraction == 1);
   }
 }
 
@@ -934,7 +935,7 @@ void checkDetours(const Ride& ride, const Work& work) {
       RC_ASSERT(p.move_index == before.move_index);
       RC_ASSERT(p.tooth == before.tooth);
       RC_ASSERT(p.pass == before.pass);
-      RC_ASSERT(p.progress == before.progress);
+      RC_ASSERT(p.move_fraction == before.move_fraction);
       RC_ASSERT(p.move == MoveKind::kLift || p.move == MoveKind::kPosition || p.move == MoveKind::kInfeed);
       if (p.move == MoveKind::kLift) RC_ASSERT(radial && way[kY] >= -rounding[kY]);
       if (p.move == MoveKind::kInfeed) RC_ASSERT(radial && way[kY] <= rounding[kY]);
@@ -1160,12 +1161,12 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     start[kX] = -0.1;
     SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
     Setpoint p;
-    while (p.move != kind || p.progress < 0.3) ASSERT_TRUE(stream.next(p));
+    while (p.move != kind || p.move_fraction < 0.3) ASSERT_TRUE(stream.next(p));
     stream.hold();
     while (stream.next(p)) {
     }
     const Setpoint held = p;
-    ASSERT_LT(held.progress, 1);
+    ASSERT_LT(held.move_fraction, 1);
     stream.retract();
     while (stream.next(p)) {
     }
@@ -1176,7 +1177,7 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     EXPECT_TRUE(stream.onPath());
     EXPECT_EQ(p.move, kind);
     EXPECT_EQ(p.move_index, held.move_index);
-    EXPECT_LT(p.progress, 0.1);
+    EXPECT_LT(p.move_fraction, 0.1);
     while (stream.next(p)) {
     }
     EXPECT_TRUE(stream.finished());
@@ -1207,7 +1208,7 @@ TEST(SetpointStream, IsFinishedAtItsEndOnly) {
   Setpoint p;
   EXPECT_FALSE(stream.finished());
   while (stream.next(p))
-    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.progress == 1 && p.cycle % 2 == 0);
+    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
   EXPECT_TRUE(stream.finished());
   stream.resume();
   EXPECT_FALSE(stream.next(p));
@@ -1480,22 +1481,22 @@ TEST(SetpointStream, TellsMoveAndProgress) {
   Setpoint p;
   ASSERT_TRUE(stream.next(p));
   EXPECT_EQ(p.move_index, 0u);
-  EXPECT_EQ(p.progress, 0);
+  EXPECT_EQ(p.move_fraction, 0);
   Setpoint before = p;
   for (; stream.next(p); before = p) {
     if (p.move_index == before.move_index) {
-      ASSERT_GE(p.progress, before.progress);
+      ASSERT_GE(p.move_fraction, before.move_fraction);
     } else {
       ASSERT_EQ(p.move_index, before.move_index + 1);
-      ASSERT_LT(p.progress, 0.5);
+      ASSERT_LT(p.move_fraction, 0.5);
     }
     // Of a stroke that is not cut for an axis it is the way in X.
     if (p.step == StepKind::kEven) {
-      ASSERT_NEAR(p.progress, (p.position[kX] + 1e-3) / 32e-3, 1e-12);
+      ASSERT_NEAR(p.move_fraction, (p.position[kX] + 1e-3) / 32e-3, 1e-12);
     }
     if (p.move == MoveKind::kApproach) {
       const double from = moves[p.move_index - 1].to[kY];
-      ASSERT_NEAR(p.progress, (p.position[kY] - from) / (moves[p.move_index].to[kY] - from), 1e-12);
+      ASSERT_NEAR(p.move_fraction, (p.position[kY] - from) / (moves[p.move_index].to[kY] - from), 1e-12);
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <cstdio>
 
@@ -19,7 +20,7 @@ Json axes(const Axes& value, const std::string& per_time) {
           {"a_deg" + per_time, value[kA] / kDegree}};
 }
 
-Json moveDurations(const PlanStatistics& statistics) {
+Json moveDurations(const core::PathStatistics& statistics) {
   Json json = Json::object();
   for (const MoveRow& move : kMoveKinds) {
     json[std::string(move.name) + "_s"] = statistics.move_duration[static_cast<std::size_t>(move.value)];
@@ -27,10 +28,11 @@ Json moveDurations(const PlanStatistics& statistics) {
   return json;
 }
 
-Json feedLimits(const PlanStatistics& statistics) {
+Json feedLimits(const core::PathStatistics& statistics) {
   Json json = Json::array();
-  for (const FeedCut& cut : statistics.feed_cuts) {
-    json.push_back({{"cause", cut.cause}, {"from_x_mm", cut.from / kMillimetre}, {"to_x_mm", cut.to / kMillimetre}});
+  for (const core::FeedLimit& limit : statistics.feed_limits) {
+    json.push_back(
+        {{"cause", limit.cause}, {"from_x_mm", limit.from_x / kMillimetre}, {"to_x_mm", limit.to_x / kMillimetre}});
   }
   return json;
 }
@@ -56,9 +58,11 @@ Json lastJob(const JobProgress& progress) {
 }  // namespace
 
 Json toJson(const JobPlan& plan) {
-  const PlanStatistics& s = plan.statistics;
+  const core::PathStatistics& s = plan.statistics;
+  Json reasons = Json::array();
+  for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
   return {{"valid", plan.good()},
-          {"reasons", plan.reasons},
+          {"reasons", reasons},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},
@@ -88,7 +92,7 @@ Json toJson(const GrinderState& state) {
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
           {"pass", job ? Json(state.pass + 1) : Json(nullptr)},
           {"hold_reason", state.hold_reason},
-          {"fault", state.fault},
+          {"fault", faultText(state)},
           {"last_job", lastJob(state.progress)}};
 }
 

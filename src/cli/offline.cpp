@@ -73,7 +73,7 @@ int runTable(const TableOptions& options) {
   return 0;
 }
 
-void printStatistics(const PlanStatistics& s) {
+void printStatistics(const core::PathStatistics& s) {
   std::printf("setpoints            %llu\n", static_cast<unsigned long long>(s.setpoints));
   std::printf("duration             %.3f s:", s.duration);
   for (const MoveRow& move : kMoveKinds) {
@@ -89,9 +89,9 @@ void printStatistics(const PlanStatistics& s) {
   } else {
     std::printf("feed held            never reached\n");
   }
-  for (const FeedCut& cut : s.feed_cuts) {
-    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", cut.cause.c_str(), cut.from / kMillimetre,
-                cut.to / kMillimetre);
+  for (const core::FeedLimit& limit : s.feed_limits) {
+    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", core::causeText(limit.cause, UnitSystem::kShop).c_str(),
+                limit.from_x / kMillimetre, limit.to_x / kMillimetre);
   }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
@@ -112,14 +112,16 @@ int runPlan(const PlanOptions& options) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  const JobPlan plan = planJob(job, machine, machine.park, {}, visit, UnitSystem::kShop);
+  const JobPlan plan = planJob(job, machine, machine.park, {}, visit);
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
   }
-  for (const std::string& reason : plan.reasons) std::fprintf(stderr, "%s\n", reason.c_str());
+  for (const core::Reason& reason : plan.reasons) {
+    std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
+  }
   return plan.good() ? 0 : 1;
 }
 

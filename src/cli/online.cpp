@@ -9,6 +9,7 @@
 #include "flute_grinder/connection/service_call.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <actionlib_msgs/GoalID.h>
 #include <std_srvs/Trigger.h>
@@ -57,7 +58,7 @@ void printState(const GrinderState& state) {
               state.override * 100);
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
   if (!state.hold_reason.empty()) std::printf("held because    %s\n", state.hold_reason.c_str());
-  if (!state.fault.empty()) std::printf("fault           %s\n", state.fault.c_str());
+  if (!state.fault.empty()) std::printf("fault           %s\n", faultText(state).c_str());
   if (!state.progress.job_digest.empty()) std::printf("last job        %s\n", lastJob(state.progress).c_str());
 }
 
@@ -129,7 +130,7 @@ int home(const std::string& node) {
     return refused != 0 ? refused : fail("homing was broken off; the power is off");
   }
   if (state.homed) return 0;
-  return fail(state.fault.empty() ? "homing was broken off" : state.fault);
+  return fail(state.fault.empty() ? "homing was broken off" : faultText(state));
 }
 
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.

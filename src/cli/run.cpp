@@ -9,6 +9,7 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <actionlib/client/simple_action_client.h>
 
@@ -130,7 +131,7 @@ int conclude(const GoalWatch& goal, bool heard, const Recorder& recorder) {
   if (!heard) return fail(kLinkLost);
   if (!result) return fail("the grinder knows nothing of the job any more: it has been started anew");
   if (goal.succeeded() && result->error_code == 0) return 0;
-  return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
+  return fail(resultText(*result) + " (code " + std::to_string(result->error_code) + ")");
 }
 
 /// Ends the record, after all that is to be said of the job. @param status so far. @return the exit status.

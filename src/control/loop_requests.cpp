@@ -23,7 +23,10 @@ RequestReply Answer::reply() const {
     case Refusal::kInWork: text << "the wheel stands in the work; lift it first"; break;
     case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
     case Refusal::kLiftTooFar:
-      text << "it would lead " << kJointNames[kY] << " to " << value << " m; allowed: up to " << limit << " m";
+      // People alone read it: no answer to a request has room for data.
+      text << "it would lead " << axisName(kY, UnitSystem::kShop) << " to "
+           << flute_grinder::text({value, Unit::kMetre}, UnitSystem::kShop) << "; allowed: up to "
+           << flute_grinder::text({limit, Unit::kMetre}, UnitSystem::kShop);
       break;
   }
   return {false, text.str(), true};

@@ -77,7 +77,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
   }
   even.add(velocity.limit / ripple, velocity.axis + std::string(" velocity"));
-  if (even.value < wanted) cuts_.push_back({even.cause, stroke.from, stroke.to});
+  if (even.value < wanted) feed_limits_.push_back({even.cause, stroke.from, stroke.to});
   feed_speed_ = std::min(wanted, even.value);
 
   // A keeps half of its acceleration and most of its jerk for the feed law and the blend.
@@ -97,7 +97,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   const ForX jerk = forX(limits.max_jerk, tan_cone_, sin_rake_);
   per_radius.add(acceleration.limit / (2 * b * feed_speed_), acceleration.axis + std::string(" acceleration"));
   per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), jerk.axis + std::string(" jerk"));
-  cuts_.push_back({per_radius.cause, stroke.from, stroke.to});  // as far as placeOnCone() finds
+  feed_limits_.push_back({per_radius.cause, stroke.from, stroke.to});  // as far as placeOnCone() finds
   speed_per_radius_ = per_radius.value;
   feed_speed_ = speed_ = std::min(feed_speed_, speed_per_radius_ * u_thick);
   beta_ = u_thin < u_thick ? b * speed_per_radius_ / speed_ : 0;
@@ -149,7 +149,7 @@ void FeedSchedule::placeOnCone(const LogCurve& curve) {
   const double q_to = parameterOf(toward_thick * (to_ - blend_x));
   length_ = std::abs(q_to - q_from_);
   q_direction_ = q_to < q_from_ ? -1 : 1;
-  double& full_feed_end = q_direction_ > 0 ? cuts_.back().to : cuts_.back().from;
+  double& full_feed_end = q_direction_ > 0 ? feed_limits_.back().to_x : feed_limits_.back().from_x;
   if (std::max(q_from_, q_to) > blend_) full_feed_end = blend_x + toward_thick * distance(blend_);
 }
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/core/grind_program.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/core/reason.h"
 
 #include <algorithm>
 #include <sstream>
@@ -47,20 +47,25 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
   const double slowest = schedule.rate(0) < schedule.rate(schedule.length()) ? 0 : schedule.length();
   const double feed = schedule.feedSpeed() * schedule.rate(slowest) * cutter.edgePerTravel();
   if (feed >= kMinFeed * (1 - 1e-9)) return;
-  std::ostringstream text;
-  text << "process.feed: " << (schedule.cuts().empty() ? "it" : schedule.cuts().back().cause) << " allows " << feed
-       << " m/s (" << feed / units::kMillimetrePerMinute << " mm/min) at X = " << schedule.x(slowest)
-       << " m, where the radius is " << cutter.radius(schedule.x(slowest)) << " m; the slowest feed is " << kMinFeed
-       << " m/s (" << kMinFeed / units::kMillimetrePerMinute << " mm/min)";
-  throw std::invalid_argument(text.str());
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kFeedTooLow;
+  reason.detail = schedule.feedLimits().empty() ? "it" : schedule.feedLimits().back().cause;
+  reason.unit = Unit::kFeedMetrePerSecond;
+  reason.value = feed;
+  reason.limit = kMinFeed;
+  reason.x = schedule.x(slowest);
+  throw core::ReasonError(reason);
 }
 
 void requireParkClear(const Machine& machine, double clearance_y) {
   if (machine.park[kY] >= clearance_y) return;
-  std::ostringstream text;
-  text << "park position axis_y = " << machine.park[kY] << " m; allowed for this job: at least " << clearance_y
-       << " m, clear of the work";
-  throw std::invalid_argument(text.str());
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kParkInWork;
+  reason.axis = kY;
+  reason.unit = Unit::kMetre;
+  reason.value = machine.park[kY];
+  reason.limit = clearance_y;
+  throw core::ReasonError(reason);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "flute_grinder/core/job_file.h"
 
+#include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/units.h"
 
 #include <yaml-cpp/yaml.h>
@@ -178,12 +179,12 @@ GrindJob parseJob(const std::string& text, const std::string& name) {
   file.throwErrors();
 
   GrindJob job;
-  for (const JobField& field : jobFields()) {
+  visitJobFields([&](const JobField& field, auto of) {
     double value = 0;
-    if (field.optional && !file.has(field.file_key)) continue;
-    file.take(field.file_key, field.range(UnitSystem::kShop), value);
-    field.at(job) = value * field.shop_scale;
-  }
+    if (field.optional && !file.has(field.file_key)) return;
+    file.take(field.file_key, flute_grinder::text(field.low(), field.high(), UnitSystem::kShop), value);
+    of(job) = value * shopScale(field.unit);
+  });
   takeTeeth(file, job);
   file.take("process.spark_out", "0 to " + std::to_string(kMaxSparkOut), job.process.spark_out);
   file.takeChoice("process.order", job.process.order);
@@ -192,7 +193,9 @@ GrindJob parseJob(const std::string& text, const std::string& name) {
   file.refuseTheRest();
   file.throwErrors();
 
-  for (const JobError& error : validate(job, UnitSystem::kShop)) file.fail(file.line(error.field), error.text());
+  for (const core::Reason& reason : validate(job)) {
+    file.fail(file.line(fieldName(reason.field, UnitSystem::kShop)), core::text(reason, UnitSystem::kShop));
+  }
   file.throwErrors();
   return job;
 }

@@ -1,10 +1,7 @@
 #include "flute_grinder/core/job_plan.h"
 
-#include "flute_grinder/core/units.h"
-
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -12,9 +9,9 @@ namespace flute_grinder {
 namespace {
 
 /// Gathers the statistics of a stream of setpoints.
-class Statistician {
+class StatisticsAccumulator {
  public:
-  Statistician(const ConicalCutter& cutter, double period, PlanStatistics& statistics)
+  StatisticsAccumulator(const ConicalCutter& cutter, double period, core::PathStatistics& statistics)
       : cutter_(cutter), period_(period), s_(statistics) {}
 
   void add(const Setpoint& p, const LimitCheck& check) {
@@ -55,7 +52,7 @@ class Statistician {
 
   const ConicalCutter& cutter_;
   double period_;
-  PlanStatistics& s_;
+  core::PathStatistics& s_;
   std::array<std::uint64_t, kMoveKindCount> cycles_{};
   Axes last_velocity_ = Axes::Zero();
   Axes largest_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
@@ -63,10 +60,15 @@ class Statistician {
   double deviation_ = 0;
 };
 
-/// All that speaks against a plan: of each kind the worst, and how many setpoints there are of it.
-class Objections {
+/// Collects the violations of a plan: of each kind the worst, and how many setpoints there are of it.
+class ViolationCollector {
  public:
-  Objections(double tolerance, JobPlan& plan) : tolerance_(tolerance), plan_(plan) {}
+  ViolationCollector(double tolerance, JobPlan& plan) : plan_(plan) {
+    deviation_.kind = core::ReasonKind::kTolerance;
+    deviation_.unit = Unit::kDeviationMetre;
+    deviation_.limit = tolerance;
+    deviation_.has_place = true;
+  }
 
   void add(const LimitViolation& v) {
     if (plan_.good()) plan_.fault = PlanFault::kLimit;
@@ -84,15 +86,22 @@ class Objections {
 
   void addDeviation(const Setpoint& p, double deviation) {
     if (plan_.good()) plan_.fault = PlanFault::kTolerance;
-    ++deviations_;
-    if (deviation <= deviation_) return;
-    deviation_ = deviation;
-    deviant_ = p;
+    ++deviation_.count;
+    if (deviation <= deviation_.value) return;
+    deviation_.value = deviation;
+    deviation_.move = p.move;
+    deviation_.tooth = p.tooth;
+    deviation_.pass = p.pass;
+    deviation_.x = p.position[kX];
+    deviation_.cycle = p.cycle;
   }
 
   void write() {
-    for (const Limit& l : limits_) plan_.reasons.push_back(l.worst.text() + others(l.count));
-    if (deviations_ > 0) plan_.reasons.push_back(toleranceText() + others(deviations_));
+    for (const Limit& l : limits_) {
+      plan_.reasons.push_back(reasonOf(l.worst));
+      plan_.reasons.back().count = l.count;
+    }
+    if (deviation_.count > 0) plan_.reasons.push_back(deviation_);
   }
 
  private:
@@ -101,26 +110,9 @@ class Objections {
     std::uint64_t count;
   };
 
-  static std::string others(std::uint64_t count) {
-    return count == 1 ? "" : "; the worst of " + std::to_string(count) + " setpoints";
-  }
-
-  std::string toleranceText() const {
-    std::ostringstream text;
-    text << "interpolation.tolerance = " << tolerance_ << " m (" << tolerance_ / units::kMicrometre
-         << " um): the path deviates by " << deviation_ << " m (" << deviation_ / units::kMicrometre
-         << " um) at X = " << deviant_.position[kX] << " m, cycle " << deviant_.cycle
-         << ", at the largest feed override"
-         << "; lower process.feed, or set interpolation.even_step to exact";
-    return text.str();
-  }
-
-  double tolerance_;
   JobPlan& plan_;
   std::vector<Limit> limits_;
-  Setpoint deviant_;
-  double deviation_ = 0;
-  std::uint64_t deviations_ = 0;
+  core::Reason deviation_;  ///< the largest, if there is one
 };
 
 /// How much larger than at the job's feed the deviations may become by the feed override. They grow with the square of
@@ -132,21 +124,20 @@ double overrideFactor(const GrindProgram& program) {
   return std::pow(schedule.limits().velocity / schedule.feedSpeed(), 2);
 }
 
-/// Why a job takes too long, and what can be done about it.
-std::string tooLongText(const GrindJob& job, const Machine& machine, const std::string& takes, UnitSystem units) {
-  const JobField& feed = jobField("process.feed");
-  const JobField& infeed = jobField("process.infeed");
-  std::ostringstream text;
-  text << "max_job_duration = " << machine.max_job_duration << " s: the job takes " << takes << ", with teeth "
-       << job.tooth_angles.size() << ", passes " << passDepths(job.process).size() << ", " << feed.text(job, units)
-       << ", " << infeed.text(job, units) << "; raise " << feed.name(units) << " or " << infeed.name(units)
-       << ", or the parameter";
-  return text.str();
-}
-
-void refuse(JobPlan& plan, PlanFault fault, std::string reason) {
+void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
   plan.fault = fault;
   plan.reasons.push_back(std::move(reason));
+}
+
+/// @param least that it takes [s]; 0 where that is not known.
+void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double least) {
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kTooLong;
+  reason.unit = Unit::kSecond;
+  reason.value = least;
+  reason.limit = machine.max_job_duration;
+  reason.count = job.tooth_angles.size() * passDepths(job.process).size();
+  refuse(plan, PlanFault::kTooLong, std::move(reason));
 }
 
 /// The least that plunges and strokes take at the job's feed [s].
@@ -163,9 +154,8 @@ double leastDuration(const GrindJob& job, const ToothPass& first) {
 /// Looks up from the setpoints now and then: is the job too long, and is the plan still wanted?
 class Supervisor {
  public:
-  Supervisor(const PlanWatch& watch, UnitSystem units, JobPlan& plan)
+  Supervisor(const PlanWatch& watch, JobPlan& plan)
       : watch_(watch),
-        units_(units),
         plan_(plan),
         last_(static_cast<std::uint64_t>(plan.program->machine().max_job_duration / plan.program->machine().period)) {}
 
@@ -178,18 +168,19 @@ class Supervisor {
   bool look(const Setpoint& p) {
     const GrindProgram& program = *plan_.program;
     if (p.cycle > last_) {
-      refuse(plan_, PlanFault::kTooLong, tooLongText(program.job(), program.machine(), "longer", units_));
+      refuseAsTooLong(plan_, program.job(), program.machine(), 0);
       return false;
     }
     next_look_ = std::min(p.cycle + kSetpointsPerLook, last_ + 1);
-    const double done = (p.move_index + p.progress) / static_cast<double>(program.moves().size());
+    const double done = (p.move_index + p.move_fraction) / static_cast<double>(program.moves().size());
     if (!watch_ || watch_(done)) return true;
-    refuse(plan_, PlanFault::kGivenUp, "given up while it was planned");
+    core::Reason reason;
+    reason.kind = core::ReasonKind::kGivenUp;
+    refuse(plan_, PlanFault::kGivenUp, std::move(reason));
     return false;
   }
 
   const PlanWatch& watch_;
-  UnitSystem units_;
   JobPlan& plan_;
   std::uint64_t last_;  ///< cycle that the job may take
   std::uint64_t next_look_ = 0;
@@ -201,56 +192,60 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
   const double tolerance = program.job().interpolation.tolerance;
   const double factor = overrideFactor(program);
   LimitCheck check(program.machine().limits, program.machine().period);
-  Statistician statistician(program.cutter(), program.machine().period, plan.statistics);
-  Objections objections(tolerance, plan);
+  StatisticsAccumulator accumulator(program.cutter(), program.machine().period, plan.statistics);
+  ViolationCollector violations(tolerance, plan);
   plan.move_ends.assign(program.moves().size(), 0);
   Setpoint p;
   while (stream.next(p)) {
     if (check.check(p)) {
-      std::for_each(check.begin(), check.end(), [&](const auto& v) { objections.add(v); });
+      std::for_each(check.begin(), check.end(), [&](const auto& v) { violations.add(v); });
       if (!p.position.isFinite().all()) break;
     }
-    statistician.add(p, check);
+    accumulator.add(p, check);
     plan.move_ends[p.move_index] = p.cycle;
     if (visit) visit(p);
-    const double deviation = statistician.deviation() * factor;
-    if (p.step != StepKind::kNone && !(deviation <= tolerance)) objections.addDeviation(p, deviation);
+    const double deviation = accumulator.deviation() * factor;
+    if (p.step != StepKind::kNone && !(deviation <= tolerance)) violations.addDeviation(p, deviation);
     if (!supervisor.goOn(p)) break;
   }
   // A move of no length has no setpoints of its own.
   for (std::size_t i = 1; i < plan.move_ends.size(); ++i) {
     plan.move_ends[i] = std::max(plan.move_ends[i], plan.move_ends[i - 1]);
   }
-  statistician.finish();
-  objections.write();
+  accumulator.finish();
+  violations.write();
 }
 
 }  // namespace
 
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
-                const std::function<void(const Setpoint&)>& visit, UnitSystem units, const PlanWatch& watch) {
+                const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   JobPlan plan;
-  for (const JobError& error : validate(job, units)) plan.reasons.push_back(error.text());
+  plan.reasons = validate(job);
   if (!plan.reasons.empty()) {
     plan.fault = PlanFault::kInvalidJob;
     return plan;
   }
   const double least = leastDuration(job, first);
   if (least > machine.max_job_duration) {
-    std::ostringstream takes;
-    takes << least << " s or more";
-    refuse(plan, PlanFault::kTooLong, tooLongText(job, machine, takes.str(), units));
+    refuseAsTooLong(plan, job, machine, least);
     return plan;
   }
   try {
     plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
+  } catch (const core::ReasonError& error) {
+    refuse(plan, PlanFault::kInvalidJob, error.reason());
+    return plan;
   } catch (const std::invalid_argument& error) {
-    refuse(plan, PlanFault::kInvalidJob, error.what());
+    core::Reason reason;
+    reason.kind = core::ReasonKind::kOther;
+    reason.detail = error.what();
+    refuse(plan, PlanFault::kInvalidJob, std::move(reason));
     return plan;
   }
-  plan.statistics.feed_cuts = plan.program->schedule().cuts();
+  plan.statistics.feed_limits = plan.program->schedule().feedLimits();
   SetpointStream stream(plan.program);
-  Supervisor supervisor(watch, units, plan);
+  Supervisor supervisor(watch, plan);
   runThrough(stream, plan, visit, supervisor);
   return plan;
 }

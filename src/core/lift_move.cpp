@@ -32,7 +32,7 @@ bool LiftMove::next(Setpoint& setpoint) noexcept {
   current_.position[kY] = law_.finished() ? to_ : from_ + law_.position();
   current_.velocity[kY] = (current_.position[kY] - before) / period_;
   current_.feed = law_.speed();
-  current_.progress = law_.finished() ? 1 : law_.position() / (to_ - from_);
+  current_.move_fraction = law_.finished() ? 1 : law_.position() / (to_ - from_);
   ++current_.cycle;
   mid_pair_ = !mid_pair_;
   setpoint = current_;

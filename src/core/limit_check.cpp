@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace flute_grinder {
 
@@ -108,25 +107,31 @@ void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, c
 
 void LimitCheck::report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value,
                         double limit) noexcept {
-  violations_[violation_count_++] = {axis,         quantity, value, limit, setpoint.cycle, setpoint.position[kX],
-                                     setpoint.move};
+  violations_[violation_count_++] = {axis,          quantity,       value,
+                                     limit,         setpoint.cycle, setpoint.position[kX],
+                                     setpoint.move, setpoint.tooth, setpoint.pass};
 }
 
-std::string LimitViolation::text() const {
-  static constexpr const char* names[]{"position", "velocity", "acceleration", "jerk", "position"};
-  static constexpr const char* per_time[]{"", "/s", "/s^2", "/s^3", ""};
-  const auto q = static_cast<std::size_t>(quantity);
-  const std::string unit = std::string(" ") + axisUnit(axis) + per_time[q];
-  std::ostringstream text;
-  text << kJointNames[static_cast<std::size_t>(axis)] << ' ' << names[q] << ' ' << value << unit;
-  if (quantity == LimitedQuantity::kNotFinite) {
-    text << " is not a finite number";
-  } else {
-    const double magnitude = quantity == LimitedQuantity::kPosition ? value : std::abs(value);
-    text << " is " << std::abs(magnitude - limit) << unit << " beyond its limit " << limit << unit;
-  }
-  text << " (" << toString(move) << ", cycle " << cycle << ", X = " << x << " m)";
-  return text.str();
+core::Reason reasonOf(const LimitViolation& violation) {
+  using core::ReasonKind;
+  static constexpr std::array<ReasonKind, 5> kinds{ReasonKind::kPosition, ReasonKind::kVelocity,
+                                                   ReasonKind::kAcceleration, ReasonKind::kJerk,
+                                                   ReasonKind::kNotFinite};
+  const auto quantity = static_cast<std::size_t>(violation.quantity);
+  const bool position = violation.quantity == LimitedQuantity::kNotFinite;
+  core::Reason reason;
+  reason.kind = kinds[quantity];
+  reason.axis = violation.axis;
+  reason.unit = unitOf(violation.axis, position ? 0 : static_cast<int>(quantity));
+  reason.value = violation.value;
+  reason.limit = violation.limit;
+  reason.has_place = true;
+  reason.move = violation.move;
+  reason.tooth = violation.tooth;
+  reason.pass = violation.pass;
+  reason.x = violation.x;
+  reason.cycle = violation.cycle;
+  return reason;
 }
 
 }  // namespace flute_grinder

@@ -1,8 +1,32 @@
 #include "flute_grinder/core/loop_fault.h"
 
-#include <sstream>
+#include <utility>
 
 namespace flute_grinder {
+
+namespace {
+
+using core::ReasonKind;
+
+std::pair<ReasonKind, Unit> kindAndUnit(const LoopFault& fault) {
+  switch (fault.kind) {
+    case FaultKind::kNone: break;
+    case FaultKind::kEmergencyStop: return {ReasonKind::kEmergencyStop, Unit::kNone};
+    case FaultKind::kDriveFault: return {ReasonKind::kDriveFault, Unit::kNone};
+    case FaultKind::kPowerLost: return {ReasonKind::kPowerLost, Unit::kNone};
+    case FaultKind::kStaleFeedback: return {ReasonKind::kStaleFeedback, Unit::kSecond};
+    case FaultKind::kInvalidFeedback: return {ReasonKind::kInvalidFeedback, unitOf(fault.axis, 0)};
+    case FaultKind::kFollowingError: return {ReasonKind::kFollowingError, unitOf(fault.axis, 0)};
+    case FaultKind::kUnderrun: return {ReasonKind::kUnderrun, Unit::kNone};
+    case FaultKind::kLate: return {ReasonKind::kLate, Unit::kSecond};
+    case FaultKind::kLimit: break;  // by the violation
+    case FaultKind::kHoming: return {ReasonKind::kHoming, Unit::kSecond};
+    case FaultKind::kInterlock: return {ReasonKind::kInterlock, Unit::kSecond};
+  }
+  return {ReasonKind::kNone, Unit::kNone};
+}
+
+}  // namespace
 
 const char* toString(Interlock interlock) noexcept {
   switch (interlock) {
@@ -15,37 +39,20 @@ const char* toString(Interlock interlock) noexcept {
   return "unknown";
 }
 
-std::string LoopFault::text() const {
-  const std::string unit = std::string(" ") + axisUnit(axis);
-  const char* joint = kJointNames[static_cast<std::size_t>(axis)];
-  std::ostringstream text;
-  switch (kind) {
-    case FaultKind::kNone: break;
-    case FaultKind::kEmergencyStop: text << "emergency stop"; break;
-    case FaultKind::kDriveFault: text << "the drive reports a fault"; break;
-    case FaultKind::kPowerLost: text << "the drive has switched its power off"; break;
-    case FaultKind::kStaleFeedback:
-      text << "no fresh positions from the drive for " << value << " s, allowed " << limit << " s";
-      break;
-    case FaultKind::kInvalidFeedback: text << joint << " position from the drive is " << value; break;
-    case FaultKind::kFollowingError:
-      text << joint << " following error " << value << unit << " is beyond its limit " << limit << unit;
-      break;
-    case FaultKind::kUnderrun:
-      text << "the axes found no setpoint in " << value << " servo cycles, after setpoint " << cycle;
-      break;
-    case FaultKind::kLate:
-      text << "the control loop came " << value << " s after the cycle before, allowed " << limit << " s";
-      break;
-    case FaultKind::kLimit: text << violation.text(); break;
-    case FaultKind::kHoming:
-      text << "the drive has not found its reference after " << value << " s, allowed " << limit << " s";
-      break;
-    case FaultKind::kInterlock:
-      text << toString(interlock) << ' ' << value << " s after the job was started, allowed " << limit << " s";
-      break;
-  }
-  return text.str();
+std::string LoopFault::text() const { return core::text(reasonOf(*this), UnitSystem::kSi); }
+
+core::Reason reasonOf(const LoopFault& fault) {
+  if (fault.kind == FaultKind::kLimit) return reasonOf(fault.violation);
+  const auto [kind, unit] = kindAndUnit(fault);
+  core::Reason reason;
+  reason.kind = kind;
+  reason.axis = fault.axis;
+  reason.detail = toString(fault.interlock);
+  reason.unit = unit;
+  reason.value = fault.value;
+  reason.limit = fault.limit;
+  reason.cycle = fault.cycle;
+  return reason;
 }
 
 }  // namespace flute_grinder

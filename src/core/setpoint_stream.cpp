@@ -53,7 +53,7 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   } else if (current_.move == MoveKind::kStroke) {
     if (mid_pair_) {
       strokePoint(even_point_, StepKind::kEven);
-      current_.progress = strokeParameter() / schedule_.length();
+      current_.move_fraction = strokeParameter() / schedule_.length();
     } else {
       strokePair();
     }
@@ -141,7 +141,7 @@ void SetpointStream::beginMove(const Move& move) noexcept {
   current_.tooth = move.tooth;
   current_.pass = move.pass;
   current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
-  current_.progress = 0;
+  current_.move_fraction = 0;
   if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
   y_offset_ = current_.position[kY] - cutter_.y(program_->strokeFrom());
   a_offset_ = program_->job().tooth_angles[move.tooth];
@@ -188,14 +188,14 @@ void SetpointStream::beginStroke(double s) noexcept {
 }
 
 void SetpointStream::beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept {
-  feed_speed_ = feed_speed;
+  move_speed_ = feed_speed;
   if (!law_.begin(limits, distance, 0)) lost_ = true;
   law_.setTarget(targetSpeed());
 }
 
 double SetpointStream::targetSpeed() const noexcept {
   if (holding_) return 0;
-  return isAtFeed(current_.move) ? std::min(override_ * feed_speed_, law_.limits().velocity) : feed_speed_;
+  return isAtFeed(current_.move) ? std::min(override_ * move_speed_, law_.limits().velocity) : move_speed_;
 }
 
 double SetpointStream::strokeParameter() const noexcept {
@@ -210,7 +210,7 @@ void SetpointStream::straightStep() noexcept {
     current_.position = from_ + way_ * law_.position();
   }
   current_.feed = law_.speed() * linear_way_;
-  if (onPath()) current_.progress = law_.position();
+  if (onPath()) current_.move_fraction = law_.position();
 }
 
 void SetpointStream::strokePair() noexcept {

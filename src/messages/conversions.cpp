@@ -1,10 +1,12 @@
 #include "flute_grinder/messages/conversions.h"
 
+#include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/messages/sha256.h"
 
 #include <ros/serialization.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <vector>
 
 namespace flute_grinder {
@@ -21,70 +23,69 @@ Axes axesOf(const Array& array) {
   return Eigen::Map<const Axes>(array.data());
 }
 
+/// The numbers and choices of a job or of a goal, whose members bear the same names.
+template <typename From, typename To>
+void copyFields(const From& from, To& to) {
+  visitJobFields([&](const JobField&, auto of) { of(to) = of(from); });
+  visitJobChoices(
+      [&](const char*, int, auto of) { of(to) = static_cast<std::remove_reference_t<decltype(of(to))>>(of(from)); });
+}
+
+/// Statistics of the core or of a message, whose members bear the same names.
+template <typename From, typename To>
+To convertedStatistics(const From& from) {
+  To to;
+  const auto copyArray = [](const auto& array, auto& copy) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(array.size()); ++i) copy[i] = array[i];
+  };
+  to.setpoints = from.setpoints;
+  to.duration = from.duration;
+  copyArray(from.move_duration, to.move_duration);
+  to.max_odd_error = from.max_odd_error;
+  to.max_even_error = from.max_even_error;
+  to.max_deviation = from.max_deviation;
+  to.min_feed = from.min_feed;
+  to.max_feed = from.max_feed;
+  copyArray(from.max_velocity, to.max_velocity);
+  copyArray(from.max_acceleration, to.max_acceleration);
+  copyArray(from.max_jerk, to.max_jerk);
+  copyArray(from.ripple_acceleration, to.ripple_acceleration);
+  for (const auto& limit : from.feed_limits) {
+    auto& copy = to.feed_limits.emplace_back();
+    copy.cause = limit.cause;
+    copy.from_x = limit.from_x;
+    copy.to_x = limit.to_x;
+  }
+  return to;
+}
+
 }  // namespace
 
 GrindJob jobFromGoal(const GrindGoal& goal) {
-  const Process& p = goal.process;
-  const Interpolation& i = goal.interpolation;
   GrindJob job;
-  job.cutter = fromMessage(goal.cutter);
+  copyFields(goal, job);
   job.tooth_angles = goal.cutter.tooth_angles;
-  job.process.feed = p.feed;
-  job.process.depth = p.depth;
-  job.process.infeed = p.infeed;
-  job.process.finish_infeed = p.finish_infeed;
-  job.process.spark_out = p.spark_out;
-  job.process.clearance = p.clearance;
-  job.process.overtravel_end = p.overtravel_end;
-  job.process.overtravel_shank = p.overtravel_shank;
-  job.process.order = static_cast<GrindOrder>(p.order);
-  job.process.direction = static_cast<StrokeDirection>(p.direction);
-  job.process.wheel_diameter = p.wheel_diameter;
-  job.process.wheel_width = p.wheel_width;
-  job.process.wheel_wear = p.wheel_wear;
-  job.process.wheel_wear_per_pass = p.wheel_wear_per_pass;
-  job.interpolation.even_step = static_cast<EvenStepRule>(i.even_step);
-  job.interpolation.tolerance = i.tolerance;
-  job.interpolation.rotary_scale = i.rotary_scale;
   return job;
 }
 
 GrindGoal goalFromJob(const GrindJob& job) {
   GrindGoal goal;
-  goal.cutter = toMessage(job.cutter, job.tooth_angles);
-  goal.process.feed = job.process.feed;
-  goal.process.depth = job.process.depth;
-  goal.process.infeed = job.process.infeed;
-  goal.process.finish_infeed = job.process.finish_infeed;
-  goal.process.spark_out = static_cast<std::uint16_t>(job.process.spark_out);
-  goal.process.clearance = job.process.clearance;
-  goal.process.overtravel_end = job.process.overtravel_end;
-  goal.process.overtravel_shank = job.process.overtravel_shank;
-  goal.process.order = static_cast<std::uint8_t>(job.process.order);
-  goal.process.direction = static_cast<std::uint8_t>(job.process.direction);
-  goal.process.wheel_diameter = job.process.wheel_diameter;
-  goal.process.wheel_width = job.process.wheel_width;
-  goal.process.wheel_wear = job.process.wheel_wear;
-  goal.process.wheel_wear_per_pass = job.process.wheel_wear_per_pass;
-  goal.interpolation.even_step = static_cast<std::uint8_t>(job.interpolation.even_step);
-  goal.interpolation.tolerance = job.interpolation.tolerance;
-  goal.interpolation.rotary_scale = job.interpolation.rotary_scale;
+  copyFields(job, goal);
+  goal.cutter.tooth_angles = job.tooth_angles;
   return goal;
 }
 
 Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles) {
-  Cutter m;
-  m.end_diameter = cutter.end_diameter;
-  m.cone_angle = cutter.cone_angle;
-  m.spiral_angle = cutter.spiral_angle;
-  m.rake_angle = cutter.rake_angle;
-  m.flute_length = cutter.flute_length;
-  m.tooth_angles = tooth_angles;
-  return m;
+  GrindJob job;
+  job.cutter = cutter;
+  job.tooth_angles = tooth_angles;
+  return goalFromJob(job).cutter;
 }
 
-CutterGeometry fromMessage(const Cutter& m) {
-  return {m.end_diameter, m.cone_angle, m.spiral_angle, m.rake_angle, m.flute_length};
+CutterGeometry fromMessage(const Cutter& message) {
+  GrindGoal goal;
+  goal.cutter = message;
+  return jobFromGoal(goal).cutter;
 }
 
 std::string jobDigest(const GrindJob& job) {
@@ -102,46 +103,12 @@ std::string jobDigest(const GrindJob& job) {
   return sha256Hex(bytes.data(), bytes.size());
 }
 
-PathStatistics toMessage(const PlanStatistics& s) {
-  PathStatistics m;
-  m.setpoints = s.setpoints;
-  m.duration = s.duration;
-  std::copy(s.move_duration.begin(), s.move_duration.end(), m.move_duration.begin());
-  m.max_odd_error = s.max_odd_error;
-  m.max_even_error = s.max_even_error;
-  m.max_deviation = s.max_deviation;
-  m.min_feed = s.min_feed;
-  m.max_feed = s.max_feed;
-  copy(s.max_velocity, m.max_velocity);
-  copy(s.max_acceleration, m.max_acceleration);
-  copy(s.max_jerk, m.max_jerk);
-  copy(s.ripple_acceleration, m.ripple_acceleration);
-  for (const FeedCut& cut : s.feed_cuts) {
-    FeedLimit limit;
-    limit.cause = cut.cause;
-    limit.from_x = cut.from;
-    limit.to_x = cut.to;
-    m.feed_limits.push_back(limit);
-  }
-  return m;
+PathStatistics toMessage(const core::PathStatistics& statistics) {
+  return convertedStatistics<core::PathStatistics, PathStatistics>(statistics);
 }
 
-PlanStatistics fromMessage(const PathStatistics& m) {
-  PlanStatistics s;
-  s.setpoints = m.setpoints;
-  s.duration = m.duration;
-  std::copy(m.move_duration.begin(), m.move_duration.end(), s.move_duration.begin());
-  s.max_odd_error = m.max_odd_error;
-  s.max_even_error = m.max_even_error;
-  s.max_deviation = m.max_deviation;
-  s.min_feed = m.min_feed;
-  s.max_feed = m.max_feed;
-  s.max_velocity = axesOf(m.max_velocity);
-  s.max_acceleration = axesOf(m.max_acceleration);
-  s.max_jerk = axesOf(m.max_jerk);
-  s.ripple_acceleration = axesOf(m.ripple_acceleration);
-  for (const FeedLimit& limit : m.feed_limits) s.feed_cuts.push_back({limit.cause, limit.from_x, limit.to_x});
-  return s;
+core::PathStatistics fromMessage(const PathStatistics& message) {
+  return convertedStatistics<PathStatistics, core::PathStatistics>(message);
 }
 
 WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual, double cycle_period) {

@@ -2,10 +2,10 @@
 
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <algorithm>
 #include <cctype>
-#include <sstream>
 #include <utility>
 
 namespace flute_grinder {
@@ -19,7 +19,7 @@ const ros::WallDuration kLongestSilence(1);       ///< of the control loop
 /// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
 const ros::WallDuration kEndPatience(0.5);
 
-GrindResult result(int code, const std::string& text, const PlanStatistics& statistics = {}) {
+GrindResult result(int code, const std::string& text, const core::PathStatistics& statistics = {}) {
   GrindResult r;
   r.error_code = code;
   r.error_string = text;
@@ -27,10 +27,10 @@ GrindResult result(int code, const std::string& text, const PlanStatistics& stat
   return r;
 }
 
-std::string join(const std::vector<std::string>& reasons) {
-  std::string text;
-  for (const std::string& reason : reasons) text += (text.empty() ? "" : "; ") + reason;
-  return text;
+GrindResult result(int code, const std::vector<core::Reason>& reasons, const core::PathStatistics& statistics = {}) {
+  GrindResult r = result(code, text(reasons, UnitSystem::kSi), statistics);
+  r.reasons = toMessage(reasons);
+  return r;
 }
 
 /// Whether a job may be named so: people read it in their terminals.
@@ -39,12 +39,18 @@ bool isName(const std::string& name) {
   return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), controls);
 }
 
-/// For people, who count teeth and passes from 1.
-std::string placeText(const Place& at, const GrindProgram& program) {
-  std::ostringstream text;
-  text << " (at " << toString(program.moves()[at.move_index].kind) << " of tooth " << at.tooth + 1 << ", pass "
-       << at.pass + 1 << ", X = " << at.x << " m)";
-  return text.str();
+/// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
+core::Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kCanceled;
+  if (status.end == JobEnd::kFault) reason = reasonOf(status.fault);
+  if (reason.has_place) return reason;
+  reason.has_place = true;
+  reason.move = program.moves()[at.move_index].kind;
+  reason.tooth = at.tooth;
+  reason.pass = at.pass;
+  reason.x = at.x;
+  return reason;
 }
 
 }  // namespace
@@ -63,9 +69,11 @@ GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate
   thread_.start();
 }
 
-void GoalDesk::reject(GoalHandle& handle, int code, const std::string& text) {
-  ROS_WARN_STREAM("goal rejected: " << text);
-  handle.setRejected(result(code, text), text);
+void GoalDesk::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }
+
+void GoalDesk::reject(GoalHandle& handle, const GrindResult& result) {
+  ROS_WARN_STREAM("goal rejected: " << result.error_string);
+  handle.setRejected(result, result.error_string);
 }
 
 void GoalDesk::onGoal(GoalHandle handle) {
@@ -132,7 +140,7 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
   if (recalled || gate_.canceled()) return giveUp();
   if (!plan.good()) {
     leave();
-    return reject(handle, errorCode(plan.fault), join(plan.reasons));
+    return reject(handle, result(errorCode(plan.fault), plan.reasons));
   }
   handle.setAccepted();
   if (handle.getGoal()->dry_run) {
@@ -237,19 +245,20 @@ void GoalDesk::endJob() {
     at.pass = static_cast<std::uint16_t>(preview->first.pass);
     at.x = preview->plan.program->start()[kX];
   }
-  const std::string place = placeText(at, *preview->plan.program);
-  GrindResult r = result(GrindResult::SUCCESSFUL, "", preview->plan.statistics);
+  const GrindProgram& program = *preview->plan.program;
+  const core::PathStatistics& statistics = preview->plan.statistics;
+  GrindResult r = result(GrindResult::SUCCESSFUL, "", statistics);
+  if (status.end == JobEnd::kFault) {
+    r = result(errorCode(status.fault.kind), {endReason(status, at, program)}, statistics);
+  } else if (status.end == JobEnd::kCanceled) {
+    r = result(GrindResult::CANCELED, {endReason(status, at, program)}, statistics);
+  }
   r.setpoints_written = status.setpoints_written;
   switch (status.end) {
     case JobEnd::kFault:
-      r.error_code = errorCode(status.fault.kind);
-      r.error_string = status.fault.text() + place;
       ROS_ERROR_STREAM("goal aborted: " << r.error_string);
       return handle.setAborted(r, r.error_string);
-    case JobEnd::kCanceled:
-      r.error_code = GrindResult::CANCELED;
-      r.error_string = "canceled; stopped on the path" + place;
-      return handle.setCanceled(r, r.error_string);
+    case JobEnd::kCanceled: return handle.setCanceled(r, r.error_string);
     case JobEnd::kNone:
     case JobEnd::kDone: return handle.setSucceeded(r);
   }

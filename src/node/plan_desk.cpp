@@ -1,6 +1,7 @@
 #include "flute_grinder/node/plan_desk.h"
 
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <future>
 #include <utility>
@@ -50,7 +51,8 @@ bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);
   response.duration = plan.statistics.duration;
-  response.reasons = plan.reasons;
+  response.violations = toMessage(plan.reasons);
+  for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
   if (plan.good()) teller_.show(preview);
   return true;
 }

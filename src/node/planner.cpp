@@ -57,7 +57,7 @@ std::unique_ptr<Preview> Planner::plan(const Order& order) const {
     order.control->done = done;
     return !order.control->give_up;
   };
-  preview->plan = planJob(order.job, machine_, order.start, order.first, visit, UnitSystem::kSi, watch);
+  preview->plan = planJob(order.job, machine_, order.start, order.first, visit, watch);
   if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
   return preview;
 }

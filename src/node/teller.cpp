@@ -3,6 +3,7 @@
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <sensor_msgs/JointState.h>
 
@@ -23,7 +24,7 @@ double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done
 /// How far a job has come, in cycles of its plan.
 double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_ends) {
   const auto begin = static_cast<double>(p.move_index == 0 ? 0 : move_ends[p.move_index - 1]);
-  return begin + p.progress * (static_cast<double>(move_ends[p.move_index]) - begin);
+  return begin + p.move_fraction * (static_cast<double>(move_ends[p.move_index]) - begin);
 }
 
 double strokeFraction(const Setpoint& p, const GrindProgram& program) {
@@ -201,7 +202,9 @@ void Teller::publishState() {
     message.tooth = job->last.tooth;
     message.pass = job->last.pass;
   }
-  message.fault = record_.fault.text();
+  const core::Reason fault = reasonOf(record_.fault);
+  message.fault = text(fault, UnitSystem::kSi);
+  message.fault_reason = flute_grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
   message.progress = toMessage(journal_.told().on_disk);
   state_.publish(message);

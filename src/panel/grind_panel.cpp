@@ -1,5 +1,6 @@
 #include "flute_grinder/panel/grind_panel.h"
 
+#include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
 
@@ -230,12 +231,13 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
       plan.statistics = result.statistics;
       plan.duration = result.statistics.duration;
       plan.reasons = {result.error_string};
+      plan.violations = result.reasons;
       job_->setPlan(goal, plan);
       if (good) say(result.error_string);
       return;
     }
   }
-  say(good ? "the job is done" : "the job has ended: " + result.error_string);
+  say(good ? "the job is done" : "the job has ended: " + resultText(result));
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
@@ -246,7 +248,7 @@ void GrindPanel::setFeedOverride(double fraction) {
 }
 
 void GrindPanel::say(const std::string& text) {
-  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(inShopUnits(text)));
+  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
 }
 
 }  // namespace flute_grinder

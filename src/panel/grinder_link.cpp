@@ -61,8 +61,8 @@ GrinderView GrinderLink::view() const {
   GrinderView view;
   if (isFresh(state_)) view.state = state_->message;
   if (isFresh(position_)) view.position = position_->message;
-  if (feedback_) view.progress = feedback_->message.feedback;
-  if (isFresh(feedback_) && view.progress->state == kPlanning) view.planned = view.progress->planned;
+  if (feedback_) view.feedback = feedback_->message.feedback;
+  if (isFresh(feedback_) && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
   return view;
 }
 

@@ -3,11 +3,10 @@
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/reasons.h"
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <regex>
 
 namespace flute_grinder {
 
@@ -60,31 +59,6 @@ std::string feedText(const PathStatistics& s) {
 
 }  // namespace
 
-std::string inShopUnits(const std::string& text) {
-  // A number, or "from to" with one unit for both.
-  static const std::regex quantity(R"(([-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?)( to ([-+]?[0-9][0-9.]*(?:e[-+]?[0-9]+)?))? )"
-                                   R"((m|rad)(/s(?:\^[23])?)?(?![A-Za-z0-9_/^]))");
-  static const std::regex axis("axis_([xyza])");
-  std::string told;
-  auto from = text.cbegin();
-  for (std::sregex_iterator it(text.begin(), text.end(), quantity), end; it != end; ++it) {
-    const std::smatch& match = *it;
-    const bool linear = match[4] == "m";
-    const double unit = linear ? kMillimetre : kDegree;
-    told.append(from, match[0].first);
-    told += format("%.6g", std::strtod(match[1].str().c_str(), nullptr) / unit);
-    if (match[2].matched) told += format(" to %.6g", std::strtod(match[3].str().c_str(), nullptr) / unit);
-    told += (linear ? " mm" : " deg") + match[5].str();
-    from = match[0].second;
-  }
-  told.append(from, text.cend());
-  for (std::smatch match; std::regex_search(told, match, axis);) {
-    const char letter = static_cast<char>(*match[1].first - 'a' + 'A');
-    told = match.prefix().str() + "axis " + letter + match.suffix().str();
-  }
-  return told;
-}
-
 std::string duration(double seconds) {
   if (seconds < 59.95) return format("%.1f s", seconds);
   const auto whole = static_cast<long>(std::lround(seconds));
@@ -96,8 +70,8 @@ std::string describe(const GrinderState& state) {
   const auto machine = static_cast<MachineState>(state.state);
   std::string text;
   // In states other than a fault it tells why the last job did not begin.
-  if (!state.fault.empty()) text = "Fault: " + inShopUnits(state.fault) + ". ";
-  if (!state.hold_reason.empty()) text += "Held because " + inShopUnits(state.hold_reason) + ". ";
+  if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
+  if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
   if (state.wheel_in_work && !isInJob(machine) && machine != MachineState::kLifting) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
@@ -117,12 +91,12 @@ std::string describe(const Plan::Response& plan) {
   std::string text;
   if (!plan.valid) {
     text = "Cannot be ground:";
-    for (const std::string& reason : plan.reasons) text += "\n" + inShopUnits(reason);
+    for (const std::string& reason : planTexts(plan)) text += "\n" + reason;
     return text;
   }
   text = "Takes " + duration(plan.duration) + ".\n" + feedText(plan.statistics);
   for (const FeedLimit& limit : plan.statistics.feed_limits) {
-    text += "\n" + inShopUnits(limit.cause) +
+    text += "\n" + core::causeText(limit.cause, UnitSystem::kShop) +
             format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
   }
   return text;

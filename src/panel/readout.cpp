@@ -129,17 +129,17 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   if (view.planned) return showPlanning(*view.planned);
   stroke_->setEnabled(job_runs);
   job_->setEnabled(job_runs);
-  if (view.progress) {
-    setFraction(*stroke_, view.progress->stroke_fraction);
-    setFraction(*job_, view.progress->job_fraction);
+  if (view.feedback) {
+    setFraction(*stroke_, view.feedback->stroke_fraction);
+    setFraction(*job_, view.feedback->job_fraction);
   }
-  if (!view.progress || !job_runs) {
+  if (!view.feedback || !job_runs) {
     place_->setText(view.state ? "No job runs" : "");
     feed_->clear();
     job_->setFormat(kJobDone);
     return;
   }
-  const GrindFeedback& f = *view.progress;
+  const GrindFeedback& f = *view.feedback;
   place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
   feed_->setText(QString("%1 mm/min").arg(f.feed / kMillimetrePerMinute, 0, 'f', 0));
   // The grinder reckons with the job's own feed.

@@ -86,7 +86,7 @@ bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
   if (phase == PassPhase::kBefore || phase == PassPhase::kStroke) active_ = p.tooth;
   if (p.move != MoveKind::kStroke) return active_ != before;
   if (p.step != StepKind::kNone) measure(p, actual);
-  if (p.progress < 1) return active_ != before;
+  if (p.move_fraction < 1) return active_ != before;
   finishPass(flutes_[p.tooth]);
   leave();
   return true;

@@ -32,7 +32,7 @@ inline testing::AssertionResult sameSetpoints(const std::vector<Setpoint>& a, co
                       sameBits(a[i].velocity, b[i].velocity) && a[i].path_error == b[i].path_error &&
                       a[i].feed == b[i].feed && a[i].tooth == b[i].tooth && a[i].pass == b[i].pass &&
                       a[i].move == b[i].move && a[i].step == b[i].step && a[i].at_feed == b[i].at_feed &&
-                      a[i].move_index == b[i].move_index && a[i].progress == b[i].progress;
+                      a[i].move_index == b[i].move_index && a[i].move_fraction == b[i].move_fraction;
     if (!same) {
       return testing::AssertionFailure() << "setpoint " << i << ": " << a[i].position.transpose() << " in "
                                          << toString(a[i].move) << " and " << b[i].position.transpose() << " in "

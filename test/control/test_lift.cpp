@@ -188,7 +188,7 @@ TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
     Rig<FakeDrive> rig(machineConfig(), Wheel{true, far, 0.01});
     rig.cycle();
     rig.enable();
-    EXPECT_CONTAINS(rig.ask(E::kLift).text, "m; allowed: up to 0.15 m");
+    EXPECT_CONTAINS(rig.ask(E::kLift).text, " mm; allowed: up to 150 mm");
     EXPECT_EQ(rig.last().state, S::kReady);
   }
 }

@@ -316,7 +316,7 @@ TEST(Status, TellsOfAWholeJob) {
   EXPECT_EQ(status.setpoints_written, rig.setpoints().size());
   const auto& moves = rig.stream->program().moves();
   EXPECT_EQ(status.place.move_index + 1, moves.size());
-  EXPECT_EQ(status.place.progress, 1);
+  EXPECT_EQ(status.place.move_fraction, 1);
   const auto stroke =
       std::find_if(moves.begin(), moves.end(), [](const Move& m) { return m.kind == MoveKind::kStroke; });
   EXPECT_EQ(status.strokes_ended_at, static_cast<std::uint32_t>(stroke - moves.begin()) + 1);
@@ -378,8 +378,8 @@ TEST(Status, AStrokeThatHasEndedStaysEndedWhenARetractionEntersItAgain) {
   while (rig.last().state != S::kReady) {
     rig.cycle();
     ASSERT_EQ(rig.loop->status().strokes_ended_at, ended);
-    entered_again |=
-        rig.last().has_setpoint && rig.last().setpoint.move == MoveKind::kStroke && rig.last().setpoint.progress < 1;
+    entered_again |= rig.last().has_setpoint && rig.last().setpoint.move == MoveKind::kStroke &&
+                     rig.last().setpoint.move_fraction < 1;
   }
   EXPECT_TRUE(entered_again);
 }
@@ -420,9 +420,9 @@ TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
         ASSERT_EQ(status.strokes_ended_at, 0u);
       } else {
         ASSERT_EQ(status.place.move_index, at->move_index);
-        ASSERT_EQ(status.place.progress, at->progress);
+        ASSERT_EQ(status.place.move_fraction, at->move_fraction);
         ASSERT_EQ(status.place.x, rig.last().position[kX]);
-        if (at->move == MoveKind::kStroke && at->progress == 1) ended = at->move_index + 1;
+        if (at->move == MoveKind::kStroke && at->move_fraction == 1) ended = at->move_index + 1;
         ASSERT_EQ(status.strokes_ended_at, ended);
         ASSERT_EQ(status.wheel.in_work, at->position[kY] < kClearanceHeight);
       }

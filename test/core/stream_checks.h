@@ -239,7 +239,7 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
     RC_ASSERT(std::abs(p.position[kZ] - x * growth * sin_rake) <= 2 * rounding[kZ] + 1e-18);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
     if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
-    if (ends) RC_ASSERT(p.progress == 1);
+    if (ends) RC_ASSERT(p.move_fraction == 1);
   }
 }
 

@@ -101,7 +101,7 @@ Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
 /// The one cause for which a feed is cut; empty where it is not, and all where there are several.
 std::string causeOf(const FeedSchedule& schedule) {
   std::string causes;
-  for (const FeedCut& cut : schedule.cuts()) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  for (const core::FeedLimit& cut : schedule.feedLimits()) causes += (causes.empty() ? "" : ", ") + cut.cause;
   return causes;
 }
 
@@ -171,7 +171,7 @@ RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
   c.machine.period = 1e-6;
   c.stroke.tolerance = 1e-3;
   const FeedSchedule schedule = c.schedule();
-  RC_ASSERT(schedule.cuts().empty());
+  RC_ASSERT(schedule.feedLimits().empty());
   const double edge = test_support::edgePerTravel(c.cutter);
   const double feed = c.stroke.surface_feed;
   RC_ASSERT(std::abs(schedule.feedSpeed() * edge - feed) <= 4 * kEps * feed);
@@ -191,7 +191,7 @@ RC_GTEST_PROP(FeedScheduleProperty, NeverAsksForMoreThanTheFeedAndAFifth, ()) {
 
 RC_GTEST_PROP(FeedScheduleProperty, LeavesNoRoomForMoreWhereSomethingHoldsTheFeedBack, ()) {
   const FeedSchedule schedule = Case::draw().schedule();
-  RC_PRE(!schedule.cuts().empty());
+  RC_PRE(!schedule.feedLimits().empty());
   RC_ASSERT(schedule.limits().velocity == schedule.feedSpeed());
 }
 
@@ -201,28 +201,28 @@ RC_GTEST_PROP(FeedScheduleProperty, TellsWhereAHoldsTheFeedBack, ()) {
   const FeedSchedule schedule = c.schedule();
   const bool forward = c.stroke.to > c.stroke.from;
   const auto ahead = [&](double x, double of) { return forward ? x > of : x < of; };
-  for (const FeedCut& cut : schedule.cuts()) {
-    RC_ASSERT(ahead(cut.to, cut.from));
-    RC_ASSERT(!ahead(c.stroke.from, cut.from));
-    RC_ASSERT(!ahead(cut.to, c.stroke.to));
+  for (const core::FeedLimit& cut : schedule.feedLimits()) {
+    RC_ASSERT(ahead(cut.to_x, cut.from_x));
+    RC_ASSERT(!ahead(c.stroke.from, cut.from_x));
+    RC_ASSERT(!ahead(cut.to_x, c.stroke.to));
   }
   bool slower = false;
   for (int i = 0; i <= 1000; ++i) slower = slower || schedule.rate(schedule.length() * i / 1000) < 1 - 1e-6;
   RC_PRE(slower);  // and not next to a cylinder, which is as thin everywhere
-  const FeedCut& cut = schedule.cuts().back();
-  RC_ASSERT(cut.from == c.stroke.from || cut.to == c.stroke.to);
-  const double range = cut.to - cut.from;
+  const core::FeedLimit& cut = schedule.feedLimits().back();
+  RC_ASSERT(cut.from_x == c.stroke.from || cut.to_x == c.stroke.to);
+  const double range = cut.to_x - cut.from_x;
   // The feed nears the full one evenly where the cut ends, and is all but there in the last part of the range.
-  const bool ends_early = cut.to != c.stroke.to;
-  const bool begins_late = cut.from != c.stroke.from;
+  const bool ends_early = cut.to_x != c.stroke.to;
+  const bool begins_late = cut.from_x != c.stroke.from;
   for (int i = 0; i <= 1000; ++i) {
     const double s = schedule.length() * i / 1000;
     const double x = schedule.x(s);
-    const double from = cut.from + (begins_late ? 0.1 : 0) * range;
-    const double to = cut.to - (ends_early ? 0.1 : 0) * range;
+    const double from = cut.from_x + (begins_late ? 0.1 : 0) * range;
+    const double to = cut.to_x - (ends_early ? 0.1 : 0) * range;
     if (ahead(x, from) && ahead(to, x)) RC_ASSERT(schedule.rate(s) < 1);
     const double rounding = 1e-12 * range;
-    if (ahead(cut.from - rounding, x) || ahead(x, cut.to + rounding)) RC_ASSERT(schedule.rate(s) >= 1 - 4 * kEps);
+    if (ahead(cut.from_x - rounding, x) || ahead(x, cut.to_x + rounding)) RC_ASSERT(schedule.rate(s) >= 1 - 4 * kEps);
   }
 }
 
@@ -352,13 +352,13 @@ TEST(FeedSchedule, TellsEveryCauseWithItsRange) {
     if (backward) std::swap(stroke.from, stroke.to);
     const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
     ASSERT_EQ(causeOf(schedule), "axis_x velocity, axis_a velocity");
-    const FeedCut& along = schedule.cuts()[0];
-    const FeedCut& tip = schedule.cuts()[1];
-    EXPECT_EQ(along.from, stroke.from);
-    EXPECT_EQ(along.to, stroke.to);
+    const core::FeedLimit& along = schedule.feedLimits()[0];
+    const core::FeedLimit& tip = schedule.feedLimits()[1];
+    EXPECT_EQ(along.from_x, stroke.from);
+    EXPECT_EQ(along.to_x, stroke.to);
     const double end = (asked / 2 / 5 - 0.5e-3) / std::tan(12 * units::kDegree);
-    EXPECT_EQ(backward ? tip.to : tip.from, -0.5e-3);
-    EXPECT_NEAR(backward ? tip.from : tip.to, end, 0.01e-3);
+    EXPECT_EQ(backward ? tip.to_x : tip.from_x, -0.5e-3);
+    EXPECT_NEAR(backward ? tip.from_x : tip.to_x, end, 0.01e-3);
   }
 }
 

@@ -1,3 +1,4 @@
+#include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/job_plan.h"
 
 #include "generators.h"
@@ -100,13 +101,25 @@ void spoilChoices(Dice& dice, GrindJob& job) {
   if (dice.once(8)) job.tooth_angles = anyTeeth(dice);
 }
 
+/// A number of a job, and its range in SI.
+struct Number {
+  double& (*of)(GrindJob&);
+  double min, max;
+};
+
+std::vector<Number> numbers() {
+  std::vector<Number> all;
+  visitJobFields([&](const JobField& f, auto of) { all.push_back({of, f.low().si, f.high().si}); });
+  return all;
+}
+
 /// A job with one or some of its numbers spoiled.
 GrindJob spoiledJob(Dice& dice) {
   GrindJob job = paperJob();
-  const auto& fields = jobFields();
+  const std::vector<Number> all = numbers();
   for (int i = 0; i <= dice.below(4); ++i) {
-    const JobField& f = fields[static_cast<std::size_t>(dice.below(static_cast<int>(fields.size())))];
-    f.at(job) = hostileOrAny(dice, f.min * f.shop_scale, f.max * f.shop_scale);
+    const Number& n = all[static_cast<std::size_t>(dice.below(static_cast<int>(all.size())))];
+    n.of(job) = hostileOrAny(dice, n.min, n.max);
   }
   spoilChoices(dice, job);
   return job;
@@ -116,7 +129,7 @@ GrindJob spoiledJob(Dice& dice) {
 /// cones close.
 GrindJob allowedJob(Dice& dice) {
   GrindJob job = paperJob();
-  for (const JobField& f : jobFields()) f.at(job) = anyWithin(dice, f.min * f.shop_scale, f.max * f.shop_scale);
+  for (const Number& n : numbers()) n.of(job) = anyWithin(dice, n.min, n.max);
   CutterGeometry& g = job.cutter;
   GrindProcess& p = job.process;
   g.end_diameter = dice.scaled(0.1e-3, 10e-3);
@@ -221,7 +234,11 @@ bool planAndJudge(const Case& c) {
   EXPECT_TRUE(finite);
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(in_range || !plan.good());
-  for (const std::string& reason : plan.reasons) EXPECT_TRUE(sane(reason)) << reason;
+  for (const core::Reason& reason : plan.reasons) {
+    for (const UnitSystem units : {UnitSystem::kSi, UnitSystem::kShop}) {
+      EXPECT_TRUE(sane(text(reason, units))) << text(reason, units);
+    }
+  }
   if (!plan.good()) return false;
   EXPECT_EQ(count, plan.statistics.setpoints);
   EXPECT_LE(plan.statistics.duration, c.machine.max_job_duration);
@@ -241,7 +258,7 @@ struct Tally {
     const JobPlan one = c.plan();
     const JobPlan other = c.plan();
     EXPECT_EQ(one.fault, other.fault);
-    EXPECT_EQ(one.reasons, other.reasons);
+    EXPECT_EQ(text(one.reasons, UnitSystem::kSi), text(other.reasons, UnitSystem::kSi));
     EXPECT_EQ(one.move_ends, other.move_ends);
     EXPECT_EQ(one.statistics.setpoints, other.statistics.setpoints);
   }
@@ -250,10 +267,10 @@ struct Tally {
 TEST(JobFuzz, EveryHostileValueOfEveryFieldIsAnswered) {
   Dice dice(1);
   Tally tally;
-  for (const JobField& f : jobFields()) {
-    for (const double value : hostileValues(f.min * f.shop_scale, f.max * f.shop_scale)) {
+  for (const Number& n : numbers()) {
+    for (const double value : hostileValues(n.min, n.max)) {
       GrindJob job = paperJob();
-      f.at(job) = value;
+      n.of(job) = value;
       Machine machine = plainMachine();
       machine.max_job_duration = 2;
       tally.judge({job, machine, machine.park, {}});
@@ -309,7 +326,7 @@ void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
     if (!resting) {
       ASSERT_TRUE(p.position.isFinite().all() && p.velocity.isFinite().all() && std::isfinite(p.feed));
       const auto violation = check.check(p);
-      ASSERT_FALSE(violation) << violation->text();
+      ASSERT_FALSE(violation) << text(reasonOf(*violation), UnitSystem::kSi);
     }
     meddler.meddle(stream, resting);
   }

@@ -55,7 +55,7 @@ TEST(LiftMove, GoesStraightUpExactlyToItsHeight) {
     y = p.position[kY];
   }
   EXPECT_EQ(y, 0.007);
-  EXPECT_EQ(setpoints.back().progress, 1);
+  EXPECT_EQ(setpoints.back().move_fraction, 1);
   EXPECT_TRUE(lift.finished());
 }
 

@@ -104,7 +104,7 @@ TEST_P(LimitCheckAxis, CatchesWhatIsNotFinite) {
     ASSERT_TRUE(first);
     EXPECT_EQ(first->axis, axis);
     EXPECT_EQ(first->quantity, LimitedQuantity::kNotFinite);
-    EXPECT_NE(first->text().find("is not a finite number"), std::string::npos);
+    EXPECT_NE(text(reasonOf(*first), UnitSystem::kSi).find("is not a finite number"), std::string::npos);
     Feeder later(axis);
     EXPECT_FALSE(later.feedAll({0, 0, 0}));
     const auto violation = later.feed(bad);
@@ -385,7 +385,8 @@ TEST(LimitCheck, TellsAxisAmountLimitMoveCycleAndPlace) {
   v.cycle = 1204;
   v.x = 0.301;
   v.move = MoveKind::kStroke;
-  EXPECT_EQ(v.text(), "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)");
+  EXPECT_EQ(text(reasonOf(v), UnitSystem::kSi),
+            "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)");
 }
 
 TEST(LimitCheck, TellsTheUnitsOfEveryQuantity) {
@@ -394,12 +395,14 @@ TEST(LimitCheck, TellsTheUnitsOfEveryQuantity) {
   v.value = -12;
   v.limit = 10;
   v.quantity = LimitedQuantity::kVelocity;
-  EXPECT_NE(v.text().find("axis_a velocity -12 rad/s is 2 rad/s beyond its limit 10 rad/s"), std::string::npos);
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a velocity -12 rad/s is 2 rad/s beyond its limit 10 rad/s"),
+            std::string::npos);
   v.quantity = LimitedQuantity::kAcceleration;
-  EXPECT_NE(v.text().find("axis_a acceleration -12 rad/s^2 is 2 rad/s^2 beyond"), std::string::npos);
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a acceleration -12 rad/s^2 is 2 rad/s^2 beyond"),
+            std::string::npos);
   v.axis = kZ;
   v.quantity = LimitedQuantity::kJerk;
-  EXPECT_NE(v.text().find("axis_z jerk -12 m/s^3 is 2 m/s^3 beyond"), std::string::npos);
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_z jerk -12 m/s^3 is 2 m/s^3 beyond"), std::string::npos);
 }
 
 RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {

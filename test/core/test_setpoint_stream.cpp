@@ -137,10 +137,10 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
     RC_ASSERT(p.tooth == move.tooth);
     RC_ASSERT(p.pass == move.pass);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
-    RC_ASSERT(p.progress >= 0);
-    RC_ASSERT(p.progress <= 1);
+    RC_ASSERT(p.move_fraction >= 0);
+    RC_ASSERT(p.move_fraction <= 1);
     if (!ends) continue;
-    RC_ASSERT(p.progress == 1);
+    RC_ASSERT(p.move_fraction == 1);
     if (p.move == MoveKind::kStroke) {
       RC_ASSERT(std::abs(p.position[kX] - move.to[kX]) <= 1e-12);
       RC_ASSERT(std::abs(p.position[kY] - move.to[kY]) <= 1e-12);
@@ -265,7 +265,7 @@ TEST(SetpointStream, IsFinishedAtItsEndOnly) {
   Setpoint p;
   EXPECT_FALSE(stream.finished());
   while (stream.next(p))
-    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.progress == 1 && p.cycle % 2 == 0);
+    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
   EXPECT_TRUE(stream.finished());
   stream.resume();
   EXPECT_FALSE(stream.next(p));
@@ -279,22 +279,22 @@ TEST(SetpointStream, TellsMoveAndProgress) {
   Setpoint p;
   ASSERT_TRUE(stream.next(p));
   EXPECT_EQ(p.move_index, 0u);
-  EXPECT_EQ(p.progress, 0);
+  EXPECT_EQ(p.move_fraction, 0);
   Setpoint before = p;
   for (; stream.next(p); before = p) {
     if (p.move_index == before.move_index) {
-      ASSERT_GE(p.progress, before.progress);
+      ASSERT_GE(p.move_fraction, before.move_fraction);
     } else {
       ASSERT_EQ(p.move_index, before.move_index + 1);
-      ASSERT_LT(p.progress, 0.5);
+      ASSERT_LT(p.move_fraction, 0.5);
     }
     // Of a stroke that is not cut for an axis it is the way in X.
     if (p.step == StepKind::kEven) {
-      ASSERT_NEAR(p.progress, (p.position[kX] + 1e-3) / 32e-3, 1e-12);
+      ASSERT_NEAR(p.move_fraction, (p.position[kX] + 1e-3) / 32e-3, 1e-12);
     }
     if (p.move == MoveKind::kApproach) {
       const double from = moves[p.move_index - 1].to[kY];
-      ASSERT_NEAR(p.progress, (p.position[kY] - from) / (moves[p.move_index].to[kY] - from), 1e-12);
+      ASSERT_NEAR(p.move_fraction, (p.position[kY] - from) / (moves[p.move_index].to[kY] - from), 1e-12);
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);

@@ -11,8 +11,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::paperCutter;
-using testing::ReferenceCurve;
+using namespace test_support;
 
 constexpr double kMm = units::kMillimetre;
 

@@ -26,7 +26,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeed, ()) {
   const GrindProgram program = work.program();
   const double edge = edgePerTravel(work.job.cutter);
   const double speed = program.schedule().feedSpeed();
-  if (program.schedule().cuts().empty()) {
+  if (program.schedule().feedLimits().empty()) {
     RC_ASSERT(std::abs(speed * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
   }
   const auto setpoints = all(work);
@@ -273,7 +273,7 @@ RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAsk
   work.machine.limits.max_jerk.setConstant(1e9);
   work.job.interpolation.tolerance = 1e-3;
   SetpointStream stream(work.program());
-  RC_PRE(stream.program().schedule().cuts().empty());
+  RC_PRE(stream.program().schedule().feedLimits().empty());
   const double fraction = *uniform(0.1, 1.2);
   stream.setFeedOverride(fraction);
   const double feed = fraction * work.job.process.feed;

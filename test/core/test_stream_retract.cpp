@@ -41,7 +41,7 @@ void checkDetours(const Ride& ride, const Work& work) {
       RC_ASSERT(p.move_index == before.move_index);
       RC_ASSERT(p.tooth == before.tooth);
       RC_ASSERT(p.pass == before.pass);
-      RC_ASSERT(p.progress == before.progress);
+      RC_ASSERT(p.move_fraction == before.move_fraction);
       RC_ASSERT(p.move == MoveKind::kLift || p.move == MoveKind::kPosition || p.move == MoveKind::kInfeed);
       if (p.move == MoveKind::kLift) RC_ASSERT(radial && way[kY] >= -rounding[kY]);
       if (p.move == MoveKind::kInfeed) RC_ASSERT(radial && way[kY] <= rounding[kY]);
@@ -233,12 +233,12 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     start[kX] = -0.1;
     SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
     Setpoint p;
-    while (p.move != kind || p.progress < 0.3) ASSERT_TRUE(stream.next(p));
+    while (p.move != kind || p.move_fraction < 0.3) ASSERT_TRUE(stream.next(p));
     stream.hold();
     while (stream.next(p)) {
     }
     const Setpoint held = p;
-    ASSERT_LT(held.progress, 1);
+    ASSERT_LT(held.move_fraction, 1);
     stream.retract();
     while (stream.next(p)) {
     }
@@ -249,7 +249,7 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     EXPECT_TRUE(stream.onPath());
     EXPECT_EQ(p.move, kind);
     EXPECT_EQ(p.move_index, held.move_index);
-    EXPECT_LT(p.progress, 0.1);
+    EXPECT_LT(p.move_fraction, 0.1);
     while (stream.next(p)) {
     }
     EXPECT_TRUE(stream.finished());

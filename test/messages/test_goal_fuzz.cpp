@@ -1,3 +1,4 @@
+#include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +70,7 @@ bool goalOf(std::vector<std::uint8_t> bytes, GrindGoal& goal) {
 bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 void expectSame(const GrindJob& a, const GrindJob& b) {
-  for (const JobField& f : jobFields()) EXPECT_TRUE(sameBits(f.get(a), f.get(b))) << f.path;
+  visitJobFields([&](const JobField& f, auto of) { EXPECT_TRUE(sameBits(of(a), of(b))) << f.path; });
   ASSERT_EQ(a.tooth_angles.size(), b.tooth_angles.size());
   for (std::size_t i = 0; i < a.tooth_angles.size(); ++i) EXPECT_TRUE(sameBits(a.tooth_angles[i], b.tooth_angles[i]));
   EXPECT_EQ(a.process.spark_out, b.process.spark_out);
@@ -90,7 +91,7 @@ bool answer(const GrindGoal& goal) {
   EXPECT_TRUE(validate(job).empty() || plan.fault == PlanFault::kInvalidJob);
   const PathStatistics message = toMessage(plan.statistics);
   EXPECT_EQ(fromMessage(message).setpoints, plan.statistics.setpoints);
-  for (const std::string& reason : plan.reasons) EXPECT_GT(reason.size(), 10u);
+  for (const core::Reason& reason : plan.reasons) EXPECT_GT(text(reason, UnitSystem::kSi).size(), 10u);
   return plan.good();
 }
 

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <string>
 
-namespace flute_grinder::testing {
+namespace flute_grinder::test_support {
 
 /// A folder of its own, with a journal that is not there yet.
 class JournalTest : public ::testing::Test {
@@ -68,4 +68,4 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.wheel.lift, b.wheel.lift);
 }
 
-}  // namespace flute_grinder::testing
+}  // namespace flute_grinder::test_support

@@ -19,7 +19,7 @@ const ToothPass kFirst{0, 0};
 GrindProgram program(int passes) {
   GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
   job.process.infeed = job.process.depth / passes;
-  const Machine machine = testing::machineConfig().machine;
+  const Machine machine = test_support::machineConfig().machine;
   return {job, machine, machine.park};
 }
 

@@ -186,7 +186,7 @@ class TestMachine(CommandLine):
     def test_run_outside_of_the_limits(self):
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
         self.assertRegex(self.grind(1, 'run', job, '--discard').stderr,
-                         r'axis_x position .* beyond its limit 0\.3 m.*\(code -6\)')
+                         r'^axis X position 401 mm is 101 mm beyond its limit 300 mm \(.*\(code -6\)')
 
     def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
         run = grinder().send(gc.PAPER, job_name='left.yaml').wait_in_stroke(2 * MM)
@@ -211,7 +211,7 @@ class TestMachine(CommandLine):
         grinder().inject('emergency_stop')
         _, reason = process.communicate(timeout=gc.PATIENCE)
         self.assertEqual(process.returncode, 1)
-        self.assertRegex(reason, r'emergency stop \(at stroke .*\(code -9\)')
+        self.assertRegex(reason, r'emergency stop \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -9\)')
 
     def start_run(self):
         process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard'], stdout=subprocess.PIPE,
@@ -240,7 +240,7 @@ class TestMachine(CommandLine):
         process.send_signal(signal.SIGINT)
         printed, reason = process.communicate(timeout=gc.PATIENCE)
         self.assertEqual(process.returncode, 1, reason)
-        self.assertRegex(reason, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
+        self.assertRegex(reason, r'canceled; stopped on the path \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -11\)')
         self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         setpoints = [s for batch in grinder().batches_of_goal(batches) for s in batch.setpoints]

@@ -15,13 +15,12 @@
 namespace flute_grinder {
 namespace {
 
-using testing::expectSame;
-using testing::someProgress;
+using namespace test_support;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-class JournalFileTest : public testing::JournalTest {
+class JournalFileTest : public test_support::JournalTest {
  protected:
   /// The journal's file with some progress in it.
   std::string written() {

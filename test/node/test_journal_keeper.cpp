@@ -11,8 +11,7 @@
 namespace flute_grinder {
 namespace {
 
-using testing::expectSame;
-using testing::someProgress;
+using namespace test_support;
 
 Progress progressAt(int x) {
   Progress progress = someProgress();
@@ -21,7 +20,7 @@ Progress progressAt(int x) {
 }
 
 /// The disk is as slow as the tests say (slow_fsync.c).
-class JournalKeeperTest : public testing::JournalTest {
+class JournalKeeperTest : public test_support::JournalTest {
  protected:
   JournalKeeperTest() { setenv("SLOW_FSYNC", (folder_ + "/seconds").c_str(), 1); }
   ~JournalKeeperTest() override { unsetenv("SLOW_FSYNC"); }

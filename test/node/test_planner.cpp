@@ -14,7 +14,7 @@ constexpr std::chrono::seconds kPatience(60);
 
 /// On which a job may take months.
 Machine machine() {
-  Machine m = testing::machineConfig().machine;
+  Machine m = test_support::machineConfig().machine;
   m.max_job_duration = 1e7;
   return m;
 }
@@ -72,7 +72,7 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
   const auto preview = asked.wait();
   EXPECT_EQ(preview->plan.fault, PlanFault::kInvalidJob);
   ASSERT_EQ(preview->plan.reasons.size(), 1U);
-  EXPECT_NE(preview->plan.reasons[0].find("process.feed"), std::string::npos);
+  EXPECT_NE(text(preview->plan.reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
   EXPECT_FALSE(preview->stream);
 }
 

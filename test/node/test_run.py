@@ -142,7 +142,7 @@ class TestEnd(RunTest):
         command, seen = self.start(columns=80)
         command.send(signal.SIGHUP)
         self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'canceled; stopped on the path \(at stroke .*\(code -11\)')
+        self.assertRegex(command.text, r'canceled; stopped on the path \(stroke, .* mm\) \(code -11\)')
         self.check_stopped(seen)
 
     def test_nohup_is_heeded(self):
@@ -287,7 +287,7 @@ class TestRecord(RunTest):
         self.wait_in_stroke(grinder(), seen)
         grinder().inject('emergency_stop')
         self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'emergency stop \(at stroke .*\(code -9\)\n'
+        self.assertRegex(command.text, r'emergency stop \(stroke, .* mm\) \(code -9\)\n'
                                        r'/dev/full: not all could be written: No space left on device\n$')
         self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
         self.assertNotIn('setpoints written to', command.stdout)

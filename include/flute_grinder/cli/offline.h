@@ -34,6 +34,6 @@ int runTable(const TableOptions& options);
 int runPlan(const PlanOptions& options);
 
 /// Prints a job's figures in the operator's units.
-void printStatistics(const PlanStatistics& statistics);
+void printStatistics(const core::PathStatistics& statistics);
 
 }  // namespace flute_grinder

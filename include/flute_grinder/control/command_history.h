@@ -20,8 +20,9 @@ struct JobTrack {
   /// Adds the job's next setpoint.
   void add(const Setpoint& p) noexcept {
     ++setpoints;
-    place = {p.move_index, p.tooth, p.pass, p.move, p.position[kX], p.progress};
-    if (p.move == MoveKind::kStroke && p.progress >= 1) strokes_ended_at = std::max(strokes_ended_at, p.move_index + 1);
+    place = {p.move_index, p.tooth, p.pass, p.move, p.position[kX], p.move_fraction};
+    if (p.move == MoveKind::kStroke && p.move_fraction >= 1)
+      strokes_ended_at = std::max(strokes_ended_at, p.move_index + 1);
   }
 };
 

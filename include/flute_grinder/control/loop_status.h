@@ -18,8 +18,8 @@ struct Place {
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0
   MoveKind move = MoveKind::kLift;
-  double x = 0;         ///< [m]
-  double progress = 0;  ///< of the program's move, 0..1; exactly 1 at its end
+  double x = 0;              ///< [m]
+  double move_fraction = 0;  ///< done of the program's move, 0..1; exactly 1 at its end
 };
 
 /// Whether the wheel stands in the work, and how far to lift it off.

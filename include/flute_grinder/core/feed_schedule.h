@@ -12,12 +12,16 @@ namespace flute_grinder {
 
 constexpr double kMaxFeedOverride = 1.2;  ///< the fastest that an operator may ask for, of the job's feed
 
-/// Where the feed is held below the one asked for, and why.
-struct FeedCut {
-  std::string cause;  ///< e.g. "axis_a velocity"
-  double from = 0;    ///< X [m]
-  double to = 0;      ///< X [m]
+namespace core {
+
+/// What holds the feed below the one asked for, and where along the stroke.
+struct FeedLimit {
+  std::string cause;  ///< e.g. "axis_a velocity"; causeText() has it for the operator
+  double from_x = 0;  ///< first in the direction of the stroke [m]
+  double to_x = 0;    ///< [m]
 };
+
+}  // namespace core
 
 /// Where along a stroke the feed must be cut so that no axis exceeds a limit, and what the feed law may do there.
 ///
@@ -62,7 +66,7 @@ class FeedSchedule {
   double rate(double s) const noexcept;
 
   /// What holds the feed below the one asked for; empty where nothing does.
-  const std::vector<FeedCut>& cuts() const noexcept { return cuts_; }
+  const std::vector<core::FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
 
  private:
   void chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine);
@@ -79,7 +83,7 @@ class FeedSchedule {
   double speed_per_radius_ = 0;  ///< c [m/s]
   double tan_cone_ = 0;
   double sin_rake_ = 0;
-  std::vector<FeedCut> cuts_;
+  std::vector<core::FeedLimit> feed_limits_;
 
   // The parameter q of the blend: cut below 0, blend from 0 to blend_, full feed above.
   double beta_ = 0;        ///< relative growth of the speed per parameter where it is cut [1/m]

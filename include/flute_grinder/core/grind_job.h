@@ -3,6 +3,7 @@
 #include "flute_grinder/core/conical_cutter.h"
 #include "flute_grinder/core/enum_table.h"
 #include "flute_grinder/core/odd_even_interpolator.h"
+#include "flute_grinder/core/reason.h"
 
 #include <cstdint>
 #include <string>
@@ -66,53 +67,8 @@ struct GrindJob {
   GrindInterpolation interpolation;
 };
 
-/// A figure of a job that cannot be ground.
-struct JobError {
-  std::string field;    ///< e.g. "cutter.cone_angle", or "cutter.cone_angle_deg" in a job file
-  std::string value;    ///< as given, with unit
-  std::string allowed;  ///< what is allowed, with unit
-
-  /// "field = value; allowed: ..."
-  std::string text() const { return field + " = " + value + "; allowed: " + allowed; }
-};
-
-/// In which units, and by whose names, errors are told: those of messages, or those of job files.
-enum class UnitSystem { kSi, kShop };
-
-/// One number of a job: its name, its units, its range and where it is kept. The job file, the check and their messages
-/// all go by the table of these.
-struct JobField {
-  const char* path;       ///< in messages and in errors about SI figures, e.g. "process.wheel_diameter"
-  const char* file_key;   ///< in a job file, e.g. "process.wheel.diameter_mm"
-  const char* si_unit;    ///< e.g. "m"
-  const char* shop_unit;  ///< e.g. "mm"
-  double shop_scale;      ///< SI value over shop value
-  double min, max;        ///< allowed, in shop units, both included
-  double& (*at)(GrindJob& job);
-  bool optional = false;  ///< 0 where a job file leaves it out
-
-  double get(const GrindJob& job) const { return at(const_cast<GrindJob&>(job)); }
-
-  /// A value in SI as text, with the unit.
-  std::string format(double value, UnitSystem units) const;
-  /// The allowed range as text, with the unit.
-  std::string range(UnitSystem units) const;
-  /// The name as its reader knows it: the file's key, or the message's path.
-  const char* name(UnitSystem units) const { return units == UnitSystem::kSi ? path : file_key; }
-  /// "name = value" of a job, with the unit.
-  std::string text(const GrindJob& job, UnitSystem units) const {
-    return std::string(name(units)) + " = " + format(get(job), units);
-  }
-};
-
-/// Every number of a job but the teeth and the count of spark-out passes.
-const std::vector<JobField>& jobFields();
-
 /// The tool for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
-
-/// The one of a path, which must be there.
-const JobField& jobField(const std::string& path);
 
 constexpr int kMaxTeeth = 64;
 constexpr int kMaxSparkOut = 100;
@@ -120,9 +76,9 @@ constexpr int kMaxPasses = 10000;         ///< of a tooth
 constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest feed that is ground with [m/s]
 
-/// Checks all figures of a job, each for itself and against the others.
-/// @return one error for each figure that is not allowed; empty for a good job.
-std::vector<JobError> validate(const GrindJob& job, UnitSystem units = UnitSystem::kSi);
+/// Checks all numbers of a job, each for itself and against the others.
+/// @return one reason for each that is not allowed; empty for a good job.
+std::vector<core::Reason> validate(const GrindJob& job);
 
 /// The depth of every pass, first to last: infeed steps, the finishing pass, spark-out. [m]
 std::vector<double> passDepths(const GrindProcess& process);

@@ -7,13 +7,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace flute_grinder {
 
-/// Figures of the setpoints of a job.
-struct PlanStatistics {
+namespace core {
+
+/// Statistics of the setpoints of a job.
+struct PathStatistics {
   std::uint64_t setpoints = 0;
   double duration = 0;                                 ///< [s]
   std::array<double, kMoveKindCount> move_duration{};  ///< per MoveKind [s]
@@ -25,8 +26,10 @@ struct PlanStatistics {
   Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
   Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
   Axes ripple_acceleration = Axes::Zero();             ///< over single cycles: the odd-even steps' [m/s^2], A [rad/s^2]
-  std::vector<FeedCut> feed_cuts;                      ///< what holds the feed below the one asked for, and where
+  std::vector<FeedLimit> feed_limits;                  ///< what holds the feed below the one asked for, and where
 };
+
+}  // namespace core
 
 /// Why a plan is refused.
 enum class PlanFault {
@@ -46,25 +49,23 @@ using PlanWatch = std::function<bool(double done)>;
 /// A job that was generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
-  std::vector<std::string> reasons;  ///< why not, one text for each figure, axis and kind of limit
-  PlanStatistics statistics;
+  std::vector<core::Reason> reasons;  ///< why not, one for each field, axis and kind of limit
+  core::PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move of the program
-  std::shared_ptr<const GrindProgram> program;  ///< null where the job's figures are refused
+  std::shared_ptr<const GrindProgram> program;  ///< null where the job's numbers are refused
 
   bool good() const { return fault == PlanFault::kNone; }
 };
 
 /// Generates and checks every setpoint of a job, just as the machine would get them, up to the machine's
 /// max_job_duration. Whatever the job and the machine, the answer is a good plan or one with reasons.
-/// @param job the job; its figures are checked too.
+/// @param job the job; its numbers are checked too.
 /// @param machine what it is to run on.
 /// @param start where the axes stand [m], A [rad].
 /// @param first first pass to grind.
 /// @param visit called with every setpoint, if given; all of them are finite.
-/// @param units of the texts about the job's figures.
 /// @param watch may give the plan up, if given.
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
-                const std::function<void(const Setpoint&)>& visit = {}, UnitSystem units = UnitSystem::kSi,
-                const PlanWatch& watch = {});
+                const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
 }  // namespace flute_grinder

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "flute_grinder/core/axis_limits.h"
+#include "flute_grinder/core/reason.h"
 #include "flute_grinder/core/setpoint.h"
 
 #include <array>
 #include <optional>
-#include <string>
 
 namespace flute_grinder {
 
@@ -21,14 +21,16 @@ struct LimitViolation {
   std::uint64_t cycle = 0;
   double x = 0;  ///< where along the cutter [m]
   MoveKind move = MoveKind::kLift;
-
-  /// e.g. "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)".
-  std::string text() const;
+  std::uint16_t tooth = 0;  ///< from 0
+  std::uint16_t pass = 0;   ///< from 0
 };
+
+/// A violation as a reason. Not real-time safe.
+core::Reason reasonOf(const LimitViolation& violation);
 
 /// Checks setpoints, one after another, against the axes' limits: position and velocity at every one, acceleration and
 /// jerk at the pair ends, by differences over two cycles, since within a pair they are those of the odd-even steps and
-/// not of the path. What rounding alone can make is let pass. Real-time safe.
+/// not of the path. Excess due to rounding is ignored. Real-time safe.
 class LimitCheck {
  public:
   /// @param limits the axes' limits.

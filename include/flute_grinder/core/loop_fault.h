@@ -16,7 +16,7 @@ enum class Interlock : std::uint8_t {
   kProbe,    ///< in the wheel's way
 };
 
-/// What is amiss, e.g. "the spindle is not at speed"; empty for kNone.
+/// What is wrong, e.g. "the spindle is not at speed"; empty for kNone.
 const char* toString(Interlock interlock) noexcept;
 
 /// Why the loop stopped the machine.
@@ -35,7 +35,7 @@ enum class FaultKind : std::uint8_t {
   kInterlock,  ///< a job could not begin; the machine stays ready
 };
 
-/// A fault with its figures; plain data, put in words outside of the loop.
+/// A fault with its values; plain data, put in words outside of the loop.
 struct LoopFault {
   FaultKind kind = FaultKind::kNone;
   int axis = 0;
@@ -45,8 +45,11 @@ struct LoopFault {
   LimitViolation violation;                ///< of kLimit
   Interlock interlock = Interlock::kNone;  ///< of kInterlock
 
-  /// e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m".
+  /// In words and SI, e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m". Not real-time safe.
   std::string text() const;
 };
+
+/// A fault as a reason. Not real-time safe.
+core::Reason reasonOf(const LoopFault& fault);
 
 }  // namespace flute_grinder

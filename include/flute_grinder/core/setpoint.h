@@ -64,7 +64,7 @@ struct Setpoint {
   Axes velocity = Axes::Zero();  ///< mean over the cycle that ends here [m/s], A [rad/s]
   double path_error = 0;         ///< in A: theory - commanded, 0 off the stroke [rad]
   double feed = 0;               ///< along the cutting edge, or of the linear axes off the stroke [m/s]
-  double progress = 0;           ///< done of the program's move, 0..1; exactly 1 at its end
+  double move_fraction = 0;      ///< done of the program's move, 0..1; exactly 1 at its end
   std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the one that was interrupted
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0

@@ -96,7 +96,7 @@ class SetpointStream {
   std::size_t next_move_ = 0;
   Leg leg_ = Leg::kPath;
   FeedLaw law_;
-  double feed_speed_ = 0;  ///< of the law, without override
+  double move_speed_ = 0;  ///< of the law, without override
 
   // Of a straight move: the way is from_ + law * way_.
   Axes from_ = Axes::Zero();

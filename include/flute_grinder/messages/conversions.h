@@ -27,13 +27,12 @@ Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_
 /// What a cutter's message says but its teeth.
 CutterGeometry fromMessage(const Cutter& message);
 
-/// Tells a job from every other: SHA-256 of its figures, in hexadecimal. What a goal says beside the job does not
-/// count.
+/// Identifies a job: SHA-256 of its numbers, in hexadecimal. What a goal says beside the job does not count.
 /// @throw std::runtime_error if the computer cannot compute it.
 std::string jobDigest(const GrindJob& job);
 
-PathStatistics toMessage(const PlanStatistics& statistics);
-PlanStatistics fromMessage(const PathStatistics& message);
+PathStatistics toMessage(const core::PathStatistics& statistics);
+core::PathStatistics fromMessage(const PathStatistics& message);
 
 /// @param actual where the drive said the axes were when the setpoint was made [m], A [rad].
 /// @param cycle_period measured, from the control cycle before to the one that made the setpoint [s].

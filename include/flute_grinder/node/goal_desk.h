@@ -64,6 +64,7 @@ class GoalDesk {
   void refuseStart(const std::string& text);
   void takeBack();
   void reject(GoalHandle& handle, int code, const std::string& text);
+  void reject(GoalHandle& handle, const GrindResult& result);
   void leave();
 
   ControlLoop& loop_;

@@ -25,7 +25,7 @@ namespace flute_grinder {
 /// What is known of a grinder.
 struct GrinderView {
   std::optional<GrinderState> state;      ///< nothing where the grinder has not told it for a second
-  std::optional<GrindFeedback> progress;  ///< of the job that runs, whoever has sent it, or of the last one
+  std::optional<GrindFeedback> feedback;  ///< of the job that runs, whoever has sent it, or of the last one
   std::optional<double> planned;  ///< part of a goal that is planned and checked, 0..1; nothing where none is planned
   std::optional<Axes> position;   ///< as the drive reads it [m], A [rad]; nothing where it has not come for a second
 };

@@ -7,10 +7,6 @@
 
 namespace flute_grinder {
 
-/// A text of the node's, told in axes and units of the operator: "axis_x ... 0.0012 m" becomes "axis X ... 1.2 mm".
-/// Linear units become mm, mm/s, ...; radians become degrees.
-std::string inShopUnits(const std::string& text);
-
 /// A time, e.g. "7.0 s", "12:05 min" or "1:02:05 h". @param seconds not negative.
 std::string duration(double seconds);
 
@@ -20,7 +16,7 @@ std::string describe(const GrinderState& state);
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
 std::string describe(const JobProgress& progress);
 
-/// What came of a plan: how long the job takes, what cuts its feed, or all that forbids it. A line for each.
+/// What came of a plan: how long the job takes, what cuts its feed, or its violations. A line for each.
 std::string describe(const Plan::Response& plan);
 
 }  // namespace flute_grinder

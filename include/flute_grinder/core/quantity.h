@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace flute_grinder {
+
+/// The units of the quantities that people read: each is one unit in SI and one in the workshop.
+enum class Unit : std::uint8_t {
+  kNone,                  ///< a plain number
+  kMetre,                 ///< mm
+  kMetrePerSecond,        ///< of an axis: mm/s
+  kMetrePerSecond2,       ///< mm/s^2
+  kMetrePerSecond3,       ///< mm/s^3
+  kRadian,                ///< deg
+  kRadianPerSecond,       ///< deg/s
+  kRadianPerSecond2,      ///< deg/s^2
+  kRadianPerSecond3,      ///< deg/s^3
+  kSecond,                ///< s
+  kFeedMetrePerSecond,    ///< mm/min
+  kDeviationMetre,        ///< of the path, and its tolerance: um
+  kRotaryMetrePerRadian,  ///< mm/rad
+};
+constexpr int kUnitCount = 13;
+
+/// For whom a text is written: SI and ROS' names for programs and logs; mm, deg, mm/min and a job file's keys for the
+/// operator.
+enum class UnitSystem { kSi, kShop };
+
+/// A number with its unit.
+struct Quantity {
+  double si = 0;
+  Unit unit = Unit::kNone;
+};
+
+/// A number and its unit as text, e.g. "0.301 m" or "301 mm".
+/// @param digits significant ones.
+std::string text(const Quantity& quantity, UnitSystem units, int digits = 6);
+
+/// A range as text, e.g. "0.1 to 100 mm". @param to has the unit of `from`.
+std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int digits = 6);
+
+/// SI value over shop value, e.g. 0.001 for millimetres.
+double shopScale(Unit unit) noexcept;
+
+/// The unit of an axis' position (derivative 0), velocity (1), acceleration (2) or jerk (3).
+Unit unitOf(int axis, int derivative) noexcept;
+
+/// e.g. "axis_x", or "axis X" for the operator.
+std::string axisName(int axis, UnitSystem units);
+
+}  // namespace flute_grinder

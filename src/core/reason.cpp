@@ -1,0 +1,131 @@
+#include "flute_grinder/core/reason.h"
+
+#include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/job_fields.h"
+
+#include <cmath>
+
+namespace flute_grinder::core {
+
+namespace {
+
+constexpr int kFieldDigits = 10;  ///< of a job's numbers, which are told as they were given
+
+/// Puts one reason in words.
+class Writer {
+ public:
+  Writer(const Reason& reason, UnitSystem units) : r_(reason), units_(units) {}
+
+  std::string what() const {
+    switch (r_.kind) {
+      case ReasonKind::kNone: return "";
+      case ReasonKind::kOutOfRange: return refused(range());
+      case ReasonKind::kNotBelow: return refused("less than " + digits(r_.limit) + ", " + r_.detail);
+      case ReasonKind::kAbove: return refused("up to " + r_.detail + ", " + digits(r_.limit));
+      case ReasonKind::kNotAllowed: return refused(r_.detail + (r_.limit == 0 ? "" : " " + digits(r_.limit)));
+      case ReasonKind::kFeedTooLow:
+        return name("process.feed") + ": " + causeText(r_.detail, units_) + " allows " + value() + " at X = " + x() +
+               "; the slowest feed is " + limit();
+      case ReasonKind::kParkInWork:
+        return "park position " + axis() + " = " + value() + "; allowed for this job: at least " + limit() +
+               ", clear of the work";
+      case ReasonKind::kTolerance:
+        return name("interpolation.tolerance") + " = " + limit() + ": the path deviates by " + value() +
+               " at the largest feed override" + place() + "; lower " + name("process.feed") +
+               ", or set interpolation.even_step to exact";
+      case ReasonKind::kTooLong:
+        return "max_job_duration = " + limit() + ": the job takes " + (r_.value > 0 ? value() + " or more" : "longer") +
+               " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
+               name("process.feed") + " or " + name("process.infeed") + ", or the parameter";
+      case ReasonKind::kGivenUp: return "given up while it was planned";
+      case ReasonKind::kOther: return r_.detail;
+      case ReasonKind::kPosition: return axis() + " position " + excess();
+      case ReasonKind::kVelocity: return axis() + " velocity " + excess();
+      case ReasonKind::kAcceleration: return axis() + " acceleration " + excess();
+      case ReasonKind::kJerk: return axis() + " jerk " + excess();
+      case ReasonKind::kNotFinite: return axis() + " position " + value() + " is not a finite number";
+      case ReasonKind::kEmergencyStop: return "emergency stop";
+      case ReasonKind::kDriveFault: return "the drive reports a fault";
+      case ReasonKind::kPowerLost: return "the drive has switched its power off";
+      case ReasonKind::kStaleFeedback: return "no fresh positions from the drive for " + value() + allowed();
+      case ReasonKind::kInvalidFeedback: return axis() + " position from the drive is " + number();
+      case ReasonKind::kFollowingError:
+        return axis() + " following error " + value() + " is beyond its limit " + limit();
+      case ReasonKind::kUnderrun:
+        return "the axes found no setpoint in " + value() + " servo cycles, after setpoint " + std::to_string(r_.cycle);
+      case ReasonKind::kLate: return "the control loop came " + value() + " after the cycle before" + allowed();
+      case ReasonKind::kHoming: return "the drive has not found its reference after " + value() + allowed();
+      case ReasonKind::kInterlock: return r_.detail + " " + value() + " after the job was started" + allowed();
+      case ReasonKind::kCanceled: return "canceled; stopped on the path";
+    }
+    return "";
+  }
+
+  std::string place() const {
+    if (!r_.has_place) return "";
+    const std::string move = toString(r_.move);
+    const std::string tooth = "tooth " + std::to_string(r_.tooth + 1) + ", pass " + std::to_string(r_.pass + 1);
+    if (units_ == UnitSystem::kShop) return " (" + move + ", " + tooth + ", X = " + x() + ")";
+    if (ofSetpoint()) return " (" + move + ", cycle " + std::to_string(r_.cycle) + ", X = " + x() + ")";
+    return " (at " + move + " of " + tooth + ", X = " + x() + ")";
+  }
+
+  /// Whether place() stands behind what(), not within it.
+  bool placeAtEnd() const { return r_.kind != ReasonKind::kTolerance; }
+
+  std::string others() const {
+    if (!ofSetpoint() || r_.count < 2) return "";
+    return "; the worst of " + std::to_string(r_.count) + " setpoints";
+  }
+
+ private:
+  bool ofSetpoint() const {
+    return r_.kind == ReasonKind::kTolerance || (ReasonKind::kPosition <= r_.kind && r_.kind <= ReasonKind::kNotFinite);
+  }
+
+  std::string digits(double si) const { return flute_grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
+  std::string value() const { return flute_grinder::text(Quantity{r_.value, r_.unit}, units_); }
+  std::string limit() const { return flute_grinder::text(Quantity{r_.limit, r_.unit}, units_); }
+  std::string x() const { return flute_grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
+  std::string number() const { return flute_grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
+  std::string range() const {
+    return flute_grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
+  }
+  std::string axis() const { return axisName(r_.axis, units_); }
+  std::string name(const std::string& path) const { return fieldName(path, units_); }
+  std::string allowed() const { return ", allowed " + limit(); }
+  std::string refused(const std::string& allowed) const {
+    return name(r_.field) + " = " + digits(r_.value) + "; allowed: " + allowed;
+  }
+  std::string excess() const {
+    const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
+    const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
+    return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
+  }
+
+  const Reason& r_;
+  UnitSystem units_;
+};
+
+}  // namespace
+
+std::string text(const Reason& reason, UnitSystem units) {
+  const Writer writer(reason, units);
+  return writer.what() + (writer.placeAtEnd() ? writer.place() : "") + writer.others();
+}
+
+std::string text(const std::vector<Reason>& reasons, UnitSystem units) {
+  std::string all;
+  for (const Reason& reason : reasons) all += (all.empty() ? "" : "; ") + text(reason, units);
+  return all;
+}
+
+std::string causeText(const std::string& cause, UnitSystem units) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    if (cause.compare(0, joint.size(), joint) == 0) return axisName(axis, units) + cause.substr(joint.size());
+  }
+  return cause;
+}
+
+}  // namespace flute_grinder::core

@@ -188,7 +188,8 @@ int carryOut(const CLI::App& app, const Options& options) {
   if (command == "run") return runJob(options.run);
   if (command == "status") return printStatus(node, options.status_json);
   if (command == "override") return setFeedOverride(node, options.percent);
-  return request(node, valueOf<MachineEvent>(command).value());
+  const auto event = valueOf<MachineEvent>(command);
+  return event ? request(node, *event) : kUsage;
 }
 
 int run(int argc, char** argv) {

@@ -108,6 +108,24 @@ TEST(MachineState, StopsAreHoldCancelAndDisable) {
   }
 }
 
+TEST(MachineState, TriggersAreTheRequestsThatNeitherStopNorStart) {
+  for (const E event : kEvents) {
+    EXPECT_EQ(isTrigger(event), isRequest(event) && !isStop(event) && event != E::kStart) << toString(event);
+  }
+}
+
+TEST(MachineState, RequestsHaveServicesButThoseThatGoByTheAction) {
+  for (const E event : kEvents) {
+    const bool by_service = isRequest(event) && event != E::kStart && event != E::kCancel;
+    const char* named = event == E::kReset ? "reset_fault" : toString(event);
+    EXPECT_STREQ(serviceOf(event), by_service ? named : nullptr);
+  }
+}
+
+TEST(MachineState, RequestsSayWhatTheyDo) {
+  for (const E event : kEvents) EXPECT_EQ(std::string(rowOf(event).help).empty(), !isRequest(event)) << toString(event);
+}
+
 TEST(MachineState, OnlyReadyStartsAJobHomesOrLifts) {
   for (const S state : kStates) {
     EXPECT_EQ(after(state, E::kStart).has_value(), state == S::kReady) << toString(state);

@@ -8,8 +8,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ['README.md'] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / 'docs').glob('*.md'))
-# Where a file may be that the architecture names.
-BASES = ['', 'include/flute_grinder', 'docs'] + ['include/flute_grinder/' + room for room in ('drive', 'control')]
+# Where the architecture's files are named from.
+BASES = ['', 'include/flute_grinder', 'include/flute_grinder/drive', 'include/flute_grinder/control']
 SOURCES = ['include', 'src', 'msg', 'srv', 'action', 'launch', 'config']
 
 
@@ -53,5 +53,6 @@ def wrong():
 
 
 if __name__ == '__main__':
-    print('\n'.join(wrong()) or 'every link and name leads somewhere')
-    sys.exit(bool(wrong()))
+    found = wrong()
+    print('\n'.join(found) or 'every link and name leads somewhere')
+    sys.exit(bool(found))

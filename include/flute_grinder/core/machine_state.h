@@ -78,7 +78,7 @@ inline constexpr EventRow kMachineEvents[]{
     {{MachineEvent::kHome, "home"}, EventKind::kTrigger, "home", "find the axes' reference, for which they may move"},
     {{MachineEvent::kReset, "reset"}, EventKind::kTrigger, "reset_fault", "reset a fault; the power stays off"},
     {{MachineEvent::kStart, "start"}, EventKind::kStart, nullptr, "grind the planned job"},
-    {{MachineEvent::kHold, "hold"}, EventKind::kStop, "hold", "stop on the path; the wheel turns on"},
+    {{MachineEvent::kHold, "hold"}, EventKind::kStop, "hold", "stop on the path; the wheel keeps turning"},
     {{MachineEvent::kRetract, "retract"}, EventKind::kTrigger, "retract", "after hold, lift the wheel off the work"},
     {{MachineEvent::kResume, "resume"}, EventKind::kTrigger, "resume", "go on after hold or retract"},
     {{MachineEvent::kCancel, "cancel"}, EventKind::kStop, nullptr, "stop on the path, lift the wheel and end the job"},

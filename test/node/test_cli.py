@@ -174,8 +174,10 @@ class TestPlan(CommandLine):
         told, _ = self.json(0, 'plan', job)
         self.assertTrue(told['feed_limits'])
         lines = re.findall(r'(?m)^feed limited by +(.*), X (\S+) to (\S+) mm$', self.grind(0, 'plan', job).stdout)
-        self.assertEqual([(cut['cause'].replace('axis_a', 'axis A'), '%.3f' % cut['from_x_mm'], '%.3f' % cut['to_x_mm'])
-                          for cut in told['feed_limits']], lines)
+        causes = [re.sub('axis_([xyza])', lambda axis: 'axis ' + axis.group(1).upper(), cut['cause'])
+                  for cut in told['feed_limits']]
+        self.assertEqual([(cause, '%.3f' % cut['from_x_mm'], '%.3f' % cut['to_x_mm'])
+                          for cause, cut in zip(causes, told['feed_limits'])], lines)
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
         told, reasons = self.json(1, 'plan', job)
         self.assertFalse(told['valid'])

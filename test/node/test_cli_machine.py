@@ -186,7 +186,7 @@ class TestMachine(CommandLine):
     def test_run_outside_of_the_limits(self):
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
         self.assertRegex(self.grind(1, 'run', job, '--discard').stderr,
-                         r'^axis X position 401 mm is 101 mm beyond its limit 300 mm \(.*\(code -6\)')
+                         r'(?m)^axis X position 401 mm is 101 mm beyond its limit 300 mm \(.*\(code -6\)')
 
     def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
         run = grinder().send(gc.PAPER, job_name='left.yaml').wait_in_stroke(2 * MM)

@@ -222,7 +222,7 @@ void occupyStandardStreams() {
 int closeOutput(int status) {
   std::fflush(stdout);
   if (std::ferror(stdout) == 0) return status;
-  std::fprintf(stderr, "standard output: not all could be written\n");
+  std::fprintf(stderr, "standard output: write failed\n");
   return status == 0 ? 1 : status;
 }
 

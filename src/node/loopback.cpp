@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Whether ROS is told to use loopback; ROS_HOSTNAME comes before ROS_IP, as in roscpp.
+/// Whether ROS is configured for loopback; ROS_HOSTNAME comes before ROS_IP, as in roscpp.
 bool loopbackOnly() {
   const char* host = std::getenv("ROS_HOSTNAME");
   if (!host) host = std::getenv("ROS_IP");

@@ -12,7 +12,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kRefreshInterval = 50;  ///< as often as the grinder tells its state [ms]
+constexpr int kRefreshInterval = 50;  ///< the rate of the grinder's state [ms]
 constexpr int kMessages = 200;        ///< that are kept
 
 /// One for the process, however many panels there are.
@@ -36,7 +36,7 @@ GrindPanel::GrindPanel(QWidget* parent)
       messages_(textView("messages", 3)),
       node_edit_(new QLineEdit) {
   messages_->setMaximumBlockCount(kMessages);
-  messages_->setPlaceholderText("What the grinder has answered");
+  messages_->setPlaceholderText("Replies from the grinder");
   node_edit_->setObjectName("node");
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
@@ -61,11 +61,11 @@ void GrindPanel::layOut() {
   addButton(*buttons, 0, 3, 3, MachineEvent::kDisable, "Disable",
             "Switch the drive's power off; a job is stopped and its wheel lifted first");
   addButton(*buttons, 0, 6, 3, MachineEvent::kHome, "Home", "The drive finds the axes' reference; the axes may move");
-  addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Take a fault back; the power stays off");
+  addButton(*buttons, 0, 9, 3, MachineEvent::kReset, "Reset", "Clear a fault; the power stays off");
   addButton(*buttons, 1, 0, 6, MachineEvent::kStart, "Start", "Grind the planned job");
-  addButton(*buttons, 1, 6, 6, MachineEvent::kHold, "Hold", "Stop on the path; the wheel turns on");
+  addButton(*buttons, 1, 6, 6, MachineEvent::kHold, "Hold", "Stop on the path; the wheel keeps turning");
   addButton(*buttons, 2, 0, 3, MachineEvent::kRetract, "Retract", "Lift the held wheel off the work");
-  addButton(*buttons, 2, 3, 3, MachineEvent::kResume, "Resume", "Go on where the job was held");
+  addButton(*buttons, 2, 3, 3, MachineEvent::kResume, "Resume", "Continue where the job was held");
   addButton(*buttons, 2, 6, 3, MachineEvent::kCancel, "Cancel", "Stop on the path, lift the wheel and end the job");
   addButton(*buttons, 2, 9, 3, MachineEvent::kLift, "Lift", "Lift the wheel off the work, without a job");
   for (const MachineEvent event : {MachineEvent::kStart, MachineEvent::kHold}) {
@@ -99,7 +99,7 @@ void GrindPanel::addButton(QGridLayout& layout, int row, int column, int columns
   button->setMinimumWidth(10);
   layout.addWidget(button, row, column, 1, columns);
   buttons_[event] = button;
-  connect(button, &QPushButton::clicked, this, [this, event] { ask(event); });
+  connect(button, &QPushButton::clicked, this, [this, event] { request(event); });
 }
 
 void GrindPanel::load(const rviz::Config& config) {
@@ -120,7 +120,7 @@ void GrindPanel::setNode(const QString& node) {
   node_edit_->setText(node);
   planning_ = false;
   sent_.reset();
-  job_->forgetPlan();  // it is another machine's
+  job_->discardPlan();  // it is for another machine
   override_->reset();
   link_.reset();
   name_.clear();
@@ -128,7 +128,7 @@ void GrindPanel::setNode(const QString& node) {
     if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
     name_ = ros::names::resolve(node.toStdString());
   } catch (const ros::InvalidNameException& error) {
-    say(std::string("grinder's node: ") + error.what());
+    showMessage(std::string("grinder's node: ") + error.what());
   }
   refresh();
 }
@@ -150,9 +150,9 @@ void GrindPanel::refresh() {
   const Master master = master_watch_->master();
   std::optional<MachineState> state;
   if (view.state) state = static_cast<MachineState>(view.state->state);
-  if (!state && sent_) {  // a grinder that is gone will not tell its end
+  if (!state && sent_) {  // a grinder that is gone sends no result
     sent_.reset();
-    job_->forgetPlan();
+    job_->discardPlan();
   }
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -166,10 +166,10 @@ void GrindPanel::refresh() {
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
-  // A grinder that says nothing may hear a stop all the same.
-  if (!view.state) return isStop(event) && link_ && link_->hearsStops();
+  // A grinder whose messages do not arrive may still receive a stop.
+  if (!view.state) return isStop(event) && link_ && link_->stopsConnected();
   const auto state = static_cast<MachineState>(view.state->state);
-  // A goal that is planned, or on its way, can be canceled, or held ahead of its first move.
+  // A goal in planning or in transit can be canceled, or held before its first move.
   const bool planned = view.planned || (sent_ && !isInJob(state));
   const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
   if (!(planned && for_a_goal) && !after(state, event)) return false;
@@ -183,10 +183,10 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   }
 }
 
-void GrindPanel::ask(MachineEvent event) {
+void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
   const auto on_answer = [this](const std::string& refusal) {
-    if (!refusal.empty()) say(refusal);
+    if (!refusal.empty()) showMessage(refusal);
   };
   if (isStop(event)) return link_->stop(event, on_answer);
   link_->request(event, on_answer);
@@ -204,13 +204,13 @@ void GrindPanel::dryRun(const GrindGoal& goal) {
   GrindGoal dry = goal;
   dry.dry_run = true;
   send(dry);
-  if (!sent_) job_->forgetPlan();
+  if (!sent_) job_->discardPlan();
 }
 
 void GrindPanel::send(const GrindGoal& goal) {
   const auto id = link_->send(goal);
   if (id) sent_ = Sent{*id, goal};
-  if (!id) say("the job was not sent: no answer from the grinder " + name_);
+  if (!id) showMessage("the job was not sent: no answer from the grinder " + name_);
 }
 
 void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
@@ -226,21 +226,21 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
       plan.duration = result.statistics.duration;
       plan.reasons = {result.error_string};
       job_->setPlan(goal, plan);
-      if (good) say(result.error_string);
+      if (good) showMessage(result.error_string);
       return;
     }
   }
-  say(good ? "the job is done" : "the job has ended: " + result.error_string);
+  showMessage(good ? "the job is done" : "the job has ended: " + result.error_string);
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
   link_->setFeedOverride(fraction, [this](const std::string& refusal) {
     override_->answered();
-    if (!refusal.empty()) say(refusal);
+    if (!refusal.empty()) showMessage(refusal);
   });
 }
 
-void GrindPanel::say(const std::string& text) {
+void GrindPanel::showMessage(const std::string& text) {
   QString told = QString::fromStdString(inShopUnits(text));
   if (!told.isEmpty()) told[0] = told[0].toUpper();
   messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + told);

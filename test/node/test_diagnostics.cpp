@@ -29,7 +29,7 @@ class DiagnosticsTest : public ::testing::Test {
   void watch(int cycles = 1) {
     for (; cycles > 0; --cycles) {
       ++record_.drive.feedback_count;
-      diagnostics_.watch(record_);
+      diagnostics_.add(record_);
     }
   }
 
@@ -126,7 +126,7 @@ TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
   watch();
   const auto status = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "7 cycles went by unseen");
+  EXPECT_EQ(status.message, "7 cycle records were lost");
   watch();
   const auto next = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(next.level, DiagnosticStatus::OK);
@@ -186,14 +186,14 @@ TEST_F(DiagnosticsTest, FaultIsToldOnceAndWithAllElse) {
 
 TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
   watch();
-  diagnostics_.watch(record_);
-  diagnostics_.watch(record_);
+  diagnostics_.add(record_);
+  diagnostics_.add(record_);
   watch();
   auto status = ask(&Diagnostics::reportDrive);
   EXPECT_EQ(status.level, DiagnosticStatus::OK);  // 2 ms of 2.5 ms
   EXPECT_EQ(value(status, "Longest feedback age [s]"), "0.002");
   EXPECT_EQ(value(status, "Allowed feedback age [s]"), "0.0025");
-  for (int i = 0; i < 3; ++i) diagnostics_.watch(record_);
+  for (int i = 0; i < 3; ++i) diagnostics_.add(record_);
   status = ask(&Diagnostics::reportDrive);
   EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
   EXPECT_EQ(status.message, "no fresh positions for 0.003 s");

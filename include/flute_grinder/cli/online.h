@@ -11,25 +11,24 @@ struct RunOptions {
   std::string node;  ///< name of the grinder's node
   std::string job;
   bool dry_run = false;
-  bool go_on = false;    ///< from the first pass that is not finished
-  bool discard = false;  ///< although the journal keeps another job that is not finished
-  std::string csv;       ///< file for the setpoints that were streamed, or empty
+  bool go_on = false;    ///< from the first unfinished pass
+  bool discard = false;  ///< even if the journal holds another, unfinished job
+  std::string csv;       ///< file for the streamed setpoints, or empty
 };
 
-/// Waits for the ROS master, which may be only just coming up. @return whether it answers.
+/// Waits for the ROS master, which may still be starting. @return whether it answers.
 bool awaitMaster();
 
-/// Prints why not. @return the exit status for that.
+/// Prints an error. @return the exit status for it.
 int fail(const std::string& text);
-/// Prints what is missing where nothing is heard of a grinder: the master, the clock or the node. @return the exit
-/// status for that.
+/// Prints why no grinder can be reached: no master, no clock or no node. @return the exit status for it.
 int noGrinder(const ros::NodeHandle& nh);
 
 /// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it.
 /// @return the exit status. @throw FileError, before anything is sent, if a file cannot be opened.
 int runJob(const RunOptions& options);
 
-/// Stops the job that runs, whoever has started it, and waits for the stop. @return the exit status.
+/// Cancels the running job, whoever started it, and waits until it has ended. @return the exit status.
 int cancelJob(const std::string& node);
 
 /// Prints what the grinder is doing. @param json in JSON. @return the exit status.
@@ -38,11 +37,10 @@ int printStatus(const std::string& node, bool json);
 /// Calls one of the grinder's services without arguments. @return the exit status.
 int callTrigger(const std::string& node, const std::string& service);
 
-/// Homes the axes, and waits until that is over; Ctrl-C breaks it off by switching the power off. @return the exit
-/// status.
+/// Homes the axes and waits for the end; Ctrl-C aborts homing by switching the power off. @return the exit status.
 int home(const std::string& node);
 
-/// Lifts the wheel off the work, and waits until it is; Ctrl-C and Ctrl-Z hold it. @return the exit status.
+/// Lifts the wheel off the work and waits for the end; Ctrl-C and Ctrl-Z stop the lift. @return the exit status.
 int lift(const std::string& node);
 
 /// Sets the feed override. @param percent 0 to 120. @return the exit status.

@@ -466,7 +466,7 @@ class TestMissingSetpoints(ReportCase):
             file.writelines(lines[:601])
         page = self.report(self.path('early.csv'))
         self.assertEqual(list(page.pictures), ['speed', 'acceleration'])
-        self.assertIn('the job ended ahead of its first stroke', page.text)
+        self.assertIn('the job ended before its first stroke', page.text)
         self.assertNotIn('largest odd error', page.rows)
 
 

@@ -264,7 +264,7 @@ class TestPlan(ReportCase):
     def test_page(self):
         self.assert_page(self.page, PATH + MOTION)
         self.assertIn('Following error and loop timing: a CSV file has', self.page.text)
-        self.assertIn('Deviation at the cutter\'s surface: it takes', self.page.text)
+        self.assertIn('Deviation at the cutter\'s surface: it depends', self.page.text)
 
     def test_figures_are_those_that_plan_prints(self):
         printed = FILES['printed']

@@ -1,8 +1,8 @@
-# ROS stays on this computer unless the shell says otherwise: a launch file comes too late for the master.
+# Keeps ROS on this computer, unless the shell says otherwise; a launch file would be too late for the master.
 if [ -z "${ROS_IP:-}" ] && [ -z "${ROS_HOSTNAME:-}" ]; then
   export ROS_IP=127.0.0.1
 fi
-# What is started with a master, unless somebody has a folder of their own for that.
+# What roslaunch starts together with a master, unless the user has set another folder.
 case "${ROS_ETC_DIR:-}" in
   "" | /etc/ros | //etc/ros)
 @[if DEVELSPACE]@

@@ -109,7 +109,7 @@ void writeWords(const CLI::App& app, const std::string& command, std::ostream& s
 std::string bashCompletion(const CLI::App& app) {
   std::ostringstream script;
   script << kHead;
-  // The argument of an option ahead of the sub-command is not the sub-command.
+  // Skip the argument of an option before the sub-command.
   for (const CLI::Option* option : app.get_options()) {
     if (!takesValue(*option)) continue;
     for (const std::string& name : namesOf(*option)) script << "      " << name << ":*) ;;\n";

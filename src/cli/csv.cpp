@@ -31,7 +31,7 @@ CsvFile::~CsvFile() {
 void CsvFile::begin() {
   if (begun_) return;
   begun_ = true;
-  // A pipe or a device has nothing to be cut off.
+  // EINVAL: a pipe or a device cannot be truncated.
   if (::ftruncate(::fileno(file_.get()), 0) != 0 && errno != EINVAL) error_ = errno;
   print("%s\n", header_);
 }
@@ -47,7 +47,7 @@ void CsvFile::print(const char* format, ...) {
 void CsvFile::close() {
   begin();
   if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
-  if (error_ != 0) throw FileError(path_ + ": not all could be written: " + std::strerror(error_));
+  if (error_ != 0) throw FileError(path_ + ": write failed: " + std::strerror(error_));
 }
 
 void TableCsv::write(int number, const CurvePoint& point, double theory) {

@@ -25,7 +25,7 @@ using namespace flute_grinder;
 
 constexpr int kUsage = 2;  ///< exit status for wrong usage and unreadable files
 
-/// @param example arguments that one would really use.
+/// @param example realistic arguments.
 CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& description,
                      const std::string& example = "") {
   return *app.add_subcommand(name, description)
@@ -40,14 +40,14 @@ void addCsv(CLI::App& command, std::string& csv, const char* description) {
   command.add_option("--csv", csv, description)->type_name(kAnyFile);
 }
 
-void addJson(CLI::App& command, bool& json) { command.add_flag("--json", json, "print JSON, and nothing else"); }
+void addJson(CLI::App& command, bool& json) { command.add_flag("--json", json, "print only JSON"); }
 
 void addTable(CLI::App& app, TableOptions& options) {
   auto& command =
-      addCommand(app, "table", "interpolate the job's curve with a fixed step length, as the paper's Table 1",
+      addCommand(app, "table", "interpolate the job's curve with a fixed step length, as in the paper's Table 1",
                  "jobs/paper.yaml --step-length 0.2 --even-step exact");
   addJob(command, options.job);
-  command.add_option("--step-length", options.step_length_mm, "length of a step in mm, where A counts by rotary_scale")
+  command.add_option("--step-length", options.step_length_mm, "step length in mm; A is weighted by rotary_scale")
       ->required()
       ->check([](const std::string& text) {
         const double value = std::strtod(text.c_str(), nullptr);
@@ -61,7 +61,7 @@ void addTable(CLI::App& app, TableOptions& options) {
   }
   command
       .add_option_function<EvenStepRule>(
-          "--even-step", [&](const EvenStepRule& rule) { options.even_step = rule; }, "in place of the job's rule")
+          "--even-step", [&](const EvenStepRule& rule) { options.even_step = rule; }, "instead of the job's rule")
       ->transform(CLI::CheckedTransformer(rules).description(""))
       ->type_name("{" + names + "}");
   addCsv(command, options.csv, "write the points to this file");
@@ -90,17 +90,18 @@ void addPlan(CLI::App& app, PlanOptions& options) {
 }
 
 void addRun(CLI::App& app, RunOptions& options) {
-  auto& command = addCommand(app, "run", "grind the job; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it",
-                             "jobs/paper.yaml --csv streamed.csv");
+  auto& command =
+      addCommand(app, "run", "grind the job; Ctrl-C cancels it and waits until it has ended, Ctrl-Z holds it",
+                 "jobs/paper.yaml --csv streamed.csv");
   addJob(command, options.job);
   command.add_flag("--dry-run", options.dry_run, "plan, check and show the path, but move nothing");
-  auto* go_on = command.add_flag("--continue", options.go_on,
-                                 "begin at the first pass that was not finished, by the grinder's journal");
+  auto* go_on =
+      command.add_flag("--continue", options.go_on, "continue at the first unfinished pass in the grinder's journal");
   command
       .add_flag("--discard", options.discard,
-                "start although the grinder's journal keeps another job that is not finished, which is given up")
+                "start even if the grinder's journal holds another, unfinished job, and discard that job")
       ->excludes(go_on);
-  addCsv(command, options.csv, "write the setpoints as streamed to this file");
+  addCsv(command, options.csv, "write the streamed setpoints to this file");
 }
 
 void addOverride(CLI::App& app, double& percent) {
@@ -112,8 +113,8 @@ void addOverride(CLI::App& app, double& percent) {
 }
 
 void addReport(CLI::App& app, ReportOptions& options) {
-  auto& command =
-      addCommand(app, "report", "draw a table, a plan or a record as one HTML file", "setpoints.csv -o report.html");
+  auto& command = addCommand(app, "report", "draw a table, a plan or a recorded run as an HTML file",
+                             "setpoints.csv -o report.html");
   command.add_option("FILE", options.file, "CSV file of table, plan or run, or a bag of 'roslaunch ... record:=true'")
       ->required()
       ->type_name(kAnyFile);
@@ -152,7 +153,7 @@ void addCompletion(CLI::App& app, std::string& shell) {
       ->type_name("{" + bash + "}");
 }
 
-/// All that a command line may say.
+/// All options of the command line.
 struct Options {
   TableOptions table;
   PlanOptions plan;
@@ -176,7 +177,7 @@ void addCommands(CLI::App& app, Options& options) {
   addCompletion(app, options.shell);
 }
 
-/// What the command line asks for; called once it is parsed.
+/// Runs the parsed command.
 int carryOut(const CLI::App& app, const Options& options) {
   const std::string command = app.get_subcommands().front()->get_name();
   if (command == "completion") return std::fputs(bashCompletion(app).c_str(), stdout), 0;
@@ -194,9 +195,9 @@ int carryOut(const CLI::App& app, const Options& options) {
 
 int run(int argc, char** argv) {
   ros::init(argc, argv, "grind", ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  // A master that goes amid a call is waited for as long as one that is not there.
+  // If the master goes away during a call, wait for it as long as for one that is missing.
   ros::master::setRetryTimeout(kPatience);
-  CLI::App app{"Grinds the flutes of conical end mills: looks at jobs, and works the grinder.", "grind"};
+  CLI::App app{"Plans jobs for conical end mills and operates the grinder.", "grind"};
   Options options;
   options.run.node = "grinder";
   addCommands(app, options);
@@ -208,8 +209,8 @@ int run(int argc, char** argv) {
   return carryOut(app, options);
 }
 
-/// Has a closed stdin, stdout or stderr refuse what is written to it, in place of the file or connection that would be
-/// opened by its number.
+/// Opens a closed stdin, stdout or stderr so that writing fails; otherwise the next file or connection opened would get
+/// its number.
 void occupyStandardStreams() {
   while (true) {
     const int descriptor = ::open("/dev/null", O_RDONLY);
@@ -218,11 +219,11 @@ void occupyStandardStreams() {
   }
 }
 
-/// @param status of the command. @return the exit status: what could not be printed is no success.
+/// @param status of the command. @return the exit status: failure if the output could not be written.
 int closeOutput(int status) {
   std::fflush(stdout);
   if (std::ferror(stdout) == 0) return status;
-  std::fprintf(stderr, "standard output: not all could be written\n");
+  std::fprintf(stderr, "standard output: write failed\n");
   return status == 0 ? 1 : status;
 }
 

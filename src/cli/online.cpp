@@ -22,14 +22,14 @@ namespace flute_grinder {
 
 namespace {
 
-/// Whether there is something that a cancel ends.
+/// Whether there is something to cancel.
 bool takesCancel(const GrinderState& state) {
   return after(static_cast<MachineState>(state.state), MachineEvent::kCancel).has_value();
 }
 
 int noMaster() { return fail("no ROS master answers at " + ros::master::getURI()); }
 
-/// Calls a service of the grinder, and prints why not where it is refused or not answered. @return the exit status.
+/// Calls a service of the grinder, and prints why if it is refused or not answered. @return the exit status.
 template <typename Service>
 int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request) {
   ros::ServiceClient there = nh.serviceClient<Service>(service);
@@ -37,11 +37,12 @@ int call(ros::NodeHandle& nh, const std::string& service, const typename Service
   std::optional<typename Service::Response> response;
   ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
                       ros::serialization::serializeMessage(request), kPatience,
-                      [&](ros::SerializedMessage* answer) { response = answerOf<Service>(answer); });
+                      [&](ros::SerializedMessage* answer) { response = responseFrom<Service>(answer); });
   await(kPatience, [&] { return running.finished(); });
   running.end();
   if (!response) {
-    return fail(service + ": no answer from the grinder " + nh.getNamespace() + "; whether it is done is not known");
+    return fail(service + ": no answer from the grinder " + nh.getNamespace() +
+                "; the request may or may not have been carried out");
   }
   return response->success ? 0 : fail(response->message);
 }
@@ -62,19 +63,18 @@ void printState(const GrinderState& state) {
   if (!state.progress.job_digest.empty()) std::printf("last job        %s\n", lastJob(state.progress).c_str());
 }
 
-/// Starts a motion by a service, and waits until the machine is no longer in the motion's state.
-/// @param wait_more called while it is. @return false ends the waiting.
-/// @return the exit status of the start, or of a link that was lost.
-int carryOutMotion(ros::NodeHandle& nh, const StateWatch& watch, const std::string& service, std::uint8_t state,
-                   const std::function<bool()>& wait_more) {
+/// Starts a motion by a service, and waits until the machine leaves the motion's state.
+/// @param wait_more called meanwhile; returns false to stop waiting.
+/// @return the exit status of the start, or of a lost connection.
+int runMotion(ros::NodeHandle& nh, const StateWatch& watch, const std::string& service, std::uint8_t state,
+              const std::function<bool()>& wait_more) {
   if (const int status = call<std_srvs::Trigger>(nh, service, {})) return status;
-  // Among the first are some of before the call.
-  bool heard = watch.renew();
-  while (heard && watch.newest().state == state && wait_more()) {
+  bool connected = watch.awaitNext();
+  while (connected && watch.newest().state == state && wait_more()) {
     ros::WallDuration(0.02).sleep();
-    heard = !watch.lost();
+    connected = !watch.lost();
   }
-  return heard ? 0 : fail(kLinkLost);
+  return connected ? 0 : fail(kLinkLost);
 }
 
 }  // namespace
@@ -121,16 +121,16 @@ int home(const std::string& node) {
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   catchInterrupts();
   const int status =
-      carryOutMotion(nh, watch, serviceOf(MachineEvent::kHome), GrinderState::HOMING, [] { return interrupts() == 0; });
+      runMotion(nh, watch, serviceOf(MachineEvent::kHome), GrinderState::HOMING, [] { return interrupts() == 0; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::HOMING) {
-    // To switch the power off is what ends homing.
+    // Homing ends only by switching the power off.
     const int refused = call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kDisable), {});
-    return refused != 0 ? refused : fail("homing was broken off; the power is off");
+    return refused != 0 ? refused : fail("homing was aborted; the power is off");
   }
   if (state.homed) return 0;
-  return fail(state.fault.empty() ? "homing was broken off" : faultText(state));
+  return fail(state.fault.empty() ? "homing was aborted" : faultText(state));
 }
 
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
@@ -145,12 +145,12 @@ int lift(const std::string& node) {
   catchHolds();
   keys.start([&] { keys.hold(); });
   const int status =
-      carryOutMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
+      runMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::FAULT) return fail(state.fault);
   if (!state.wheel_in_work) return 0;
-  return fail("the lift was broken off: the wheel stands in the work; 'grind lift' lifts it");
+  return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
 
 /// Stops the job that runs, whoever has started it, and waits for the stop.
@@ -162,11 +162,11 @@ int cancelJob(const std::string& node) {
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
   if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
   const GrinderState before = watch.newest();
-  // In any state: a job may be planned of which the state says nothing yet. One that names no goal is for all.
+  // In any state, since a job may be in planning, which the state does not show. An empty id cancels every goal.
   cancel.publish(actionlib_msgs::GoalID());
   if (!takesCancel(before)) {
     return fail("cancel refused: the machine is in state " + before.state_name + "; allowed: " +
-                allowedIn(static_cast<MachineState>(before.state)) + "; a job that was being planned is given up");
+                allowedIn(static_cast<MachineState>(before.state)) + "; a job that was being planned is canceled");
   }
   while (takesCancel(watch.newest()) && !watch.lost()) ros::WallDuration(0.02).sleep();
   if (watch.lost()) return fail(kLinkLost);

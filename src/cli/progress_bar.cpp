@@ -26,7 +26,7 @@ bool isTerminal() {
   return isatty(STDERR_FILENO) != 0 && type && *type && std::strcmp(type, "dumb") != 0;
 }
 
-/// Columns that a line may take: a character in the last one would have the next begin a new line.
+/// Usable columns: a character in the last one would wrap the cursor to a new line.
 std::size_t terminalWidth() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
@@ -53,7 +53,7 @@ std::string bar(double fraction, std::size_t width) {
   return "[" + text + "]";
 }
 
-/// A part of the line; of those that do not fit, the one of the highest rank goes first.
+/// A part of the line; if they do not all fit, the one of highest rank is dropped first.
 struct Part {
   int rank;
   std::string text;
@@ -67,7 +67,7 @@ std::size_t length(const std::vector<Part>& parts) {
 
 bool planning(const GrindFeedback& f) { return f.state == "planning"; }
 
-/// What the bar shows: how much is ground, and before that how much is planned.
+/// What the bar shows: the fraction ground or, before that, planned.
 double fraction(const GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
 
 constexpr int kBarRank = 5;
@@ -123,7 +123,7 @@ void ProgressBar::draw() {
   std::fprintf(stderr, "%s%s", kClearLine, progressLine(last_, teeth_, passes_, terminalWidth()).c_str());
 }
 
-void ProgressBar::say(const std::string& text) {
+void ProgressBar::printLine(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool drawn = terminal_ && begun_ && !ended_;
   std::fprintf(stderr, "%s%s\n", drawn ? kClearLine : "", text.c_str());

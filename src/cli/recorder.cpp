@@ -9,7 +9,7 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kLongestGap(2);  ///< between two batches that are under way
+const ros::WallDuration kBatchTimeout(2);  ///< longest gap between two batches
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void Recorder::onBatch(const SetpointBatch::ConstPtr& batch) {
 
 void Recorder::awaitAll(std::uint64_t written) const {
   for (std::uint64_t seen = accountedFor(); seen < written; seen = accountedFor()) {
-    if (!await(kLongestGap, [&] { return accountedFor() > seen; })) return;
+    if (!await(kBatchTimeout, [&] { return accountedFor() > seen; })) return;
   }
 }
 

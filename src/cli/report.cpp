@@ -15,7 +15,7 @@ namespace flute_grinder {
 
 namespace {
 
-/// The report's program, which stands beside this one in the build as where it is installed.
+/// The report program, which is beside this one both in the build and where it is installed.
 std::string programPath() {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);

@@ -25,8 +25,8 @@ namespace {
 
 using Client = actionlib::SimpleActionClient<GrindAction>;
 
-/// What a goal has told of itself. It is shown by another thread than the one that hears it, which a terminal that
-/// stands still must not keep from hearing the grinder. Thread safe.
+/// State of a goal. Shown by another thread than the one that receives it, so that a blocked terminal cannot stop
+/// reception. Thread safe.
 class GoalWatch {
  public:
   void onFeedback(const GrindFeedbackConstPtr& feedback) {
@@ -39,7 +39,7 @@ class GoalWatch {
     succeeded_ = succeeded;
     result_ = result;
   }
-  /// Null if there is none that was not taken yet.
+  /// Null if there is none since the last call.
   GrindFeedbackConstPtr takeFeedback() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(newest_, nullptr);
@@ -52,7 +52,7 @@ class GoalWatch {
     const std::lock_guard<std::mutex> lock(mutex_);
     return succeeded_;
   }
-  /// Null while there is none, and where the grinder knows nothing of the goal any more.
+  /// Null until there is one, and if the grinder no longer knows the goal.
   GrindResultConstPtr result() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return result_;
@@ -65,23 +65,23 @@ class GoalWatch {
   GrindResultConstPtr result_;
 };
 
-/// Tells what the operator has asked for by keys, and why the grinder holds.
-class Remarks {
+/// Prints a line when the operator presses a stop key, and when the grinder holds by itself.
+class StopMessages {
  public:
-  explicit Remarks(ProgressBar& bar) : bar_(bar) {}
+  explicit StopMessages(ProgressBar& bar) : bar_(bar) {}
 
-  void make(const GrinderState& state) {
+  void update(const GrinderState& state) {
     if (state.hold_reason != hold_reason_ && !state.hold_reason.empty()) {
-      bar_.say("held: " + state.hold_reason + "; when it is well again, 'grind resume' goes on");
+      bar_.printLine("held: " + state.hold_reason + "; once cleared, 'grind resume' continues");
     }
     hold_reason_ = state.hold_reason;
     if (std::exchange(holds_seen_, holds()) != holds_seen_) {
-      bar_.say("holding: 'grind resume' goes on, Ctrl-C cancels");
+      bar_.printLine("holding: 'grind resume' goes on, Ctrl-C cancels");
     }
     const int seen = std::exchange(interrupts_seen_, interrupts());
     if (seen == interrupts_seen_) return;
-    bar_.say(seen == 0 ? "canceling: waiting for the stop"
-                       : "canceling: still waiting for the stop; the machine is " + state.state_name);
+    bar_.printLine(seen == 0 ? "canceling: waiting for the stop"
+                             : "canceling: still waiting for the stop; the machine is " + state.state_name);
   }
 
  private:
@@ -90,19 +90,19 @@ class Remarks {
   int interrupts_seen_ = 0, holds_seen_ = 0;
 };
 
-/// Shows how a goal goes, to its end. @return false if the link is lost.
-bool follow(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
-  Remarks remarks(bar);
+/// Shows the progress of a goal to its end. @return false if the connection is lost.
+bool showProgress(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
+  StopMessages messages(bar);
   const auto show = [&] {
     if (const auto newest = goal.takeFeedback()) bar.show(*newest);
   };
   while (!goal.done()) {
     if (watch.lost()) return false;
-    remarks.make(watch.newest());
+    messages.update(watch.newest());
     show();
     ros::WallDuration(0.01).sleep();
   }
-  remarks.make(watch.newest());
+  messages.update(watch.newest());
   // The last feedback may come after the result, by another connection.
   if (goal.succeeded()) {
     await(ros::WallDuration(1), [&] { return show(), bar.complete(); });
@@ -110,7 +110,7 @@ bool follow(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
   return true;
 }
 
-/// @param written to the drive, by the goal's result; 0 where that is not known.
+/// @param written to the drive, as the goal's result says; 0 if unknown.
 void printStream(const Recorder& recorder, std::uint64_t written) {
   recorder.awaitAll(written);
   if (recorder.received() == 0 && recorder.lost() == 0) return;
@@ -118,23 +118,23 @@ void printStream(const Recorder& recorder, std::uint64_t written) {
               static_cast<unsigned long long>(recorder.received()), recorder.duration(),
               static_cast<unsigned long long>(recorder.missed(written)));
   if (recorder.lost() > 0) {
-    std::printf(", %llu written but not told", static_cast<unsigned long long>(recorder.lost()));
+    std::printf(", %llu written but not published", static_cast<unsigned long long>(recorder.lost()));
   }
   std::printf("\n");
 }
 
-/// Prints what has become of a goal. @param heard whether the link held to its end. @return the exit status.
-int conclude(const GoalWatch& goal, bool heard, const Recorder& recorder) {
+/// Prints the outcome of a goal. @param connected whether the connection lasted to its end. @return the exit status.
+int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder) {
   const GrindResultConstPtr result = goal.result();
   if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   printStream(recorder, result ? result->setpoints_written : 0);
-  if (!heard) return fail(kLinkLost);
-  if (!result) return fail("the grinder knows nothing of the job any more: it has been started anew");
+  if (!connected) return fail(kLinkLost);
+  if (!result) return fail("the grinder no longer knows the job: it has been restarted");
   if (goal.succeeded() && result->error_code == 0) return 0;
   return fail(resultText(*result) + " (code " + std::to_string(result->error_code) + ")");
 }
 
-/// Ends the record, after all that is to be said of the job. @param status so far. @return the exit status.
+/// Closes the CSV file, after everything about the job has been printed. @param status so far. @return the exit status.
 int closeRecord(Recorder& recorder, const std::string& csv, int status) {
   try {
     recorder.close();
@@ -161,7 +161,7 @@ int runJob(const RunOptions& options) {
   ros::AsyncSpinner spinner(1);
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);
-  // An action's client waits for a clock for ever.
+  // An action client would wait for a clock for ever.
   if (!await(kPatience, [] { return ros::Time::isValid(); })) return noGrinder(nh);
   GoalWatch watched;
   Client client(nh, "grind", false);
@@ -187,9 +187,9 @@ int runJob(const RunOptions& options) {
       },
       Client::SimpleActiveCallback(), [&](const GrindFeedbackConstPtr& feedback) { watched.onFeedback(feedback); });
   keys.start([&] { client.cancelGoal(); });
-  const bool heard = follow(watched, watch, bar);
+  const bool connected = showProgress(watched, watch, bar);
   bar.end();
-  return closeRecord(recorder, options.csv, conclude(watched, heard, recorder));
+  return closeRecord(recorder, options.csv, printOutcome(watched, connected, recorder));
 }
 
 }  // namespace flute_grinder

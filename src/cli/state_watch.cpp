@@ -6,12 +6,12 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kLongestSilence(3);
+const ros::WallDuration kTimeout(3);
 
 }  // namespace
 
 const char* const kLinkLost =
-    "the link to the grinder is lost: nothing was heard of it for 3 s, and what the machine does is not known";
+    "the connection to the grinder is lost: no message for 3 s; the state of the machine is unknown";
 
 bool inJob(const GrinderState& state) { return isInJob(static_cast<MachineState>(state.state)); }
 
@@ -25,10 +25,10 @@ StateWatch::StateWatch(ros::NodeHandle& nh) {
   subscriber_ = nh.subscribe<GrinderState>("state", 10, on_state);
 }
 
-bool StateWatch::renew() const {
-  // The first two may have been under way.
+bool StateWatch::awaitNext() const {
+  // The first two may have been sent before the call.
   const std::uint64_t enough = heard() + 3;
-  return await(kLongestSilence, [&] { return heard() >= enough; });
+  return await(kTimeout, [&] { return heard() >= enough; });
 }
 
 GrinderState StateWatch::newest() const {
@@ -43,7 +43,7 @@ std::uint64_t StateWatch::heard() const {
 
 bool StateWatch::lost() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return !ros::ok() || ros::SteadyTime::now() - time_ > kLongestSilence;
+  return !ros::ok() || ros::SteadyTime::now() - time_ > kTimeout;
 }
 
 }  // namespace flute_grinder

@@ -22,23 +22,23 @@ void StopKeys::hold() const {
 }
 
 void StopKeys::start(std::function<void()> on_interrupt) {
-  thread_ = std::thread([this, on_interrupt = std::move(on_interrupt)] { follow(on_interrupt); });
+  thread_ = std::thread([this, on_interrupt = std::move(on_interrupt)] { run(on_interrupt); });
 }
 
-void StopKeys::follow(const std::function<void()>& on_interrupt) const {
+void StopKeys::run(const std::function<void()>& on_interrupt) const {
   int interrupts_seen = 0, holds_seen = 0;
-  bool waits_for_job = false;
+  bool hold_pending = false;
   while (!ended_) {
-    if (const int asked = interrupts(); asked != interrupts_seen) {
-      interrupts_seen = asked;
+    if (const int count = interrupts(); count != interrupts_seen) {
+      interrupts_seen = count;
       on_interrupt();
     }
     const bool pressed = holds() != holds_seen;
     const bool job = inJob(watch_.newest());
-    if (pressed || (waits_for_job && job)) {
+    if (pressed || (hold_pending && job)) {
       hold();
-      // While it is planned there is no job yet that could be held, and it must not begin to move.
-      waits_for_job = !job;
+      // During planning there is no job to hold yet; repeat the hold once there is, so that it does not start to move.
+      hold_pending = !job;
     }
     if (pressed) holds_seen = holds();
     ros::WallDuration(0.002).sleep();

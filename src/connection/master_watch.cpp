@@ -19,10 +19,10 @@ using XmlRpc::XmlRpcValue;
 
 constexpr std::chrono::seconds kInterval(1);
 constexpr std::chrono::seconds kTimeout(1);  ///< of one call
-constexpr double kSlice = 0.02;              ///< after which a call that waits looks whether it still may [s]
-constexpr int kAttempts = 5;                 ///< for lists of publishers that grow while they are passed on
+constexpr double kSlice = 0.02;              ///< between checks for the end of a waiting call [s]
+constexpr int kAttempts = 5;                 ///< at a list of publishers that keeps growing
 
-/// What a call of ROS' API has brought: nothing unless it is [1, text, value].
+/// The value of a ROS API response [1, text, value]; nothing if it is malformed or reports an error.
 std::optional<XmlRpcValue> valueOf(XmlRpcValue& answer) {
   const bool complete = answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3;
   if (!complete || answer[0].getType() != XmlRpcValue::TypeInt || static_cast<int>(answer[0]) != 1) return std::nullopt;
@@ -36,7 +36,7 @@ XmlRpcValue listOf(const std::vector<XmlRpcValue>& values) {
   return list;
 }
 
-/// The texts of a list; those of its members that are none are left out.
+/// The strings in a list; other members are skipped.
 std::vector<std::string> texts(XmlRpcValue& list) {
   std::vector<std::string> found;
   if (list.getType() != XmlRpcValue::TypeArray) return found;
@@ -46,7 +46,7 @@ std::vector<std::string> texts(XmlRpcValue& list) {
   return found;
 }
 
-/// The [topic, type] of a list.
+/// The [topic, type] pairs in a list.
 std::vector<std::pair<std::string, std::string>> topics(XmlRpcValue list) {
   std::vector<std::pair<std::string, std::string>> found;
   for (int i = 0; list.getType() == XmlRpcValue::TypeArray && i < list.size(); ++i) {
@@ -61,7 +61,7 @@ std::string ownUri() { return ros::XMLRPCManager::instance()->getServerURI(); }
 }  // namespace
 
 MasterWatch::MasterWatch(std::vector<std::string> services) : services_(std::move(services)) {
-  // What every node of roscpp has.
+  // Every roscpp node has these.
   for (const char* service : {"/get_loggers", "/set_logger_level"}) {
     services_.push_back(ros::this_node::getName() + service);
   }
@@ -79,14 +79,14 @@ MasterWatch::~MasterWatch() {
 
 void MasterWatch::run() {
   while (!stopping_ && ros::ok()) {
-    look();
+    checkMaster();
     std::unique_lock<std::mutex> lock(mutex_);
     stop_.wait_for(lock, kInterval, [this] { return stopping_.load(); });
   }
 }
 
-void MasterWatch::look() {
-  const bool answers = askMaster("getPid").has_value();
+void MasterWatch::checkMaster() {
+  const bool answers = callMaster("getPid").has_value();
   if (stopping_ || !ros::ok()) return;
   if (!answers) {
     if (master_.exchange(Master::kMissing) == Master::kAnswers) {
@@ -94,23 +94,23 @@ void MasterWatch::look() {
     }
     return;
   }
-  if (!askMaster("lookupService", {services_.back()})) {
-    if (!registerAnew()) return;
-    ROS_WARN_THROTTLE(10, "registered anew with the ROS master at %s", ros::master::getURI().c_str());
+  if (!callMaster("lookupService", {services_.back()})) {
+    if (!registerAgain()) return;
+    ROS_WARN_THROTTLE(10, "registered again with the ROS master at %s", ros::master::getURI().c_str());
   }
   master_ = Master::kAnswers;
 }
 
-bool MasterWatch::registerAnew() {
-  // First what others wait for; last, among the services, what the master is asked for to know whether it has all.
+bool MasterWatch::registerAgain() {
+  // Topics first, since others wait for them. checkMaster() looks for the last service: if it is there, so is the rest.
   return registerPublications() && registerSubscriptions() && registerServices();
 }
 
 bool MasterWatch::registerPublications() {
-  const auto publications = askSelf("getPublications");
+  const auto publications = callSelf("getPublications");
   if (!publications) return false;
   for (const auto& [topic, type] : topics(*publications)) {
-    if (!askMaster("registerPublisher", {topic, type, ownUri()})) return false;
+    if (!callMaster("registerPublisher", {topic, type, ownUri()})) return false;
   }
   return true;
 }
@@ -120,13 +120,13 @@ bool MasterWatch::registerServices() {
       "rosrpc://" + ros::network::getHost() + ":" + std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   for (const std::string& service : services_) {
     if (!ros::ServiceManager::instance()->lookupServicePublication(service)) continue;
-    if (!askMaster("registerService", {service, uri, ownUri()})) return false;
+    if (!callMaster("registerService", {service, uri, ownUri()})) return false;
   }
   return true;
 }
 
 bool MasterWatch::registerSubscriptions() {
-  const auto subscriptions = askSelf("getSubscriptions");
+  const auto subscriptions = callSelf("getSubscriptions");
   if (!subscriptions) return false;
   const auto connected = connectedPublishers();
   for (const auto& [topic, type] : topics(*subscriptions)) {
@@ -137,34 +137,34 @@ bool MasterWatch::registerSubscriptions() {
 }
 
 bool MasterWatch::registerSubscription(const std::string& topic, const std::string& type, const Uris& connected) {
-  // Publishers that the new master does not know yet stay connected. The master tells of others by itself from now on,
-  // but what it told while its list was on the way is undone by that; hence once more where it has grown.
-  Uris told = connected;
+  // Keep connections to publishers that the new master does not know yet. From now on the master reports others by
+  // itself, but passing on its list undoes any report that arrived meanwhile; so repeat while the list grows.
+  Uris known = connected;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    auto publishers = askMaster("registerSubscriber", {topic, type, ownUri()});
+    auto publishers = callMaster("registerSubscriber", {topic, type, ownUri()});
     if (!publishers) return false;
-    const std::size_t before = told.size();
-    for (const std::string& uri : texts(*publishers)) told.insert(uri);
-    if (told.size() == before) return true;
-    if (!askSelf("publisherUpdate", {topic, listOf({told.begin(), told.end()})})) return false;
+    const std::size_t before = known.size();
+    for (const std::string& uri : texts(*publishers)) known.insert(uri);
+    if (known.size() == before) return true;
+    if (!callSelf("publisherUpdate", {topic, listOf({known.begin(), known.end()})})) return false;
   }
   return true;
 }
 
 std::map<std::string, MasterWatch::Uris> MasterWatch::connectedPublishers() {
   std::map<std::string, Uris> found;
-  auto connections = askSelf("getBusInfo");
+  auto connections = callSelf("getBusInfo");
   if (!connections || connections->getType() != XmlRpcValue::TypeArray) return found;
   for (int i = 0; i < connections->size(); ++i) {
-    // Of [number, publisher, "i", transport, topic, ...]; a connection to a subscriber has an "o".
+    // [number, publisher, "i", transport, topic, ...]; a connection to a subscriber has "o".
     const std::vector<std::string> connection = texts((*connections)[i]);
     if (connection.size() >= 4 && connection[1] == "i") found[connection[3]].insert(connection[0]);
   }
   return found;
 }
 
-std::optional<XmlRpcValue> MasterWatch::ask(const std::string& host, unsigned port, const char* method,
-                                            const std::vector<Value>& arguments) {
+std::optional<XmlRpcValue> MasterWatch::call(const std::string& host, unsigned port, const char* method,
+                                             const std::vector<Value>& arguments) {
   std::vector<Value> all{ros::this_node::getName()};
   all.insert(all.end(), arguments.begin(), arguments.end());
   XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
@@ -180,12 +180,12 @@ std::optional<XmlRpcValue> MasterWatch::ask(const std::string& host, unsigned po
   return std::nullopt;
 }
 
-std::optional<XmlRpcValue> MasterWatch::askMaster(const char* method, const std::vector<Value>& arguments) {
-  return ask(ros::master::getHost(), ros::master::getPort(), method, arguments);
+std::optional<XmlRpcValue> MasterWatch::callMaster(const char* method, const std::vector<Value>& arguments) {
+  return call(ros::master::getHost(), ros::master::getPort(), method, arguments);
 }
 
-std::optional<XmlRpcValue> MasterWatch::askSelf(const char* method, const std::vector<Value>& arguments) {
-  return ask(ros::network::getHost(), ros::XMLRPCManager::instance()->getServerPort(), method, arguments);
+std::optional<XmlRpcValue> MasterWatch::callSelf(const char* method, const std::vector<Value>& arguments) {
+  return call(ros::network::getHost(), ros::XMLRPCManager::instance()->getServerPort(), method, arguments);
 }
 
 }  // namespace flute_grinder

@@ -20,17 +20,17 @@ ServiceCall::ServiceCall(std::string name, std::string md5sum, ros::SerializedMe
 ServiceCall::~ServiceCall() { end(); }
 
 void ServiceCall::end() {
-  breakOff();
+  abort();
   if (thread_.joinable()) thread_.join();
 }
 
-void ServiceCall::breakOffWhenDue() {
-  if (ros::SteadyTime::now() > due_) breakOff();
+void ServiceCall::abortIfOverdue() {
+  if (ros::SteadyTime::now() > due_) abort();
 }
 
-void ServiceCall::breakOff() {
+void ServiceCall::abort() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  broken_off_ = true;
+  aborted_ = true;
   if (link_) link_->getConnection()->drop(ros::Connection::Destructing);
 }
 
@@ -40,7 +40,7 @@ void ServiceCall::run() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     link_ = link;
-    wanted = link && !broken_off_;
+    wanted = link && !aborted_;
   }
   ros::SerializedMessage answer;
   done_(wanted && link->call(request_, answer) ? &answer : nullptr);

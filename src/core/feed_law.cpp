@@ -53,7 +53,7 @@ bool FeedLaw::setTarget(double target) noexcept {
   if (!(target >= 0 && target <= limits_.velocity)) return false;
   if (target == target_) return true;
   target_ = target;
-  // In the final braking the way that is left only just suffices for a stop: there is no other plan.
+  // During final braking the remaining distance only just suffices for a stop, so there is no other profile.
   const bool final_braking = !resting() && segment_ >= final_braking_;
   if (!final_braking) plan();
   return true;
@@ -87,7 +87,7 @@ FeedLaw::State FeedLaw::after(const State& s, double jerk, double t) noexcept {
 
 FeedLaw::SpeedChange FeedLaw::changeSpeed(double speed, double acceleration, double to) const noexcept {
   const double j = limits_.jerk;
-  // The speed that would be reached by taking the acceleration back at once decides the direction of the change.
+  // The speed reached if the acceleration were removed at once decides whether to speed up or slow down.
   const double settled = speed + acceleration * std::abs(acceleration) / (2 * j);
   const double sign = to >= settled ? 1 : -1;
   const double a0 = sign * acceleration;

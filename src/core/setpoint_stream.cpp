@@ -8,9 +8,9 @@ namespace flute_grinder {
 
 namespace {
 
-/// What is shorter than this is there already: less than a position's rounding, more than makes limits overflow.
+/// A shorter move is skipped: it is below the rounding of a position, and could make the scaled limits overflow.
 /// [m], A [rad]
-constexpr double kNoWay = 1e-30;
+constexpr double kNegligibleDistance = 1e-30;
 
 /// Bounds of a straight move in its parameter 0..1, such that every axis stays within its own.
 MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
@@ -165,7 +165,7 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   way_ = to - from_;
   to_ = to;
   linear_way_ = way_.head<3>().matrix().norm();
-  if ((way_.abs() <= kNoWay).all()) {
+  if ((way_.abs() <= kNegligibleDistance).all()) {
     current_.position = to;
     law_ = FeedLaw();
     return;

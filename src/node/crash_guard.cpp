@@ -9,16 +9,16 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kSignals[]{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-constexpr int kLongestStop = 1000;                ///< looks at the loop, until it is given up
-constexpr timespec kBetweenLooks{0, 10'000'000};  ///< [s, ns]
+constexpr int kMaxChecks = 1000;                   ///< of the loop's status, before giving up
+constexpr timespec kCheckInterval{0, 10'000'000};  ///< [s, ns]
 
 std::atomic<ControlLoop*> guarded{nullptr};
 
-/// Uses nothing but atomics and system calls: whatever the thread was in the midst of is in ruins.
+/// Uses only atomics and system calls: the crashed thread may have left any other data inconsistent.
 void onCrash(int signal) {
   if (ControlLoop* loop = guarded) {
     loop->postStop(MachineEvent::kDisable);
-    for (int i = 0; i < kLongestStop && isPowered(loop->status().state); ++i) nanosleep(&kBetweenLooks, nullptr);
+    for (int i = 0; i < kMaxChecks && isPowered(loop->status().state); ++i) nanosleep(&kCheckInterval, nullptr);
   }
   std::signal(signal, SIG_DFL);
   std::raise(signal);

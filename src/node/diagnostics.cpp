@@ -12,16 +12,16 @@ using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kLate = 1.5;  ///< periods after which a cycle counts as late
 constexpr double kPercent = 0.01;
-constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend, at most
+constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend
 constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
 
-DiagnosticLevels readLevels(const ParameterReader& p, const std::string& figure, double largest) {
-  const std::string ns = "diagnostics/" + figure + "/";
+DiagnosticLevels readLevels(const ParameterReader& p, const std::string& quantity, double largest) {
+  const std::string ns = "diagnostics/" + quantity + "/";
   const double warn = p.number(ns + "warn", 0, largest);
   return {warn, p.number(ns + "error", warn, largest)};
 }
 
-/// Of a figure that is not to go above its levels. What is not a number is above all.
+/// For a quantity with upper thresholds; NaN exceeds them all.
 unsigned char levelAbove(double value, const DiagnosticLevels& levels) {
   if (!(value <= levels.error)) return DiagnosticStatus::ERROR;
   return value <= levels.warn ? DiagnosticStatus::OK : DiagnosticStatus::WARN;
@@ -31,7 +31,7 @@ unsigned char levelBelow(double value, const DiagnosticLevels& levels) {
   return levelAbove(-value, {-levels.warn, -levels.error});
 }
 
-/// Keeps the larger one; what is not a number stays.
+/// Keeps the larger value; NaN is kept.
 void keepLargest(double& largest, double value) {
   if (!(value <= largest) && !std::isnan(largest)) largest = value;
 }
@@ -78,31 +78,31 @@ void Diagnostics::setJournalError(const std::string& error) {
   journal_error_ = error;
 }
 
-void Diagnostics::watch(const CycleRecord& record) {
+void Diagnostics::add(const CycleRecord& record) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++loop_.cycles;
   loop_.total += record.period;
   keepLargest(loop_.longest, record.period);
   if (!(record.period <= kLate * config_.machine.period)) ++loop_.late;
 
-  watchDrive(record);
+  addDrive(record);
   const bool was_powered = isPowered(last_.state);
   if (!was_powered && isPowered(record.state)) fullest_ = 0;
-  // The cycle that ends in a fault still shows what was amiss.
+  // The cycle that ends in a fault still shows its cause.
   if (was_powered || isPowered(record.state)) {
     for (int i = 0; i < kAxisCount; ++i) {
       keepLargest(following_error_[i], std::abs(record.command_in_effect[i] - record.position[i]));
     }
-    watchBuffer(record.drive);
+    addBuffer(record.drive);
   }
-  if (record.has_setpoint) watchSetpoint(record.setpoint);
+  if (record.has_setpoint) addSetpoint(record.setpoint);
   if (was_powered && record.fault.kind == FaultKind::kLimit && record.state == MachineState::kFault) {
-    watchViolation(record.fault.violation);
+    addViolation(record.fault.violation);
   }
   last_ = record;
 }
 
-void Diagnostics::watchDrive(const CycleRecord& record) {
+void Diagnostics::addDrive(const CycleRecord& record) {
   const DriveStatus& drive = record.drive;
   keepLargest(drive_.feedback_age, record.feedback_age);
   drive_.emergency_stop |= drive.emergency_stop;
@@ -114,7 +114,7 @@ void Diagnostics::watchDrive(const CycleRecord& record) {
   }
 }
 
-void Diagnostics::watchSetpoint(const Setpoint& setpoint) {
+void Diagnostics::addSetpoint(const Setpoint& setpoint) {
   if (setpoint.cycle == 0 || setpoint.cycle != next_setpoint_) {
     limit_check_.restart();
     unknown_setpoints_ = setpoint.cycle == 0 ? 0 : kSetpointsOfPast;
@@ -130,13 +130,13 @@ void Diagnostics::watchSetpoint(const Setpoint& setpoint) {
   for (int i = 0; i < kAxisCount; ++i) {
     keepLargest(limits_.use[0][i], positionUse(i, setpoint.position[i]));
     keepLargest(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
-    if (setpoint.cycle % 2 != 0) continue;  // within a pair the steps are the odd-even ones
+    if (setpoint.cycle % 2 != 0) continue;  // within a pair the odd and even steps alternate
     keepLargest(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);
     keepLargest(limits_.use[3][i], std::abs(limit_check_.jerk()[i]) / limits.max_jerk[i]);
   }
 }
 
-void Diagnostics::watchViolation(const LimitViolation& v) {
+void Diagnostics::addViolation(const LimitViolation& v) {
   ++limits_.setpoints;
   const bool of_position = v.quantity == LimitedQuantity::kPosition || v.quantity == LimitedQuantity::kNotFinite;
   const std::size_t quantity = of_position ? 0 : static_cast<std::size_t>(v.quantity);
@@ -149,10 +149,10 @@ double Diagnostics::positionUse(int axis, double position) const {
   return std::abs(2 * position - min - max) / (max - min);
 }
 
-void Diagnostics::watchBuffer(const DriveStatus& drive) {
+void Diagnostics::addBuffer(const DriveStatus& drive) {
   fullest_ = std::max(fullest_, drive.commands_waiting);
-  buffer_.least = buffer_.watched ? std::min(buffer_.least, drive.commands_waiting) : drive.commands_waiting;
-  buffer_.watched = true;
+  buffer_.least = buffer_.used ? std::min(buffer_.least, drive.commands_waiting) : drive.commands_waiting;
+  buffer_.used = true;
 }
 
 void Diagnostics::reportLoop(Status& status) {
@@ -167,7 +167,7 @@ void Diagnostics::reportLoop(Status& status) {
     status.mergeSummary(levelAbove(static_cast<double>(loop_.late) / cycles, thresholds_.late_cycles),
                         text(loop_.late, " of ", loop_.cycles, " cycles were late"));
   }
-  if (lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(lost, " cycles went by unseen"));
+  if (lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(lost, " cycle records were lost"));
   if (!granted.realtime) status.mergeSummary(DiagnosticStatus::WARN, "no real-time scheduling");
   if (!granted.memory_locked) status.mergeSummary(DiagnosticStatus::WARN, "memory is not locked");
   status.add("State", toString(last_.state));
@@ -185,16 +185,16 @@ void Diagnostics::reportLoop(Status& status) {
 
 void Diagnostics::reportDrive(Status& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const FaultKind told = drive_.loop_fault.kind;
+  const FaultKind reported = drive_.loop_fault.kind;
   status.summary(DiagnosticStatus::OK, last_.drive.enabled ? "enabled" : "disabled");
-  if (told != FaultKind::kNone) status.mergeSummary(DiagnosticStatus::ERROR, drive_.loop_fault.text());
-  if (drive_.emergency_stop && told != FaultKind::kEmergencyStop) {
+  if (reported != FaultKind::kNone) status.mergeSummary(DiagnosticStatus::ERROR, drive_.loop_fault.text());
+  if (drive_.emergency_stop && reported != FaultKind::kEmergencyStop) {
     status.mergeSummary(DiagnosticStatus::ERROR, "emergency stop");
   }
-  if (drive_.fault && told != FaultKind::kDriveFault) {
+  if (drive_.fault && reported != FaultKind::kDriveFault) {
     status.mergeSummary(DiagnosticStatus::ERROR, "the drive reports a fault");
   }
-  if (!(drive_.feedback_age <= config_.feedback_timeout) && told != FaultKind::kStaleFeedback) {
+  if (!(drive_.feedback_age <= config_.feedback_timeout) && reported != FaultKind::kStaleFeedback) {
     status.mergeSummary(DiagnosticStatus::ERROR, text("no fresh positions for ", drive_.feedback_age, " s"));
   }
   for (int i = 0; i < kAxisCount; ++i) {
@@ -249,7 +249,7 @@ void Diagnostics::reportBuffer(Status& status) {
   status.summary(DiagnosticStatus::OK, "filled");
   if (fullest_ == 0) {
     status.summary(DiagnosticStatus::OK, "the drive does not buffer");
-  } else if (!buffer_.watched) {
+  } else if (!buffer_.used) {
     status.summary(DiagnosticStatus::OK, "no power");
   } else {
     const double fill = static_cast<double>(buffer_.least) / fullest_;

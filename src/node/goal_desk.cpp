@@ -14,10 +14,10 @@ namespace {
 
 constexpr std::size_t kLongestName = 255;         ///< of a job
 constexpr double kPollPeriod = 0.001;             ///< [s]
-const ros::WallDuration kPlanningInterval(0.05);  ///< of the feedback while a goal is planned
-const ros::WallDuration kLongestSilence(1);       ///< of the control loop
-/// How long the end of a goal waits until the last setpoints are told and the journal is on the disk.
-const ros::WallDuration kEndPatience(0.5);
+const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
+const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
+/// How long the result waits for the last setpoints to be published and the journal to be written.
+const ros::WallDuration kEndTimeout(0.5);
 
 GrindResult result(int code, const std::string& text, const core::PathStatistics& statistics = {}) {
   GrindResult r;
@@ -33,7 +33,7 @@ GrindResult result(int code, const std::vector<core::Reason>& reasons, const cor
   return r;
 }
 
-/// Whether a job may be named so: people read it in their terminals.
+/// Control characters are refused, since names are printed on terminals.
 bool isName(const std::string& name) {
   const auto controls = [](unsigned char c) { return std::iscntrl(c) != 0; };
   return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), controls);
@@ -56,10 +56,13 @@ core::Reason endReason(const LoopStatus& status, const Place& at, const GrindPro
 }  // namespace
 
 GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
-                   Teller& teller, JournalKeeper& journal)
-    : loop_(loop), gate_(gate), planner_(planner), teller_(teller), books_(journal), thread_(kPollPeriod, [this] {
-        poll();
-      }) {
+                   Telemetry& telemetry, JournalWriter& journal)
+    : loop_(loop),
+      gate_(gate),
+      planner_(planner),
+      telemetry_(telemetry),
+      tracker_(journal),
+      thread_(kPollPeriod, [this] { poll(); }) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
   server_ = std::make_unique<Server>(
@@ -89,47 +92,47 @@ void GoalDesk::onGoal(GoalHandle handle) {
   const GrindJob job = jobFromGoal(*goal);
   const std::string digest = jobDigest(job);
   if (!goal->dry_run) {
-    const std::string text = objection(*goal, digest);
+    const std::string text = refusal(*goal, digest);
     if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
   }
-  takeUp(handle, job, digest);
+  startPlanning(handle, job, digest);
 }
 
-std::string GoalDesk::objection(const GrindGoal& goal, const std::string& digest) const {
-  if (ros::SteadyTime::now() - last_cycle_ > kLongestSilence) return "the control loop does not answer";
+std::string GoalDesk::refusal(const GrindGoal& goal, const std::string& digest) const {
+  if (ros::SteadyTime::now() - last_cycle_ > kLoopTimeout) return "the control loop does not answer";
   const LoopStatus status = loop_.status();
   if (status.state != MachineState::kReady) {
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
   }
   if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
-  return goal.discard ? "" : books_.objection(digest, {goal.first_tooth, goal.first_pass});
+  return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
 }
 
-void GoalDesk::takeUp(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
+void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
     return reject(goal, GrindResult::NOT_READY, "the grinder is being shut down");
   }
-  Planner::Order order;
-  order.job = job;
-  order.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  order.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
-  order.control = control;
-  order.done = [this](std::unique_ptr<Preview> preview) {
-    thread_.call([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
+  Planner::Request request;
+  request.job = job;
+  request.start = Eigen::Map<const Axes>(loop_.status().command.data());
+  request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  request.control = control;
+  request.done = [this](std::unique_ptr<Preview> preview) {
+    thread_.post([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
   };
-  if (!planner_.submit(std::move(order))) {
+  if (!planner_.submit(std::move(request))) {
     gate_.close();
     return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
   }
   goal_ = Goal{handle, digest, control};
   busy_ = true;
-  tellPlanning();
+  publishPlanningFeedback();
 }
 
 void GoalDesk::onCancel(const GoalHandle& handle) {
-  // Once more, after the stop desk: what is in this queue ahead of the cancel has been carried out now.
+  // Repeats what StopDesk did: by now everything queued here before the cancel has been processed.
   if (gate_.cancel(handle.getGoalID())) loop_.postStop(MachineEvent::kCancel);
 }
 
@@ -137,53 +140,53 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
   GoalHandle handle = goal_->handle;
   const JobPlan& plan = preview->plan;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
-  if (recalled || gate_.canceled()) return giveUp();
+  if (recalled || gate_.canceled()) return cancelBeforeStart();
   if (!plan.good()) {
-    leave();
+    release();
     return reject(handle, result(errorCode(plan.fault), plan.reasons));
   }
   handle.setAccepted();
   if (handle.getGoal()->dry_run) {
-    leave();
-    teller_.show(preview);
+    release();
+    telemetry_.show(preview);
     return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
   }
-  goal_->phase = Phase::kEntering;
+  goal_->phase = Phase::kJournaling;
   goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
-  books_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
+  tracker_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
 }
 
 void GoalDesk::poll() {
   const LoopStatus status = loop_.status();
   if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
   cycles_ = status.cycles;
-  books_.follow(status);
+  tracker_.update(status);
   if (!goal_) return;
   switch (goal_->phase) {
-    case Phase::kPlanning: return tellPlanning();
-    case Phase::kEntering: return startWhenEntered();
-    case Phase::kStarting: return awaitStart();
-    case Phase::kRunning: return endWhenTold();
+    case Phase::kPlanning: return publishPlanningFeedback();
+    case Phase::kJournaling: return startWhenJournaled();
+    case Phase::kStarting: return checkStartReply();
+    case Phase::kRunning: return endWhenPublished();
   }
 }
 
-void GoalDesk::tellPlanning() {
+void GoalDesk::publishPlanningFeedback() {
   const ros::SteadyTime now = ros::SteadyTime::now();
-  if (now - goal_->last_told < kPlanningInterval) return;
-  goal_->last_told = now;
+  if (now - goal_->last_feedback < kPlanningInterval) return;
+  goal_->last_feedback = now;
   GrindFeedback feedback;
   feedback.state = "planning";
   feedback.planned = goal_->control->done;
   goal_->handle.publishFeedback(feedback);
 }
 
-void GoalDesk::startWhenEntered() {
-  if (gate_.canceled()) return giveUp();
-  if (!books_.settled()) return;
-  const std::string error = books_.error();
-  if (!error.empty()) return refuseStart(error);
-  teller_.follow(goal_->number, goal_->handle.getGoalID(), goal_->preview);
+void GoalDesk::startWhenJournaled() {
+  if (gate_.canceled()) return cancelBeforeStart();
+  if (!tracker_.upToDate()) return;
+  const std::string error = tracker_.error();
+  if (!error.empty()) return abortGoal(error);
+  telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview);
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
@@ -191,56 +194,56 @@ void GoalDesk::startWhenEntered() {
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   goal_->phase = Phase::kStarting;
-  if (!started) return giveUp();
-  if (!posted) refuseStart("the control loop has not answered the start of the job before");
+  if (!started) return cancelBeforeStart();
+  if (!posted) abortGoal("the control loop has not answered the start of the job before");
 }
 
-void GoalDesk::awaitStart() {
+void GoalDesk::checkStartReply() {
   const auto reply = loop_.startJobReply();
   if (!reply) return;
-  if (!reply->accepted) return refuseStart(reply->text);
+  if (!reply->accepted) return abortGoal(reply->text);
   goal_->phase = Phase::kRunning;
 }
 
-void GoalDesk::giveUp() {
+void GoalDesk::cancelBeforeStart() {
   GoalHandle handle = goal_->handle;
-  takeBack();
+  rollBack();
   const char* text = "canceled before it moved";
   handle.setCanceled(result(GrindResult::CANCELED, text), text);
 }
 
-void GoalDesk::refuseStart(const std::string& text) {
+void GoalDesk::abortGoal(const std::string& text) {
   GoalHandle handle = goal_->handle;
-  takeBack();
+  rollBack();
   ROS_WARN_STREAM("goal aborted: " << text);
   handle.setAborted(result(GrindResult::NOT_READY, text), text);
 }
 
-void GoalDesk::takeBack() {
-  if (goal_->phase == Phase::kStarting) teller_.forget(goal_->number);
-  if (goal_->phase != Phase::kPlanning) books_.revert();
-  leave();
+void GoalDesk::rollBack() {
+  if (goal_->phase == Phase::kStarting) telemetry_.withdrawJob(goal_->number);
+  if (goal_->phase != Phase::kPlanning) tracker_.revert();
+  release();
 }
 
-void GoalDesk::endWhenTold() {
+void GoalDesk::endWhenPublished() {
   const LoopStatus status = loop_.status();
   if (status.jobs_ended < goal_->number) return;
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (goal_->ended.isZero()) {
     goal_->ended = now;
-    books_.end(status);
+    tracker_.end(status);
   }
-  const bool told = teller_.jobsTold() >= goal_->number && books_.settled();
-  if (told || now - goal_->ended > kEndPatience) endJob();
+  const bool reported = telemetry_.jobsPublished() >= goal_->number && tracker_.upToDate();
+  if (reported || now - goal_->ended > kEndTimeout) endJob();
 }
 
 void GoalDesk::endJob() {
   const LoopStatus status = loop_.status();
   GoalHandle handle = goal_->handle;
   const std::shared_ptr<const Preview> preview = goal_->preview;
-  leave();
+  release();
   Place at = status.place;
-  if (status.setpoints_written == 0) {  // the axes have got nothing of the job
+  if (status.setpoints_written == 0) {  // no setpoint reached the axes
     at.tooth = static_cast<std::uint16_t>(preview->first.tooth);
     at.pass = static_cast<std::uint16_t>(preview->first.pass);
     at.x = preview->plan.program->start()[kX];
@@ -264,7 +267,7 @@ void GoalDesk::endJob() {
   }
 }
 
-void GoalDesk::leave() {
+void GoalDesk::release() {
   gate_.close();
   goal_.reset();
   busy_ = false;

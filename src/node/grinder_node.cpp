@@ -9,8 +9,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr std::chrono::seconds kLongestStop(10);
-constexpr std::chrono::seconds kLongestGoodbye(2);
+constexpr std::chrono::seconds kStopTimeout(10);
+constexpr std::chrono::seconds kGoalEndTimeout(2);
 
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
@@ -29,7 +29,7 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The journal's file, or, of a folder, the one in it that is named after the node.
+/// The journal's file; if the parameter is a folder, the file in it named after the node.
 std::string journalPath(const std::string& parameter, const std::string& node) {
   return parameter.back() == '/' ? parameter + node.substr(1) + ".journal" : parameter;
 }
@@ -48,20 +48,20 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const LoopConfig config = readMachineConfig(urdf, parameters);
   const DiagnosticThresholds thresholds = readDiagnosticThresholds(parameters);
   const std::string name = private_nh_.getNamespace();
-  journal_ = std::make_unique<JournalKeeper>(journalPath(parameters.text("journal"), name), name);
-  const JournalKeeper::Told told = journal_->told();
-  if (!told.error.empty()) ROS_ERROR_STREAM(told.error << "; the last job cannot be continued");
+  journal_ = std::make_unique<JournalWriter>(journalPath(parameters.text("journal"), name), name);
+  const JournalWriter::Status journal = journal_->status();
+  if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   loadDrive(parameters);
-  loop_ = std::make_unique<ControlLoop>(*hw_, config, told.on_disk.wheel);
+  loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine);
-  teller_ = std::make_unique<Teller>(nh_, private_nh_, *loop_, *journal_, thresholds);
+  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, thresholds);
   stops_ = std::make_unique<StopDesk>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
-  teller_->start();
+  telemetry_->start();
   requests_ = std::make_unique<RequestDesk>(private_nh_, *loop_, gate_);
-  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *teller_);
-  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *teller_, *journal_);
+  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_);
+  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }
@@ -86,8 +86,8 @@ void GrinderNode::loadDrive(const ParameterReader& parameters) {
 void GrinderNode::shutDown() {
   gate_.shut();
   loop_->postStop(MachineEvent::kDisable);
-  await(kLongestStop, [this] { return !isPowered(loop_->status().state); });
-  await(kLongestGoodbye, [this] { return !goals_->busy(); });
+  await(kStopTimeout, [this] { return !isPowered(loop_->status().state); });
+  await(kGoalEndTimeout, [this] { return !goals_->busy(); });
   planner_->end();
   loop_->stopThread();
 }

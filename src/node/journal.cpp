@@ -25,7 +25,7 @@ const std::string kSealKey = "checksum: ";
 /// The last line of a file.
 std::string seal(const std::string& body) { return kSealKey + sha256Hex(body.data(), body.size()) + "\n"; }
 
-/// Calls visit(key, value) for all that the file keeps.
+/// Calls visit(key, value) for every field of the file.
 template <typename AnyProgress, typename Visit>
 void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("job_digest", progress.job_digest);
@@ -45,7 +45,7 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("lift_m", progress.wheel.lift);
 }
 
-/// A figure that may have no such value.
+/// Throws for a value out of range.
 template <typename Value>
 void require(bool good, const std::string& key, const Value& value, const std::string& allowed) {
   if (good) return;
@@ -105,13 +105,13 @@ Progress fromText(const std::string& text) {
   });
   for (const auto& entry : file) {
     const auto key = entry.first.as<std::string>();
-    if (known.erase(key) == 0) throw std::runtime_error("key " + key + " is unknown, or there twice");
+    if (known.erase(key) == 0) throw std::runtime_error("key " + key + " is unknown or duplicate");
   }
   requireSound(progress);
   return progress;
 }
 
-/// Whatever goes wrong in an action, told as a trouble with the journal.
+/// Rethrows any error of an action as a JournalError that names the file.
 template <typename Action>
 auto withPath(const std::string& path, const Action& action) {
   try {
@@ -125,7 +125,7 @@ auto withPath(const std::string& path, const Action& action) {
 
 }  // namespace
 
-/// An open file or folder, closed at the end of its life. No call waits for a peer, as that of a fifo.
+/// An open file or folder, closed by the destructor. No call blocks on a peer, as with a FIFO.
 class Journal::File {
  public:
   File(const std::string& path, int flags)
@@ -139,7 +139,7 @@ class Journal::File {
   void requireRegular() const {
     struct stat about {};
     requireDone(fstat(fd_, &about) == 0);
-    if (!S_ISREG(about.st_mode)) throw std::runtime_error(path_ + " is no regular file");
+    if (!S_ISREG(about.st_mode)) throw std::runtime_error(path_ + " is not a regular file");
   }
 
   std::string read() const {
@@ -168,7 +168,7 @@ class Journal::File {
 
   void sync() { requireDone(fsync(fd_) == 0); }
 
-  /// @return false where another has it.
+  /// @return false if another process has locked it.
   bool lock() {
     const bool done = flock(fd_, LOCK_EX | LOCK_NB) == 0;
     requireDone(done || errno == EWOULDBLOCK);
@@ -186,22 +186,22 @@ class Journal::File {
 
 Journal::Journal(std::string path, std::string owner) : path_(std::move(path)), owner_(std::move(owner)) {
   try {
-    withPath(path_, [&] { own(); });
+    withPath(path_, [&] { acquire(); });
   } catch (const JournalOwned&) {
     throw;
   } catch (const JournalError&) {
-    // Found again, and told, by whoever reads or writes.
+    // read() and write() will meet it again, and report it.
   }
 }
 
 Journal::~Journal() = default;
 
-void Journal::own() const {
+void Journal::acquire() const {
   if (lock_) return;
   const std::filesystem::path file = std::filesystem::weakly_canonical(std::filesystem::absolute(path_));
   const std::filesystem::file_status status = std::filesystem::status(file);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw std::runtime_error("is no regular file");
+    throw std::runtime_error("is not a regular file");
   }
   std::filesystem::create_directories(file.parent_path());
   auto lock = std::make_unique<File>(file.string() + ".lock", O_RDWR | O_CREAT);
@@ -218,7 +218,7 @@ void Journal::own() const {
 
 std::optional<Progress> Journal::read() const {
   return withPath(path_, [&]() -> std::optional<Progress> {
-    own();
+    acquire();
     if (!std::filesystem::exists(file_)) return std::nullopt;
     const File file(file_, O_RDONLY);
     file.requireRegular();
@@ -230,7 +230,7 @@ void Journal::write(const Progress& progress) const {
   withPath(path_, [&] {
     const std::string text = toText(progress);
     require(text.size() <= kLargestFile, "size", text.size(), std::to_string(kLargestFile) + " bytes at most");
-    own();
+    acquire();
     const std::string fresh = file_ + ".new";
     {
       File file(fresh, O_WRONLY | O_CREAT);
@@ -239,7 +239,7 @@ void Journal::write(const Progress& progress) const {
       file.sync();
     }
     std::filesystem::rename(fresh, file_);
-    // The new name is safe only with its folder.
+    // The rename is safe only once the folder is synced too.
     File(std::filesystem::path(file_).parent_path().string(), O_RDONLY | O_DIRECTORY).sync();
   });
 }

@@ -1,8 +1,8 @@
 /// @file
 /// Keeps a roscpp node's servers on loopback. roscpp binds those of topics and services to loopback when ROS_IP or
-/// ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anybody could shut the node down.
-/// The program's own bind() stands before the C library's, and applies the same rule to every server. As a library that
-/// is loaded ahead of all others it does so for nodes that are not our own.
+/// ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anyone could shut the node down.
+/// This bind() overrides the C library's, and applies the same rule to every server. Preloaded as a library, it does the
+/// same for other nodes.
 
 #include <dlfcn.h>
 #include <netinet/in.h>
@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Whether ROS is told to use loopback; ROS_HOSTNAME comes before ROS_IP, as in roscpp.
+/// Whether ROS is configured for loopback; ROS_HOSTNAME comes before ROS_IP, as in roscpp.
 bool loopbackOnly() {
   const char* host = std::getenv("ROS_HOSTNAME");
   if (!host) host = std::getenv("ROS_IP");
@@ -23,7 +23,7 @@ bool loopbackOnly() {
   return name == "localhost" || name == "::1" || name.rfind("127.", 0) == 0;
 }
 
-/// An address with loopback in the place of all interfaces.
+/// An address with loopback instead of all interfaces.
 sockaddr_storage onLoopback(const sockaddr* address, socklen_t length) {
   sockaddr_storage local{};
   std::memcpy(&local, address, length);

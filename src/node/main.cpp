@@ -13,7 +13,7 @@
 
 namespace {
 
-/// Waits for a signal that ends the program, or for ROS to be shut down from elsewhere.
+/// Waits for a signal that ends the program, or until ROS is shut down by other means.
 void waitForEnd(const sigset_t& signals) {
   const timespec interval{0, 100'000'000};
   while (ros::ok()) {
@@ -34,22 +34,22 @@ std::vector<std::string> services() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Blocked in every thread: the machine must come to rest before the process ends.
+  // Blocked in every thread, because the machine must come to rest before the process ends.
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  flute_grinder::dropOutputThatNobodyTakes();
+  flute_grinder::dropBlockedOutput();
 
   ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
-  // Keeps ROS up to the end, for the log of what went wrong too.
+  // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
-  // A machine's time is the computer's, also where a simulation's is announced, until that comes.
+  // With /use_sim_time, use the system clock until the first /clock message arrives.
   ros::Time::init();
   try {
     flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
     const flute_grinder::MasterWatch master_watch(services());
-    ros::AsyncSpinner spinner(1);  // of the drive's callbacks; all others have threads of their own
+    ros::AsyncSpinner spinner(1);  // for the drive's callbacks; all others have their own threads
     spinner.start();
     waitForEnd(signals);
     node.shutDown();

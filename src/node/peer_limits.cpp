@@ -19,8 +19,8 @@ void* nextDefinition(const char* symbol) {
 
 }  // namespace flute_grinder
 
-/// Stands before the C library's: a connection too many is closed before anything is read from it. It is handed on all
-/// the same, as roscpp stops listening for a while after an error.
+/// Overrides the C library's accept: a connection over the limit is closed before anything is read from it. Its
+/// descriptor is returned all the same, since roscpp stops listening for a while after an error.
 extern "C" int accept(int fd, sockaddr* address, socklen_t* length) {
   using Accept = int (*)(int, sockaddr*, socklen_t*);
   static const auto next = reinterpret_cast<Accept>(flute_grinder::nextDefinition("accept"));

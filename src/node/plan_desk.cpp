@@ -10,14 +10,14 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr unsigned kThreads = 2;  ///< one waits for its plan, one says that the planner is busy
+constexpr unsigned kThreads = 2;  ///< one waits for its plan, the other answers "busy"
 
 }  // namespace
 
-PlanDesk::PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Teller& teller)
+PlanDesk::PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry)
     : loop_(loop),
       planner_(planner),
-      teller_(teller),
+      telemetry_(telemetry),
       control_(std::make_shared<PlanControl>()),
       spinner_(kThreads, &queue_) {
   ros::NodeHandle nh(private_nh);
@@ -34,13 +34,13 @@ PlanDesk::~PlanDesk() {
 bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
   std::promise<std::unique_ptr<Preview>> promise;
   auto answer = promise.get_future();
-  Planner::Order order;
-  order.job = jobFromGoal(request.goal);
-  order.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  order.first = {request.goal.first_tooth, request.goal.first_pass};
-  order.control = control_;
-  order.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
-  const bool taken = planner_.submit(std::move(order));
+  Planner::Request plan_request;
+  plan_request.job = jobFromGoal(request.goal);
+  plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
+  plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
+  plan_request.control = control_;
+  plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+  const bool taken = planner_.submit(std::move(plan_request));
   response.valid = 0;
   if (!taken) {
     response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
@@ -53,7 +53,7 @@ bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
   response.duration = plan.statistics.duration;
   response.violations = toMessage(plan.reasons);
   for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
-  if (plan.good()) teller_.show(preview);
+  if (plan.good()) telemetry_.show(preview);
   return true;
 }
 

@@ -11,53 +11,53 @@ void Planner::end() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended_ = true;
-    if (order_) order_->control->give_up = true;
+    if (request_) request_->control->give_up = true;
   }
   changed_.notify_one();
   thread_.join();
 }
 
-bool Planner::submit(Order order) {
+bool Planner::submit(Request request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (order_ || ended_) return false;
-    order_ = std::move(order);
+    if (request_ || ended_) return false;
+    request_ = std::move(request);
   }
   changed_.notify_one();
   return true;
 }
 
 void Planner::run() {
-  while (const std::optional<Order> order = next()) {
-    std::unique_ptr<Preview> preview = plan(*order);
+  while (const std::optional<Request> request = next()) {
+    std::unique_ptr<Preview> preview = plan(*request);
     {
-      // Ahead of the answer: who has it may submit the next.
+      // Before `done`: it may submit the next job.
       const std::lock_guard<std::mutex> lock(mutex_);
-      order_.reset();
+      request_.reset();
     }
-    order->done(std::move(preview));
+    request->done(std::move(preview));
   }
 }
 
-std::optional<Planner::Order> Planner::next() {
+std::optional<Planner::Request> Planner::next() {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return order_ || ended_; });
-  return order_;
+  changed_.wait(lock, [this] { return request_ || ended_; });
+  return request_;
 }
 
-std::unique_ptr<Preview> Planner::plan(const Order& order) const {
+std::unique_ptr<Preview> Planner::plan(const Request& request) const {
   auto preview = std::make_unique<Preview>();
-  preview->first = order.first;
-  if (validate(order.job).empty()) preview->errors.emplace(ConicalCutter(order.job.cutter));
+  preview->first = request.first;
+  if (validate(request.job).empty()) preview->errors.emplace(ConicalCutter(request.job.cutter));
   // Every stroke of a job has the same errors.
   const auto visit = [&](const Setpoint& p) {
-    if (p.tooth == order.first.tooth && p.pass == order.first.pass) preview->errors->add(p);
+    if (p.tooth == request.first.tooth && p.pass == request.first.pass) preview->errors->add(p);
   };
   const auto watch = [&](double done) {
-    order.control->done = done;
-    return !order.control->give_up;
+    request.control->done = done;
+    return !request.control->give_up;
   };
-  preview->plan = planJob(order.job, machine_, order.start, order.first, visit, watch);
+  preview->plan = planJob(request.job, machine_, request.start, request.first, visit, watch);
   if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
   return preview;
 }

@@ -15,7 +15,7 @@ RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, J
 void RequestDesk::serve(ros::NodeHandle& nh, MachineEvent event) {
   const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
       [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-        const RequestReply reply = carryOut(event);
+        const RequestReply reply = execute(event);
         response.success = reply.accepted;
         response.message = reply.text;
         if (!reply.accepted) ROS_WARN_STREAM(reply.text);
@@ -24,8 +24,8 @@ void RequestDesk::serve(ros::NodeHandle& nh, MachineEvent event) {
   services_.push_back(nh.advertiseService(serviceOf(event), callback));
 }
 
-RequestReply RequestDesk::carryOut(MachineEvent event) {
-  // A hold that came ahead of the job's start is taken back where it was taken.
+RequestReply RequestDesk::execute(MachineEvent event) {
+  // A hold from before the job's start is still in the gate.
   if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
   return loop_.request(event);
 }

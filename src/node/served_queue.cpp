@@ -12,16 +12,16 @@ namespace {
 
 constexpr double kIdlePeriod = 0.1;  ///< [s]
 
-class Call : public ros::CallbackInterface {
+class Task : public ros::CallbackInterface {
  public:
-  explicit Call(std::function<void()> what) : what_(std::move(what)) {}
+  explicit Task(std::function<void()> task) : task_(std::move(task)) {}
   CallResult call() override {
-    what_();
+    task_();
     return Success;
   }
 
  private:
-  std::function<void()> what_;
+  std::function<void()> task_;
 };
 
 }  // namespace
@@ -39,13 +39,13 @@ void ServedQueue::start() {
 
 void ServedQueue::stop() {
   if (!thread_.joinable()) return;
-  call([this] { running_ = false; });
+  post([this] { running_ = false; });
   thread_.join();
   queue_.disable();
   queue_.clear();
 }
 
-void ServedQueue::call(std::function<void()> what) { queue_.addCallback(boost::make_shared<Call>(std::move(what))); }
+void ServedQueue::post(std::function<void()> task) { queue_.addCallback(boost::make_shared<Task>(std::move(task))); }
 
 void ServedQueue::run() {
   using Clock = std::chrono::steady_clock;
@@ -56,7 +56,7 @@ void ServedQueue::run() {
     const Clock::time_point now = Clock::now();
     if (now < next) continue;
     poll_();
-    // Those that were missed are left out.
+    // Skip polls that were missed.
     next = std::max(next + period, now);
   }
 }

@@ -11,8 +11,7 @@ StopDesk::StopDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate
   services_.push_back(nh.advertiseService(serviceOf(MachineEvent::kDisable), &StopDesk::onDisable, this));
   services_.push_back(nh.advertiseService("set_feed_override", &StopDesk::onFeedOverride, this));
   const auto hints = ros::TransportHints().tcpNoDelay();
-  // Beside actionlib, whose own handling waits for what it publishes, and which forwards no cancel of a goal that it
-  // has told of one already.
+  // In addition to actionlib, which blocks on publishing, and forwards only the first cancel of a goal.
   subscribers_.push_back(nh.subscribe("grind/cancel", 50, &StopDesk::onCancel, this, hints));
   subscribers_.push_back(nh.subscribe("stop", 50, &StopDesk::onStop, this, hints));
   thread_.start();
@@ -62,7 +61,7 @@ void StopDesk::onStop(const Stop::ConstPtr& stop) {
       gate_.cancel(actionlib_msgs::GoalID());
       loop_.postStop(stop->request == Stop::CANCEL ? MachineEvent::kCancel : MachineEvent::kDisable);
       break;
-    default: break;  // of a newer sender: what it means is not known
+    default: break;  // from a newer sender; its meaning is unknown
   }
 }
 

@@ -1,7 +1,7 @@
 /// @file
-/// Limits for the connections of topics and services. roscpp makes room for whatever length a peer claims, up to 1 GB,
-/// believes what a publisher answers, and lets anybody choose the size of UDPROS's datagrams, by which it divides.
-/// These definitions of its functions stand before the library's own in the node's program.
+/// Limits for connections of topics and services. roscpp allocates whatever length a peer claims, up to 1 GB, trusts
+/// the answer of a publisher, and divides by a UDPROS datagram size that the peer chooses. These definitions override
+/// the library's own in the node's program.
 
 #include "flute_grinder/node/peer_limits.h"
 
@@ -19,7 +19,7 @@ using XmlRpc::XmlRpcValue;
 
 namespace {
 
-/// Whether an answer to requestTopic, [code, text, protocol], may be looked into: TCPROS, host and port, or none.
+/// Whether an answer to requestTopic, [code, text, protocol], is well formed: TCPROS, host and port, or no protocol.
 bool isAddressOfTcpros(XmlRpcValue& answer) {
   if (answer.getType() != XmlRpcValue::TypeArray || answer.size() != 3) return false;
   XmlRpcValue& protocol = answer[2];
@@ -31,7 +31,7 @@ bool isAddressOfTcpros(XmlRpcValue& answer) {
 
 namespace ros {
 
-/// Makes room for what a peer has announced, and drops the connection of one that announces too much.
+/// Reads a message of the announced length; drops the connection if that is too long.
 void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   using Read = void (*)(Connection*, uint32_t, const ReadFinishedFunc&);
   static const auto next = reinterpret_cast<Read>(nextDefinition(
@@ -44,7 +44,7 @@ void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   }
 }
 
-/// A publisher has answered where its topic is to be had. Anything but an address becomes a plain refusal.
+/// A publisher has answered with its address. Anything else is turned into a plain refusal.
 void Subscription::pendingConnectionDone(const PendingConnectionPtr& connection, XmlRpcValue& answer) {
   using Done = void (*)(Subscription*, const PendingConnectionPtr&, XmlRpcValue&);
   static const auto next =
@@ -54,8 +54,7 @@ void Subscription::pendingConnectionDone(const PendingConnectionPtr& connection,
   next(this, connection, answer);
 }
 
-/// Opens the port for datagrams, which roscpp watches but never reads: one datagram would keep its thread busy for
-/// good.
+/// Opens the UDP port, which roscpp polls but never reads: a single datagram would keep its thread busy for ever.
 bool TransportUDP::createIncoming(int port, bool is_server) {
   using Create = bool (*)(TransportUDP*, int, bool);
   static const auto next = reinterpret_cast<Create>(nextDefinition("_ZN3ros12TransportUDP14createIncomingEib"));
@@ -64,7 +63,7 @@ bool TransportUDP::createIncoming(int port, bool is_server) {
   return true;
 }
 
-/// Never: the node speaks TCPROS alone.
+/// Refused: the node uses TCPROS only.
 TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { return {}; }
 
 }  // namespace ros

@@ -1,7 +1,7 @@
 /// @file
-/// Limits for XML-RPC, by which a node is told of publishers and asked about itself. libxmlrpcpp has none: it takes a
-/// text of any length, and reads nested values by recursion, to the end of the stack. These definitions of its
-/// functions stand before the library's own in the node's program.
+/// Limits for XML-RPC, the protocol of a node's own API. libxmlrpcpp has none: it accepts text of any length, and
+/// parses nested values recursively until the stack overflows. These definitions override the library's own in the
+/// node's program.
 
 #include "flute_grinder/node/peer_limits.h"
 
@@ -21,7 +21,7 @@ using flute_grinder::nextDefinition;
 
 namespace XmlRpc {
 
-/// A socket to ask a peer; none, so that the peer is not asked, where too many are open.
+/// A socket for a request to a peer; fails, so that no request is made, if too many are open.
 int XmlRpcSocket::socket() {
   using Socket = int (*)();
   static const auto next = reinterpret_cast<Socket>(nextDefinition("_ZN6XmlRpc12XmlRpcSocket6socketEv"));
@@ -32,8 +32,8 @@ int XmlRpcSocket::socket() {
   return -1;
 }
 
-/// Appends what can be read without waiting.
-/// @return false, upon which the library closes the connection, after an error or when the text is too long.
+/// Appends what can be read without blocking.
+/// @return false after an error or if the text is too long; the library then closes the connection.
 bool XmlRpcSocket::nbRead(int fd, std::string& text, bool* eof) {
   *eof = false;
   std::array<char, 4096> piece;
@@ -50,8 +50,8 @@ bool XmlRpcSocket::nbRead(int fd, std::string& text, bool* eof) {
   return false;
 }
 
-/// Reads a value, which reads those in it in the same way.
-/// @return false where they are nested too deep, as for any other text that is no value.
+/// Parses a value and, recursively, those inside it.
+/// @return false if they are nested too deep, as for any other text that is not a value.
 bool XmlRpcValue::fromXml(const std::string& xml, int* offset) {
   using FromXml = bool (*)(XmlRpcValue*, const std::string&, int*);
   static const auto next = reinterpret_cast<FromXml>(
@@ -67,8 +67,8 @@ bool XmlRpcValue::fromXml(const std::string& xml, int* offset) {
   return depth <= kMaxPeerNesting && next(this, xml, offset);
 }
 
-/// Calls of several methods at once are an unknown method: nobody asks a node that way, and one within another makes
-/// the library call itself without end.
+/// system.multicall is reported as an unknown method: no ROS client uses it, and a nested one makes the library recurse
+/// without end.
 bool XmlRpcServerConnection::executeMulticall(const std::string&, XmlRpcValue&, XmlRpcValue&) { return false; }
 
 }  // namespace XmlRpc

@@ -13,7 +13,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kRefreshInterval = 50;  ///< as often as the grinder tells its state [ms]
+constexpr int kRefreshInterval = 50;  ///< the rate of the grinder's state [ms]
 constexpr int kMessages = 200;        ///< that are kept
 constexpr int kButtonColumns = 4;
 
@@ -44,7 +44,7 @@ GrindPanel::GrindPanel(QWidget* parent)
       messages_(textView("messages", 3)),
       node_edit_(new QLineEdit) {
   messages_->setMaximumBlockCount(kMessages);
-  messages_->setPlaceholderText("What the grinder has answered");
+  messages_->setPlaceholderText("Replies from the grinder");
   node_edit_->setObjectName("node");
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
@@ -126,7 +126,7 @@ void GrindPanel::setNode(const QString& node) {
   node_edit_->setText(node);
   planning_ = false;
   sent_.reset();
-  job_->forgetPlan();  // it is another machine's
+  job_->discardPlan();  // it is for another machine
   override_->reset();
   link_.reset();
   name_.clear();
@@ -134,7 +134,7 @@ void GrindPanel::setNode(const QString& node) {
     if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
     name_ = ros::names::resolve(node.toStdString());
   } catch (const ros::InvalidNameException& error) {
-    say(std::string("grinder's node: ") + error.what());
+    showMessage(std::string("grinder's node: ") + error.what());
   }
   refresh();
 }
@@ -156,9 +156,9 @@ void GrindPanel::refresh() {
   const Master master = master_watch_->master();
   std::optional<MachineState> state;
   if (view.state) state = static_cast<MachineState>(view.state->state);
-  if (!state && sent_) {  // a grinder that is gone will not tell its end
+  if (!state && sent_) {  // a grinder that is gone sends no result
     sent_.reset();
-    job_->forgetPlan();
+    job_->discardPlan();
   }
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -172,10 +172,10 @@ void GrindPanel::refresh() {
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
-  // A grinder that says nothing may hear a stop all the same.
-  if (!view.state) return isStop(event) && link_ && link_->hearsStops();
+  // A grinder whose messages do not arrive may still receive a stop.
+  if (!view.state) return isStop(event) && link_ && link_->stopsConnected();
   const auto state = static_cast<MachineState>(view.state->state);
-  // A goal that is planned, or on its way, can be canceled, or held ahead of its first move.
+  // A goal in planning or in transit can be canceled, or held before its first move.
   const bool planned = view.planned || (sent_ && !isInJob(state));
   const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
   if (!(planned && for_a_goal) && !after(state, event)) return false;
@@ -189,10 +189,10 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   }
 }
 
-void GrindPanel::ask(MachineEvent event) {
+void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
   const auto on_answer = [this](const std::string& refusal) {
-    if (!refusal.empty()) say(refusal);
+    if (!refusal.empty()) showMessage(refusal);
   };
   if (isStop(event)) return link_->stop(event, on_answer);
   link_->request(event, on_answer);
@@ -210,13 +210,13 @@ void GrindPanel::dryRun(const GrindGoal& goal) {
   GrindGoal dry = goal;
   dry.dry_run = true;
   send(dry);
-  if (!sent_) job_->forgetPlan();
+  if (!sent_) job_->discardPlan();
 }
 
 void GrindPanel::send(const GrindGoal& goal) {
   const auto id = link_->send(goal);
   if (id) sent_ = Sent{*id, goal};
-  if (!id) say("the job was not sent: no answer from the grinder " + name_);
+  if (!id) showMessage("the job was not sent: no answer from the grinder " + name_);
 }
 
 void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
@@ -233,17 +233,17 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
       plan.reasons = {result.error_string};
       plan.violations = result.reasons;
       job_->setPlan(goal, plan);
-      if (good) say(result.error_string);
+      if (good) showMessage(result.error_string);
       return;
     }
   }
-  say(good ? "the job is done" : "the job has ended: " + resultText(result));
+  showMessage(good ? "the job is done" : "the job has ended: " + resultText(result));
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
   link_->setFeedOverride(fraction, [this](const std::string& refusal) {
     override_->answered();
-    if (!refusal.empty()) say(refusal);
+    if (!refusal.empty()) showMessage(refusal);
   });
 }
 

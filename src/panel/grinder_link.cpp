@@ -13,15 +13,15 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kStale(1);  ///< state and positions come at 20 Hz and more
+const ros::WallDuration kStale(1);  ///< state and positions arrive at 20 Hz or more
 
 constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
 
-// Longest time to an answer [s].
+// Timeouts for answers [s].
 constexpr double kRequestTimeout = 10;
 constexpr double kPlanTimeout = 60;
 
-/// For which a stop waits for a connection: longer than it takes to make it after grinder or master have come back.
+/// How long a stop waits for a connection: longer than reconnecting takes once grinder or master are back.
 const ros::WallDuration kStopTimeout(2);
 
 Stop stopFor(MachineEvent event) {
@@ -82,7 +82,7 @@ void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const bool shown = feedback_ && id == feedback_->message.status.goal_id.id;
     if (id != sent_ && !shown) return;
-    if (shown) feedback_->message.feedback.state.clear();  // it is planned no more
+    if (shown) feedback_->message.feedback.state.clear();  // no longer in planning
   }
   post([this, result] { on_result_(result->status.goal_id.id, result->result); });
 }
@@ -93,7 +93,7 @@ void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) 
     const auto& names = joints->name;
     const auto joint = std::find(names.begin(), names.end(), kJointNames[static_cast<std::size_t>(axis)]);
     const auto at = static_cast<std::size_t>(joint - names.begin());
-    if (joint == names.end() || at >= joints->position.size()) return;  // of another part of the machine
+    if (joint == names.end() || at >= joints->position.size()) return;  // from another part of the machine
     position[axis] = joints->position[at];
   }
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -107,7 +107,7 @@ void GrinderLink::post(std::function<void()> answer) {
 
 void GrinderLink::deliver() {
   sendStops();
-  for (ServiceCall& call : calls_) call.breakOffWhenDue();
+  for (ServiceCall& call : calls_) call.abortIfOverdue();
   calls_.remove_if([](const ServiceCall& call) { return call.finished(); });
   std::deque<std::function<void()>> answers;
   {
@@ -121,7 +121,7 @@ template <typename Service, typename OnResponse>
 void GrinderLink::call(const std::string& service, const typename Service::Request& request, double timeout,
                        OnResponse on_response) {
   const auto on_answer = [this, on_response](ros::SerializedMessage* answer) {
-    const auto response = answerOf<Service>(answer);
+    const auto response = responseFrom<Service>(answer);
     post([on_response, response] { on_response(response); });
   };
   calls_.emplace_back(nh_.resolveName(service), ros::service_traits::md5sum<Service>(),
@@ -180,10 +180,10 @@ void GrinderLink::stop(MachineEvent event, const OnAnswer& on_answer) {
 void GrinderLink::sendStops() {
   while (!unsent_.empty()) {
     const Unsent stop = unsent_.front();
-    const bool heard = hearsStops();
-    if (!heard && ros::SteadyTime::now() < stop.due) return;
+    const bool connected = stopsConnected();
+    if (!connected && ros::SteadyTime::now() < stop.due) return;
     unsent_.pop_front();
-    if (heard) {
+    if (connected) {
       stops_.publish(stopFor(stop.event));
     } else {
       stop.on_answer(toString(stop.event) + (" was not sent: the grinder " + name()) + " is not connected");

@@ -59,7 +59,7 @@ JobBox::JobBox(QWidget* parent)
   layout->addWidget(answer_);
 
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
-  connect(continue_, &QCheckBox::clicked, this, &JobBox::forgetPlan);
+  connect(continue_, &QCheckBox::clicked, this, &JobBox::discardPlan);
   connect(plan_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
   });
@@ -91,7 +91,7 @@ void JobBox::setFile(const QString& file) {
   const QString name = file.isEmpty() ? "no job file" : QFileInfo(file).fileName();
   name_->setText(name_->fontMetrics().elidedText(name, Qt::ElideMiddle, 180));
   name_->setToolTip(file);
-  forgetPlan();
+  discardPlan();
   if (!file.isEmpty()) read();
 }
 
@@ -101,12 +101,12 @@ void JobBox::read() {
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
-    // The folder is known, and too long for a panel.
+    // Without the folder, which is too long for a panel.
     showVerdict(QString(error.what()).replace(file_, QFileInfo(file_).fileName()), false);
   }
 }
 
-void JobBox::forgetPlan() {
+void JobBox::discardPlan() {
   planned_.reset();
   showVerdict(file_.isEmpty() ? "Open a job file first." : "Not planned yet.", true);
 }
@@ -124,7 +124,7 @@ std::optional<GrindGoal> JobBox::goalNow() {
 }
 
 std::optional<GrindGoal> JobBox::beginPlan() {
-  forgetPlan();
+  discardPlan();
   read();
   auto goal = goalNow();
   if (goal) showVerdict("Planning ...", true);
@@ -160,13 +160,12 @@ void JobBox::keepUnfinished() {
   if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
 }
 
-/// The goal that was planned. Reads the file once more; nothing, and the reason shown, if it is not what was planned
-/// any more.
+/// The planned goal. Reads the file again; nothing, and a reason is shown, if it has changed since planning.
 std::optional<GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
   if (goal && goal == goalNow()) return goal;
-  if (job_) showVerdict("The job file is not what was planned any more. Plan it again.", false);
+  if (job_) showVerdict("The job file has changed since it was planned. Plan it again.", false);
   return std::nullopt;
 }
 
@@ -187,7 +186,7 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
     GrindGoal left = goal();
     if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
-  if (continue_->isChecked() && planned_ && planned_ != where_left_) forgetPlan();
+  if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();
   if (!where_left_) {
     continue_->setChecked(false);
     continue_->setText(kContinue);

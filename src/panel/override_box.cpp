@@ -11,8 +11,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kRest = 300;    ///< after which a slider that is moved by keys or the mouse wheel counts as at rest [ms]
-constexpr int kSettle = 200;  ///< within which some states come [ms]
+constexpr int kRest = 300;    ///< after which a slider moved by keys or the mouse wheel counts as at rest [ms]
+constexpr int kSettle = 200;  ///< several state messages arrive within this [ms]
 const int kMaxPercent = static_cast<int>(std::lround(kMaxFeedOverride * 100));
 
 }  // namespace
@@ -37,17 +37,17 @@ OverrideBox::OverrideBox(QWidget* parent) : QWidget(parent), slider_(new QSlider
   rest_.setInterval(kRest);
   settle_.setSingleShot(true);
   settle_.setInterval(kSettle);
-  connect(&rest_, &QTimer::timeout, this, &OverrideBox::ask);
-  connect(slider_, &QSlider::sliderReleased, this, &OverrideBox::ask);
+  connect(&rest_, &QTimer::timeout, this, &OverrideBox::emitWanted);
+  connect(slider_, &QSlider::sliderReleased, this, &OverrideBox::emitWanted);
   connect(slider_, &QSlider::valueChanged, this, [this](int percent) {
     value_->setText(QString("%1 %").arg(percent));
     rest_.start();
   });
 }
 
-void OverrideBox::ask() {
+void OverrideBox::emitWanted() {
   rest_.stop();
-  // One that is held by the mouse is not sent before it is let go of; and Qt lets go of one that is disabled meanwhile.
+  // Not while the mouse holds it. Qt releases a slider that is disabled meanwhile.
   if (slider_->isSliderDown() || !slider_->isEnabled()) return;
   ++unanswered_;
   Q_EMIT wanted(slider_->value() / 100.0);

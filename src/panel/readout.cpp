@@ -21,7 +21,7 @@ constexpr const char* kBlue = "#1a5fb4";
 constexpr const char* kAmber = "#9a5b00";
 constexpr const char* kRed = "#b00020";
 
-/// Green: a job may begin. Blue: the axes move. Amber: they rest in the midst of a job, or are about to.
+/// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
   switch (static_cast<MachineState>(grinder.state)) {
     case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
@@ -71,7 +71,7 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(
   meaning_->setObjectName("meaning");
   meaning_->setWordWrap(true);
   meaning_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  // Room for what is mostly said, so that the buttons below stay where they are.
+  // Reserve room for the usual texts, so that the buttons below do not move.
   meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -88,7 +88,7 @@ void StateBox::setNode(const QString& node) {
 void StateBox::setName(const QString& name, const QString& colour) {
   const QString style = QString("background: %1; color: white; padding: 4px; border-radius: 4px;").arg(colour);
   name_->setText(name);
-  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // which is costly
+  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // which is slow
 }
 
 void StateBox::show(const GrinderView& view, const QString& node, Master master) {
@@ -142,7 +142,7 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   const GrindFeedback& f = *view.feedback;
   place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
   feed_->setText(QString("%1 mm/min").arg(f.feed / kMillimetrePerMinute, 0, 'f', 0));
-  // The grinder reckons with the job's own feed.
+  // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
   job_->setFormat(QString(kJobDone) + ", " + QString::fromStdString(duration(f.remaining_time)) +
                   (at_feed ? " left" : " left at 100 % feed"));

@@ -23,10 +23,10 @@ def arguments():
 
 
 def read(path, job):
-    """The record of a file, by what the file begins with."""
+    """The record of a file, whose type is recognised by its first bytes."""
     with open(path, 'rb') as file:
         is_bag = file.read(8) == b'#ROSBAG '
-    # ROS and matplotlib take their time to load.
+    # ROS and matplotlib are slow to load.
     if is_bag:
         from read_bag import read_bag
         return read_bag(path, job)

@@ -1,4 +1,4 @@
-"""What is drawn of millions of points: no more than the eye can tell apart."""
+"""Reduces millions of points to what can be seen in a picture."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ COLUMNS = 900  # about the pixels across a figure
 
 
 class Envelope:
-    """Least and largest values in each of the columns that x falls into; of few points the points themselves."""
+    """Minimum and maximum in each column of x; if there are few points, the points themselves."""
 
     def __init__(self, low, high, points, curves=1):
         self._low = low
@@ -17,7 +17,7 @@ class Envelope:
         self._largest = np.full((COLUMNS, curves), -np.inf)
 
     def add(self, x, y):
-        """Takes points: y has a column for each curve."""
+        """Adds points; y has a column for each curve."""
         y = y.reshape(len(x), -1)
         if self.is_exact:
             self._points.append((x, y))
@@ -29,14 +29,14 @@ class Envelope:
                 values[columns] = reduce(values[columns], reduce.reduceat(y[order], starts))
 
     def line(self, gap, columns=1.5):
-        """x and y of a line through all points, that breaks where x has a gap that is larger than this, and where there are
-        columns than so many of them. In each column it goes from the least to the largest value."""
+        """x and y of a line through all points, broken where x has a gap larger than `gap` and than this number of columns. In
+        each column it goes from minimum to maximum."""
         x, y = self.points()
         breaks = np.flatnonzero(np.diff(x) > max(gap, 0 if self.is_exact else columns * self._width)) + 1
         return np.insert(x, breaks, np.nan), np.insert(y, breaks, np.nan, axis=0)
 
     def points(self):
-        """x and y of all points, or of the least and the largest in each column."""
+        """x and y of all points, or of the minimum and maximum in each column."""
         if self.is_exact:
             return np.concatenate([x for x, _ in self._points]), np.concatenate([y for _, y in self._points])
         full = np.flatnonzero(np.isfinite(self._least[:, 0]))

@@ -1,4 +1,4 @@
-"""The pictures of a report, as SVG. Each says by shape what it says by colour, so that it can be read in grey."""
+"""The pictures of a report, as SVG. Shapes repeat the meaning of colours, so that they can be read in grey."""
 
 import io
 import math
@@ -12,12 +12,12 @@ from envelope import Envelope
 from motion import LATE, motions
 from record import A, AXES, DEG, MM, MM_MIN, EVEN, ODD, ROW, X
 
-ENLARGED = 10  # points at either end, as the rows of the paper's Table 1
+ENLARGED = 10  # points at either end, like the rows of the paper's Table 1
 SHOWN = 200  # points of the whole curve
 
 Picture = namedtuple('Picture', 'name title caption svg')
 
-# A colour of its own for each use, of different lightness.
+# Colours differ in lightness too.
 THEORY, CURVE, LIMIT = '#888888', '#1f4e8c', '#c03020'
 ODD_STYLE = {'marker': 'o', 'color': '#d96c00', 'markerfacecolor': 'none'}
 EVEN_STYLE = {'marker': 's', 'color': CURVE}
@@ -35,7 +35,7 @@ def picture(name, title, caption, figure):
 
 
 def angle_unit(largest):
-    """The scale and the name of the unit in which an angle [rad] is a number of few digits."""
+    """Scale and name of the unit that shows an angle [rad] in few digits."""
     for scale, name in ((1, 'rad'), (1e-3, 'mrad'), (1e-6, 'µrad'), (1e-9, 'nrad')):
         if largest >= scale:
             return scale, name
@@ -54,7 +54,7 @@ class Stroke:
     def __init__(self, record):
         self._find_worst(record)
         self.count = sum(len(rows) for rows in self._parts(record))
-        # An odd number, so that odd and even points take turns.
+        # An odd number, so that odd and even points alternate.
         self.every = math.ceil(self.count / SHOWN) // 2 * 2 + 1
         whole, seen = [], 0
         self.start = self.end = np.zeros(0, ROW)
@@ -108,7 +108,7 @@ def path_picture(name, title, caption, rows, size, marker):
 
 
 def plot_over_x(axes, envelope, scale, style):
-    """Draws all points as markers, or many as a line that is as wide as they scatter."""
+    """Draws points as markers or, if there are many, as a line as wide as their scatter."""
     if envelope.is_exact:
         x, y = envelope.points()
         axes.plot(x / MM, y / scale, linestyle='', markersize=3, **style)
@@ -133,8 +133,8 @@ def error_picture(record, key):
         axes.set_title('%s points: largest %.4e rad' % (name, largest), loc='left')
     panels[1].set_xlabel('X [mm]')
     return picture('error', 'Error over X',
-                   'Theory less commanded position of A over X in mm, above at the odd points, below at the even points, '
-                   'each on a scale of its own.', figure)
+                   'Theory minus commanded position of A over X in mm, above at the odd points, below at the even points, '
+                   'each with its own scale.', figure)
 
 
 def feed_picture(record, key):
@@ -162,8 +162,8 @@ def motion_pictures(record, key, limits):
          'A in deg/s², over time in s; dashed: the limits.')]
     if record.kind == 'bag':
         wanted.append(('following', 'Following error', 'largest following error', '', limits.following, key.following,
-                       'Commanded position of the cycle before less position as read, in mm, A in deg, over time in s; '
-                       'dashed: where the machine stops.'))
+                       'Commanded position of the previous cycle minus measured position, in mm, A in deg, over time in s; '
+                       'dashed: the limit at which the machine stops.'))
     envelopes = {name: Envelope(*time_range(record), key.points, 4) for name, *_ in wanted}
     for motion in motions(record):
         for name, envelope in envelopes.items():
@@ -204,7 +204,7 @@ def timing_picture(record, key):
 
 
 def draw(record, key, limits):
-    """All pictures that a record allows, in the order of the report."""
+    """All pictures for which the record has data, in the order of the report."""
     pictures = []
     if key.strokes > 0:
         pictures += path_pictures(record) + [error_picture(record, key)]

@@ -1,4 +1,4 @@
-"""What the rows of a record ask of the axes and of the grinder."""
+"""Motion of the axes and timing of the grinder, from the rows of a record."""
 
 import numpy as np
 
@@ -21,12 +21,12 @@ class Motion:
         self.speed = self._at(cycle[1:], (position[1:] - position[:-1]) / period, cycle[1:] - cycle[:-1] == 1)
         bend = (position[4:] - 2 * position[2:-2] + position[:-4]) / (2 * period) ** 2
         self.acceleration = self._at(cycle[4:], bend, (cycle[4:] % 2 == 0) & (cycle[4:] - cycle[:-4] == 4))
-        # `actual` is one cycle older than the setpoint that is told with it.
+        # `actual` is one cycle older than its setpoint.
         lag = position[:-1] - rows['actual'][1:] if has_actual else position[1:] * 0
         self.following = self._at(cycle[1:], lag, cycle[1:] - cycle[:-1] == 1)
 
     def _at(self, cycle, values, valid):
-        # What stands ahead of cycle 0 is the rest before the job.
+        # Before cycle 0 the axes are at rest.
         valid &= cycle >= 0
         return cycle[valid] * self._period, values[valid]
 
@@ -34,7 +34,7 @@ class Motion:
 def motions(record):
     """The motion of a record, part by part."""
     lead = np.repeat(record.first, 4)
-    # A job starts at rest; of one that was recorded from its middle nothing is known before.
+    # A job starts at rest; if its beginning was not recorded, the motion before is unknown.
     lead['cycle'] = np.arange(-4, 0)
     lead['actual'] = lead['position']
     if record.first['cycle'] != 0:
@@ -57,7 +57,7 @@ class Largest:
 
 
 class KeyFigures:
-    """The figures of all rows; largest absolute values, in SI."""
+    """Statistics of all rows; largest absolute values, in SI units."""
 
     def __init__(self, record):
         self.points = record.count

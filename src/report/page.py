@@ -1,4 +1,4 @@
-"""Puts key figures and pictures into one HTML file that needs no other."""
+"""Writes key figures and pictures into a self-contained HTML file."""
 
 import base64
 import html
@@ -36,7 +36,7 @@ MOST_STATES = 100
 
 
 def table(rows, head=()):
-    """Rows of texts; where there is a head, all but the first column are figures."""
+    """Rows of text; with a head, all but the first column are numbers."""
     row = '<tr class="figures">%s</tr>' if head else '<tr>%s</tr>'
     lines = [row % ''.join('<th>%s</th>' % html.escape(text) for text in head)] if head else []
     for first, *others in rows:
@@ -96,17 +96,17 @@ def diagnostics_table(record):
 
 
 def left_out(record, key):
-    """What the source does not have, and why."""
+    """Lists missing data, and why it is missing."""
     reasons = []
     if key.strokes == 0:
-        reasons.append('Curve, error and feed: the job ended ahead of its first stroke.')
+        reasons.append('Curve, error and feed: the job ended before its first stroke.')
     if record.kind == 'table':
         reasons.append('Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.')
     if record.kind == 'setpoints':
-        reasons.append('Following error and loop timing: a CSV file has what the axes were told alone; a bag has more.')
+        reasons.append('Following error and loop timing: a CSV file has only commanded values; a bag has more.')
     if record.max_deviation is None:
-        reasons.append('Deviation at the cutter\'s surface: it takes the cutter\'s radius, which %s.' % (
-            'is in the result of the job, and that is not in the bag' if record.kind == 'bag' else 'a CSV file does not have'))
+        reasons.append('Deviation at the cutter\'s surface: it depends on the cutter\'s radius, which %s.' % (
+            'is in the job result, which is not in the bag' if record.kind == 'bag' else 'a CSV file does not have'))
     return '<ul>\n%s\n</ul>' % '\n'.join('<li>%s</li>' % html.escape(reason) for reason in reasons) if reasons else ''
 
 
@@ -119,7 +119,7 @@ def figure(picture):
 
 def page(name, record, key, limits, pictures):
     """The report of a file of this name."""
-    parts = [table([('file', name), ('what it is', KINDS[record.kind]), *record.facts]), '<h2>Key figures</h2>',
+    parts = [table([('file', name), ('type', KINDS[record.kind]), *record.facts]), '<h2>Key figures</h2>',
              key_figures(record, key)]
     if record.kind != 'table':
         parts.append(axis_table(record, key, limits))
@@ -127,7 +127,7 @@ def page(name, record, key, limits, pictures):
     if record.states:
         parts += ['<h2>States</h2>', '<p>Time since the start of the job.</p>', state_table(record)]
     if record.diagnostics:
-        parts += ['<h2>Diagnostics</h2>', '<p>The worst of each, in the whole bag.</p>', diagnostics_table(record)]
+        parts += ['<h2>Diagnostics</h2>', '<p>The worst status of each in the whole bag.</p>', diagnostics_table(record)]
     missing = left_out(record, key)
     if missing:
         parts += ['<h2>Left out</h2>', missing]

@@ -1,5 +1,5 @@
-"""Reads the bags that `roslaunch flute_grinder grinder.launch record:=true` writes. The messages are understood by the
-definitions that a bag carries."""
+"""Reads the bags that `roslaunch flute_grinder grinder.launch record:=true` writes. Decodes messages by
+the definitions stored in the bag."""
 
 import struct
 

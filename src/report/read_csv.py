@@ -32,7 +32,7 @@ def read_csv(path):
 def read_rows(file, record, columns, convert):
     line = 2
     while True:
-        # Line by line: what is to be read in parts may not be read ahead by numpy.
+        # Line by line, since numpy would read ahead.
         lines = [text for _, text in zip(range(BLOCK), file)]
         if not lines:
             break

@@ -1,5 +1,5 @@
-"""What a report is drawn from: rows of setpoints, or of the points of a table, in a file of their own, since a day's job
-has millions of them."""
+"""The data of a report: rows of setpoints, or of the points of a table. Kept in a temporary file, since a day's job has
+millions of them."""
 
 import tempfile
 
@@ -29,22 +29,22 @@ def names_of_constants(message):
 MOVES, STEPS = names_of_constants(WrittenSetpoint)
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
-# SI units: m, A in rad; m/s. What a source does not have is 0.
+# SI units: m, A in rad; m/s. Values missing in the source are 0.
 ROW = np.dtype([('cycle', 'i8'), ('position', 'f8', 4), ('error', 'f8'), ('feed', 'f8'), ('move', 'u1'), ('step', 'u1'),
                 ('tooth', 'u2'), ('pass', 'u2'), ('actual', 'f8', 4), ('cycle_period', 'f8')])
 
-BLOCK = 1 << 17  # rows that are looked at in one go
+BLOCK = 1 << 17  # rows processed at once
 
 
 class SourceError(Exception):
-    """A file that no report can be drawn from, with the reason."""
+    """The reason why no report can be drawn from a file."""
 
 
 class Record:
-    """The rows of one file, and what else is known of them.
+    """The rows of a file, with what else the file contains.
 
-    kind: 'table', 'setpoints' (CSV) or 'bag', whose rows alone tell `actual` and `cycle_period`. period: of the control
-    cycle [s], 0 for a table. facts: (name, text) pairs for the reader. max_deviation: [m], or None where it is not known.
+    kind: 'table', 'setpoints' (CSV) or 'bag'; only a bag has `actual` and `cycle_period`. period: of the control
+    cycle [s], 0 for a table. facts: (name, text) pairs for the reader. max_deviation: [m], or None if unknown.
     states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
 
     def __init__(self, kind):
@@ -59,17 +59,17 @@ class Record:
         self.missing = 0
 
     def restart(self):
-        """Forgets the rows."""
+        """Deletes the rows."""
         self._file.seek(0)
         self._file.truncate()
         self._last_cycle = None
         self.missing = 0
 
     def append(self, rows):
-        """Takes rows, whose cycles must ascend. @raise SourceError"""
+        """Adds rows, whose cycles must ascend. @raise SourceError"""
         cycles = rows['cycle']
         if self._last_cycle is None:
-            # Cycle 0 is where a job starts.
+            # Cycle 0 is the start position of a job.
             self._last_cycle = -1
         steps = np.diff(cycles, prepend=self._last_cycle)
         if not (steps > 0).all():
@@ -85,7 +85,7 @@ class Record:
         rows.tofile(self._file)
 
     def finish(self):
-        """Ends the rows: `count`, `first` and `last` are known then. @raise SourceError where they are too few."""
+        """Completes the rows and sets `count`, `first` and `last`. @raise SourceError if there are too few."""
         count = self._file.tell() // ROW.itemsize
         if count < 3:
             raise SourceError('has %s; a report needs 3 or more points'

@@ -33,7 +33,7 @@ std_msgs::ColorRGBA heat(double fraction) {
                 std::clamp(1.5 - 3 * f, 0.1, 1.0));
 }
 
-MarkerArray startOver() {
+MarkerArray clearedArray() {
   MarkerArray array;
   array.markers.emplace_back().action = Marker::DELETEALL;
   return array;
@@ -56,7 +56,7 @@ Marker& append(MarkerArray& array, const char* ns, int type, const char* frame) 
 
 Marker& appendSolid(MarkerArray& array, const char* ns, const char* frame, const std::vector<OutlinePoint>& outline,
                     const std_msgs::ColorRGBA& colour) {
-  constexpr int segments = 180;  // 2 degrees each: 0.15 per mille of the radius, no corners to be seen
+  constexpr int segments = 180;  // 2 degrees each: off by 0.15 per mille of the radius, so that no corners show
   const auto at = [](const OutlinePoint& p, int i) {
     const double angle = 2 * units::kPi * (i % segments) / segments;
     return point(p.x, p.radius * std::cos(angle), p.radius * std::sin(angle));

@@ -15,12 +15,12 @@ using visualization_msgs::MarkerArray;
 
 constexpr const char* kFrame = "cutter";
 constexpr double kPathTolerance = 1e-7;     ///< between the strip shown and the helix [m]
-constexpr double kPathWidth = 0.3e-3;       ///< as all widths, of cutters that are not small [m]
+constexpr double kPathWidth = 0.3e-3;       ///< like all widths, for a cutter that is not small [m]
 constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
 constexpr double kArrowWidth = 0.12e-3;     ///< [m]
 constexpr double kLongestArrow = 3e-3;      ///< [m]
-constexpr double kNoError = 1e-12;          ///< what is smaller is rounding [m]
-constexpr double kFarthest = 1;             ///< what is farther, or not a number, is left out [m]
+constexpr double kNoError = 1e-12;          ///< below this an error is rounding [m]
+constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not shown [m]
 constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
 constexpr std::size_t kMostArrows = 200;
 constexpr std::size_t kMostExecutedPoints = 2000;
@@ -33,10 +33,10 @@ bool isNear(const geometry_msgs::Point& p) {
   return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-/// How much finer lines are drawn on a small cutter, so that they do not cover it.
+/// Scale of line widths: thinner on a small cutter, so that they do not cover it.
 double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
 
-/// The largest axial distance between points of the strip that keeps within kPathTolerance of the helix: its chord
+/// The largest axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
 double pathStep(const GrindProgram& program) {
   const ConicalCutter& cutter = program.cutter();
@@ -45,14 +45,14 @@ double pathStep(const GrindProgram& program) {
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
-/// The next lower of 1, 2, 5, 10, ...
+/// Rounds down to 1, 2, 5, 10, ...
 double roundDown(double value) {
   const double decade = std::pow(10, std::floor(std::log10(value)));
   const double mantissa = value / decade;
   return (mantissa >= 5 ? 5 : mantissa >= 2 ? 2 : 1) * decade;
 }
 
-/// 1, 2 or 5 times a power of ten, as short as it can be.
+/// 1, 2 or 5 times a power of ten, as short as possible.
 std::string factorText(double factor) {
   const int exponent = static_cast<int>(std::floor(std::log10(factor) + 1e-9));
   char text[32];
@@ -80,7 +80,7 @@ double ToolPath::x(std::size_t i) const {
   return from_ + (to_ - from_) * (static_cast<double>(i) / static_cast<double>(steps_));
 }
 
-bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
+bool ToolPath::add(const Setpoint& p, const Axes& actual) {
   const std::optional<std::size_t> before = active_;
   const PassPhase phase = phaseOf(p.move);
   if (phase == PassPhase::kBefore || phase == PassPhase::kStroke) active_ = p.tooth;
@@ -88,14 +88,14 @@ bool ToolPath::follow(const Setpoint& p, const Axes& actual) {
   if (p.step != StepKind::kNone) measure(p, actual);
   if (p.move_fraction < 1) return active_ != before;
   finishPass(flutes_[p.tooth]);
-  leave();
+  deactivate();
   return true;
 }
 
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
   const double around = flutes_[p.tooth].angle + curve_.a(actual[kX]) - actual[kA];
   const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
-  // A drive may say that it is nowhere, or beyond the cone's apex.
+  // A faulty drive may report NaN, or a position beyond the cone's apex.
   if (!(error <= kFarthest)) return;
   const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
   float& largest = measured_[static_cast<std::size_t>(std::lround(std::clamp(at, 0.0, static_cast<double>(steps_))))];
@@ -104,7 +104,7 @@ void ToolPath::measure(const Setpoint& p, const Axes& actual) {
 }
 
 void ToolPath::finishPass(Flute& flute) {
-  // Where the stroke goes faster than a point a cycle, a point has what was measured next to it.
+  // At more than one point per cycle, a skipped point gets the measurement next to it.
   for (std::size_t i = 1; i <= steps_; ++i) {
     if (measured_[i] < 0) measured_[i] = measured_[i - 1];
   }
@@ -114,7 +114,7 @@ void ToolPath::finishPass(Flute& flute) {
   flute.errors = measured_;
 }
 
-void ToolPath::leave() {
+void ToolPath::deactivate() {
   active_.reset();
   std::fill(measured_.begin(), measured_.end(), -1);
 }
@@ -143,7 +143,7 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth, double scale_e
 }
 
 MarkerArray ToolPath::markers() const {
-  MarkerArray array = startOver();
+  MarkerArray array = clearedArray();
   const double scale_end = scaleEnd();
   for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth, scale_end);
   if (scale_end > 0) board::appendScale(array, board::Side::kLeft, "measured error of the flutes", scale_end);
@@ -153,13 +153,13 @@ MarkerArray ToolPath::markers() const {
 ExecutedPath::ExecutedPath(const GrindProgram& program) : cutter_(program.cutter()) {
   const std::vector<double> depths = passDepths(program.job().process);
   for (const Move& move : program.moves()) {
-    // The plunge takes up the wheel's wear beside the pass' depth.
+    // The infeed includes compensation for wheel wear.
     const double infeed = program.cutter().y(move.to[kX]) - move.to[kY];
     wear_of_move_.push_back(infeed - depths[move.pass]);
   }
 }
 
-void ExecutedPath::follow(const Setpoint& p, const Axes& actual) {
+void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
   if (p.move != MoveKind::kStroke) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
@@ -204,7 +204,7 @@ void PathErrorMarkers::add(const Setpoint& p) {
 }
 
 void PathErrorMarkers::thinOut() {
-  // Pairs are kept or dropped as such, so that odd and even points stay in equal number.
+  // Keep or drop whole pairs, so that odd and even points remain equal in number.
   std::size_t kept = 0;
   for (std::size_t i = 0; i + 1 < points_.size(); i += 4) {
     points_[kept++] = points_[i];
@@ -215,9 +215,9 @@ void PathErrorMarkers::thinOut() {
 }
 
 MarkerArray PathErrorMarkers::markers() const {
-  MarkerArray array = startOver();
+  MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  // A path without an error, of a cylinder, does not come down to rounding.
+  // Do not show the rounding errors of a path that has no others, as on a cylinder.
   const double largest = std::max(largest_, kNoError);
   const double factor = roundDown(kLongestArrow * fineness(cutter_) / largest);
 

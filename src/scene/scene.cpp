@@ -16,10 +16,10 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kBlankLength = 0.066;             ///< from the small end into the collet [m]
-constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it does not change fast
+constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
 
 /// The blank before it is ground: the cone over the whole stroke, and a shank of the diameter there. The cone is
-/// translucent, so that the executed path shows, which lies below its surface.
+/// translucent, so that the executed path below its surface can be seen.
 void appendBlank(MarkerArray& array, const GrindProgram& program) {
   const ConicalCutter& cutter = program.cutter();
   const double flute = cutter.geometry().flute_length;
@@ -28,7 +28,7 @@ void appendBlank(MarkerArray& array, const GrindProgram& program) {
   const auto at = [&](double x) { return OutlinePoint{x, cutter.radius(x)}; };
   const auto add = [&](const std::vector<OutlinePoint>& outline, const std_msgs::ColorRGBA& colour) {
     Marker& m = appendSolid(array, "blank", "cutter", outline, colour);
-    // Unlit: rviz draws the faces of a translucent solid in any order, and the light on its back would show.
+    // Unlit, because rviz draws translucent faces in any order, and the lit back would show through.
     m.colors.assign(m.points.size(), colour);
   };
   add({{0, 0}, at(0), at(flute)}, colour(0.20, 0.32, 0.52, 0.65));
@@ -36,7 +36,7 @@ void appendBlank(MarkerArray& array, const GrindProgram& program) {
   appendSolid(array, "blank", "cutter", {{cone, 0}, at(cone), {shank, cutter.radius(cone)}}, colour(0.74, 0.75, 0.77));
 }
 
-/// The wheel as the job begins. It turns about the frame's Z.
+/// The wheel as it is at the start of the job; its axis is the frame's Z.
 void appendWheel(MarkerArray& array, const GrindProcess& process) {
   const double radius = process.wheel_diameter / 2 - process.wheel_wear;
   const double half = process.wheel_width / 2;
@@ -52,7 +52,7 @@ void appendWheel(MarkerArray& array, const GrindProcess& process) {
 }
 
 MarkerArray sceneMarkers(const GrindProgram& program) {
-  MarkerArray array = startOver();
+  MarkerArray array = clearedArray();
   appendBlank(array, program);
   appendWheel(array, program.job().process);
   board::appendBoard(array);
@@ -73,9 +73,9 @@ Scene::Scene(ros::NodeHandle private_nh)
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
       path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)) {
-  // What an earlier process has left in rviz is no longer so.
+  // Remove what an earlier process left in rviz.
   for (const ros::Publisher* publisher : {&scene_, &tool_path_, &executed_path_, &path_error_}) {
-    publisher->publish(startOver());
+    publisher->publish(clearedArray());
   }
 }
 
@@ -92,9 +92,9 @@ void Scene::show(const GrindProgram& program, const ToothPass& first, const Path
   publishRun(plannedText(job));
 }
 
-void Scene::follow(const Setpoint& setpoint, const Axes& actual) {
-  if (shown_->tool_path.follow(setpoint, actual)) flutes_changed_ = true;
-  shown_->executed.follow(setpoint, actual);
+void Scene::add(const Setpoint& setpoint, const Axes& actual) {
+  if (shown_->tool_path.add(setpoint, actual)) flutes_changed_ = true;
+  shown_->executed.add(setpoint, actual);
   shown_->errors.add(setpoint);
   shown_->last = setpoint;
 }
@@ -107,7 +107,7 @@ void Scene::update(const char* state) {
 }
 
 void Scene::end(const char* state) {
-  shown_->tool_path.leave();
+  shown_->tool_path.deactivate();
   tool_path_.publish(shown_->tool_path.markers());
   flutes_changed_ = false;
   path_error_.publish(shown_->errors.markers());
@@ -115,7 +115,7 @@ void Scene::end(const char* state) {
 }
 
 void Scene::publishRun(const std::string& text) {
-  MarkerArray array = startOver();
+  MarkerArray array = clearedArray();
   shown_->executed.append(array);
   board::appendLine(array, text);
   executed_path_.publish(array);
@@ -124,7 +124,7 @@ void Scene::publishRun(const std::string& text) {
 std::string Scene::runText(const char* state) const {
   const Setpoint& p = shown_->last;
   char text[160];
-  // People count teeth and passes from 1.
+  // Teeth and passes count from 1 for the operator.
   std::snprintf(text, sizeof text, "%s   tooth %d/%zu   pass %d/%zu   feed %.0f mm/min   largest error %s", state,
                 p.tooth + 1, shown_->job.tooth_angles.size(), p.pass + 1, shown_->passes,
                 p.feed / units::kMillimetrePerMinute, board::micrometres(shown_->tool_path.largestMeasured()).c_str());

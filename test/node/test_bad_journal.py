@@ -86,8 +86,8 @@ def a_loop_of_links(folder):
 # How a path is made that no journal can be kept at, and the reason that is told.
 UNUSABLE = [
     (below_a_file, 'Not a directory'),
-    (a_folder, 'is no regular file'),
-    (a_fifo, 'is no regular file'),
+    (a_folder, 'is not a regular file'),
+    (a_fifo, 'is not a regular file'),
     (a_loop_of_links, 'Too many levels of symbolic links'),
     (lambda folder: 256 * 'n', 'File name too long'),
 ]

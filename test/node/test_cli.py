@@ -244,7 +244,7 @@ class TestUsage(CommandLine):
                     done = subprocess.run([gc.program('grind'), *arguments], stdout=full, stderr=subprocess.PIPE,
                                           universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=close)
                 self.assertEqual(done.returncode, 1, arguments)
-                self.assertTrue(done.stderr.endswith('standard output: not all could be written\n'), done.stderr)
+                self.assertTrue(done.stderr.endswith('standard output: write failed\n'), done.stderr)
 
     def test_step_length_that_is_no_number(self):
         self.grind(2, 'table', PAPER_JOB, '--step-length', 'nan')

@@ -29,14 +29,14 @@ class DiagnosticsTest : public ::testing::Test {
   void watch(int cycles = 1) {
     for (; cycles > 0; --cycles) {
       record_.feedback_age = 0;
-      diagnostics_.watch(record_);
+      diagnostics_.add(record_);
     }
   }
 
   /// A cycle without fresh positions.
   void watchStale() {
     record_.feedback_age += record_.period;
-    diagnostics_.watch(record_);
+    diagnostics_.add(record_);
   }
 
   Diagnostics::Status ask(Report report) {
@@ -132,7 +132,7 @@ TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
   watch();
   const auto status = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "7 cycles went by unseen");
+  EXPECT_EQ(status.message, "7 cycle records were lost");
   watch();
   const auto next = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(next.level, DiagnosticStatus::OK);

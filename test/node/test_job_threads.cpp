@@ -69,12 +69,12 @@ class JobThreads : public ::testing::Test {
     newest_ = number;
     std::promise<std::unique_ptr<Preview>> promise;
     auto answer = promise.get_future();
-    Planner::Order order;
-    order.job = job_;
-    order.start = Eigen::Map<const Axes>(before.command.data());
-    order.control = control;
-    order.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
-    ASSERT_TRUE(planner_.submit(std::move(order)));
+    Planner::Request request;
+    request.job = job_;
+    request.start = Eigen::Map<const Axes>(before.command.data());
+    request.control = control;
+    request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+    ASSERT_TRUE(planner_.submit(std::move(request)));
     ASSERT_EQ(answer.wait_for(kPatience), std::future_status::ready);
     const std::unique_ptr<Preview> preview = answer.get();
     start(number, *preview, before.jobs_started);

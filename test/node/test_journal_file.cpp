@@ -128,7 +128,7 @@ TEST_F(JournalFileTest, WrongFiguresAreRefusedUnderARightChecksumToo) {
       {"pass", "pass: -1\n", "pass = -1; allowed: 0 to 9999"},
       {"pass", "pass: 10000\n", "pass = 10000; allowed: 0 to 9999"},
       {"pass", "pass: 1\nfail: 1\n", "key fail is unknown"},
-      {"pass", "pass: 1\npass: 1\n", "key pass is unknown, or there twice"},
+      {"pass", "pass: 1\npass: 1\n", "key pass is unknown or duplicate"},
       {"pass", "pass: [1]\n", "bad conversion"},
       {"pass", "pass: [1\n", "error at line"},
       {"tooth", "tooth: 3\n", "tooth = 3; allowed: 0 to 2"},

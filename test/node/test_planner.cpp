@@ -29,13 +29,13 @@ GrindJob endless() {
   return job;
 }
 
-/// An order with what comes of it.
+/// A request with its outcome.
 struct Asked {
   explicit Asked(const GrindJob& job) {
-    order.job = job;
-    order.start = machine().park;
-    order.control = std::make_shared<PlanControl>();
-    order.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+    request.job = job;
+    request.start = machine().park;
+    request.control = std::make_shared<PlanControl>();
+    request.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
   }
   std::unique_ptr<Preview> wait() {
     if (answer.wait_for(kPatience) != std::future_status::ready) throw std::runtime_error("no plan");
@@ -43,7 +43,7 @@ struct Asked {
   }
   bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
-  Planner::Order order;
+  Planner::Request request;
   std::promise<std::unique_ptr<Preview>> promise;
   std::future<std::unique_ptr<Preview>> answer = promise.get_future();
 };
@@ -51,7 +51,7 @@ struct Asked {
 TEST(Planner, PlansWhatPlanJobPlans) {
   Planner planner(machine());
   Asked asked(paper());
-  ASSERT_TRUE(planner.submit(asked.order));
+  ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
   ASSERT_TRUE(preview->plan.good());
   const JobPlan expected = planJob(paper(), machine(), machine().park);
@@ -68,7 +68,7 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
   GrindJob job = paper();
   job.process.feed = -1;
   Asked asked(job);
-  ASSERT_TRUE(planner.submit(asked.order));
+  ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
   EXPECT_EQ(preview->plan.fault, PlanFault::kInvalidJob);
   ASSERT_EQ(preview->plan.reasons.size(), 1U);
@@ -79,15 +79,15 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
 TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
   Planner planner(machine());
   Asked first(endless()), second(paper()), third(paper());
-  ASSERT_TRUE(planner.submit(first.order));
+  ASSERT_TRUE(planner.submit(first.request));
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (first.order.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  EXPECT_GT(first.order.control->done, 0);
-  EXPECT_FALSE(planner.submit(second.order));
+  while (first.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_GT(first.request.control->done, 0);
+  EXPECT_FALSE(planner.submit(second.request));
   EXPECT_FALSE(first.isDone());
-  first.order.control->give_up = true;
+  first.request.control->give_up = true;
   EXPECT_EQ(first.wait()->plan.fault, PlanFault::kGivenUp);
-  ASSERT_TRUE(planner.submit(third.order)) << "who has the answer may ask for the next";
+  ASSERT_TRUE(planner.submit(third.request)) << "who has the answer may ask for the next";
   EXPECT_TRUE(third.wait()->plan.good());
   EXPECT_FALSE(second.isDone());
 }
@@ -95,11 +95,11 @@ TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
 TEST(Planner, ItsEndGivesUpAndAnswers) {
   Planner planner(machine());
   Asked asked(endless()), late(paper());
-  ASSERT_TRUE(planner.submit(asked.order));
+  ASSERT_TRUE(planner.submit(asked.request));
   planner.end();
   ASSERT_TRUE(asked.isDone());
   EXPECT_FALSE(asked.wait()->plan.good());
-  EXPECT_FALSE(planner.submit(late.order));
+  EXPECT_FALSE(planner.submit(late.request));
 }
 
 }  // namespace

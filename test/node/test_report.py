@@ -265,7 +265,7 @@ class TestPlan(ReportCase):
     def test_page(self):
         self.assert_page(self.page, PATH + MOTION)
         self.assertIn('Following error and loop timing: a CSV file has', self.page.text)
-        self.assertIn('Deviation at the cutter\'s surface: it takes', self.page.text)
+        self.assertIn('Deviation at the cutter\'s surface: it depends', self.page.text)
 
     def test_figures_are_those_that_plan_prints(self):
         printed = FILES['printed']
@@ -467,7 +467,7 @@ class TestMissingSetpoints(ReportCase):
             file.writelines(lines[:601])
         page = self.report(self.path('early.csv'))
         self.assertEqual(list(page.pictures), ['speed', 'acceleration'])
-        self.assertIn('the job ended ahead of its first stroke', page.text)
+        self.assertIn('the job ended before its first stroke', page.text)
         self.assertNotIn('largest odd error', page.rows)
 
 

@@ -108,7 +108,7 @@ class TestBar(RunTest):
         self.assertEqual(command.end(), 1)
         lines = self.drawn(command)
         others = [line for line in lines if not LINE.fullmatch(line) and not re.search('  planning \\d+ %$', line)]
-        self.assertEqual(others[:2], ["held: no coolant flows; when it is well again, 'grind resume' goes on",
+        self.assertEqual(others[:2], ["held: no coolant flows; once cleared, 'grind resume' continues",
                                       'canceling: waiting for the stop'])
         self.assertRegex(others[2], r'^canceled; stopped on the path')
         self.assertEqual(len(others), 3)
@@ -180,7 +180,7 @@ class TestEnd(RunTest):
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr,
                          'cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift; '
-                         'a job that was being planned is given up\n')
+                         'a job that was being planned is canceled\n')
 
 
 class TestStuck(RunTest):
@@ -288,14 +288,14 @@ class TestRecord(RunTest):
         grinder().inject('emergency_stop')
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'emergency stop \(stroke, .* mm\) \(code -9\)\n'
-                                       r'/dev/full: not all could be written: No space left on device\n$')
+                                       r'/dev/full: write failed: No space left on device\n$')
         self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
         self.assertNotIn('setpoints written to', command.stdout)
 
     def test_full_disk_is_no_success(self):
         command = self.grind(*RUN, self.short_job(), '--csv', '/dev/full')
         self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'\n/dev/full: not all could be written: No space left on device\n$')
+        self.assertRegex(command.text, r'\n/dev/full: write failed: No space left on device\n$')
 
     def test_file_that_cannot_be_made_is_refused_before_anything_moves(self):
         seen = len(grinder().batches)
@@ -333,7 +333,7 @@ class TestOwnNode(RunTest):
     def check_lost(self, command):
         began = time.monotonic()
         self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'(?m)^the link to the grinder is lost: ')
+        self.assertRegex(command.text, r'(?m)^the connection to the grinder is lost: ')
         # Seconds, on a host that stalls too.
         self.assertLess(time.monotonic() - began, 20)
 
@@ -361,7 +361,7 @@ class TestOwnNode(RunTest):
         self.client.wait_state(GrinderState.HOMING)
         command.send(signal.SIGINT)
         self.assertEqual(command.end(), 1)
-        self.assertEqual(command.text, 'homing was broken off; the power is off\n')
+        self.assertEqual(command.text, 'homing was aborted; the power is off\n')
         state = self.client.fresh_state()
         self.assertEqual((state.state, state.homed), (GrinderState.DISABLED, False))
         self.assertEqual(len(set(self.client.positions_over(0.1))), 1)

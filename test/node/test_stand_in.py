@@ -133,7 +133,7 @@ class TestStandIn(RunTest):
             self.node.batch(*batch)
         goal.set_succeeded(GrindResult(setpoints_written=21))
         self.assertEqual(command.end(), 0, command.text)
-        self.assertRegex(command.stdout, r'(?m)^streamed +15 setpoints in 0\.000 s, 3 missed, 3 written but not told$')
+        self.assertRegex(command.stdout, r'(?m)^streamed +15 setpoints in 0\.000 s, 3 missed, 3 written but not published$')
         with open(csv) as lines:
             self.assertEqual([line.split(',')[0] for line in lines],
                              ['cycle'] + [str(i) for i in [*range(10), *range(15, 20)]])
@@ -143,7 +143,7 @@ class TestStandIn(RunTest):
         self.node.batch(goal.get_goal_id().id, [], 7)
         goal.set_succeeded(GrindResult(setpoints_written=7))
         self.assertEqual(command.end(), 0, command.text)
-        self.assertRegex(command.stdout, r'(?m)^streamed +0 setpoints in 0\.000 s, 0 missed, 7 written but not told$')
+        self.assertRegex(command.stdout, r'(?m)^streamed +0 setpoints in 0\.000 s, 0 missed, 7 written but not published$')
 
     def test_goal_has_the_files_name_and_what_is_discarded(self):
         for arguments, discard in (([], False), (['--discard'], True)):
@@ -176,7 +176,7 @@ class TestStandIn(RunTest):
             gc.poll(lambda: self.node.stops == [Stop.HOLD], 'the hold')
             self.node.set(GrinderState.READY, 'ready')
             self.assertEqual(command.end(), 1)
-            self.assertEqual(command.text, "the lift was broken off: the wheel stands in the work; 'grind lift' lifts it\n")
+            self.assertEqual(command.text, "the lift was stopped: the wheel is still in the work; 'grind lift' lifts it\n")
 
     def test_fault_amid_a_lift(self):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)

@@ -61,8 +61,8 @@ Shown show(int every, int axis, double value) {
     Axes actual = p.position;
     actual[kA] += 1e-6;
     if (every > 0 && p.cycle % static_cast<unsigned>(every) == 0) actual[axis] = value;
-    flutes.follow(p, actual);
-    executed.follow(p, actual);
+    flutes.add(p, actual);
+    executed.add(p, actual);
   }
   result.largest = flutes.largestMeasured();
   result.flutes = flutes.markers();

@@ -16,9 +16,9 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes lines of comma-separated values with 17 significant digits, which is every bit of a double. What was in the
-/// file stays until the first line is written, or the file is closed; a file that was not there goes again, where
-/// neither comes.
+/// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
+/// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
+/// is removed again.
 class CsvFile {
  public:
   /// @param path the file.
@@ -29,11 +29,11 @@ class CsvFile {
   CsvFile& operator=(const CsvFile&) = delete;
   ~CsvFile();
 
-  /// Closes the file. @throw FileError if not all could be written.
+  /// Closes the file. @throw FileError if writing failed.
   void close();
 
  protected:
-  /// As printf; what fails is told by close().
+  /// Like printf; close() reports errors.
   void print(const char* format, ...) __attribute__((format(printf, 2, 3)));
 
  private:
@@ -49,7 +49,7 @@ class CsvFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// `point,x_mm,a_rad,a_theory_rad,error_rad`, as of the paper's Table 1.
+/// `point,x_mm,a_rad,a_theory_rad,error_rad`, as in the paper's Table 1.
 class TableCsv : public CsvFile {
  public:
   explicit TableCsv(const std::string& path) : CsvFile(path, "point,x_mm,a_rad,a_theory_rad,error_rad") {}

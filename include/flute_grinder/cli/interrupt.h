@@ -2,14 +2,14 @@
 
 namespace flute_grinder {
 
-/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (the terminal is gone) are counted in place of ending the program.
-/// SIGHUP stays ignored where it was, as nohup has it.
+/// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (the terminal is gone) are counted instead of ending the program.
+/// SIGHUP stays ignored if it was, as under nohup.
 void catchInterrupts();
 
 /// How many there have been.
 int interrupts();
 
-/// From now on SIGTSTP (Ctrl-Z) is counted in place of suspending the program.
+/// From now on SIGTSTP (Ctrl-Z) is counted instead of suspending the program.
 void catchHolds();
 
 /// How many there have been.

@@ -7,13 +7,13 @@
 
 namespace flute_grinder {
 
-/// What `--json` prints: keys in a fixed order, with the operator's unit in the name; numbers with all their bits.
+/// What `--json` prints: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
 using Json = nlohmann::ordered_json;
 
-/// Of `grind plan`: whether the job can be ground, why not, and its figures.
+/// For `grind plan`: whether the job can be ground, why not, and its statistics.
 Json toJson(const JobPlan& plan);
 
-/// Of `grind status`. Teeth and passes count from 1, as on the operator's screens.
+/// For `grind status`. Teeth and passes count from 1, as on the operator's screens.
 Json toJson(const GrinderState& state);
 
 /// Prints it to stdout.

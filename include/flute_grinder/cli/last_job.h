@@ -6,8 +6,7 @@
 
 namespace flute_grinder {
 
-/// What the journal says of the last job, in the operator's words and units: its file, its tool and how far it has
-/// come.
+/// The last job in the journal as text for the operator: its file, tool and progress.
 /// @param progress of a job; its digest is not empty.
 std::string lastJob(const JobProgress& progress);
 

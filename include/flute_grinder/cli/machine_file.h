@@ -6,7 +6,7 @@
 
 namespace flute_grinder {
 
-/// The machine from the very files that roslaunch loads, without ROS running.
+/// Reads the machine from the files that roslaunch loads, without ROS running.
 /// @param parameters YAML, the node's parameters.
 /// @param urdf the robot description.
 /// @throw FileError if a file cannot be read; ParameterError if the machine cannot be used.

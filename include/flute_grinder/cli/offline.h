@@ -13,7 +13,7 @@ namespace flute_grinder {
 struct TableOptions {
   std::string job;
   double step_length_mm = 0;
-  std::optional<EvenStepRule> even_step;  ///< in place of the job's
+  std::optional<EvenStepRule> even_step;  ///< instead of the job's
   std::string csv;                        ///< file, or empty
   bool json = false;
 };
@@ -33,7 +33,7 @@ int runTable(const TableOptions& options);
 /// Plans and checks a whole job without a machine, from the park position. @return the exit status.
 int runPlan(const PlanOptions& options);
 
-/// Prints a job's figures in the operator's units.
+/// Prints a job's statistics in the operator's units.
 void printStatistics(const core::PathStatistics& statistics);
 
 }  // namespace flute_grinder

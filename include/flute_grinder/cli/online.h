@@ -13,18 +13,17 @@ struct RunOptions {
   std::string node;  ///< name of the grinder's node
   std::string job;
   bool dry_run = false;
-  bool go_on = false;    ///< from the first pass that is not finished
-  bool discard = false;  ///< although the journal keeps another job that is not finished
-  std::string csv;       ///< file for the setpoints that were streamed, or empty
+  bool go_on = false;    ///< from the first unfinished pass
+  bool discard = false;  ///< even if the journal holds another, unfinished job
+  std::string csv;       ///< file for the streamed setpoints, or empty
 };
 
-/// Waits for the ROS master, which may be only just coming up. @return whether it answers.
+/// Waits for the ROS master, which may still be starting. @return whether it answers.
 bool awaitMaster();
 
-/// Prints why not. @return the exit status for that.
+/// Prints an error. @return the exit status for it.
 int fail(const std::string& text);
-/// Prints what is missing where nothing is heard of a grinder: the master, the clock or the node. @return the exit
-/// status for that.
+/// Prints why no grinder can be reached: no master, no clock or no node. @return the exit status for it.
 int noGrinder(const ros::NodeHandle& nh);
 
 /// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it.
@@ -34,7 +33,7 @@ int runJob(const RunOptions& options);
 /// Prints what the grinder is doing. @param json in JSON. @return the exit status.
 int printStatus(const std::string& node, bool json);
 
-/// Has the grinder carry out a trigger or a stop. Waits for the end of homing, of a lift and of a canceled job.
+/// Sends a trigger or a stop to the grinder. Waits for the end of homing, of a lift and of a canceled job.
 /// @return the exit status.
 int request(const std::string& node, MachineEvent event);
 

@@ -7,9 +7,9 @@
 
 namespace flute_grinder {
 
-/// Shows on stderr how far a job has come. On a terminal that is one line, drawn anew and never longer than the
-/// terminal is wide; in a file, a pipe or on a dumb terminal it is a line for each tenth of the job, or of
-/// its planning, and each state. Thread safe.
+/// Shows the progress of a job on stderr. On a terminal it is a single line, redrawn and never wider than the terminal;
+/// in a file, a pipe or on a dumb terminal it is one line per tenth of the job, or of its planning, and per state.
+/// Thread safe.
 class ProgressBar {
  public:
   /// @param teeth of the job.
@@ -22,13 +22,13 @@ class ProgressBar {
 
   void show(const GrindFeedback& feedback);
 
-  /// Prints a line of its own, above the bar.
-  void say(const std::string& text);
+  /// Prints a separate line above the bar.
+  void printLine(const std::string& text);
 
-  /// Whether it stands at the end of the job, or there was no more to show than its planning.
+  /// Whether it shows the end of the job, or nothing beyond planning was to be shown.
   bool complete();
 
-  /// Ends the line; what comes later is not shown.
+  /// Ends the line; later feedback is not shown.
   void end();
 
  private:

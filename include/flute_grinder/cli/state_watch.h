@@ -8,7 +8,7 @@
 
 namespace flute_grinder {
 
-/// Whether a job has the machine.
+/// Whether a job controls the machine.
 bool inJob(const GrinderState& state);
 
 /// Waits for a condition. @return whether it came true in time.
@@ -22,20 +22,20 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
   return condition();
 }
 
-const ros::WallDuration kPatience(10);  ///< with a node that is only just coming up
+const ros::WallDuration kPatience(10);  ///< with a node that is still starting
 
-/// Listens to what the grinder says of its state, 20 times a second; a spinner must run.
+/// Receives the grinder's state, 20 times a second; a spinner must be running.
 class StateWatch {
  public:
   /// @param nh the grinder's namespace.
   explicit StateWatch(ros::NodeHandle& nh);
 
-  /// Whether the grinder has told of itself.
+  /// Whether a state has been received.
   bool begun() const { return heard() > 0; }
-  /// Waits for what is told from now on. @return false if the link is lost.
-  bool renew() const;
+  /// Waits for a state sent after this call. @return false if the connection is lost.
+  bool awaitNext() const;
   GrinderState newest() const;
-  /// Whether nothing was heard of the grinder for too long.
+  /// Whether nothing has been received for too long.
   bool lost() const;
 
  private:
@@ -43,12 +43,12 @@ class StateWatch {
 
   mutable std::mutex mutex_;
   GrinderState newest_;
-  ros::SteadyTime time_;  ///< of the newest
+  ros::SteadyTime time_;  ///< when the newest was received
   std::uint64_t heard_ = 0;
   ros::Subscriber subscriber_;
 };
 
-/// For when the watch is lost.
+/// Error text for a lost connection.
 extern const char* const kLinkLost;
 
 }  // namespace flute_grinder

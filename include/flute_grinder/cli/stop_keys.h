@@ -10,9 +10,9 @@
 
 namespace flute_grinder {
 
-/// The keys that stop a motion: Ctrl-C does what its command says, Ctrl-Z holds on the path. They are looked after in a
-/// thread of their own, so that no word that waits for the terminal holds up a stop, and by a topic, whose connection
-/// outlives the master.
+/// The keys that stop a motion: the command defines what Ctrl-C does, Ctrl-Z holds on the path. They are handled in
+/// their own thread, so that a blocked terminal cannot delay a stop, and use a topic, whose connection survives the
+/// master.
 class StopKeys {
  public:
   /// @param nh the grinder's namespace.
@@ -22,16 +22,16 @@ class StopKeys {
   StopKeys& operator=(const StopKeys&) = delete;
   ~StopKeys();
 
-  /// Whether the grinder would hear a hold.
+  /// Whether the grinder is connected, so that it would receive a hold.
   bool connected() const { return publisher_.getNumSubscribers() > 0; }
-  /// Has the grinder hold on the path. Thread safe.
+  /// Makes the grinder hold on the path. Thread safe.
   void hold() const;
-  /// Looks after the keys, of which those that came since they are caught count too.
+  /// Starts handling the keys, including any pressed since catchInterrupts() and catchHolds().
   /// @param on_interrupt called in the keys' thread, after each Ctrl-C.
   void start(std::function<void()> on_interrupt);
 
  private:
-  void follow(const std::function<void()>& on_interrupt) const;
+  void run(const std::function<void()>& on_interrupt) const;
 
   const StateWatch& watch_;
   ros::Publisher publisher_;

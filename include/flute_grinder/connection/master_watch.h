@@ -17,23 +17,23 @@ namespace flute_grinder {
 /// Whether a ROS master answers.
 enum class Master { kAnswers, kMissing };
 
-/// Looks once a second whether the ROS master answers, and registers this whole process with one that does not know it:
-/// every topic that it publishes or subscribes to, whoever in the process does, and its services. Connections between
-/// nodes outlive their master; with a new one a node would be found by nobody, and find nobody, until it is started
-/// anew. What the old master's parameter server held does not come back.
+/// Checks once a second whether the ROS master answers, and registers the whole process again with a master that does
+/// not know it: its services, and every topic that it publishes or subscribes to. Connections between nodes survive
+/// their master; but without this, a node could not be found under a new master, nor find others, until restarted. The
+/// old master's parameters are not restored.
 ///
-/// All in a thread of its own, by connections of its own, with bounded waits: a master that hangs is missing.
+/// Uses its own thread and connections, with bounded waits: a master that hangs counts as missing.
 class MasterWatch {
  public:
-  /// To be made when ROS is up, and to go before ros::shutdown().
-  /// @param services resolved names of the process' services, beside those that every node of roscpp has. One that is
-  ///        not offered at the time is passed over.
+  /// To be created after ros::start() and destroyed before ros::shutdown().
+  /// @param services resolved names of the process' services, beyond those of every roscpp node. Any not advertised at
+  ///        the time are skipped.
   explicit MasterWatch(std::vector<std::string> services = {});
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
   ~MasterWatch();
 
-  /// As of the last look, at most some seconds ago. For any thread; never waits.
+  /// As of the last check, at most a few seconds ago. Thread safe; never blocks.
   Master master() const noexcept { return master_; }
 
  private:
@@ -41,22 +41,22 @@ class MasterWatch {
   using Uris = std::set<std::string>;
 
   void run();
-  void look();
-  bool registerAnew();
+  void checkMaster();
+  bool registerAgain();
   bool registerPublications();
   bool registerServices();
   bool registerSubscriptions();
   bool registerSubscription(const std::string& topic, const std::string& type, const Uris& connected);
   std::map<std::string, Uris> connectedPublishers();
-  std::optional<Value> ask(const std::string& host, unsigned port, const char* method,
-                           const std::vector<Value>& arguments);
-  std::optional<Value> askMaster(const char* method, const std::vector<Value>& arguments = {});
-  std::optional<Value> askSelf(const char* method, const std::vector<Value>& arguments = {});
+  std::optional<Value> call(const std::string& host, unsigned port, const char* method,
+                            const std::vector<Value>& arguments);
+  std::optional<Value> callMaster(const char* method, const std::vector<Value>& arguments = {});
+  std::optional<Value> callSelf(const char* method, const std::vector<Value>& arguments = {});
 
   std::vector<std::string> services_;
   std::atomic<Master> master_{Master::kAnswers};
   std::atomic<bool> stopping_{false};
-  std::mutex mutex_;  ///< for the wait alone
+  std::mutex mutex_;  ///< used only with stop_
   std::condition_variable stop_;
   std::thread thread_;
 };

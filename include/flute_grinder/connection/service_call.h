@@ -14,31 +14,31 @@
 
 namespace flute_grinder {
 
-/// A service call in a thread of its own, which can be broken off. ros::ServiceClient waits for ever for a node that
-/// hangs, and must not be shut down by another thread while it does.
+/// A service call in its own thread, which can be aborted. ros::ServiceClient would wait for ever for a node that
+/// hangs, and must not be shut down by another thread meanwhile.
 class ServiceCall {
  public:
-  /// Called in the thread of the call. @param answer null where none came.
+  /// Called in the call's thread. @param answer null if none came.
   using Done = std::function<void(ros::SerializedMessage* answer)>;
 
   /// @param name resolved name of the service.
   /// @param md5sum of its type.
-  /// @param timeout how long the answer is waited for, if breakOffWhenDue() is called now and then.
+  /// @param timeout for the answer; takes effect when abortIfOverdue() is called.
   ServiceCall(std::string name, std::string md5sum, ros::SerializedMessage request, ros::WallDuration timeout,
               Done done);
   ServiceCall(const ServiceCall&) = delete;
   ServiceCall& operator=(const ServiceCall&) = delete;
-  /// Breaks the call off if it still waits.
+  /// Aborts the call if it is still waiting.
   ~ServiceCall();
 
   bool finished() const { return finished_; }
-  void breakOffWhenDue();
-  /// Breaks it off if it still waits, and waits for the end of its thread.
+  void abortIfOverdue();
+  /// Aborts the call if it is still waiting, and joins its thread.
   void end();
 
  private:
   void run();
-  void breakOff();
+  void abort();
 
   const std::string name_, md5sum_;
   const ros::SerializedMessage request_;
@@ -47,13 +47,13 @@ class ServiceCall {
   std::atomic<bool> finished_{false};
   std::mutex mutex_;  ///< guards the next two
   ros::ServiceServerLinkPtr link_;
-  bool broken_off_ = false;
+  bool aborted_ = false;
   std::thread thread_;
 };
 
-/// What a call has brought. @param answer as Done is given it. @return nothing where none came, or one that is cut off.
+/// Deserialises an answer. @param answer as passed to Done. @return nothing if none came or it is truncated.
 template <typename Service>
-std::optional<typename Service::Response> answerOf(ros::SerializedMessage* answer) {
+std::optional<typename Service::Response> responseFrom(ros::SerializedMessage* answer) {
   std::optional<typename Service::Response> response;
   try {
     if (answer) ros::serialization::deserializeMessage(*answer, response.emplace());

@@ -4,10 +4,10 @@
 
 namespace flute_grinder {
 
-/// Bounds of the figures of a machine, in SI units; far beyond every machine.
+/// Bounds of the parameters of a machine, in SI units; far beyond any real machine.
 constexpr double kSmallestFigure = 1e-9, kLargestFigure = 1e9;
 
-/// What every axis may do.
+/// The limits of every axis.
 struct AxisLimits {
   Axes min_position = Axes::Zero();      ///< [m], A [rad]
   Axes max_position = Axes::Zero();      ///< [m], A [rad]
@@ -16,12 +16,12 @@ struct AxisLimits {
   Axes max_jerk = Axes::Zero();          ///< [m/s^3], A [rad/s^3]
 };
 
-/// What a job must know of the machine that is to run it.
+/// What planning a job needs to know about the machine.
 struct Machine {
   AxisLimits limits;
   double period = 0;                ///< control cycle T [s]
-  Axes park = Axes::Zero();         ///< where a job ends, clear of the work [m], A [rad]
-  double max_job_duration = 86400;  ///< longest job that is planned [s]
+  Axes park = Axes::Zero();         ///< position at the end of a job, clear of the work [m], A [rad]
+  double max_job_duration = 86400;  ///< longest job accepted [s]
 };
 
 }  // namespace flute_grinder

@@ -12,42 +12,42 @@ struct MotionLimits {
 };
 
 /// Jerk-limited motion along one coordinate (double-S): from rest over a given distance, toward a target speed that may
-/// change at any moment, and to rest exactly at the distance's end. It follows a plan of at most seven phases of
-/// constant jerk that always ends in a stop within the distance left, and so needs no look-ahead while it runs; the
-/// plan is made anew when the target changes. The same calls give the same bits. Real-time safe but for the
-/// constructor; setTarget() takes some microseconds, advance() some nanoseconds.
+/// change at any time, to rest exactly at the end of the distance. It follows a profile of at most seven phases of
+/// constant jerk that always ends in a stop within the remaining distance, and so needs no look-ahead; the profile is
+/// recomputed when the target changes. The same calls give the same bits. Real-time safe except for the constructor;
+/// setTarget() takes microseconds, advance() nanoseconds.
 class FeedLaw {
  public:
-  /// At rest at its end, so that there is nothing to do.
+  /// At rest at the end of an empty motion.
   FeedLaw() noexcept = default;
 
   /// At rest at the start of `distance`.
   /// @param limits bounds of speed, acceleration and jerk.
-  /// @param distance where to stop, not negative.
-  /// @param target speed to go toward, 0 to limits.velocity.
+  /// @param distance to travel, not negative.
+  /// @param target speed, 0 to limits.velocity.
   /// @throw std::invalid_argument unless limits, distance and target are as stated and finite.
   FeedLaw(const MotionLimits& limits, double distance, double target);
 
-  /// Starts over, as the constructor does, but without an exception. Real-time safe.
-  /// @return false, and nothing is changed, unless limits, distance and target are as the constructor wants them.
+  /// Restarts like the constructor, but without an exception. Real-time safe.
+  /// @return false, without any change, unless limits, distance and target are valid for the constructor.
   bool begin(const MotionLimits& limits, double distance, double target) noexcept;
 
-  /// Changes the speed to go toward, from this moment on; a target of 0 stops as soon as the limits allow, short of the
-  /// distance's end. A target above the limit, or one that is not a number, is not taken.
-  /// @return whether the target was taken.
+  /// Changes the target speed immediately; a target of 0 stops as soon as the limits allow, before the end of the
+  /// distance. A target above the limit, or NaN, is ignored.
+  /// @return whether the target was accepted.
   bool setTarget(double target) noexcept;
 
-  /// Goes on as a film of the same motion does that is shown more slowly: the axes stood where it went on. Speed and
-  /// acceleration are those of the film, so that the way left suffices for a stop as it did before, also in the midst
-  /// of a braking; the speed is then taken up anew.
-  /// @param factor of the time, above 0, below 1; others are not taken.
+  /// For axes that stood still for a while: continues the same motion in slow motion, from where it is. Speed and
+  /// acceleration are scaled in time, so that the remaining distance still suffices for a stop, even during braking;
+  /// then accelerates again to the target.
+  /// @param factor time scale, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept;
 
-  /// Lets `dt` [s] pass, not negative.
+  /// Advances by `dt` [s], not negative.
   void advance(double dt) noexcept;
 
   double position() const noexcept { return position_; }  ///< from the start
-  double speed() const noexcept { return speed_; }        ///< never negative but for rounding
+  double speed() const noexcept { return speed_; }        ///< never negative, except by rounding
   double acceleration() const noexcept { return acceleration_; }
   double target() const noexcept { return target_; }
   const MotionLimits& limits() const noexcept { return limits_; }
@@ -55,7 +55,7 @@ class FeedLaw {
   /// Time until the motion comes to rest if the target does not change [s].
   double timeLeft() const noexcept { return end_time_ - time_; }
 
-  /// Whether it rests, at the distance's end or because the target is 0.
+  /// Whether it is at rest, at the end of the distance or because the target is 0.
   bool resting() const noexcept { return time_ >= end_time_; }
 
   /// Whether it rests at the distance's end; position() is then exactly the distance.

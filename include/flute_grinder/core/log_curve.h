@@ -5,8 +5,8 @@
 namespace flute_grinder {
 
 /// The logarithmic curve A(X) = (k/b) ln(1 + bX) of a helix with a constant spiral angle on a cone (the paper's
-/// equation 4 with k = ab), in a form without a singular case: a cylinder (b = 0), a back taper (b < 0), a straight
-/// flute (k = 0) and a left hand (k < 0) are curves like any other. Real-time safe.
+/// equation 4 with k = ab), in a form without singularity: a cylinder (b = 0), a back taper (b < 0), a straight
+/// flute (k = 0) and a left-hand helix (k < 0) need no special case. Real-time safe.
 class LogCurve {
  public:
   /// b = 2 tan C / D1 and k = 2 tan S / D1 of a cutter.

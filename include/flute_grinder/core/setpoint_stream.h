@@ -39,8 +39,8 @@ class SetpointStream {
   /// Whether hold() is in force.
   bool holding() const noexcept { return holding_; }
 
-  /// Takes the speed up anew, for axes that stood for a while where they were to move on. Real-time safe.
-  /// @param factor of the speed to go on with, above 0, below 1; others are not taken.
+  /// For axes that stood still for a while: continues at reduced speed, then accelerates again. Real-time safe.
+  /// @param factor of the speed, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }

@@ -9,9 +9,9 @@
 
 namespace ros::serialization {
 
-/// Reads an array of doubles, as a cutter's teeth, only if all that it claims is there: roscpp makes room for the claim
-/// first. Otherwise as roscpp's own.
-/// Every file that reads or writes messages must see it; CMakeLists.txt includes it into all of the node's.
+/// Reads an array of doubles, such as tooth angles, only if the message is long enough for the claimed count; roscpp
+/// would allocate first. Otherwise identical to roscpp's own. Every file that reads or writes messages must see it:
+/// CMakeLists.txt includes it in all files of the node.
 template <>
 struct VectorSerializer<double, std::allocator<double>, void> {
   using Doubles = std::vector<double>;

@@ -4,14 +4,13 @@
 
 namespace flute_grinder {
 
-/// When any thread but the control loop's crashes - SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT - the crashed thread waits
-/// until the loop has stopped the axes on the path, lifted the wheel and switched the power off, and only then lets the
-/// process end as it would have. A crash of the loop's own thread, and a stack that has run out, end the process at
-/// once; then it is the drive's watchdog that must stop the axes.
-/// @param loop started; must live as long as the process.
+/// If any thread but the control loop's crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT), it waits until the loop has
+/// stopped the axes on the path, lifted the wheel and switched the power off; only then does the process end. A crash
+/// of the loop's own thread or a stack overflow ends the process at once; then the drive's watchdog must stop the axes.
+/// @param loop running; must outlive endCrashGuard().
 void stopAxesOnCrash(ControlLoop& loop);
 
-/// From now on a crash ends the process at once; to be called when the loop has ended.
+/// From now on a crash ends the process at once; to be called once the loop has stopped.
 void endCrashGuard();
 
 }  // namespace flute_grinder

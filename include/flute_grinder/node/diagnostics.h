@@ -13,46 +13,46 @@
 
 namespace flute_grinder {
 
-/// From where on a figure is a warning, and from where on an error.
+/// Thresholds of a quantity for a warning and for an error.
 struct DiagnosticLevels {
   double warn = 0;
   double error = 0;
 };
 
-/// The levels of all figures that have some; fractions.
+/// All thresholds; fractions.
 struct DiagnosticThresholds {
-  DiagnosticLevels late_cycles;      ///< above: of all cycles since the last report
-  DiagnosticLevels following_error;  ///< above: of what the axis is allowed
-  DiagnosticLevels limit_use;        ///< above: of a limit of the axis
-  DiagnosticLevels buffer_fill;      ///< below: of the fullest that the buffer has been since the power came
+  DiagnosticLevels late_cycles;      ///< upper, of all cycles since the last report
+  DiagnosticLevels following_error;  ///< upper, of the allowed following error
+  DiagnosticLevels limit_use;        ///< upper, of an axis limit
+  DiagnosticLevels buffer_fill;      ///< lower, of the largest fill since power-on
 };
 
-/// Reads diagnostics/<figure>/warn and .../error.
-/// @throw ParameterError unless all are there, in range, and the error no earlier than the warning.
+/// Reads diagnostics/<quantity>/warn and .../error.
+/// @throw ParameterError unless all are present, in range, and no error threshold is reached before its warning.
 DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters);
 
-/// What the system has granted the control loop.
+/// What the operating system granted the control loop.
 struct Scheduling {
   bool realtime = false;
   bool memory_locked = false;
 };
 
-/// Watches every cycle of the control loop, and reports for /diagnostics the worst since the report before. Thread
+/// Monitors every cycle of the control loop, and reports the worst since the previous report on /diagnostics. Thread
 /// safe.
 class Diagnostics {
  public:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   /// @param config the machine's limits and tolerances.
-  /// @param scheduling asked at each report.
+  /// @param scheduling called for each report.
   Diagnostics(const LoopConfig& config, const DiagnosticThresholds& thresholds, std::function<Scheduling()> scheduling);
 
-  /// Has the updater, which this object must outlive, ask for all reports.
+  /// Registers all reports with the updater, which this object must outlive.
   void addTo(diagnostic_updater::Updater& updater);
 
-  /// Takes the record of a cycle; of every one, in order.
-  void watch(const CycleRecord& record);
-  /// Takes what is amiss with the journal; empty for nothing.
+  /// Adds the record of a cycle. To be called for every cycle, in order.
+  void add(const CycleRecord& record);
+  /// Sets what is wrong with the journal; empty if nothing.
   void setJournalError(const std::string& error);
 
   void reportLoop(Status& status);
@@ -63,7 +63,7 @@ class Diagnostics {
   void reportJournal(Status& status);
 
  private:
-  /// Position, velocity, acceleration and jerk of every axis over their limits, by LimitedQuantity.
+  /// Position, velocity, acceleration and jerk of every axis as fractions of their limits, by LimitedQuantity.
   using LimitUse = std::array<Axes, 4>;
 
   struct Loop {
@@ -78,38 +78,38 @@ class Diagnostics {
     bool fault = false;
     Interlock interlock = Interlock::kNone;
     LoopFault loop_fault;
-    Axes position = Axes::Zero();  ///< the last one, or one that was not a number
+    Axes position = Axes::Zero();  ///< the latest, or one that was not finite
   };
   struct Limits {
     std::uint64_t setpoints = 0;
     LimitUse use{Axes::Zero(), Axes::Zero(), Axes::Zero(), Axes::Zero()};
   };
   struct Buffer {
-    bool watched = false;
+    bool used = false;
     std::uint32_t least = 0;  ///< commands
   };
 
-  void watchDrive(const CycleRecord& record);
-  void watchSetpoint(const Setpoint& setpoint);
-  void watchViolation(const LimitViolation& violation);
-  void watchBuffer(const DriveStatus& drive);
+  void addDrive(const CycleRecord& record);
+  void addSetpoint(const Setpoint& setpoint);
+  void addViolation(const LimitViolation& violation);
+  void addBuffer(const DriveStatus& drive);
   double positionUse(int axis, double position) const;
 
   const LoopConfig config_;
   const DiagnosticThresholds thresholds_;
   const std::function<Scheduling()> scheduling_;
 
-  std::mutex mutex_;  ///< guards all below
+  std::mutex mutex_;  ///< guards everything below
   CycleRecord last_;
   std::string journal_error_;
   LimitCheck limit_check_;
-  std::uint64_t next_setpoint_ = 0;  ///< its cycle
-  int unknown_setpoints_ = 0;        ///< how many are yet to come whose past is not all known
-  std::uint32_t fullest_ = 0;        ///< that the buffer has been since the power came
+  std::uint64_t next_setpoint_ = 0;  ///< cycle number
+  int unknown_setpoints_ = 0;        ///< setpoints to come whose history is incomplete
+  std::uint32_t fullest_ = 0;        ///< fill since power-on
   std::uint64_t records_lost_ = 0;   ///< as of the last report
   std::uint64_t underruns_ = 0;      ///< as of the last report
 
-  // Since the last report of each.
+  // Each since its last report.
   Loop loop_;
   Drive drive_;
   Axes following_error_ = Axes::Zero();  ///< largest [m], A [rad]

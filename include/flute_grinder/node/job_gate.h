@@ -7,38 +7,36 @@
 
 namespace flute_grinder {
 
-/// Decides between a stop and the start of a job: ahead of the start a cancel prevents it and a hold has the job begin
-/// held; what comes later is for the control loop. Thread safe; its lock is held for some instructions only.
+/// Arbitrates between stops and the start of a job. Before the start, a cancel prevents it and a hold makes the job
+/// begin held; later stops go to the control loop. Thread safe; its lock is held for a few instructions only.
 class JobGate {
  public:
-  /// A goal has been taken up, and is the one that stops are meant for.
-  /// @param give_up called once if it is to be given up ahead of its start, in the thread that asks for it; must not
-  ///        wait.
+  /// Makes a goal the one that stops apply to.
+  /// @param give_up called once if the goal is canceled before its start, in the canceling thread; must not block.
   /// @return false if the gate is shut.
   bool open(const actionlib_msgs::GoalID& goal, std::function<void()> give_up);
 
-  /// Starts the goal's job unless it is to be given up.
-  /// @param start hands the job to the control loop; told whether the job is to begin held. Must not wait.
+  /// Starts the goal's job unless it was canceled.
+  /// @param start hands the job to the control loop; its argument says whether to begin held. Must not block.
   /// @return whether it was called.
   bool start(const std::function<void(bool held)>& start);
 
   /// The goal has ended.
   void close();
 
-  /// Takes a cancel, with actionlib's meaning: no id and no stamp is for every goal, a stamp for all that were sent up
-  /// to it.
-  /// @return whether it is for the control loop: the job has been started, or no goal is named.
+  /// Cancels as actionlib defines it: without id and stamp every goal, with a stamp all goals sent up to then.
+  /// @return whether the control loop must be stopped: the job has started, or no goal is named.
   bool cancel(const actionlib_msgs::GoalID& what);
 
-  /// Has a job that has not been started begin held. @return whether there is one.
+  /// Makes a job that has not started begin held. @return whether there is one.
   bool hold();
-  /// Takes that back. @return whether there was something to take back.
+  /// Undoes hold(). @return whether there was a hold to undo.
   bool resume();
 
-  /// Gives up the goal if its job has not been started, and keeps every other from starting, for good.
+  /// Cancels the goal if its job has not started, and prevents every later start.
   void shut();
 
-  bool canceled() const;  ///< whether the goal is to be given up, or its job is being canceled
+  bool canceled() const;  ///< whether the goal or its job has been canceled
 
  private:
   enum class Phase { kIdle, kAhead, kStarted };

@@ -17,7 +17,7 @@ class JournalError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A journal that another one has; what() names its node and process.
+/// A journal in use by another process; what() names its node and process.
 class JournalOwned : public JournalError {
  public:
   using JournalError::JournalError;
@@ -25,46 +25,46 @@ class JournalOwned : public JournalError {
 
 /// How far a job has come.
 struct Progress {
-  std::string job_digest;            ///< as jobDigest() gives it; empty where there has been no job
-  std::string job_name;              ///< as the goal named it, for people
-  CutterGeometry cutter;             ///< of the job, for people
-  std::vector<double> tooth_angles;  ///< of the job, for people [rad]
+  std::string job_digest;            ///< see jobDigest(); empty if there has been no job
+  std::string job_name;              ///< as given in the goal, for display
+  CutterGeometry cutter;             ///< of the job, for display
+  std::vector<double> tooth_angles;  ///< of the job, for display [rad]
   bool finished = false;             ///< every pass is ground
-  ToothPass next;                    ///< the first pass that is not finished
-  double x = 0;                      ///< where its stroke has come to, or the last one's [m]
-  Wheel wheel;                       ///< where it was left
+  ToothPass next;                    ///< the first unfinished pass
+  double x = 0;                      ///< reached in its stroke, or in the last one [m]
+  Wheel wheel;                       ///< as it was left
 };
 
-/// Keeps the progress of a job on disk, so that it outlives the process and the power: the file is always either the
-/// old one or the new one, whole, and what was damaged or changed since is refused. It belongs to one Journal at a time
-/// in all processes of the computer, by a lock on the file beside it that is named `.lock`, and that stays. For one
-/// thread at a time, which it lets wait for the disk.
+/// Keeps the progress of a job on disk, so that it survives a crash and a power failure. The file is always either the
+/// old or the new version, complete; a damaged or modified file is refused. Only one Journal on the computer can own it
+/// at a time, by a lock on a file beside it with the suffix `.lock`, which is never removed. Not thread safe; blocks on
+/// the disk.
 class Journal {
  public:
-  /// Takes the file for this process until the end of the object's life. Where the path cannot be used, as that of a
-  /// folder, read() and write() tell why, each trying anew.
-  /// @param path the file; folders above it are made as needed, symbolic links are followed.
+  /// Owns the file for the lifetime of the object. If the path cannot be used (it is a folder, say), read() and write()
+  /// try again and throw the reason.
+  /// @param path the file; missing folders are created, symbolic links are followed.
   /// @param owner the resolved name of the node.
-  /// @throw JournalOwned where it is taken.
+  /// @throw JournalOwned if another process owns it.
   Journal(std::string path, std::string owner);
   ~Journal();
 
-  /// What was written last; nothing if there is no file.
-  /// @throw JournalError where there is a file that is not a whole journal.
+  /// The last entry; nothing if there is no file.
+  /// @throw JournalError if the file is not a complete journal.
   std::optional<Progress> read() const;
 
   /// Returns once the progress is safe on the disk.
-  /// @throw JournalError also for figures that are not finite or out of range.
+  /// @throw JournalError also if a value is not finite or out of range.
   void write(const Progress& progress) const;
 
  private:
   class File;
 
-  void own() const;
+  void acquire() const;
 
   std::string path_, owner_;
   mutable std::string file_;            ///< the path without symbolic links, once it is owned
-  mutable std::unique_ptr<File> lock_;  ///< held while there is one
+  mutable std::unique_ptr<File> lock_;  ///< held while not null
 };
 
 }  // namespace flute_grinder

@@ -2,8 +2,8 @@
 
 namespace flute_grinder {
 
-/// From now on what the process prints is dropped where nobody takes it, as after Ctrl-S in its terminal or with a full
-/// pipe: otherwise a log line, one of roscpp's own threads too, would wait for it with all that hangs on its thread.
-void dropOutputThatNobodyTakes();
+/// From now on, output that cannot be written at once is dropped, for instance after Ctrl-S in the terminal or with a
+/// full pipe. Otherwise any thread that logs, roscpp's included, could block for ever.
+void dropBlockedOutput();
 
 }  // namespace flute_grinder

@@ -4,23 +4,23 @@
 
 namespace flute_grinder {
 
-// What a peer may have of the node, whoever it is: the ports ask for no name. docs/network.md lists them.
+// Limits on what any peer can send; ROS 1 has no authentication. docs/network.md lists them.
 
-/// Longest message [bytes]: of XML-RPC, whose longest is the one with robot_description, and of TCPROS.
+/// Longest XML-RPC or TCPROS message [bytes]; the longest legitimate one carries robot_description.
 constexpr std::size_t kMaxPeerMessage = 262144;
 
-/// Deepest nesting of arrays and structures in XML-RPC, which is read by recursion; ROS's own go four deep.
+/// Deepest nesting of arrays and structures in XML-RPC, which is parsed recursively; ROS itself needs four levels.
 constexpr int kMaxPeerNesting = 32;
 
-/// From this file descriptor on, which tells how many are open, no connection is taken: what is left is the node's own.
+/// No connection is accepted from this file descriptor on; the rest are reserved for the node itself.
 constexpr int kMaxPeerDescriptor = 512;
 
-/// From this one on no publisher is asked where its topic is to be had, so that those who ask the node find room.
+/// From this one on the node opens no connection to a publisher, so that incoming connections find room.
 constexpr int kMaxAskedDescriptor = 256;
 
-/// The definition of a function that comes next after the program's own, in a shared library.
-/// @param symbol its name for the linker.
-/// Ends the program where there is none: the node must not run with a limit that does not act.
+/// Finds the shared library's definition of a function that the program overrides.
+/// Ends the program if there is none: the node must not run with a limit that has no effect.
+/// @param symbol its mangled name.
 void* nextDefinition(const char* symbol);
 
 }  // namespace flute_grinder

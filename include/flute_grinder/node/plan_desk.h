@@ -3,7 +3,7 @@
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/planner.h"
-#include "flute_grinder/node/teller.h"
+#include "flute_grinder/node/telemetry.h"
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -12,12 +12,12 @@
 
 namespace flute_grinder {
 
-/// The service `~plan`. One call waits for the planner; whoever calls meanwhile is told that it is busy.
+/// Serves `~plan`. One call waits for the planner; any other is answered "busy" meanwhile.
 class PlanDesk {
  public:
   /// @param private_nh the node's own namespace.
-  /// @param loop,planner,teller must outlive this object.
-  PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Teller& teller);
+  /// @param loop,planner,telemetry must outlive this object.
+  PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry);
   ~PlanDesk();
 
  private:
@@ -25,11 +25,11 @@ class PlanDesk {
 
   const ControlLoop& loop_;
   Planner& planner_;
-  Teller& teller_;
+  Telemetry& telemetry_;
   std::shared_ptr<PlanControl> control_;
   ros::CallbackQueue queue_;
   ros::ServiceServer service_;
-  ros::AsyncSpinner spinner_;  ///< last, so that no call is under way when the rest goes
+  ros::AsyncSpinner spinner_;  ///< last member, so that no call is running when the others are destroyed
 };
 
 }  // namespace flute_grinder

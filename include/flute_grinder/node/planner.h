@@ -13,29 +13,29 @@
 
 namespace flute_grinder {
 
-/// A plan with all that its job needs to be run and to be shown.
+/// A plan with what is needed to run its job and to show it.
 struct Preview {
   JobPlan plan;
   ToothPass first;                         ///< to grind
-  std::optional<PathErrorMarkers> errors;  ///< of its first stroke; of a job whose figures are allowed
-  std::unique_ptr<SetpointStream> stream;  ///< of a good plan
+  std::optional<PathErrorMarkers> errors;  ///< of its first stroke; absent if the job's parameters are invalid
+  std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is valid
 };
 
-/// What somebody who waits for a plan and the planner tell each other. Thread safe.
+/// Shared between the planner and whoever waits for the plan. Thread safe.
 struct PlanControl {
-  std::atomic<bool> give_up{false};  ///< set where the plan is wanted no more
-  std::atomic<double> done{0};       ///< part of the job that is generated and checked, 0..1
+  std::atomic<bool> give_up{false};  ///< set to abandon the plan
+  std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
 };
 
-/// Plans one job at a time, in a thread of its own, so that nobody waits for it who has not asked.
+/// Plans one job at a time in its own thread.
 class Planner {
  public:
-  struct Order {
+  struct Request {
     GrindJob job;
-    Axes start = Axes::Zero();  ///< where the axes stand [m], A [rad]
+    Axes start = Axes::Zero();  ///< current position of the axes [m], A [rad]
     ToothPass first;            ///< to grind
     std::shared_ptr<PlanControl> control;
-    std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not wait
+    std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
   };
 
   explicit Planner(const Machine& machine);
@@ -43,21 +43,21 @@ class Planner {
   Planner& operator=(const Planner&) = delete;
   ~Planner() { end(); }
 
-  /// Gives up what is being planned; its `done` is called. From then on nothing is taken any more.
+  /// Abandons the current plan; its `done` is called. Later requests are refused.
   void end();
 
-  /// @return false, with nothing done, while another job is being planned.
-  bool submit(Order order);
+  /// @return false, and does nothing, while another job is being planned.
+  bool submit(Request request);
 
  private:
   void run();
-  std::optional<Order> next();
-  std::unique_ptr<Preview> plan(const Order& order) const;
+  std::optional<Request> next();
+  std::unique_ptr<Preview> plan(const Request& request) const;
 
   const Machine machine_;
   std::mutex mutex_;  ///< guards the next three
   std::condition_variable changed_;
-  std::optional<Order> order_;  ///< until it is carried out
+  std::optional<Request> request_;  ///< until it is done
   bool ended_ = false;
   std::thread thread_;
 };

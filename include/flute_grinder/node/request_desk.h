@@ -11,8 +11,8 @@
 
 namespace flute_grinder {
 
-/// What an operator asks of the machine beside stops and jobs: a service for each trigger of kMachineEvents. It has a
-/// thread of its own, which waits for the control loop's answer, one request at a time.
+/// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents. Runs in its
+/// own thread, which waits for the control loop's reply, one request at a time.
 class RequestDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -21,7 +21,7 @@ class RequestDesk {
 
  private:
   void serve(ros::NodeHandle& nh, MachineEvent event);
-  RequestReply carryOut(MachineEvent event);
+  RequestReply execute(MachineEvent event);
 
   ControlLoop& loop_;
   JobGate& gate_;

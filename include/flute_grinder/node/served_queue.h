@@ -8,8 +8,7 @@
 
 namespace flute_grinder {
 
-/// A callback queue with the one thread that serves it: what is registered with it, and what poll() uses, has that
-/// thread as its owner and needs no lock.
+/// A callback queue and the one thread that serves it. Data used only by its callbacks and by `poll` needs no lock.
 class ServedQueue {
  public:
   ServedQueue();
@@ -19,15 +18,15 @@ class ServedQueue {
   ServedQueue& operator=(const ServedQueue&) = delete;
   ~ServedQueue();
 
-  /// For node handles whose callbacks belong to this thread.
+  /// For node handles whose callbacks this thread is to serve.
   ros::CallbackQueueInterface* queue() { return &queue_; }
 
   void start();
-  /// Ends the thread after the callback that it is in. What is called later is not carried out.
+  /// Stops the thread after its current callback. Later posts are discarded.
   void stop();
 
-  /// Has the thread carry something out, in the order of the queue. Thread safe; waits for nothing.
-  void call(std::function<void()> what);
+  /// Queues a task for the thread. Thread safe; never blocks.
+  void post(std::function<void()> task);
 
  private:
   void run();

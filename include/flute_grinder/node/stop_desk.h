@@ -13,9 +13,8 @@
 
 namespace flute_grinder {
 
-/// The road of every stop: `~hold`, `~disable`, `~set_feed_override`, the action's cancel and the topic `~stop`. It has
-/// a thread of its own, which takes no lock that anybody holds over I/O, logging, publishing or planning, and does none
-/// of these itself.
+/// Serves every stop: `~hold`, `~disable`, the action's cancel and the topic `~stop`; and `~set_feed_override`. Its own
+/// thread does no I/O, logging, publishing or planning, and takes no lock that another thread holds while it does.
 class StopDesk {
  public:
   /// @param private_nh the node's own namespace.

@@ -9,24 +9,24 @@
 
 namespace flute_grinder {
 
-/// Whether a goal, when it begins, takes from the grinder's journal how far another job has come that is not finished,
-/// or the same job's first part.
+/// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
+/// same one.
 bool discardsUnfinished(const GrindGoal& goal, const JobProgress& progress);
 
-/// Asks whether a job that is not finished is to be given up for the one that is to be started.
+/// Asks whether to discard an unfinished job in favour of the one to be started.
 class DiscardQuestion : public QWidget {
   Q_OBJECT
 
  public:
   explicit DiscardQuestion(QWidget* parent = nullptr);
 
-  /// @param progress of the job that is not finished.
-  /// @param continuable whether the chosen file is that job's, so that it can be continued.
+  /// @param progress of the unfinished job.
+  /// @param continuable whether the chosen file is that job, so that it can be continued.
   void ask(const JobProgress& progress, bool continuable);
 
  Q_SIGNALS:
   void discarded();
-  void kept();  ///< or to be continued, where it can be
+  void kept();  ///< or continued, if possible
 
  private:
   QLabel* text_;

@@ -20,11 +20,11 @@
 namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
-/// where the table of the machine's states allows what it asks for, and the stops alone where the grinder says
-/// nothing; Start wants a job that was planned without a violation besides. Without a ROS master the stops alone are
-/// left. Nothing here waits for the grinder or the master, and both are found again when they come back.
+/// if the state table allows its request; Start also needs a plan without violations. Without messages from the
+/// grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the grinder or the master, and
+/// both are found again when they come back.
 ///
-/// Its configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
+/// Configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {
   Q_OBJECT
 
@@ -35,7 +35,7 @@ class GrindPanel : public rviz::Panel {
   void save(rviz::Config config) const override;
 
  private:
-  /// A goal that was sent from here and has not ended.
+  /// A goal sent by this panel that has not ended.
   struct Sent {
     std::string id;
     GrindGoal goal;
@@ -47,18 +47,18 @@ class GrindPanel : public rviz::Panel {
   void refresh();
   void connectLink();
   bool allowed(MachineEvent event, const GrinderView& view) const;
-  void ask(MachineEvent event);
+  void request(MachineEvent event);
   void plan(const GrindGoal& goal);
   void dryRun(const GrindGoal& goal);
   void send(const GrindGoal& goal);
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
-  void say(const std::string& text);
+  void showMessage(const std::string& text);
 
   const std::shared_ptr<MasterWatch> master_watch_;
-  QString node_;                       ///< as it was given
-  std::string name_;                   ///< resolved; empty where it is none
-  std::unique_ptr<GrinderLink> link_;  ///< null where the name is none, or no master has answered since it was given
+  QString node_;                       ///< as entered
+  std::string name_;                   ///< resolved; empty if invalid
+  std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
   bool planning_ = false;
   std::optional<Sent> sent_;
 

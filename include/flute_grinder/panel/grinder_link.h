@@ -22,27 +22,26 @@
 
 namespace flute_grinder {
 
-/// What is known of a grinder.
+/// The known state of a grinder.
 struct GrinderView {
-  std::optional<GrinderState> state;      ///< nothing where the grinder has not told it for a second
-  std::optional<GrindFeedback> feedback;  ///< of the job that runs, whoever has sent it, or of the last one
-  std::optional<double> planned;  ///< part of a goal that is planned and checked, 0..1; nothing where none is planned
-  std::optional<Axes> position;   ///< as the drive reads it [m], A [rad]; nothing where it has not come for a second
+  std::optional<GrinderState> state;      ///< nothing if none was received for a second
+  std::optional<GrindFeedback> feedback;  ///< of the running job, whoever sent it, or of the last one
+  std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing if none is in planning
+  std::optional<Axes> position;   ///< as read by the drive [m], A [rad]; nothing if none was received for a second
 };
 
-/// A grinder's node as a screen needs it: what it tells, and requests to it. No function waits; answers come by
-/// deliver(), in the thread that calls it. The action's topics are read and written as they are, since jobs that others
-/// have sent are shown and canceled too. All of it is for one thread.
+/// Client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. It uses the
+/// action's topics directly, to show and cancel jobs sent by others too. Not thread safe.
 class GrinderLink {
  public:
-  /// @param refusal why not; empty where it was done.
+  /// @param refusal why not; empty if it was done.
   using OnAnswer = std::function<void(const std::string& refusal)>;
   using OnPlan = std::function<void(const Plan::Response& plan)>;
-  /// @param id of the goal, as send() gives it.
+  /// @param id of the goal, as returned by send().
   using OnResult = std::function<void(const std::string& id, const GrindResult& result)>;
 
-  /// @param node name of the grinder's node; one without a slash in front is looked for in this program's namespace.
-  /// @param on_result called when a goal ends that was sent here, or the job that the view shows.
+  /// @param node name of the grinder's node; without a leading slash, relative to this program's namespace.
+  /// @param on_result called when a goal sent here, or the job shown, ends.
   /// @throw ros::InvalidNameException
   GrinderLink(const std::string& node, OnResult on_result);
   GrinderLink(const GrinderLink&) = delete;
@@ -52,35 +51,35 @@ class GrinderLink {
   const std::string& name() const { return nh_.getNamespace(); }  ///< resolved
   GrinderView view() const;
 
-  /// Calls the functions whose answers have come, and those whose answers are overdue. To be called often.
+  /// Calls the callbacks of requests that were answered or timed out. To be called often.
   void deliver();
 
-  /// Asks for any change of the state but a start and the stops.
+  /// Requests any state change other than a start or a stop.
   void request(MachineEvent event, const OnAnswer& on_answer);
   /// @param fraction of the job's feed.
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
-  /// Generates and checks every setpoint. A grinder that does not answer is told as a reason.
+  /// Generates and checks every setpoint. If the grinder does not answer, that is the plan's reason.
   void plan(const GrindGoal& goal, const OnPlan& on_plan);
 
-  /// Sends a job. @return the goal's id; nothing where no grinder listens.
+  /// Sends a job. @return the goal's id; nothing if no grinder is connected.
   std::optional<std::string> send(const GrindGoal& goal);
-  /// Holds or cancels the job that runs or is planned, whoever has sent it, or switches the power off. It goes by a
-  /// connection that outlives the ROS master, and has no answer: what comes of it is told by the state.
+  /// Holds or cancels the running or planned job, whoever sent it, or switches the power off. Uses a connection that
+  /// survives the ROS master, and has no answer: the state shows the effect.
   /// @param event kHold, kCancel or kDisable.
-  /// @param on_answer called if no grinder has listened for two seconds; then nothing is sent any more.
+  /// @param on_answer called if no grinder was connected for two seconds; the stop is then dropped.
   void stop(MachineEvent event, const OnAnswer& on_answer);
-  /// Whether there is a connection for that now.
-  bool hearsStops() const { return stops_.getNumSubscribers() > 0; }
+  /// Whether stops have a connection now.
+  bool stopsConnected() const { return stops_.getNumSubscribers() > 0; }
 
  private:
-  /// A message with the time when it came.
+  /// A message with its time of arrival.
   template <typename Message>
   struct Received {
     Message message;
     ros::SteadyTime time;
   };
 
-  /// A stop that waits for a connection.
+  /// A stop waiting for a connection.
   struct Unsent {
     MachineEvent event;
     ros::SteadyTime due;
@@ -103,7 +102,7 @@ class GrinderLink {
   const OnResult on_result_;
   actionlib::GoalIDGenerator ids_;
 
-  mutable std::mutex mutex_;  ///< guards what the callbacks bring
+  mutable std::mutex mutex_;  ///< guards what the callbacks write
   std::optional<Received<GrinderState>> state_;
   std::optional<Received<Axes>> position_;
   std::optional<Received<GrindActionFeedback>> feedback_;
@@ -114,7 +113,7 @@ class GrinderLink {
   std::deque<Unsent> unsent_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;
-  std::list<ServiceCall> calls_;  ///< last, so that none answers any more when the rest goes
+  std::list<ServiceCall> calls_;  ///< last member, so that no call answers when the others are destroyed
 };
 
 }  // namespace flute_grinder

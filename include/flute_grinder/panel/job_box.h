@@ -17,8 +17,8 @@
 
 namespace flute_grinder {
 
-/// The part of the panel where a job is chosen, planned and started. It gives a goal away only as it was planned
-/// without a violation, and asks before a job is given up that was not finished.
+/// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
+/// without violations, and asks before an unfinished job is discarded.
 class JobBox : public QGroupBox {
   Q_OBJECT
 
@@ -26,22 +26,22 @@ class JobBox : public QGroupBox {
   explicit JobBox(QWidget* parent = nullptr);
 
   const QString& file() const { return file_; }
-  /// Chooses a file and reads it. @param file empty for none.
+  /// Selects and reads a file. @param file empty for none.
   void setFile(const QString& file);
 
-  /// @param state nothing where the grinder does not answer.
-  /// @param idle whether the grinder has time for a plan.
+  /// @param state nothing if the grinder does not answer.
+  /// @param idle whether the grinder can plan now.
   void refresh(const std::optional<GrinderState>& state, bool idle);
 
-  /// Shows what came of a plan, if it is of the goal that would be started now.
+  /// Shows the result of a plan, if it is for the goal that would be started now.
   void setPlan(const GrindGoal& goal, const Plan::Response& plan);
 
-  /// What was planned holds no more.
-  void forgetPlan();
+  /// The plan is no longer valid.
+  void discardPlan();
 
   bool planned() const { return planned_.has_value(); }
-  /// Starts what was planned, or asks first. A plan is for one start: the next wants one from where the axes stand
-  /// then.
+  /// Starts the planned goal, or asks first. A plan is good for one start: the next needs a plan from the axes' new
+  /// position.
   void start();
 
  Q_SIGNALS:
@@ -63,10 +63,10 @@ class JobBox : public QGroupBox {
   void showVerdict(const QString& text, bool good);
 
   QString file_;
-  std::optional<GrindJob> job_;          ///< of the file, if that is good
-  std::optional<GrindGoal> planned_;     ///< without a violation
+  std::optional<GrindJob> job_;          ///< from the file, if valid
+  std::optional<GrindGoal> planned_;     ///< without violations
   std::optional<GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
-  JobProgress progress_;                 ///< as the grinder told it last
+  JobProgress progress_;                 ///< as last received from the grinder
   QLabel* name_;
   QPushButton* choose_;
   QCheckBox* continue_;

@@ -11,7 +11,7 @@
 
 namespace flute_grinder {
 
-/// The feed override: shows the grinder's, and asks for another one when the slider is let go of or rests.
+/// The feed override: shows the grinder's, and requests a new one when the slider is released or comes to rest.
 class OverrideBox : public QWidget {
   Q_OBJECT
 
@@ -19,22 +19,22 @@ class OverrideBox : public QWidget {
   explicit OverrideBox(QWidget* parent = nullptr);
 
   void refresh(const std::optional<GrinderState>& state);
-  /// To be called for every wanted(): the grinder has what was asked for, or has refused it.
+  /// To be called after every wanted(): the grinder has accepted or refused it.
   void answered();
-  /// No answers will come any more.
+  /// No more answers will come.
   void reset();
 
  Q_SIGNALS:
   void wanted(double fraction);  ///< of the job's feed
 
  private:
-  void ask();
+  void emitWanted();
 
   QSlider* slider_;  ///< per cent
   QLabel* value_;
   QTimer rest_;
   int unanswered_ = 0;
-  QTimer settle_;  ///< until a state has come that is newer than the answer
+  QTimer settle_;  ///< until a state newer than the answer has arrived
 };
 
 }  // namespace flute_grinder

@@ -11,8 +11,8 @@
 
 namespace flute_grinder {
 
-/// The panel's head: the grinder's name, its state on a colour, and a sentence that says what that means, or who of
-/// grinder and ROS master is missing.
+/// The panel's head: the grinder's name, its state on a coloured field, and a sentence that explains it, or that
+/// says whether the grinder or the ROS master is missing.
 class StateBox : public QWidget {
   Q_OBJECT
 
@@ -30,13 +30,13 @@ class StateBox : public QWidget {
   QLabel* meaning_;
 };
 
-/// How far the stroke and the job have come.
+/// Progress of the stroke and of the job.
 class ProgressBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit ProgressBox(QWidget* parent = nullptr);
-  /// @param job_runs else it is the last job's, and grey; or of a job that is being planned.
+  /// @param job_runs if false, the last job's progress is shown in grey, or that of planning.
   void show(const GrinderView& view, bool job_runs);
 
  private:
@@ -48,7 +48,7 @@ class ProgressBox : public QWidget {
   QProgressBar* job_;
 };
 
-/// Where the axes are, in mm and deg.
+/// Position of the axes in mm and deg.
 class PositionBox : public QWidget {
   Q_OBJECT
 

@@ -5,7 +5,7 @@
 
 namespace flute_grinder {
 
-/// A field for text to be read, which scrolls where it has more lines than there is room for.
+/// A read-only text field that scrolls if there are more lines than fit.
 inline QPlainTextEdit* textView(const char* name, int lines) {
   auto* view = new QPlainTextEdit;
   view->setObjectName(name);
@@ -16,7 +16,7 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
   return view;
 }
 
-/// @param good whether it is no bad news, which is red.
+/// @param good false shows it in red.
 inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
   view.setStyleSheet(good ? "" : "color: #b00020;");
   view.setPlainText(text);

@@ -6,20 +6,20 @@
 #include <string>
 
 /// @file
-/// The board that carries texts and colour scales. It stands in front of the work in the frame `table`, facing the
-/// camera of rviz/grinder.rviz, so that nothing stands before it and no text lies on another.
+/// The board with text and colour scales. It stands in front of the work in the frame `table`, facing the camera of
+/// rviz/grinder.rviz, so that nothing covers it and no texts overlap.
 namespace flute_grinder::board {
 
 /// Where a colour scale stands.
 enum class Side { kLeft, kRight };
 
-/// The board itself, to be shown as long as there is a text on it.
+/// The board itself; needed while there is text on it.
 void appendBoard(visualization_msgs::MarkerArray& array);
 
 /// The line of text on top.
 void appendLine(visualization_msgs::MarkerArray& array, const std::string& text);
 
-/// A colour scale from 0 to a length, with its figures in um.
+/// A colour scale from 0 to a length, labelled in um.
 /// @param title what is measured.
 /// @param largest length at the scale's end [m].
 void appendScale(visualization_msgs::MarkerArray& array, Side side, const std::string& title, double largest);

@@ -9,27 +9,27 @@
 
 namespace flute_grinder {
 
-/// The flutes of all teeth as line strips in the frame `cutter`, so that they turn with A: planned ones grey, the one
-/// being ground bright, and one that has been ground coloured, point by point, by the largest error measured there in
-/// its last finished pass.
+/// The flutes of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
+/// one being ground bright, and a finished one coloured point by point by the largest error measured in its last pass.
 class ToolPath {
  public:
   explicit ToolPath(const GrindProgram& program);
 
-  /// Takes where the axes were in a stroke; what is off the stroke is left out.
-  /// @param setpoint that the axes have got; its tooth becomes the active one until the stroke's end.
-  /// @param actual where the drive says they are [m], A [rad].
-  /// @return whether the looks of a flute have changed.
-  bool follow(const Setpoint& setpoint, const Axes& actual);
+  /// Adds a measured position; positions off the stroke are ignored.
+  /// @param setpoint that reached the axes; its tooth is active until the end of the stroke.
+  /// @param actual position read from the drive [m], A [rad].
+  /// @return whether the appearance of a flute has changed.
+  bool add(const Setpoint& setpoint, const Axes& actual);
 
-  /// No tooth is being ground any more; what was measured in an unfinished pass is forgotten.
-  void leave();
+  /// No tooth is active any more; measurements of an unfinished pass are discarded.
+  void deactivate();
 
   /// The largest error measured so far, normal to the helix on the cutter's surface [m].
   double largestMeasured() const { return largest_; }
 
-  /// @return markers of namespace "tool_path", one or more for each tooth, in order; the first deletes what was shown
-  ///         before. Once a pass is finished, the scale of the colours too.
+  /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes what was shown
+  /// before.
+  ///         Once a pass is finished, the colour scale as well.
   visualization_msgs::MarkerArray markers() const;
 
  private:
@@ -50,18 +50,18 @@ class ToolPath {
   std::size_t steps_;  ///< between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
-  std::vector<float> measured_;  ///< in the pass that is being ground, as in Flute; negative where nothing yet
+  std::vector<float> measured_;  ///< in the current pass, as in Flute; negative where not yet measured
   double largest_ = 0;           ///< [m]
 };
 
-/// Where the wheel's lowest point has gone in the current stroke, by the axes' actual positions, as a line strip in the
-/// frame `cutter`: below the planned path by the pass' depth. Thinned out as it grows.
+/// Path of the wheel's lowest point in the current stroke, from measured positions, as a line strip in the frame
+/// `cutter`: below the planned path by the depth of the pass. Thinned out as it grows.
 class ExecutedPath {
  public:
   explicit ExecutedPath(const GrindProgram& program);
 
-  /// Takes a position; the first of a stroke begins the path anew, and those off the strokes are left out.
-  void follow(const Setpoint& setpoint, const Axes& actual);
+  /// Adds a measured position; the first of a stroke starts a new path, and positions off the stroke are ignored.
+  void add(const Setpoint& setpoint, const Axes& actual);
 
   /// Appends a marker of namespace "executed_path" once there are two points.
   void append(visualization_msgs::MarkerArray& array) const;
@@ -73,17 +73,16 @@ class ExecutedPath {
   std::vector<geometry_msgs::Point> points_;
   geometry_msgs::Point last_;
   std::uint64_t taken_ = 0;
-  std::uint64_t every_ = 1;  ///< which positions are kept
+  std::uint64_t every_ = 1;  ///< only every n-th position is kept
 };
 
-/// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, exaggerated by
-/// a factor that stands beside them, coloured by size, with the colour scale. Gathers the setpoints of a stroke and
-/// thins them out as they come.
+/// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up by
+/// a factor shown beside them and coloured by size, with the colour scale. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
   explicit PathErrorMarkers(const ConicalCutter& cutter) : cutter_(cutter) {}
 
-  /// Takes a setpoint; those off the strokes are left out, and one of another stroke begins anew.
+  /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
 
   /// @return markers of namespace "path_error"; the first deletes what was shown before.
@@ -91,7 +90,7 @@ class PathErrorMarkers {
 
  private:
   struct Point {
-    double x, a, deviation;  ///< of what is commanded from the theory, normal to the helix [m]
+    double x, a, deviation;  ///< commanded - theory, normal to the helix [m]
   };
   void thinOut();
 
@@ -100,7 +99,7 @@ class PathErrorMarkers {
   std::vector<Point> points_;
   double largest_ = 0;  ///< [m]
   std::uint64_t pairs_ = 0;
-  std::uint64_t every_ = 1;  ///< which pairs are kept
+  std::uint64_t every_ = 1;  ///< only every n-th pair is kept
 };
 
 }  // namespace flute_grinder

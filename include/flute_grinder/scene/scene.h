@@ -10,34 +10,35 @@
 
 namespace flute_grinder {
 
-/// How the machine is set up for a job: the positions of the URDF's joints that no drive moves.
+/// How the machine is set up for a job: positions of the URDF's undriven joints.
 struct MachineSetup {
   double wheel_swivel = 0;  ///< the job's spiral angle [rad]
-  double y_zero = 0.055;    ///< from the cutter's axis to the wheel's centre at Y = 0; here as for 10 and 100 mm [m]
+  double y_zero =
+      0.055;  ///< from the cutter's axis to the wheel's centre at Y = 0; default: cutter 10 mm, wheel 100 mm [m]
 };
 
 /// The job in rviz: blank, wheel, flutes, executed path, path errors and a line of text, on `~scene`, `~tool_path`,
-/// `~executed_path` and `~path_error`, each latched and whole in every message. Shows nothing until there is a job.
+/// `~executed_path` and `~path_error`, each latched, every message complete. Shows nothing until there is a job.
 /// Not thread safe; not for the control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
   explicit Scene(ros::NodeHandle private_nh);
 
-  /// Shows a job ahead of its first setpoint. What was measured on it remains if it is the same job, continued.
+  /// Shows a job before its first setpoint. If the same job is continued, its measurements are kept.
   /// @param first first pass to grind.
-  /// @param planned errors of its first stroke.
+  /// @param planned path errors of its first stroke.
   void show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned);
 
-  /// Takes a setpoint of the job shown.
-  /// @param actual where the axes are [m], A [rad].
-  void follow(const Setpoint& setpoint, const Axes& actual);
+  /// Adds a setpoint of the job shown.
+  /// @param actual position of the axes [m], A [rad].
+  void add(const Setpoint& setpoint, const Axes& actual);
 
   /// Publishes what has changed; to be called at 10 Hz while the job runs.
   /// @param state of the machine, for the line of text.
   void update(const char* state);
 
-  /// The job has ended: publishes what it has left.
+  /// Ends the job: publishes the final picture.
   void end(const char* state);
 
   const MachineSetup& setup() const { return setup_; }

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/teller.h"
+#include "flute_grinder/node/telemetry.h"
 
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrinderState.h"
@@ -15,9 +15,9 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTickPeriod = 0.01;          ///< of joint states [s]
-constexpr std::uint64_t kTicksPerBatch = 5;   ///< setpoints, state and feedback
-constexpr std::uint64_t kTicksPerScene = 10;  ///< what rviz shows of a job
+constexpr double kTickPeriod = 0.01;          ///< between joint states [s]
+constexpr std::uint64_t kTicksPerBatch = 5;   ///< of setpoints, state and feedback
+constexpr std::uint64_t kTicksPerScene = 10;  ///< between updates of the job in rviz
 
 double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
 
@@ -46,8 +46,8 @@ JobProgress toMessage(const Progress& progress) {
 
 }  // namespace
 
-Teller::Teller(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-               const JournalKeeper& journal, const DiagnosticThresholds& thresholds)
+Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
+                     const JournalWriter& journal, const DiagnosticThresholds& thresholds)
     : loop_(loop),
       journal_(journal),
       diagnostics_(loop.config(), thresholds,
@@ -69,26 +69,27 @@ Teller::Teller(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, Con
   batch_.period = loop.config().machine.period;
 }
 
-void Teller::show(std::shared_ptr<const Preview> preview) {
-  thread_.call([this, preview = std::move(preview)] {
-    // What is shown while a job runs is that job.
+void Telemetry::show(std::shared_ptr<const Preview> preview) {
+  thread_.post([this, preview = std::move(preview)] {
+    // While a job runs, that job is shown.
     if (jobs_.empty()) scene_.show(*preview->plan.program, preview->first, *preview->errors);
   });
 }
 
-void Teller::follow(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview) {
-  thread_.call([this, number, goal, preview = std::move(preview)] { jobs_.push_back({number, goal, preview}); });
+void Telemetry::announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal,
+                            std::shared_ptr<const Preview> preview) {
+  thread_.post([this, number, goal, preview = std::move(preview)] { jobs_.push_back({number, goal, preview}); });
 }
 
-void Teller::forget(std::uint64_t number) {
-  thread_.call([this, number] {
+void Telemetry::withdrawJob(std::uint64_t number) {
+  thread_.post([this, number] {
     if (!jobs_.empty() && jobs_.back().number == number) jobs_.pop_back();
   });
 }
 
-void Teller::tick() {
-  takeRecords();
-  if (taken_ == 0) return;
+void Telemetry::tick() {
+  readRecords();
+  if (records_read_ == 0) return;
   Job* job = running();
   if (job && !job->shown) {
     scene_.show(*job->preview->plan.program, job->preview->first, *job->preview->errors);
@@ -101,43 +102,43 @@ void Teller::tick() {
     publishFeedback();
   }
   if (ticks_ % kTicksPerScene == 0 && job) scene_.update(toString(record_.state));
-  // By this thread's clock: the computer's may be set back.
+  // By this thread's tick count: the system clock may be set back.
   if (ticks_ % ticks_per_diagnostics_ == 0) {
-    diagnostics_.setJournalError(journal_.told().error);
+    diagnostics_.setJournalError(journal_.status().error);
     diagnostic_updater_.force_update();
   }
 }
 
-Teller::Job* Teller::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
+Telemetry::Job* Telemetry::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
 
-void Teller::takeRecords() {
+void Telemetry::readRecords() {
   while (loop_.pop(record_)) {
-    ++taken_;
-    takeRecord();
+    ++records_read_;
+    processRecord();
   }
 }
 
-void Teller::takeRecord() {
-  diagnostics_.watch(record_);
-  // A job whose end was lost with the records has ended when there are some of a later one.
+void Telemetry::processRecord() {
+  diagnostics_.add(record_);
+  // If the record of a job's end was lost, a record of a later job ends it.
   while (jobs_.size() > 1 && record_.job > jobs_.front().number) endJob(jobs_.front());
-  if (!jobs_.empty() && record_.job == jobs_.front().number) followJob(jobs_.front());
+  if (!jobs_.empty() && record_.job == jobs_.front().number) trackJob(jobs_.front());
 }
 
-void Teller::followJob(Job& job) {
-  if (record_.has_setpoint) job.waiting.push_back({cycle(), record_.period, record_.setpoint});
-  // A drive may buffer commands: a setpoint is told with the positions of the cycle before the axes get it.
-  auto& waiting = job.waiting;
-  while (!waiting.empty() && waiting.front().cycle + record_.drive.commands_waiting <= cycle()) {
-    job.last = waiting.front().setpoint;
-    if (job.shown) scene_.follow(job.last, record_.position);
-    tell(job, waiting.front());
-    waiting.pop_front();
+void Telemetry::trackJob(Job& job) {
+  if (record_.has_setpoint) job.buffered.push_back({cycle(), record_.period, record_.setpoint});
+  // A drive may buffer commands: publish a setpoint with the positions of the cycle before it reaches the axes.
+  auto& buffered = job.buffered;
+  while (!buffered.empty() && buffered.front().cycle + record_.drive.commands_waiting <= cycle()) {
+    job.last = buffered.front().setpoint;
+    if (job.shown) scene_.add(job.last, record_.position);
+    addToBatch(job, buffered.front());
+    buffered.pop_front();
   }
   if (record_.job_ended) endJob(job);
 }
 
-void Teller::tell(Job& job, const Waiting& written) {
+void Telemetry::addToBatch(Job& job, const Buffered& written) {
   const Setpoint& setpoint = written.setpoint;
   const std::uint64_t lost = setpoint.cycle - job.next_cycle;
   job.next_cycle = setpoint.cycle + 1;
@@ -152,19 +153,19 @@ void Teller::tell(Job& job, const Waiting& written) {
   job.largest_error = std::max(job.largest_error, std::abs(setpoint.path_error));
 }
 
-void Teller::endJob(Job& job) {
-  // Written, but the axes never got them.
-  for (const Waiting& never : job.waiting) tell(job, never);
+void Telemetry::endJob(Job& job) {
+  // Written, but never reached the axes.
+  for (const Buffered& unplayed : job.buffered) addToBatch(job, unplayed);
   publishBatch();
   publishFeedback();
   if (job.shown) scene_.end(toString(record_.state));
   const std::uint64_t number = job.number;
   jobs_.pop_front();
   publishState();
-  jobs_told_ = number;
+  jobs_published_ = number;
 }
 
-void Teller::publishJointStates() {
+void Telemetry::publishJointStates() {
   sensor_msgs::JointState message;
   message.header.stamp = ros::Time(record_.time);
   for (int i = 0; i < kAxisCount; ++i) {
@@ -172,20 +173,20 @@ void Teller::publishJointStates() {
     message.position.push_back(record_.position[i]);
     message.velocity.push_back(record_.velocity[i]);
   }
-  // Not of the drive, but robot_state_publisher takes all joints from here.
+  // Not driven, but robot_state_publisher takes every joint from this topic.
   message.name.insert(message.name.end(), {"wheel_swivel", "y_zero"});
   message.position.insert(message.position.end(), {scene_.setup().wheel_swivel, scene_.setup().y_zero});
   message.velocity.insert(message.velocity.end(), {0, 0});
   joint_states_.publish(message);
 }
 
-void Teller::publishBatch() {
+void Telemetry::publishBatch() {
   if (batch_.setpoints.empty()) return;
   setpoints_.publish(batch_);
   batch_.setpoints.clear();
 }
 
-void Teller::publishState() {
+void Telemetry::publishState() {
   GrinderState message;
   message.header.stamp = ros::Time(record_.time);
   message.state = static_cast<std::uint8_t>(record_.state);
@@ -206,11 +207,11 @@ void Teller::publishState() {
   message.fault = text(fault, UnitSystem::kSi);
   message.fault_reason = flute_grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
-  message.progress = toMessage(journal_.told().on_disk);
+  message.progress = toMessage(journal_.status().on_disk);
   state_.publish(message);
 }
 
-void Teller::publishFeedback() {
+void Telemetry::publishFeedback() {
   Job* job = running();
   if (!job) return;
   const Setpoint& p = job->last;

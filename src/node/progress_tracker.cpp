@@ -1,4 +1,4 @@
-#include "flute_grinder/node/bookkeeper.h"
+#include "flute_grinder/node/progress_tracker.h"
 
 #include "flute_grinder/messages/conversions.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
 
-/// A job for people, who count teeth and passes from 1.
+/// For the operator; teeth and passes count from 1.
 std::string describe(const Progress& p) {
   std::ostringstream text;
   text << (p.job_name.empty() ? "a job without a name" : p.job_name) << " ("
@@ -24,17 +24,17 @@ bool same(const ToothPass& a, const ToothPass& b) { return a.tooth == b.tooth &&
 
 }  // namespace
 
-Bookkeeper::Bookkeeper(JournalKeeper& keeper) : keeper_(keeper), progress_(keeper.told().on_disk) {}
+ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progress_(writer.status().on_disk) {}
 
-std::string Bookkeeper::objection(const std::string& digest, const ToothPass& first) const {
+std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first) const {
   if (progress_.job_digest.empty() || progress_.finished) return "";
   const bool from_the_beginning = first.tooth == 0 && first.pass == 0;
   if (digest == progress_.job_digest && (!from_the_beginning || same(first, progress_.next))) return "";
   return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 
-void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                       const ToothPass& first, std::uint64_t number) {
+void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
+                            const ToothPass& first, std::uint64_t number) {
   before_ = progress_;
   number_ = number;
   moves_ = program.moves();
@@ -48,37 +48,37 @@ void Bookkeeper::begin(const GrindProgram& program, const std::string& digest, c
   progress_.tooth_angles = program.job().tooth_angles;
   progress_.next = first;
   progress_.x = program.strokeFrom();
-  // Until the job has ended: after a crash only the drive's positions could tell that the wheel was out of the work.
+  // Assumed until the job has ended: after a crash nothing but the drive's positions could prove the wheel clear.
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
   write();
 }
 
-void Bookkeeper::revert() {
+void ProgressTracker::revert() {
   running_ = false;
   progress_ = before_;
   write();
 }
 
-void Bookkeeper::end(const LoopStatus& status) {
-  takePlace(status);
+void ProgressTracker::end(const LoopStatus& status) {
+  updatePlace(status);
   running_ = false;
   progress_.wheel = status.wheel;
   write();
 }
 
-void Bookkeeper::follow(const LoopStatus& status) {
-  if (running_) takePlace(status);
+void ProgressTracker::update(const LoopStatus& status) {
+  if (running_) updatePlace(status);
   if (!running_ && progress_.wheel.in_work != status.wheel.in_work) {
     progress_.wheel = status.wheel;
     write();
   }
-  // An entry that has failed is made once more: the disk may have room again.
-  const bool due = place_changed_ || (order_ > 0 && settled() && !error().empty());
+  // Retry an entry that failed: the disk may have room again.
+  const bool due = place_changed_ || (request_ > 0 && upToDate() && !error().empty());
   if (due && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
 }
 
-void Bookkeeper::takePlace(const LoopStatus& status) {
+void ProgressTracker::updatePlace(const LoopStatus& status) {
   if (progress_.finished || status.jobs_started != number_) return;
   if (status.strokes_ended_at > strokes_ended_at_) {
     strokes_ended_at_ = status.strokes_ended_at;
@@ -97,8 +97,8 @@ void Bookkeeper::takePlace(const LoopStatus& status) {
   }
 }
 
-void Bookkeeper::write() {
-  order_ = keeper_.write(progress_);
+void ProgressTracker::write() {
+  request_ = writer_.write(progress_);
   place_changed_ = false;
   last_entry_ = ros::SteadyTime::now();
 }

@@ -1,5 +1,5 @@
 #include "flute_grinder/core/job_file.h"
-#include "flute_grinder/node/bookkeeper.h"
+#include "flute_grinder/node/progress_tracker.h"
 
 #include "control/fixtures.h"
 
@@ -33,13 +33,13 @@ std::uint32_t strokeOf(const GrindProgram& program, int pass) {
   throw std::logic_error("no such stroke");
 }
 
-class BookkeeperTest : public ::testing::Test {
+class ProgressTrackerTest : public ::testing::Test {
  protected:
-  BookkeeperTest() : folder_(makeFolder()), keeper_(folder_ / "journal", "/test"), books_(keeper_) {}
-  ~BookkeeperTest() override { std::filesystem::remove_all(folder_); }
+  ProgressTrackerTest() : folder_(makeFolder()), writer_(folder_ / "journal", "/test"), tracker_(writer_) {}
+  ~ProgressTrackerTest() override { std::filesystem::remove_all(folder_); }
 
   static std::filesystem::path makeFolder() {
-    std::string name = ::testing::TempDir() + "bookkeeper_XXXXXX";
+    std::string name = ::testing::TempDir() + "progress_tracker_XXXXXX";
     if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
     return name;
   }
@@ -47,28 +47,28 @@ class BookkeeperTest : public ::testing::Test {
   /// What is on the disk once all is there that was entered.
   Progress onDisk() {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!books_.settled() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    EXPECT_TRUE(books_.settled());
-    return keeper_.told().on_disk;
+    while (!tracker_.upToDate() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    EXPECT_TRUE(tracker_.upToDate());
+    return writer_.status().on_disk;
   }
 
   void begin(const GrindProgram& program, const std::string& digest) {
-    books_.begin(program, digest, digest + ".yaml", kFirst, ++status_.jobs_started);
+    tracker_.begin(program, digest, digest + ".yaml", kFirst, ++status_.jobs_started);
     status_.strokes_ended_at = 0;
     status_.place = {};
   }
   void endStroke(const GrindProgram& program, int pass) {
     status_.strokes_ended_at = strokeOf(program, pass) + 1;
-    books_.follow(status_);
+    tracker_.update(status_);
   }
 
   const std::filesystem::path folder_;
-  JournalKeeper keeper_;
-  Bookkeeper books_;
+  JournalWriter writer_;
+  ProgressTracker tracker_;
   LoopStatus status_;
 };
 
-TEST_F(BookkeeperTest, EntersEveryPassThatHasEnded) {
+TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
   const GrindProgram two = program(2);
   begin(two, "job");
   EXPECT_EQ(onDisk().next.pass, 0);
@@ -79,70 +79,70 @@ TEST_F(BookkeeperTest, EntersEveryPassThatHasEnded) {
   endStroke(two, 1);
   EXPECT_TRUE(onDisk().finished);
   EXPECT_DOUBLE_EQ(onDisk().x, two.strokeTo());
-  books_.end(status_);
+  tracker_.end(status_);
   EXPECT_FALSE(onDisk().wheel.in_work);
 }
 
-TEST_F(BookkeeperTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
+TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   const GrindProgram three = program(3);
   begin(three, "long");
   for (int pass = 0; pass < 3; ++pass) endStroke(three, pass);
-  books_.end(status_);
+  tracker_.end(status_);
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
-  books_.begin(one, "short", "short.yaml", kFirst, status_.jobs_started + 1);
-  books_.follow(status_);
+  tracker_.begin(one, "short", "short.yaml", kFirst, status_.jobs_started + 1);
+  tracker_.update(status_);
   const Progress entered = onDisk();
   EXPECT_EQ(entered.job_digest, "short");
   EXPECT_FALSE(entered.finished);
   EXPECT_DOUBLE_EQ(entered.x, one.strokeFrom());
 }
 
-TEST_F(BookkeeperTest, AJobThatWasNotStartedLeavesTheOneBefore) {
+TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   const GrindProgram two = program(2);
   begin(two, "left");
   endStroke(two, 0);
-  books_.end(status_);
+  tracker_.end(status_);
   const Progress before = onDisk();
-  books_.begin(two, "refused", "refused.yaml", kFirst, status_.jobs_started + 1);
+  tracker_.begin(two, "refused", "refused.yaml", kFirst, status_.jobs_started + 1);
   EXPECT_EQ(onDisk().job_digest, "refused");
-  books_.revert();
+  tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);
   EXPECT_EQ(onDisk().next.pass, before.next.pass);
 }
 
-TEST_F(BookkeeperTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
+TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
   const GrindProgram two = program(2);
-  EXPECT_EQ(books_.objection("job", kFirst), "");
+  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
   begin(two, "job");
   endStroke(two, 0);
-  books_.end(status_);
-  EXPECT_EQ(books_.objection("job", {0, 1}), "") << "it is continued";
-  EXPECT_NE(books_.objection("job", kFirst), "") << "from its beginning";
-  const std::string other = books_.objection("other", kFirst);
+  tracker_.end(status_);
+  EXPECT_EQ(tracker_.refusal("job", {0, 1}), "") << "it is continued";
+  EXPECT_NE(tracker_.refusal("job", kFirst), "") << "from its beginning";
+  const std::string other = tracker_.refusal("other", kFirst);
   EXPECT_NE(other.find("job.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), tooth 1, pass 2"),
             std::string::npos)
       << other;
   EXPECT_NE(other.find("discard"), std::string::npos);
 }
 
-TEST_F(BookkeeperTest, AFinishedOneIsNot) {
+TEST_F(ProgressTrackerTest, AFinishedOneIsNot) {
   const GrindProgram one = program(1);
   begin(one, "job");
   endStroke(one, 0);
-  books_.end(status_);
-  EXPECT_EQ(books_.objection("other", kFirst), "");
-  EXPECT_EQ(books_.objection("job", kFirst), "");
+  tracker_.end(status_);
+  EXPECT_EQ(tracker_.refusal("other", kFirst), "");
+  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
 }
 
-TEST_F(BookkeeperTest, TheWheelIsEnteredWithoutAJobToo) {
+TEST_F(ProgressTrackerTest, TheWheelIsEnteredWithoutAJobToo) {
   status_.wheel = {true, 0.01, 0.002};
-  books_.follow(status_);
+  tracker_.update(status_);
   EXPECT_TRUE(onDisk().wheel.in_work);
   EXPECT_DOUBLE_EQ(onDisk().wheel.clear_y, 0.01);
   status_.wheel.in_work = false;
-  books_.follow(status_);
+  tracker_.update(status_);
   EXPECT_FALSE(onDisk().wheel.in_work);
 }
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include "flute_grinder/SetpointBatch.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/node/diagnostics.h"
+#include "flute_grinder/node/journal_writer.h"
+#include "flute_grinder/node/planner.h"
+#include "flute_grinder/node/served_queue.h"
+#include "flute_grinder/scene/scene.h"
+
+#include <actionlib_msgs/GoalID.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the markers for
+/// rviz and diagnostics. Its own thread reads the loop's records; nothing blocks on it. If it falls too far behind,
+/// records are lost, and it reports how many.
+class Telemetry {
+ public:
+  /// @param nh the node's namespace, for joint_states.
+  /// @param private_nh the node's private namespace, for everything else.
+  /// @param loop,journal must outlive this object.
+  Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
+            const JournalWriter& journal, const DiagnosticThresholds& thresholds);
+
+  /// Starts publishing.
+  void start() { thread_.start(); }
+
+  /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
+  void show(std::shared_ptr<const Preview> preview);
+  /// Announces a job before it starts. Thread safe; never blocks.
+  /// @param number the loop's number for this job.
+  void announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview);
+  /// The job announced last will not start. Thread safe; never blocks.
+  void withdrawJob(std::uint64_t number);
+
+  /// Number of the last job whose setpoints have all been published. Thread safe.
+  std::uint64_t jobsPublished() const { return jobs_published_; }
+
+ private:
+  /// A setpoint in the drive's buffer.
+  struct Buffered {
+    std::uint64_t cycle;  ///< of the loop that generated it
+    double period;        ///< of that cycle, measured [s]
+    Setpoint setpoint;
+  };
+
+  struct Job {
+    std::uint64_t number;
+    actionlib_msgs::GoalID goal;
+    std::shared_ptr<const Preview> preview;
+    bool shown = false;
+    Setpoint last{};                  ///< that reached the axes
+    double largest_error = 0;         ///< since the last feedback [rad]
+    std::uint64_t next_cycle = 0;     ///< of the next setpoint to publish
+    std::deque<Buffered> buffered{};  ///< written, not yet published
+  };
+
+  void tick();
+  void readRecords();
+  void processRecord();
+  void trackJob(Job& job);
+  void addToBatch(Job& job, const Buffered& written);
+  void endJob(Job& job);
+  void publishJointStates();
+  void publishBatch();
+  void publishState();
+  void publishFeedback();
+  Job* running();
+  std::uint64_t cycle() const { return records_read_ + record_.records_lost; }  ///< of the loop, since it started
+
+  ControlLoop& loop_;
+  const JournalWriter& journal_;
+  Diagnostics diagnostics_;
+  diagnostic_updater::Updater diagnostic_updater_;
+  ros::Publisher joint_states_, state_, setpoints_, feedback_;
+  Scene scene_;
+
+  CycleRecord record_;  ///< the latest
+  std::uint64_t records_read_ = 0;
+  std::deque<Job> jobs_;  ///< announced; the first may be running
+  SetpointBatch batch_;
+  std::uint64_t ticks_ = 0;
+  std::uint64_t ticks_per_diagnostics_ = 1;
+  std::atomic<std::uint64_t> jobs_published_{0};
+
+  ServedQueue thread_;  ///< last member, so that it stops before the others are destroyed
+};
+
+}  // namespace flute_grinder

@@ -144,8 +144,7 @@ int lift(const std::string& node) {
   catchInterrupts();
   catchHolds();
   keys.start([&] { keys.hold(); });
-  const int status =
-      runMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
+  const int status = runMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::FAULT) return fail(state.fault);

@@ -1,8 +1,8 @@
 /// @file
 /// Keeps a roscpp node's servers on loopback. roscpp binds those of topics and services to loopback when ROS_IP or
 /// ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anyone could shut the node down.
-/// This bind() overrides the C library's, and applies the same rule to every server. Preloaded as a library, it does the
-/// same for other nodes.
+/// This bind() overrides the C library's, and applies the same rule to every server. Preloaded as a library, it does
+/// the same for other nodes.
 
 #include <dlfcn.h>
 #include <netinet/in.h>

@@ -104,7 +104,7 @@ QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   }
   const MachineEvent event = request.value;
   buttons_[event] = button;
-  connect(button, &QPushButton::clicked, this, [this, event] { ask(event); });
+  connect(button, &QPushButton::clicked, this, [this, event] { this->request(event); });
   return button;
 }
 
@@ -247,7 +247,7 @@ void GrindPanel::setFeedOverride(double fraction) {
   });
 }
 
-void GrindPanel::say(const std::string& text) {
+void GrindPanel::showMessage(const std::string& text) {
   messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
 }
 

@@ -194,7 +194,8 @@ inline Ride rideWithRetracts(const Work& work, const std::vector<Setpoint>& undi
   for (const std::size_t cycle : cycles) {
     const Setpoint& moment = undisturbed[cycle];
     const auto before = [&](const Setpoint& p) {
-      return p.move_index < moment.move_index || (p.move_index == moment.move_index && p.move_fraction < moment.move_fraction);
+      return p.move_index < moment.move_index ||
+             (p.move_index == moment.move_index && p.move_fraction < moment.move_fraction);
     };
     while (rider.ride().given.empty() || before(rider.last())) {
       if (!rider.next()) break;

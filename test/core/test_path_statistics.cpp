@@ -197,7 +197,8 @@ TEST(JobPlan, TellsWhereTheFeedIsCut) {
     EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, from_end ? to : from, 0.1e-3);
     // Where v k/u = 0.8 rad/s, by hand.
     const double growth = std::tan(5 * units::kDegree);
-    const double x = (0.01 / test_support::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
+    const double x =
+        (0.01 / test_support::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
     EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, x, 0.1e-3);
   }
 }

@@ -11,8 +11,8 @@
 namespace flute_grinder {
 namespace {
 
-using testing::expectSame;
-using testing::someProgress;
+using test_support::expectSame;
+using test_support::someProgress;
 
 Progress progressAt(int x) {
   Progress progress = someProgress();
@@ -21,7 +21,7 @@ Progress progressAt(int x) {
 }
 
 /// The disk is as slow as the tests say (slow_fsync.c).
-class JournalWriterTest : public testing::JournalTest {
+class JournalWriterTest : public test_support::JournalTest {
  protected:
   JournalWriterTest() { setenv("SLOW_FSYNC", (folder_ + "/seconds").c_str(), 1); }
   ~JournalWriterTest() override { unsetenv("SLOW_FSYNC"); }

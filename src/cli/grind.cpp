@@ -126,12 +126,12 @@ void addReport(CLI::App& app, ReportOptions& options) {
   addMachine(command, options.parameters, options.urdf);
 }
 
-/// How a command waits for the end of what it requests.
+/// What the command adds to the request.
 std::string waiting(MachineEvent event) {
   switch (event) {
-    case MachineEvent::kHome: return "; waits until it is found, and Ctrl-C switches the power off";
-    case MachineEvent::kLift: return "; waits until it is lifted, and Ctrl-C and Ctrl-Z hold it";
-    case MachineEvent::kCancel: return ", whoever has started it; waits for the end";
+    case MachineEvent::kHome: return "; waits for the end, and Ctrl-C switches the power off";
+    case MachineEvent::kLift: return "; waits for the end, and Ctrl-C and Ctrl-Z stop it";
+    case MachineEvent::kCancel: return ", whoever started it; waits for the end";
     default: return "";
   }
 }

@@ -152,7 +152,7 @@ int lift(const std::string& node) {
   return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
 
-/// Stops the job that runs, whoever has started it, and waits for the stop.
+/// Cancels the running job, whoever started it, and waits for the end.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
   ros::AsyncSpinner spinner(1);

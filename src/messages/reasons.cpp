@@ -76,8 +76,8 @@ core::Reason fromMessage(const Reason& m) {
 }
 
 std::string faultText(const GrinderState& state) {
-  const std::string told = text(fromMessage(state.fault_reason), UnitSystem::kShop);
-  return told.empty() ? state.fault : told;
+  const std::string from_data = text(fromMessage(state.fault_reason), UnitSystem::kShop);
+  return from_data.empty() ? state.fault : from_data;
 }
 
 std::string resultText(const GrindResult& result) {

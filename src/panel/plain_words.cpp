@@ -25,19 +25,19 @@ const char* sentence(MachineState state) {
   switch (state) {
     case MachineState::kDisabled: return "The power is off. Enable switches it on.";
     case MachineState::kReady: return "The power is on, the axes rest. Plan a job, then start it.";
-    case MachineState::kHoming: return "The drive looks for the axes' reference.";
+    case MachineState::kHoming: return "The drive is homing the axes.";
     case MachineState::kStarting: return "The job waits for spindle and coolant.";
     case MachineState::kRunning: return "The job moves the axes.";
-    case MachineState::kHolding: return "The axes stop on the path.";
-    case MachineState::kHeld: return "The axes rest in the midst of the job. Resume goes on; Retract lifts the wheel.";
-    case MachineState::kRetracting: return "The wheel is lifted off the work.";
-    case MachineState::kRetracted: return "The axes rest, the wheel off the work. Resume goes on.";
-    case MachineState::kResuming: return "The wheel goes back to the place where it left the path.";
-    case MachineState::kCanceling: return "The axes stop on the path and the wheel is lifted; then the job ends.";
+    case MachineState::kHolding: return "The axes are stopping on the path.";
+    case MachineState::kHeld: return "The job is held. Resume continues; Retract lifts the wheel.";
+    case MachineState::kRetracting: return "The wheel is being lifted off the work.";
+    case MachineState::kRetracted: return "The wheel is off the work. Resume continues the job.";
+    case MachineState::kResuming: return "The wheel is returning to where it left the path.";
+    case MachineState::kCanceling: return "The axes stop on the path, the wheel is lifted, then the job ends.";
     case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
-    case MachineState::kLifting: return "The wheel is lifted off the work, without a job.";
+    case MachineState::kLifting: return "The wheel is being lifted off the work, without a job.";
   }
-  return "The grinder is in a state that this panel does not know.";
+  return "This panel does not know the grinder's state.";
 }
 
 const char* wheelInWork(MachineState state) {

@@ -106,8 +106,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
 
 void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits& limits) {
   const double v = speed_;
-  const double u =
-      speed_ / speed_per_radius_;  // at the end of the reduced feed, or at the thin end: v/u is largest there
+  const double u = speed_ / speed_per_radius_;  // where the reduced feed or the cone ends: v/u is largest there
   const double b = std::abs(curve.b());
   const double a_slope = std::abs(curve.k()) / u;
   const double a_curvature = a_slope * b / u;

@@ -6,9 +6,8 @@ namespace flute_grinder {
 struct CutterGeometry {
   double end_diameter = 0;  ///< D1, diameter at the small end, X = 0 [m]
   double cone_angle = 0;    ///< C, half angle between axis and generatrix; negative for a back taper [rad]
-  double spiral_angle =
-      0;                  ///< S, relative to the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
-  double rake_angle = 0;  ///< r [rad]
+  double spiral_angle = 0;  ///< S, from the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
+  double rake_angle = 0;    ///< r [rad]
   double flute_length = 0;  ///< along the cutter's axis [m]
 };
 

@@ -40,11 +40,10 @@ struct GrindProcess {
   double overtravel_shank = 0;  ///< of the stroke beyond the flute on the shank side [m]
   GrindOrder order = GrindOrder::kToothMajor;
   StrokeDirection direction = StrokeDirection::kFromEnd;
-  double wheel_diameter = 0;  ///< when new [m]
-  double wheel_width = 0;     ///< [m]
-  double wheel_wear = 0;      ///< of the wheel's radius since Y was set; compensated in Y [m]
-  double wheel_wear_per_pass =
-      0;  ///< added to wheel_wear by each pass of any tooth; compensated before the next pass [m]
+  double wheel_diameter = 0;       ///< when new [m]
+  double wheel_width = 0;          ///< [m]
+  double wheel_wear = 0;           ///< of the wheel's radius since Y was set; compensated in Y [m]
+  double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
 };
 
 /// A pass of a tooth.

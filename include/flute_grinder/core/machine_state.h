@@ -16,9 +16,9 @@ enum class MachineState : std::uint8_t {
   kStarting,    ///< a job is waiting for spindle and coolant
   kRunning,     ///< a job is moving the axes
   kHolding,     ///< stopping on the path
-  kHeld,        ///< at rest within a job
+  kHeld,        ///< at rest in the middle of a job
   kRetracting,  ///< lifting the wheel off the workpiece
-  kRetracted,   ///< at rest within a job, with the wheel off the workpiece
+  kRetracted,   ///< at rest in the middle of a job, with the wheel off the workpiece
   kResuming,    ///< returning to the point where the path was left
   kCanceling,   ///< stopping on the path and lifting the wheel, to end the job
   kFault,       ///< power off after a fault, until reset

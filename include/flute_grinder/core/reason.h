@@ -59,11 +59,10 @@ struct Reason {
   double limit = 0;         ///< the allowed value, or the upper end of the allowed range
   bool has_place = false;   ///< whether the next five members are known
   MoveKind move = MoveKind::kLift;
-  int tooth = 0;  ///< from 0
-  int pass = 0;   ///< from 0
-  double x = 0;   ///< along the cutter [m]
-  std::uint64_t cycle =
-      0;  ///< cycle of the setpoint, for the limits and kTolerance; of the last one written, for kUnderrun
+  int tooth = 0;            ///< from 0
+  int pass = 0;             ///< from 0
+  double x = 0;             ///< along the cutter [m]
+  std::uint64_t cycle = 0;  ///< of the setpoint, for the limits and kTolerance; of the last one, for kUnderrun
   std::uint64_t count = 0;  ///< number of setpoints of which this is the worst; passes of the job, for kTooLong
 };
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-// The cycle and the motion; all of it is real-time. How it executes requests is in loop_execution.cpp.
+// The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
 namespace flute_grinder {
 
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
@@ -36,8 +36,8 @@ void ControlLoop::readDrive() {
     record_.position[i] = joint.getPosition();
     record_.velocity[i] = joint.getVelocity();
   }
-  // Without power and during homing the commands follow the positions, so that nothing moves when commands take effect
-  // again; after a fault they stay where they are.
+  // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
+  // again; after a fault the commands do not change.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
   if (follows && record_.position.isFinite().all()) {
     command_ = record_.position;
@@ -81,7 +81,7 @@ void ControlLoop::publish() {
   if (records_.push(record_)) {
     record_.job_ended = false;
   } else {
-    ++record_.records_lost;  // job_ended stays for the next record that finds room
+    ++record_.records_lost;  // job_ended stays set for the next record that fits
   }
 
   ++next_status_.cycles;
@@ -141,7 +141,7 @@ void ControlLoop::slowDownIfLate() {
   if (!moving_unbuffered_) return;
   const double periods = record_.period / config_.machine.period;
   if (!(periods >= config_.late_slow_down)) return;
-  // The axes went one period's distance in the time of several.
+  // A delay of several periods: the axes covered only one period's distance in that time.
   if (stream_) stream_->slowDown(1 / periods);
   lift_.slowDown(1 / periods);
   limit_check_.slowDown(1 / periods);
@@ -149,7 +149,7 @@ void ControlLoop::slowDownIfLate() {
 
 void ControlLoop::advanceJob() {
   if (state_ == MachineState::kStarting) return awaitSpindle();
-  // Nothing has moved yet, and nothing needs to.
+  // Nothing has moved yet, so there is nothing to stop.
   if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
   checkInterlocks();
   stream_->setFeedOverride(feed_override_);
@@ -178,13 +178,13 @@ void ControlLoop::checkInterlocks() {
   const Interlock open = openInterlock(record_.drive);
   if (open != Interlock::kNone && record_.interlock == Interlock::kNone) {
     record_.interlock = open;
-    // A wheel that is being lifted or has been lifted is on its way to safety, or there.
+    // A wheel that is being lifted is moving to safety; one that was lifted is already safe.
     if (after(state_, MachineEvent::kHold) && state_ != MachineState::kRetracting) {
       stream_->hold();
       apply(MachineEvent::kHold);
     }
   }
-  // A wheel that dwells burns the tool; one that stands still or runs dry spoils it.
+  // A dwelling wheel burns the tool; a stopped or dry wheel damages it.
   if (record_.interlock != Interlock::kNone && state_ == MachineState::kHeld) {
     stream_->retract();
     apply(MachineEvent::kRetract);

@@ -17,7 +17,7 @@ std::optional<LoopFault> DriveChecks::findFault(const CycleRecord& record, bool 
     fault.kind = FaultKind::kEmergencyStop;
     return fault;
   }
-  // Before the drive fault and the lost power by which a drive may react to underruns and late cycles.
+  // Checked before drive fault and lost power, which may be the drive's reaction to underruns and late cycles.
   if (record.drive.underruns != underruns_at_power_on_) {
     fault.kind = FaultKind::kUnderrun;
     fault.value = static_cast<double>(record.drive.underruns - underruns_at_power_on_);

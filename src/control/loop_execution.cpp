@@ -1,10 +1,10 @@
 #include "flute_grinder/control/control_loop.h"
 
-// How the cycle executes requests; all of it is real-time.
+// Executes the requests of a cycle; all of it is real-time.
 namespace flute_grinder {
 
 void ControlLoop::executeRequests() {
-  // Taken first, executed last: a stop also stops whatever was requested before it.
+  // Taken first, executed last: a stop also stops anything requested before it.
   const StopRequests::Taken stops = takeStops();
   if (const auto job = takeJobStart()) answerJobStart(answerTo(MachineEvent::kStart, beginJob(*job)));
   if (const auto event = takeRequest()) executeRequest(*event);
@@ -17,7 +17,7 @@ void ControlLoop::executeRequests() {
 
 void ControlLoop::executeRequest(MachineEvent event) {
   const Refusal refusal = isTrigger(event) ? execute(event) : Refusal::kState;
-  // Power takes its time: awaitPower() answers.
+  // Switching the power on takes time: awaitPower() answers.
   if (!awaiting_power_) answerRequest(answerTo(event, refusal));
 }
 
@@ -43,7 +43,7 @@ Refusal ControlLoop::executeStop(MachineEvent event) {
   const bool off = event == MachineEvent::kDisable;
   if (stream_) {
     power_off_next_ |= off;
-    // A wheel that is being lifted goes on to the height at which a canceled job leaves it.
+    // A wheel that is being lifted continues to the height at which a canceled job leaves it.
     const bool lifting = state_ == MachineState::kCanceling || state_ == MachineState::kRetracting;
     const bool hold = event == MachineEvent::kHold;
     if (hold || !lifting) stream_->hold();
@@ -131,7 +131,7 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   limit_check_.restart();
   record_.fault = LoopFault{};
   record_.interlock = Interlock::kNone;
-  record_.job_ended = false;  // of a previous job whose record was lost
+  record_.job_ended = false;  // for a previous job whose record was lost
   next_status_.end = JobEnd::kNone;
   next_status_.fault = LoopFault{};
   next_status_.place = Place{};
@@ -146,7 +146,7 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
 }
 
 Refusal ControlLoop::resume() {
-  // A job that has not begun goes on waiting for its interlocks.
+  // A job that has not begun keeps waiting for its interlocks.
   const bool starting = state_ == MachineState::kStarting;
   if (!starting && openInterlock(record_.drive) != Interlock::kNone) return Refusal::kInterlock;
   record_.interlock = Interlock::kNone;

@@ -23,7 +23,7 @@ RequestReply Answer::reply() const {
     case Refusal::kInWork: text << "the wheel stands in the work; lift it first"; break;
     case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
     case Refusal::kLiftTooFar:
-      // People alone read it: no answer to a request has room for data.
+      // In shop units, because only people read it: the answer to a request has no fields for data.
       text << "it would lead " << axisName(kY, UnitSystem::kShop) << " to "
            << flute_grinder::text({value, Unit::kMetre}, UnitSystem::kShop) << "; allowed: up to "
            << flute_grinder::text({limit, Unit::kMetre}, UnitSystem::kShop);

@@ -53,7 +53,7 @@ void ControlLoop::run() {
   realtime_scheduling_ = becomeRealtime();
   using Clock = std::chrono::steady_clock;
   const ros::Duration nominal(config_.machine.period);
-  // The system clock, since ROS time may stay at 0 until a simulation publishes it.
+  // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
   const ros::Time start_time(wall.sec, wall.nsec);
   const Clock::time_point start = Clock::now();

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSmallest = kSmallestFigure;
 constexpr double kLargest = kLargestFigure;
 
-/// One kind of limit, as ros_control names it.
+/// One kind of limit, with its names in ros_control.
 struct LimitName {
   const char* flag;
   const char* value;
@@ -22,7 +22,7 @@ constexpr LimitName kVelocity{"has_velocity_limits", "max_velocity"};
 constexpr LimitName kAcceleration{"has_acceleration_limits", "max_acceleration"};
 constexpr LimitName kJerk{"has_jerk_limits", "max_jerk"};
 
-/// Whether the parameters give a limit; an incomplete or disabled limit is an error.
+/// Whether the parameters contain a limit; an incomplete or disabled limit is an error.
 bool states(const ParameterReader& p, const std::string& joint, const char* flag,
             std::initializer_list<const char*> values) {
   const std::string ns = "joint_limits/" + joint + "/";

@@ -12,14 +12,14 @@ namespace flute_grinder {
 
 namespace {
 
-/// Above every ordinary thread, below the kernel's own.
+/// Above all ordinary threads, below the kernel's own threads.
 constexpr int kRealtimePriority = 80;
 
 /// Far more than the loop uses.
 constexpr std::size_t kStack = std::size_t{256} * 1024;
 constexpr std::size_t kPage = 4096;
 
-/// Memory that is locked on its first access must be accessed before the first cycle.
+/// With memory that is locked on first access, the stack must be accessed before the first cycle.
 __attribute__((noinline)) void touchStack() {
   volatile char stack[kStack];
   for (std::size_t i = 0; i < kStack; i += kPage) stack[i] = 0;
@@ -31,14 +31,14 @@ __attribute__((noinline)) void touchStack() {
 bool lockMemory() {
   rlimit limit{};
   const bool unlimited = geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
-  // Memory allocated so far is the loop's and becomes resident now. Later allocations are made by the ROS side: one of
-  // 2 GB, which a few bytes from a peer can cause, must not take memory before it is filled.
+  // Memory allocated so far belongs to the loop and becomes resident now. Later allocations come from ROS: an
+  // allocation of 2 GB, which a few bytes from a peer can cause, must not occupy memory before it is filled.
   return unlimited && mlockall(MCL_CURRENT) == 0 && mlockall(MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
 bool becomeRealtime() {
-  // Other threads take the process' signals, even one for a crash elsewhere: this thread has to stop the axes. A crash
-  // of its own still ends the process, since that signal cannot be blocked.
+  // Other threads handle the process's signals, even for a crash elsewhere: this thread has to stop the axes. A crash
+  // in this thread still ends the process, because that signal cannot be blocked.
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);

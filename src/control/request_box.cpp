@@ -10,13 +10,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// How long a request waits for its answer, beyond the time that the request itself may take [s].
+/// Timeout of a request's answer, in addition to the time that the request itself may take [s].
 constexpr double kAnswerTimeout = 2;
-/// How long a stop waits for its answer [s].
+/// Timeout of a stop's answer [s].
 constexpr double kStopTimeout = 0.1;
 
-/// Polls for an answer until there is one.
-/// @param poll gives the answer, or nothing yet.
+/// Polls for an answer until one is available or the timeout expires.
+/// @param poll returns the answer, or nothing yet.
 /// @param timeout [s].
 template <typename Poll>
 RequestReply await(MachineEvent event, double timeout, const Poll& poll) {
@@ -41,7 +41,7 @@ RequestReply RequestBox::request(MachineEvent event) {
   }
   bool posted = false;
   return await(event, kAnswerTimeout + enable_timeout_, [&]() -> std::optional<RequestReply> {
-    // The slot may still hold a request that timed out.
+    // The slot may still contain a request that timed out.
     if (posted) return reply();
     posted = post(event);
     return std::nullopt;

@@ -9,7 +9,7 @@ namespace flute_grinder {
 
 namespace {
 
-/// What a motion begins with, and whether it may.
+/// A parameter of a motion, and whether it is valid.
 struct Figure {
   bool good;
   const char* name;
@@ -87,7 +87,8 @@ FeedLaw::State FeedLaw::after(const State& s, double jerk, double t) noexcept {
 
 FeedLaw::SpeedChange FeedLaw::changeSpeed(double speed, double acceleration, double to) const noexcept {
   const double j = limits_.jerk;
-  // The speed reached if the acceleration were removed at once decides whether to speed up or slow down.
+  // The speed that would result from reducing the acceleration to 0 immediately decides whether to speed up or slow
+  // down.
   const double settled = speed + acceleration * std::abs(acceleration) / (2 * j);
   const double sign = to >= settled ? 1 : -1;
   const double a0 = sign * acceleration;

@@ -10,10 +10,11 @@ namespace flute_grinder {
 
 namespace {
 
-/// Longest step of a pair, of the way to the cone's apex: the steps' expansions hold for small parts of it only.
+/// Longest step of a pair, as a fraction of the distance to the cone's apex: the series expansions hold only for small
+/// fractions.
 constexpr double kLongestStep = 0.125;
 
-/// How much the limits of X, Y and Z leave for X, which they all follow in proportion.
+/// The limit on X that results from the limits of X, Y and Z; Y and Z move in proportion to X.
 struct ForX {
   double limit;
   const char* axis;
@@ -29,7 +30,7 @@ ForX forX(const Axes& limit, double tan_cone, double sin_rake) {
   return lowest;
 }
 
-/// The lowest of some bounds, and which it is.
+/// The lowest of several bounds, and its cause.
 struct Bound {
   double value = std::numeric_limits<double>::infinity();
   std::string cause;
@@ -63,13 +64,13 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   const double wanted = stroke.surface_feed / cutter.edgePerTravel();
   const ForX velocity = forX(limits.max_velocity, tan_cone_, sin_rake_);
 
-  // The steps of a pair differ from their mean speed by b v T/u at the most, and must obey the velocity limits too.
+  // The speeds of a pair's steps differ from their mean by at most b v T/u, and must obey the velocity limits too.
   const double turning = std::min(kMaxFeedOverride * wanted, velocity.limit) / u_thin;
   const double longest = kLongestStep / (b * machine.period);
   const double ripple = 1 + b * std::min({turning, limits.max_velocity[kA] / k, longest}) * machine.period;
 
-  Bound even;  // of X, wherever it is
-  // The odd points' deviation grows toward the thin end; the leading order is taken back by the next one.
+  Bound even;  // on the speed of X, everywhere on the stroke
+  // The odd points' deviation is largest at the thin end. The next-order term reduces the leading-order step.
   const double a_error = stroke.tolerance / (cutter.radius(thin_x) * cutter.cosHelixToGeneratrix());
   const double step = OddEvenInterpolator::largestStepLength(curve, 1, thin_x, a_error);
   if (std::isfinite(step)) {
@@ -80,7 +81,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   if (even.value < wanted) feed_limits_.push_back({even.cause, stroke.from, stroke.to});
   feed_speed_ = std::min(wanted, even.value);
 
-  // A keeps half of its acceleration and most of its jerk for the feed law and the blend.
+  // Half of A's acceleration and most of its jerk are reserved for the feed law and the blend.
   Bound per_radius;
   per_radius.add(limits.max_velocity[kA] / k / ripple, "axis_a velocity");
   per_radius.add(std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), "axis_a acceleration");
@@ -92,12 +93,12 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     speed_per_radius_ = speed_ / u_thin;
     return;
   }
-  // Where A goes evenly X gains speed: dv/dt = b c v.
+  // Where A turns at constant speed, X accelerates: dv/dt = b c v.
   const ForX acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_);
   const ForX jerk = forX(limits.max_jerk, tan_cone_, sin_rake_);
   per_radius.add(acceleration.limit / (2 * b * feed_speed_), acceleration.axis + std::string(" acceleration"));
   per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), jerk.axis + std::string(" jerk"));
-  feed_limits_.push_back({per_radius.cause, stroke.from, stroke.to});  // as far as placeOnCone() finds
+  feed_limits_.push_back({per_radius.cause, stroke.from, stroke.to});  // placeOnCone() may shorten it
   speed_per_radius_ = per_radius.value;
   feed_speed_ = speed_ = std::min(feed_speed_, speed_per_radius_ * u_thick);
   beta_ = u_thin < u_thick ? b * speed_per_radius_ / speed_ : 0;
@@ -105,7 +106,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
 
 void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits& limits) {
   const double v = speed_;
-  const double u = speed_ / speed_per_radius_;  // where the cut ends, or the thin end: v/u is largest there
+  const double u = speed_ / speed_per_radius_;  // where the reduced feed or the cone ends: v/u is largest there
   const double b = std::abs(curve.b());
   const double a_slope = std::abs(curve.k()) / u;
   const double a_curvature = a_slope * b / u;
@@ -116,14 +117,13 @@ void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits&
 
   double blend_jerk = 0;  // of X
   if (beta_ > 0) {
-    // A quarter of the jerk limits for the blend. It stays shorter than 1/beta, since chooseSpeeds() has seen to the
-    // rest.
+    // A quarter of the jerk limits is for the blend. chooseSpeeds() keeps the blend shorter than 1/beta.
     blend_jerk = std::min(x_jerk, a_jerk / a_slope) / 4;
     blend_ = beta_ * v * v * v / blend_jerk;
     blend_rate_ = 1 / (1 + beta_ * blend_ / 2);
   }
 
-  // What is left for the feed law of what the path itself asks for at full feed.
+  // The path itself uses part of the limits at full feed; the rest is for the feed law.
   const double x_path_acceleration = beta_ * v * v;
   const double x_path_jerk = std::max(beta_ * beta_ * v * v * v, blend_jerk);
   const double a_path_acceleration = a_curvature * v * v;

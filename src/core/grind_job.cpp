@@ -13,10 +13,10 @@ namespace {
 
 using core::ReasonKind;
 
-/// Room for the rounding of a unit conversion at the ends of a range.
+/// Tolerance for the rounding of a unit conversion at the ends of a range.
 constexpr double kRangeRounding = 1e-12;
 
-/// Collects what is wrong with a job.
+/// Collects the errors in a job.
 class Checker {
  public:
   void range(const JobField& f, double value) {
@@ -27,13 +27,13 @@ class Checker {
     }
   }
 
-  /// A count or choice must be one of 0 to `max`, or of `min` to `max`.
+  /// A count or choice must be from `min` to `max`.
   void whole(const char* path, int value, int max, int min = 0) {
     const Quantity count{static_cast<double>(value), Unit::kNone};
     if (!(value >= min && value <= max)) refuse(ReasonKind::kOutOfRange, path, count, "", max, min);
   }
 
-  /// A length must be less than `limit` for the reason given.
+  /// A length must be less than `limit`; `why` describes the limit.
   void below(const char* path, double value, double limit, const char* why) {
     if (!(value < limit)) refuse(ReasonKind::kNotBelow, path, {value, Unit::kMetre}, why, limit);
   }
@@ -68,16 +68,16 @@ void checkTeeth(Checker& checker, const std::vector<double>& angles) {
   }
 }
 
-/// What the numbers, each within its range, must be to one another.
+/// Checks numbers that are each within their range against each other.
 void checkTogether(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
   const GrindProcess& p = job.process;
   const double growth = std::tan(c.cone_angle);
   const auto radius = [&](double x) { return c.end_diameter / 2 + x * growth; };
-  const double apex = -c.end_diameter / 2 / growth;  // where the cone closes
+  const double apex = -c.end_diameter / 2 / growth;  // X at which the cone's radius is 0
   if (growth < 0) {
     checker.below("cutter.flute_length", c.flute_length, apex, "where the cone closes");
-    if (!checker.good()) return;  // what else there would be to say follows from it
+    if (!checker.good()) return;  // the other errors would follow from this one
     checker.below("process.overtravel_shank", p.overtravel_shank, apex - c.flute_length, "where the cone closes");
   } else if (growth > 0) {
     checker.below("process.overtravel_end", p.overtravel_end, -apex, "where the cone closes");
@@ -120,7 +120,7 @@ std::vector<core::Reason> validate(const GrindJob& job) {
 }
 
 std::vector<double> passDepths(const GrindProcess& process) {
-  // Lets a depth that is a multiple of the infeed but for rounding take no pass of its own for the rest.
+  // A depth that is a multiple of the infeed, except for rounding, needs no extra pass for the remainder.
   constexpr double rounding = 1e-9;
   const double rough = process.depth - process.finish_infeed;
   const int rough_passes = static_cast<int>(std::ceil(rough / process.infeed - rounding));

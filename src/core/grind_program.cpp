@@ -19,12 +19,12 @@ FeedSchedule::Stroke strokeOf(const GrindJob& job) {
   stroke.to = job.cutter.flute_length + job.process.overtravel_shank;
   if (job.process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
   stroke.surface_feed = job.process.feed;
-  // The published rule's even points drift away by up to as much again, on steep cutters.
+  // With the published rule, the even points of steep cutters drift by up to the same amount again.
   stroke.tolerance = job.interpolation.tolerance * (job.interpolation.even_step == EvenStepRule::kPublished ? 0.5 : 1);
   return stroke;
 }
 
-/// @throw std::invalid_argument unless the machine and the place where the axes stand are fit for motion.
+/// @throw std::invalid_argument unless the machine's data and the start position are valid for motion.
 const Machine& checked(const Machine& machine, const Axes& start) {
   const AxisLimits& l = machine.limits;
   const auto require = [](bool good, const char* what) {
@@ -94,8 +94,8 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   constexpr std::ptrdiff_t moves_per_pass = 6;
   moves_.reserve(static_cast<std::size_t>((order.end() - begin) * moves_per_pass + 2));
   Axes at = start;
-  // The wheel may stand in another cutter's flute, after a job that did not end: only the park position clears them
-  // all.
+  // After a job that did not finish, the wheel may be in a flute of a different cutter: only the park position is clear
+  // of every cutter.
   if (at[kY] < machine.park[kY]) {
     at[kY] = machine.park[kY];
     append(MoveKind::kLift, first, at);

@@ -15,8 +15,8 @@ namespace flute_grinder {
 
 namespace {
 
-/// A file laid flat, "process.wheel.diameter_mm" or "process.overtravel_mm[0]" to value, from which the keys that are
-/// known are taken; what is left over is unknown.
+/// A flattened file: "process.wheel.diameter_mm" or "process.overtravel_mm[0]" to value. Known keys are removed as they
+/// are read; the remaining ones are unknown.
 class FlatFile {
  public:
   FlatFile(const YAML::Node& root, std::string name) : name_(std::move(name)) {
@@ -27,7 +27,7 @@ class FlatFile {
     }
   }
 
-  /// @return whether there was a value of the right type.
+  /// @return whether a value of the right type was found.
   template <typename T>
   bool take(const std::string& key, const std::string& allowed, T& value) {
     known_.push_back(key);
@@ -74,7 +74,7 @@ class FlatFile {
     }
   }
 
-  /// The line of a key, or of its first element; 1 where it does not stand in the file.
+  /// The line of a key, or of its first element; 1 if it is not in the file.
   int line(const std::string& key) const {
     for (const std::string& name : {key, key + "[0]"}) {
       const auto it = lines_.find(name);
@@ -93,7 +93,7 @@ class FlatFile {
 
  private:
   void flatten(const YAML::Node& node, const std::string& path, int line, int depth) {
-    // An alias may contain itself.
+    // A YAML alias may contain itself.
     if (depth > kDeepest) return fail(line, path + " goes too deep");
     if (node.IsMap() && node.size() > 0) {
       flattenMap(node, path, depth);

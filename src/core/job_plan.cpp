@@ -8,14 +8,14 @@ namespace flute_grinder {
 
 namespace {
 
-/// Gathers the statistics of a stream of setpoints.
+/// Computes the statistics of a stream of setpoints.
 class StatisticsAccumulator {
  public:
   StatisticsAccumulator(const ConicalCutter& cutter, double period, core::PathStatistics& statistics)
       : cutter_(cutter), period_(period), s_(statistics) {}
 
   void add(const Setpoint& p, const LimitCheck& check) {
-    if (s_.setpoints++ == 0) return;  // the first is where the job starts: nothing moved yet
+    if (s_.setpoints++ == 0) return;  // the first setpoint is the start of the job: nothing has moved yet
     ++cycles_[static_cast<std::size_t>(p.move)];
     s_.max_velocity = s_.max_velocity.max(check.velocity().abs());
     largest_change_ = largest_change_.max((check.velocity() - last_velocity_).abs());
@@ -60,7 +60,7 @@ class StatisticsAccumulator {
   double deviation_ = 0;
 };
 
-/// Collects the violations of a plan: of each kind the worst, and how many setpoints there are of it.
+/// Collects the violations of a plan: the worst of each kind, and the number of its setpoints.
 class ViolationCollector {
  public:
   ViolationCollector(double tolerance, JobPlan& plan) : plan_(plan) {
@@ -115,9 +115,9 @@ class ViolationCollector {
   core::Reason deviation_;  ///< the largest, if there is one
 };
 
-/// How much larger than at the job's feed the deviations may become by the feed override. They grow with the square of
-/// the step; the schedule keeps them within the tolerance at any override, but for the published rule, whose even
-/// points drift.
+/// The factor by which the feed override may increase the deviations over those at the job's feed. They grow with the
+/// square of the step length. The schedule keeps them within the tolerance at any override, except with the published
+/// rule, whose even points drift.
 double overrideFactor(const GrindProgram& program) {
   if (program.job().interpolation.even_step != EvenStepRule::kPublished) return 1;
   const FeedSchedule& schedule = program.schedule();
@@ -129,7 +129,7 @@ void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
   plan.reasons.push_back(std::move(reason));
 }
 
-/// @param least that it takes [s]; 0 where that is not known.
+/// @param least lower bound of the duration [s]; 0 if it is unknown.
 void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double least) {
   core::Reason reason;
   reason.kind = core::ReasonKind::kTooLong;
@@ -140,7 +140,7 @@ void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine,
   refuse(plan, PlanFault::kTooLong, std::move(reason));
 }
 
-/// The least that plunges and strokes take at the job's feed [s].
+/// Lower bound of the time for all plunges and strokes at the job's feed [s].
 double leastDuration(const GrindJob& job, const ToothPass& first) {
   const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
   const double way = job.process.clearance + travel * ConicalCutter(job.cutter).edgePerTravel();
@@ -151,7 +151,7 @@ double leastDuration(const GrindJob& job, const ToothPass& first) {
   return std::max(0.0, teeth * passes - before) * way / job.process.feed;
 }
 
-/// Looks up from the setpoints now and then: is the job too long, and is the plan still wanted?
+/// Checks periodically whether the job is too long and whether the plan is still wanted.
 class Supervisor {
  public:
   Supervisor(const PlanWatch& watch, JobPlan& plan)
@@ -159,11 +159,11 @@ class Supervisor {
         plan_(plan),
         last_(static_cast<std::uint64_t>(plan.program->machine().max_job_duration / plan.program->machine().period)) {}
 
-  /// @return whether to go on beyond a setpoint.
+  /// @return whether to continue after a setpoint.
   bool goOn(const Setpoint& p) { return p.cycle < next_look_ || look(p); }
 
  private:
-  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< some tenths of a millisecond
+  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< a few tenths of a millisecond
 
   bool look(const Setpoint& p) {
     const GrindProgram& program = *plan_.program;
@@ -182,7 +182,7 @@ class Supervisor {
 
   const PlanWatch& watch_;
   JobPlan& plan_;
-  std::uint64_t last_;  ///< cycle that the job may take
+  std::uint64_t last_;  ///< longest allowed job in cycles
   std::uint64_t next_look_ = 0;
 };
 
@@ -208,7 +208,7 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
     if (p.step != StepKind::kNone && !(deviation <= tolerance)) violations.addDeviation(p, deviation);
     if (!supervisor.goOn(p)) break;
   }
-  // A move of no length has no setpoints of its own.
+  // A move of zero length has no setpoints of its own.
   for (std::size_t i = 1; i < plan.move_ends.size(); ++i) {
     plan.move_ends[i] = std::max(plan.move_ends[i], plan.move_ends[i - 1]);
   }

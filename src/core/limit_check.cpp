@@ -7,18 +7,17 @@ namespace flute_grinder {
 
 namespace {
 
-/// Relative excess that the sampling of a motion at its very limit may show.
+/// Relative excess that can result from sampling a motion exactly at its limit.
 constexpr double kRelativeRounding = 1e-9;
 
-/// Whether every |value| is within its limit; false for what is not a number. Without branches, which is what it is
-/// for.
+/// Whether every |value| is within its limit; false for NaN. Branch-free for speed.
 bool within(const Axes& value, const Axes& limit) noexcept {
   bool good = true;
   for (int axis = 0; axis < kAxisCount; ++axis) good &= std::abs(value[axis]) <= limit[axis];
   return good;
 }
 
-/// The same between two limits.
+/// The same for a lower and an upper limit.
 bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
   bool good = true;
   for (int axis = 0; axis < kAxisCount; ++axis) good &= (value[axis] >= low[axis]) & (value[axis] <= high[axis]);
@@ -53,7 +52,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
 }
 
 void LimitCheck::slowPastDown() noexcept {
-  // On the parabola through the last pair ends, one and two pairs back.
+  // Samples the parabola through the last pair ends, one and two pairs back.
   const double f = slow_down_;
   const Axes change = ends_[0] - ends_[1];
   const Axes bend = change - (ends_[1] - ends_[2]);
@@ -97,7 +96,7 @@ void LimitCheck::checkPairEnd(const Setpoint& setpoint) noexcept {
 void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    // A position is the sum of some numbers no larger than the largest seen, each rounded to half an epsilon.
+    // A position is the sum of a few numbers no larger than the largest so far, each rounded to half an epsilon.
     const double noise = 2 * std::numeric_limits<double>::epsilon() * largest_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);

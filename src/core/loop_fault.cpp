@@ -19,7 +19,7 @@ std::pair<ReasonKind, Unit> kindAndUnit(const LoopFault& fault) {
     case FaultKind::kFollowingError: return {ReasonKind::kFollowingError, unitOf(fault.axis, 0)};
     case FaultKind::kUnderrun: return {ReasonKind::kUnderrun, Unit::kNone};
     case FaultKind::kLate: return {ReasonKind::kLate, Unit::kSecond};
-    case FaultKind::kLimit: break;  // by the violation
+    case FaultKind::kLimit: break;  // the violation determines the kind
     case FaultKind::kHoming: return {ReasonKind::kHoming, Unit::kSecond};
     case FaultKind::kInterlock: return {ReasonKind::kInterlock, Unit::kSecond};
   }

@@ -16,7 +16,7 @@ using E = MachineEvent;
 constexpr Transition kTransitions[]{
     {S::kDisabled, E::kEnable, S::kReady},
     {S::kDisabled, E::kDisable, S::kDisabled},
-    {S::kDisabled, E::kReset, S::kDisabled},  // of a fault that the drive has kept, or has got since
+    {S::kDisabled, E::kReset, S::kDisabled},  // clears a fault that the drive still has, or has had since
 
     {S::kReady, E::kEnable, S::kReady},
     {S::kReady, E::kDisable, S::kDisabled},
@@ -25,7 +25,7 @@ constexpr Transition kTransitions[]{
     {S::kReady, E::kLift, S::kLifting},
     {S::kReady, E::kFault, S::kFault},
 
-    // The drive moves by itself, and nothing but its power stops it.
+    // The drive controls homing itself; only switching its power off stops it.
     {S::kHoming, E::kDisable, S::kDisabled},
     {S::kHoming, E::kHold, S::kDisabled},
     {S::kHoming, E::kCancel, S::kDisabled},
@@ -33,11 +33,11 @@ constexpr Transition kTransitions[]{
     {S::kHoming, E::kFault, S::kFault},
 
     {S::kStarting, E::kDisable, S::kCanceling},
-    {S::kStarting, E::kHold, S::kStarting},  // and then held, before anything moves
+    {S::kStarting, E::kHold, S::kStarting},  // the job then starts held, before anything moves
     {S::kStarting, E::kResume, S::kStarting},
     {S::kStarting, E::kCancel, S::kCanceling},
     {S::kStarting, E::kDone, S::kRunning},
-    {S::kStarting, E::kAtRest, S::kReady},  // spindle and coolant did not come
+    {S::kStarting, E::kAtRest, S::kReady},  // spindle and coolant did not become ready
     {S::kStarting, E::kFault, S::kFault},
 
     {S::kRunning, E::kDisable, S::kCanceling},
@@ -78,15 +78,15 @@ constexpr Transition kTransitions[]{
     {S::kResuming, E::kFault, S::kFault},
 
     {S::kCanceling, E::kDisable, S::kCanceling},
-    {S::kCanceling, E::kHold, S::kCanceling},  // the wheel is not lifted any farther
+    {S::kCanceling, E::kHold, S::kCanceling},  // stops lifting the wheel
     {S::kCanceling, E::kCancel, S::kCanceling},
     {S::kCanceling, E::kAtRest, S::kReady},
     {S::kCanceling, E::kFault, S::kFault},
 
-    {S::kFault, E::kDisable, S::kFault},  // its power is off
+    {S::kFault, E::kDisable, S::kFault},  // the power is already off
     {S::kFault, E::kReset, S::kDisabled},
 
-    // Each stops the lift on its way.
+    // Each of these stops the lift.
     {S::kLifting, E::kDisable, S::kLifting},
     {S::kLifting, E::kHold, S::kLifting},
     {S::kLifting, E::kCancel, S::kLifting},

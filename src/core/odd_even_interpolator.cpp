@@ -8,11 +8,11 @@ namespace flute_grinder {
 
 namespace {
 
-/// Solves y(x) = goal for a y that is nearly linear: chords of the slope at zero, until what is left is rounding.
-/// @param contraction upper bound of each correction over the one before.
+/// Solves y(x) = goal for a nearly linear y: iterates with the slope at zero until only rounding remains.
+/// @param contraction upper bound of the ratio of each correction to the previous one.
 template <typename Function>
 double solveNearlyLinear(double guess, double goal, double inverse_slope, double contraction, Function y) noexcept {
-  constexpr int max_iterations = 30;  // far more than any path takes that a job can have
+  constexpr int max_iterations = 30;  // far more than any path of a valid job takes
   double x = guess;
   for (int i = 0; i < max_iterations; ++i) {
     const double correction = (goal - y(x)) * inverse_slope;
@@ -66,13 +66,14 @@ OddEvenInterpolator::Increments OddEvenInterpolator::pair(double step_length) co
   const double x1 = l * t.cos;   // (8)
   const double ra1 = l * t.sin;  // (9)
   if (rule_ == EvenStepRule::kPublished) {
-    // (14) and (15), numerator and denominator divided by a^3 and a^2: defined for C = 0 and S = 0 too.
+    // (14) and (15), with numerator and denominator divided by a^3 and a^2: also defined for C = 0 and S = 0.
     const double p = curve_.b() * l * t.inverse_h;
     const double sigma = t.sin * t.sin;
     const double inverse = 1 / (3 - 2 * p * sigma * (3 - 4 * p));
     return {x1, ra1, x1 * (3 - 2 * p * p * sigma * (3 - 8 * p)) * inverse, ra1 * (3 - 2 * p * (3 - 4 * p)) * inverse};
   }
-  // The circle about the odd point meets the curve at t along and n across the tangent, expanded in arc length.
+  // Intersection of the circle about the odd point with the curve, at t along and n across the tangent, expanded in arc
+  // length.
   const double inverse_h3 = t.inverse_h * t.inverse_h * t.inverse_h;
   const double curvature = -slope_scale_ * curve_.b() * t.u * inverse_h3;
   const double curvature_rate = -slope_scale_ * curve_.b() * curve_.b() * t.u *
@@ -97,20 +98,20 @@ double OddEvenInterpolator::stepLengthForAdvance(double dx) const noexcept {
 }
 
 double OddEvenInterpolator::exactStepLength(double dx) const noexcept {
-  // Start, odd and even point make an isosceles triangle with one leg along the tangent.
+  // The start, odd and even points form an isosceles triangle with one leg along the tangent.
   const double ra = rotary_scale_ * curve_.delta(p0_.x, dx);
   const double projection = dx * tangent_.cos + ra * tangent_.sin;
   return projection == 0 ? 0 : (dx * dx + ra * ra) / (2 * projection);
 }
 
 double OddEvenInterpolator::intersectionX(double step_length, double guess) const noexcept {
-  // In place of the circle's own equation, which loses half of the digits.
+  // Used instead of the circle's own equation, which loses half of the digits.
   return solveNearlyLinear(guess, step_length, 2 * tangent_.cos, contraction(guess),
                            [&](double x) { return exactStepLength(x); });
 }
 
 double OddEvenInterpolator::contraction(double dx) const noexcept {
-  // The relative change of the slope over the pair, with room for the terms of higher order.
+  // The relative change of the slope over the pair, with a margin for higher-order terms.
   return std::min(1.0, 4 * std::abs(curve_.b() * dx) / tangent_.u);
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Symbols {
   const char* si;
   const char* shop;
-  double scale;  ///< SI value over shop value
+  double scale;  ///< SI value divided by shop value
 };
 
 using namespace units;

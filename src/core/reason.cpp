@@ -9,9 +9,9 @@ namespace flute_grinder::core {
 
 namespace {
 
-constexpr int kFieldDigits = 10;  ///< of a job's numbers, which are told as they were given
+constexpr int kFieldDigits = 10;  ///< for a job's numbers, so that they appear as entered
 
-/// Puts one reason in words.
+/// Converts a reason to words.
 class Writer {
  public:
   Writer(const Reason& reason, UnitSystem units) : r_(reason), units_(units) {}
@@ -70,7 +70,7 @@ class Writer {
     return " (at " + move + " of " + tooth + ", X = " + x() + ")";
   }
 
-  /// Whether place() stands behind what(), not within it.
+  /// Whether place() comes after what(), and not within it.
   bool placeAtEnd() const { return r_.kind != ReasonKind::kTolerance; }
 
   std::string others() const {

@@ -8,11 +8,11 @@ namespace flute_grinder {
 
 namespace {
 
-/// A shorter move is skipped: it is below the rounding of a position, and could make the scaled limits overflow.
+/// Shorter moves are skipped: they are below the rounding of a position, and could make the scaled limits overflow.
 /// [m], A [rad]
 constexpr double kNegligibleDistance = 1e-30;
 
-/// Bounds of a straight move in its parameter 0..1, such that every axis stays within its own.
+/// Limits of a straight move in its parameter 0..1 that keep every axis within its own limits.
 MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
   const Axes size = way.abs();
   return {(limits.max_velocity / size).minCoeff(), (limits.max_acceleration / size).minCoeff(),
@@ -118,7 +118,7 @@ bool SetpointStream::beginNext() noexcept {
         beginReturn();
         return true;
       }
-      // A straight move is begun again: from above it goes where it was to go.
+      // A straight move is restarted: from above, it moves to its original target.
       leg_ = Leg::kPath;
       if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
       return true;

@@ -15,7 +15,7 @@ namespace flute_grinder {
 
 namespace {
 
-/// Of HAL's own shared memory; hal_init() would create it if HAL does not run.
+/// Key of HAL's own shared memory; hal_init() would create the memory if HAL is not running.
 constexpr int kHalKey = 0x48414C32;
 constexpr int kLargestId = 1 << 16;
 constexpr const char* kProcessPin = "process";
@@ -65,8 +65,8 @@ HalComponent::~HalComponent() {
 }
 
 void HalComponent::removeDead(int reason) {
-  // HAL's library counts its components to know when to detach from HAL, and removing another program's component
-  // counts as well: a second component of our own balances it.
+  // HAL's library detaches from HAL when its count of components reaches 0, and removing another program's component
+  // decrements the count: a second component of our own compensates for this.
   helper_ = hal_init((name_ + '-' + std::to_string(getpid())).c_str());
   if (helper_ < 0) throw ParameterError("HAL takes no component '" + name_ + "': " + std::strerror(-reason));
   int other = 1;
@@ -114,7 +114,7 @@ void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_
   if (written && direction == HAL_OUT) {
     throw ParameterError("HAL's signal '" + name + "' has a writer already; allowed: none beside " + full);
   }
-  // A signal that the HAL file has only set takes the value of the first pin that is linked to it.
+  // A signal that was only set by the HAL file takes the value of the first pin linked to it.
   if (direction == HAL_IN) std::memcpy(*data, value, sizeof(*value));
   const int linked = hal_link(full.c_str(), name.c_str());
   if (linked < 0) throw ParameterError("HAL does not link pin '" + full + "': " + std::strerror(-linked));

@@ -13,7 +13,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kStreamerKey = 0x48535430;  ///< of streamer.0
+constexpr int kStreamerKey = 0x48535430;  ///< key of streamer.0
 constexpr const char* kTypes = "ffffu";
 constexpr int kColumns = kAxisCount + 1;
 
@@ -23,11 +23,11 @@ HalFifo::HalFifo(int component, int streamer, std::uint32_t depth) {
   const std::string name = "HAL's streamer." + std::to_string(streamer);
   const int key = kStreamerKey + streamer;
   const std::size_t size = requireHalMemory(key, name, std::string("load it: loadrt streamer cfg=") + kTypes);
-  // Attached in full beforehand, because hal_stream_attach() maps it in two steps and keeps the address of the first.
+  // Attached in full beforehand: hal_stream_attach() maps the memory in two steps and keeps the first address.
   const int memory = rtapi_shmem_new(key, component, size);
   if (memory < 0) throw ParameterError(name + " cannot be attached: " + std::strerror(-memory));
   const int attached = hal_stream_attach(&stream_, component, key, kTypes);
-  // The library compares only as many types as it is given.
+  // The library compares only as many types as the caller passes.
   if (attached < 0 || hal_stream_element_count(&stream_) != kColumns) {
     throw ParameterError(name + " has other columns; allowed: cfg=" + kTypes + " (X, Y, Z, A, number)");
   }

@@ -13,10 +13,10 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kResetCycles = 100;    ///< length of the reset pulse, so that every servo cycle and drive sees it
+constexpr int kResetCycles = 100;    ///< length of the reset pulse, so every servo cycle and drive sees it
 constexpr int kNapsPerCycle = 4;     ///< checks of the FIFO per period
-constexpr int kLongestWait = 10;     ///< periods after which a cycle begins even if HAL plays nothing
-constexpr double kRateError = 1e-3;  ///< relative, between HAL's thread and the control loop
+constexpr int kLongestWait = 10;     ///< periods after which a cycle starts even if HAL plays nothing
+constexpr double kRateError = 1e-3;  ///< relative difference allowed between HAL's thread and the control loop
 
 void nap(std::int64_t nanoseconds) {
   const timespec time{0, static_cast<long>(nanoseconds)};
@@ -32,7 +32,7 @@ bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
   const ParameterReader p(parameters, robot_hw_nh.getNamespace());
   const double control_rate =
       ParameterReader(root_parameters, root_nh.getNamespace()).number("control_rate", 10, 20000);
-  // Half of the loop's history, since a stalled HAL may let a few cycles begin without room in the FIFO.
+  // Half of the loop's history, because a stalled HAL may let a few cycles start while the FIFO is full.
   constexpr double most = kMaxCommandsWaiting / 2.0;
   buffer_ =
       static_cast<std::uint32_t>(std::lround(p.number("buffer", 2 / control_rate, most / control_rate) * control_rate));
@@ -79,7 +79,7 @@ void HalHardware::makePins() {
 }
 
 void HalHardware::checkServoThread(double control_rate) const {
-  // Each servo cycle plays one command: at another rate the axes would move faster or slower than planned.
+  // Each servo cycle plays one command; at any other rate the axes would move faster or slower than planned.
   const double rate = *pins_->servo_rate;
   if (std::abs(rate - control_rate) <= kRateError * control_rate) return;
   std::ostringstream text;
@@ -89,7 +89,7 @@ void HalHardware::checkServoThread(double control_rate) const {
 }
 
 void HalHardware::read(const ros::Time&, const ros::Duration&) {
-  // Read first: whatever has just switched the power off then shows in what is read next.
+  // Read before the other pins: whatever has just switched the power off is then visible in them.
   status_.enabled = *pins_->enabled;
   status_.emergency_stop = *pins_->emergency_stop;
   status_.underruns = static_cast<std::uint32_t>(*pins_->underruns);
@@ -119,7 +119,7 @@ void HalHardware::readJoints() {
 void HalHardware::readHoming() {
   const bool homing = *pins_->homing;
   if (homing_ && !homing) {
-    // Queued commands have the old reference: they must have left the FIFO before commands take effect again.
+    // Queued commands refer to the old reference: they must leave the FIFO before commands take effect again.
     settling_ = true;
     settled_ = sent_ + 1;
   }
@@ -166,7 +166,8 @@ void HalHardware::switchOff() {
 
 void HalHardware::switchOn() {
   if (*pins_->enabled) return;  // HAL has not switched off yet
-  // The first commands are queued before the power comes: the streamer's pins still show where a job was aborted.
+  // The first commands are queued before power comes on, because the streamer's pins still have the values at which a
+  // job was aborted.
   fifo_->drain();
   sent_ = *pins_->played;
   for (std::uint32_t i = 0; i < buffer_; ++i) send();

@@ -105,7 +105,7 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
   home_was_commanded_ = drive_command_.home;
   if (home_is_new) status_.homed = false;
   status_.homing = status_.enabled && drive_command_.home && (home_is_new || status_.homing);
-  // Homing shows in at least one reading, however short the distance.
+  // Homing is reported in at least one reading, even over a very short distance.
   if (!status_.enabled || home_is_new) return;
   const double stuck = motor_[failing_axis];
   if (status_.homing) {
@@ -120,7 +120,7 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
 }
 
 void SimulatedDrive::home(double dt) {
-  // One after the other, beginning with Y, which moves the wheel away from the work.
+  // One at a time, starting with Y, which moves the wheel away from the workpiece.
   for (const int i : {kY, kX, kZ, kA}) {
     const AxisModel& axis = model_[static_cast<std::size_t>(i)];
     const double distance = axis.home_position - motor_[i];

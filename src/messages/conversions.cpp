@@ -23,7 +23,7 @@ Axes axesOf(const Array& array) {
   return Eigen::Map<const Axes>(array.data());
 }
 
-/// The numbers and choices of a job or of a goal, whose members bear the same names.
+/// Copies the numbers and choices of a job or a goal; their members have the same names.
 template <typename From, typename To>
 void copyFields(const From& from, To& to) {
   visitJobFields([&](const JobField&, auto of) { of(to) = of(from); });
@@ -31,7 +31,7 @@ void copyFields(const From& from, To& to) {
       [&](const char*, int, auto of) { of(to) = static_cast<std::remove_reference_t<decltype(of(to))>>(of(from)); });
 }
 
-/// Statistics of the core or of a message, whose members bear the same names.
+/// Copies statistics between core and message; their members have the same names.
 template <typename From, typename To>
 To convertedStatistics(const From& from) {
   To to;

@@ -1,5 +1,5 @@
-// Holds the messages' constants to the tables of core's enums: the same values, by the same names in capitals, and no
-// others. There is nothing to run: it compiles, or does not.
+// Compares the messages' constants with the tables of core's enums: they must have the same values and the same names
+// in capitals, and there must be no others. All checks are made at compile time.
 
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/core/enum_table.h"
@@ -19,7 +19,7 @@ constexpr std::string_view kType = "uint8 ";
 constexpr bool isDigit(char c) { return c >= '0' && c <= '9'; }
 constexpr char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
 
-/// Takes the next line off a text.
+/// Removes the next line from a text and returns it.
 constexpr std::string_view takeLine(std::string_view& text) {
   const std::string_view line = text.substr(0, text.find('\n'));
   text.remove_prefix(line.size() < text.size() ? line.size() + 1 : line.size());
@@ -63,7 +63,7 @@ constexpr bool hasAllOf(std::string_view text) {
   return true;
 }
 
-/// Whether a message's constants are the values of these enums.
+/// Whether a message's constants match the values of these enums.
 template <typename... Enums>
 constexpr bool has(std::string_view text) {
   return (hasAllOf<Enums>(text) && ...) && countConstants(text) == (countOf<Enums>() + ...);

@@ -6,7 +6,7 @@ namespace flute_grinder {
 
 namespace {
 
-/// Holds the message's constants to the core's.
+/// Compares a constant of the message with core's.
 constexpr bool is(std::uint8_t constant, core::ReasonKind kind) { return constant == static_cast<std::uint8_t>(kind); }
 constexpr bool is(std::uint8_t constant, Unit unit) { return constant == static_cast<std::uint8_t>(unit); }
 
@@ -37,7 +37,7 @@ static_assert(is(Reason::DEVIATION_METRE, Unit::kDeviationMetre));
 static_assert(is(Reason::ROTARY_METRE_PER_RADIAN, Unit::kRotaryMetrePerRadian));
 static_assert(Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
 
-/// What both have of the same name and type.
+/// Copies the members that have the same name and type in both.
 template <typename From, typename To>
 To converted(const From& from) {
   To to;

@@ -10,14 +10,14 @@
 
 namespace flute_grinder {
 
-/// How far a job has come, by the setpoints that were written or that reached the axes.
+/// The progress of a job: the setpoints that were written, or those that reached the axes.
 struct JobTrack {
-  std::uint64_t job = 0;        ///< its number; 0 for none
-  std::uint64_t setpoints = 0;  ///< so far
+  std::uint64_t job = 0;        ///< number of the job; 0 for none
+  std::uint64_t setpoints = 0;  ///< count so far
   std::uint32_t strokes_ended_at = 0;
   Place place;
 
-  /// Adds the job's next setpoint.
+  /// Counts the job's next setpoint.
   void add(const Setpoint& p) noexcept {
     ++setpoints;
     place = {p.move_index, p.tooth, p.pass, p.move, p.position[kX], p.move_fraction};
@@ -26,7 +26,7 @@ struct JobTrack {
   }
 };
 
-/// The commands written in the last cycles, as many as a drive may buffer, each with the job's track. Real-time safe.
+/// The commands of the most recent cycles, as many as a drive may buffer, each with the job's progress. Real-time safe.
 class CommandHistory {
  public:
   struct Entry {
@@ -34,7 +34,7 @@ class CommandHistory {
     JobTrack track;
   };
 
-  /// Discards all commands, because the next ones do not continue them.
+  /// Discards all commands, because the next commands do not continue from them.
   void clear() noexcept { count_ = 0; }
 
   bool empty() const noexcept { return count_ == 0; }
@@ -45,8 +45,8 @@ class CommandHistory {
     count_ = std::min(count_ + 1, entries_.size());
   }
 
-  /// The command in effect: the last one that reached the axes, if `waiting` later ones are in the drive's buffer. The
-  /// history must not be empty.
+  /// The command in effect: the last one that reached the axes, given that `waiting` later ones are in the drive's
+  /// buffer. The history must not be empty.
   const Entry& inEffect(std::uint32_t waiting) const noexcept {
     const std::size_t back = 1 + std::min<std::size_t>(waiting, count_ - 1);
     return entries_[(next_ + entries_.size() - back) % entries_.size()];
@@ -54,7 +54,7 @@ class CommandHistory {
 
  private:
   std::array<Entry, kMaxCommandsWaiting + 1> entries_;  ///< a ring
-  std::size_t next_ = 0;                                ///< where the next entry goes
+  std::size_t next_ = 0;                                ///< position of the next entry
   std::size_t count_ = 0;
 };
 

@@ -22,38 +22,38 @@
 
 namespace flute_grinder {
 
-/// The one thread that owns the setpoint stream and the drive. Each cycle waits, reads the drive, checks what it
-/// reports, executes requests, computes the next setpoint, checks it, and writes it. The cycle does not allocate, lock,
-/// log, throw or call ROS. The loop alone decides the machine's state, so that no request can race with a fault; of the
-/// requests that arrive in one cycle, stops are executed last.
+/// The thread that owns the setpoint stream and the drive. Each cycle waits, reads the drive, checks its reports,
+/// executes requests, computes and checks the next setpoint, and writes it. The cycle does not allocate, lock, log,
+/// throw or call ROS. Only the loop changes the machine's state, so no request can race with a fault; of the requests
+/// that arrive in one cycle, stops are executed last.
 class ControlLoop : public RequestBox {
  public:
   /// @param hw the drive, initialised; must outlive the loop.
-  /// @param wheel as the program before this one left it.
+  /// @param wheel state of the wheel when the previous run of the program ended.
   /// @throw HardwareInterfaceException if the drive lacks an interface or a joint.
   /// @throw std::invalid_argument unless the limits of Y are finite and positive.
   ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel = {});
   ~ControlLoop();
 
-  /// Starts the thread, with real-time scheduling and locked memory where the system grants them.
+  /// Starts the thread, with real-time scheduling and locked memory if the system grants them.
   void startThread();
-  /// Ends the thread after its cycle; the drive is left without power.
+  /// Ends the thread after its current cycle; the drive is then without power.
   void stopThread();
 
-  /// The status of the newest cycle. For any thread; never waits.
+  /// The status of the most recent cycle. For any thread; never waits.
   LoopStatus status() const noexcept { return status_.load(); }
 
-  /// Sets the feed override of the running job and of the ones to come. Thread safe.
+  /// Sets the feed override for the running job and all later jobs. Thread safe.
   /// @param fraction 0 to kMaxFeedOverride.
-  /// @return false, and nothing changes, if it is out of that range.
+  /// @return false, and nothing changes, if the fraction is out of range.
   bool setFeedOverride(double fraction);
 
   /// Takes the oldest record; false if there is none. One consumer at a time.
   bool pop(CycleRecord& record) { return records_.pop(record); }
 
   /// One cycle without the wait. Real-time.
-  /// @param time of the cycle, for stamps.
-  /// @param period since the previous cycle, monotonic.
+  /// @param time time of the cycle, for stamps.
+  /// @param period time since the previous cycle, monotonic.
   void cycle(const ros::Time& time, const ros::Duration& period);
 
   bool realtimeScheduling() const { return realtime_scheduling_; }
@@ -107,7 +107,7 @@ class ControlLoop : public RequestBox {
   std::array<JointHandle, kAxisCount> joints_;
   DriveHandle drive_;
 
-  // The control thread's own.
+  // Used only by the control thread.
   MachineState state_ = MachineState::kDisabled;
   SetpointStream* stream_ = nullptr;
   LiftMove lift_;
@@ -116,10 +116,10 @@ class ControlLoop : public RequestBox {
   WheelWatch wheel_;
   Axes command_ = Axes::Zero();
   CommandHistory history_;
-  JobTrack written_;                ///< of the running job, or of the last one
-  bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer has no further command
-  bool may_lift_off_ = true;        ///< the job lifts the wheel once it has stopped for a cancel
-  bool power_off_next_ = false;     ///< once the axes rest
+  JobTrack written_;                ///< for the running job, or else the last one
+  bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer has no more commands
+  bool may_lift_off_ = true;        ///< after stopping for a cancel, the job lifts the wheel
+  bool power_off_next_ = false;     ///< once the axes are at rest
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
   double waited_ = 0;  ///< for power, the reference, or spindle and coolant [s]

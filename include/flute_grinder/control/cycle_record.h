@@ -10,27 +10,27 @@
 
 namespace flute_grinder {
 
-/// What happened in one cycle, for the other threads.
+/// The data of one cycle, for the other threads.
 struct CycleRecord {
-  double time = 0;    ///< since the epoch of ROS time, but monotonic [s]
+  double time = 0;    ///< time since the epoch of ROS time, but monotonic [s]
   double period = 0;  ///< since the previous cycle [s]
   MachineState state = MachineState::kDisabled;
   DriveStatus drive;
-  double feedback_age = 0;       ///< since the drive last delivered fresh positions [s]
+  double feedback_age = 0;       ///< time since the drive last delivered fresh positions [s]
   Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
   Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
   Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
-  /// The command that the positions should follow: an older one than `command` if the drive buffers [m], A [rad].
+  /// The command that the positions should follow; older than `command` if the drive buffers commands [m], A [rad].
   Axes command_in_effect = Axes::Zero();
   bool has_setpoint = false;
-  Setpoint setpoint;       ///< that was written, if there was one
-  std::uint64_t job = 0;   ///< number of the running job, or of the last one; 0 for a lift without a job
-  bool job_ended = false;  ///< the job's stream is no longer in use; carried over from a lost record to the next
+  Setpoint setpoint;       ///< the setpoint written, if there was one
+  std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a lift without a job
+  bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next record if this one is lost
   bool wheel_in_work = false;
-  LoopFault fault;                         ///< of the state kFault, or why the last job did not begin
-  Interlock interlock = Interlock::kNone;  ///< why the loop itself has held the job, until it is resumed
+  LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
+  Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed
   double feed_override = 1;                ///< fraction
-  std::uint64_t records_lost = 0;          ///< because the queue was full, since the loop started
+  std::uint64_t records_lost = 0;          ///< because the queue was full; counted since the loop started
 };
 
 }  // namespace flute_grinder

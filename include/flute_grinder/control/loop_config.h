@@ -9,13 +9,12 @@ namespace flute_grinder {
 struct LoopConfig {
   Machine machine;
   Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
-  double feedback_timeout = 0;          ///< longest time without fresh positions [s]
-  double enable_timeout = 0;            ///< longest time from the enable command to power [s]
-  double homing_timeout = 0;            ///< longest time that homing may take [s]
-  double spindle_timeout = 0;           ///< longest time until spindle and coolant are ready for a job [s]
-  double late_slow_down =
-      2;  ///< period from which on a cycle is late and the axes are brought up to speed again [periods]
-  double late_fault = 10;  ///< period from which on the machine stops [periods]
+  double feedback_timeout = 0;          ///< longest allowed time without fresh positions [s]
+  double enable_timeout = 0;            ///< longest allowed time from the enable command to power [s]
+  double homing_timeout = 0;            ///< longest allowed time for homing [s]
+  double spindle_timeout = 0;           ///< longest allowed time until spindle and coolant are ready for a job [s]
+  double late_slow_down = 2;  ///< cycle period from which the axes are slowed down, then accelerated again [periods]
+  double late_fault = 10;     ///< a cycle this long is late: the axes continue slowly, then accelerate again [periods]
 };
 
 }  // namespace flute_grinder

@@ -12,52 +12,52 @@
 
 namespace flute_grinder {
 
-/// Where the axes are in a job's program.
+/// The position of the axes in a job's program.
 struct Place {
   std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the interrupted move
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0
   MoveKind move = MoveKind::kLift;
   double x = 0;              ///< [m]
-  double move_fraction = 0;  ///< done of the program's move, 0..1; exactly 1 at its end
+  double move_fraction = 0;  ///< completed fraction of the program's move, 0..1; exactly 1 at its end
 };
 
-/// Whether the wheel stands in the work, and how far to lift it off.
+/// Whether the wheel is in the workpiece, and how far to lift it off.
 struct Wheel {
   bool in_work = false;
-  double clear_y = 0;  ///< Y at which it is clear of the last job's work [m]
-  double lift = 0;     ///< from the deepest place of that job to there [m]
+  double clear_y = 0;  ///< Y at which the wheel is clear of the last job's workpiece [m]
+  double lift = 0;     ///< distance from the deepest point of that job to clear_y [m]
 };
 
-/// How to lift the wheel off a program's work; the wheel is not in the work yet.
+/// The lift needed to clear the workpiece of a program; the wheel is not in the workpiece yet.
 Wheel wheelOf(const GrindProgram& program);
 
 /// How a job ended.
 enum class JobEnd : std::uint8_t {
-  kNone,      ///< it is running
-  kDone,      ///< at the end of its program
-  kCanceled,  ///< stopped on its path; the wheel is lifted off the work, unless a hold stopped that
+  kNone,      ///< the job is running
+  kDone,      ///< reached the end of its program
+  kCanceled,  ///< stopped on its path; the wheel is lifted off the workpiece unless a hold stopped the lift
   kFault,
 };
 
-/// The loop's state in one cycle. Its counts are complete even if cycles in between were not read.
+/// The loop's state in one cycle. Its counts stay correct even if a reader misses cycles.
 struct LoopStatus {
   std::uint64_t cycles = 0;  ///< since the start of the loop
   double time = 0;           ///< stamp of the cycle [s]
   MachineState state = MachineState::kDisabled;
   bool homed = false;
-  std::array<double, kAxisCount> command{};  ///< as written last [m], A [rad]
+  std::array<double, kAxisCount> command{};  ///< as last written [m], A [rad]
   double feed_override = 1;                  ///< fraction
   std::uint64_t jobs_started = 0;            ///< since the start of the loop
   std::uint64_t jobs_ended = 0;              ///< since the start of the loop
-  // Of the running job, or of the last one:
+  // For the running job, or else the last one:
   std::uint64_t setpoints_written = 0;
   JobEnd end = JobEnd::kNone;
-  LoopFault fault;  ///< why it ended, of JobEnd::kFault; kept until the next job starts
+  LoopFault fault;  ///< why the job ended, for JobEnd::kFault; kept until the next job starts
   Place place;      ///< of the last setpoint that reached the axes; a drive may buffer later ones
-  std::uint32_t strokes_ended_at =
-      0;  ///< 1 + move_index of the last stroke that the axes completed; 0 for none.
-          ///< Never decreases, although a retraction at the end of a stroke enters it again.
+  /// 1 + move_index of the last stroke that the axes completed; 0 for none. Never decreases, although a retraction at
+  /// the end of a stroke re-enters it.
+  std::uint32_t strokes_ended_at = 0;
   Wheel wheel;
 };
 static_assert(std::is_trivially_copyable_v<LoopStatus>);

@@ -7,11 +7,11 @@
 
 namespace flute_grinder {
 
-/// Reads the machine: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in ros_control;
-/// control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
-/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Every axis must
-/// have limits of position, velocity, acceleration and jerk, each given in full.
-/// @param urdf the robot description, XML.
+/// Reads the machine data: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in
+/// ros_control; control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
+/// homing_timeout, spindle_timeout, max_job_duration, late_cycle/slow_down and .../fault. Every axis must have complete
+/// limits of position, velocity, acceleration and jerk.
+/// @param urdf the robot description in XML.
 /// @param parameters the node's parameters.
 /// @throw ParameterError
 LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& parameters);

@@ -8,12 +8,12 @@
 
 namespace flute_grinder {
 
-/// One request at a time from one thread to the control loop, and its answer. Neither side ever waits for the other.
+/// Holds one request from one thread to the control loop, and its answer. Neither side ever waits for the other.
 template <typename Request>
 class RequestSlot {
  public:
   /// For the requesting thread.
-  /// @return false while the previous request is unanswered; an answer that nobody has read is dropped.
+  /// @return false while the previous request is unanswered; an unread answer is dropped.
   bool post(const Request& request) noexcept {
     const Stage stage = stage_.load(std::memory_order_acquire);
     if (stage == Stage::kPosted || stage == Stage::kTaken) return false;
@@ -21,7 +21,7 @@ class RequestSlot {
     stage_.store(Stage::kPosted, std::memory_order_release);
     return true;
   }
-  /// For the requesting thread: the answer, once.
+  /// For the requesting thread: returns the answer once.
   std::optional<Answer> reply() noexcept {
     if (stage_.load(std::memory_order_acquire) != Stage::kAnswered) return std::nullopt;
     const Answer answer = answer_;
@@ -29,13 +29,13 @@ class RequestSlot {
     return answer;
   }
 
-  /// For the loop: the posted request, once.
+  /// For the loop: returns the posted request once.
   std::optional<Request> take() noexcept {
     if (stage_.load(std::memory_order_acquire) != Stage::kPosted) return std::nullopt;
     stage_.store(Stage::kTaken, std::memory_order_relaxed);
     return request_;
   }
-  /// For the loop: answers the request that it took, in the same cycle or later.
+  /// For the loop: answers the request it took, in the same cycle or a later one.
   void answer(const Answer& answer) noexcept {
     answer_ = answer;
     stage_.store(Stage::kAnswered, std::memory_order_release);

@@ -9,8 +9,8 @@
 
 namespace flute_grinder {
 
-/// A value that one thread writes and any number of threads read consistently: store() never waits, load() retries
-/// while a store is in progress. Every word is atomic, so that no access is a data race. Real-time safe.
+/// A value that one thread writes and any number of threads read consistently. store() never waits; load() retries
+/// while a store is in progress. Every word is atomic, so there are no data races. Real-time safe.
 template <typename T>
 class SeqLock {
   static_assert(std::is_trivially_copyable_v<T>, "a torn copy must be harmless");
@@ -18,7 +18,7 @@ class SeqLock {
  public:
   SeqLock() noexcept { store(T{}); }
 
-  /// For one thread.
+  /// For one thread only.
   void store(const T& value) noexcept {
     Words words{};
     std::memcpy(words.data(), &value, sizeof value);

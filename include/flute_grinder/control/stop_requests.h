@@ -11,7 +11,7 @@
 namespace flute_grinder {
 
 /// Stop requests to the control loop, as bits of one word: none is refused because a queue is full, none is lost, and
-/// none waits for another request. A stop that is posted twice before the loop takes it counts once.
+/// none waits for another request. A stop posted twice before the loop takes it counts once.
 class StopRequests {
  public:
   static constexpr std::array<MachineEvent, 3> kStops{MachineEvent::kHold, MachineEvent::kCancel,
@@ -32,14 +32,14 @@ class StopRequests {
   void post(MachineEvent stop) noexcept { bits_.fetch_or(bit(stop)); }
 
   /// The same with an answer. For one thread at a time.
-  /// @return a ticket, with which to ask for the answer.
+  /// @return a ticket for reply().
   std::uint32_t postWithReply(MachineEvent stop) noexcept;
-  /// The answer to a ticket, once there is one. For the requesting thread.
+  /// The answer to a ticket, once available. For the requesting thread.
   std::optional<Answer> reply(MachineEvent stop, std::uint32_t ticket) const noexcept;
 
   /// For the loop: all stops posted since the last call.
   Taken take() noexcept { return Taken(bits_.exchange(0)); }
-  /// For the loop: answers a stop that wants a reply.
+  /// For the loop: answers a stop that requested a reply.
   void answer(const Answer& answer) noexcept;
 
  private:
@@ -53,7 +53,7 @@ class StopRequests {
   static constexpr std::uint32_t replyBit(MachineEvent stop) noexcept { return bit(stop) << kStops.size(); }
 
   std::atomic<std::uint32_t> bits_{0};
-  std::atomic<std::uint32_t> ticket_{0};                             ///< the newest
+  std::atomic<std::uint32_t> ticket_{0};                             ///< the latest ticket
   std::array<std::atomic<std::uint64_t>, kStops.size()> answers_{};  ///< ticket, state and refusal in one word
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "signal handlers post stops");
 };

@@ -6,29 +6,29 @@
 
 namespace flute_grinder {
 
-/// Tracks whether the wheel stands in the work. Real-time safe.
+/// Tracks whether the wheel is in the workpiece. Real-time safe.
 class WheelWatch {
  public:
-  /// @param wheel as the program before this one left it.
+  /// @param wheel state of the wheel when the previous run of the program ended.
   explicit WheelWatch(const Wheel& wheel) noexcept : wheel_(wheel) {}
 
   const Wheel& wheel() const noexcept { return wheel_; }
 
-  /// A job starts.
+  /// To be called when a job starts.
   void startJob(const Wheel& wheel) noexcept { wheel_ = wheel; }
-  /// The job has commanded the axes to this Y [m].
+  /// To be called when a job has commanded the axes to this Y [m].
   void followJob(double y) noexcept { wheel_.in_work = y < wheel_.clear_y; }
-  /// No job moves the axes, but the drive or a hand may have moved the wheel clear of the work.
-  /// @param y the position in the machine's reference [m].
+  /// To be called when no job moves the axes; the drive or an operator may have moved the wheel clear of the workpiece.
+  /// @param y position relative to the machine's reference [m].
   void observePosition(double y) noexcept {
     if (std::isfinite(y) && y >= wheel_.clear_y) wheel_.in_work = false;
   }
-  /// A lift without a job has come to its end.
+  /// To be called when a lift without a job is complete.
   void finishLift() noexcept { wheel_.in_work = false; }
 
-  /// Y up to which to lift the wheel [m].
-  /// @param homed whether Y refers to the machine's reference; without it only the distance of the lift is known.
-  /// @param y where the wheel stands [m].
+  /// Target Y for lifting the wheel [m].
+  /// @param homed whether Y refers to the machine's reference; otherwise only the distance of the lift is known.
+  /// @param y current Y of the wheel [m].
   double liftTarget(bool homed, double y) const noexcept { return homed ? wheel_.clear_y : y + wheel_.lift; }
 
  private:

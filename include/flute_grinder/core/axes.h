@@ -16,13 +16,14 @@ enum Axis : int {
 
 constexpr int kAxisCount = 4;
 
-/// One number per axis. Unaligned, so that it can stand in messages, rings and containers without special allocators.
+/// One number per axis. Unaligned, so that messages, ring buffers and containers can hold it without special
+/// allocators.
 using Axes = Eigen::Array<double, kAxisCount, 1, Eigen::DontAlign>;
 
 /// The joint names of the axes, as in the URDF.
 constexpr std::array<const char*, kAxisCount> kJointNames{"axis_x", "axis_y", "axis_z", "axis_a"};
 
-/// The unit of an axis' position, for messages.
+/// The unit of an axis position, for messages.
 constexpr const char* axisUnit(int axis) { return axis == kA ? "rad" : "m"; }
 
 }  // namespace flute_grinder

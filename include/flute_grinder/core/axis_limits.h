@@ -4,10 +4,10 @@
 
 namespace flute_grinder {
 
-/// Bounds of the parameters of a machine, in SI units; far beyond any real machine.
+/// Bounds for the machine's parameters, in SI units; far beyond any real machine.
 constexpr double kSmallestFigure = 1e-9, kLargestFigure = 1e9;
 
-/// The limits of every axis.
+/// The limits of all axes.
 struct AxisLimits {
   Axes min_position = Axes::Zero();      ///< [m], A [rad]
   Axes max_position = Axes::Zero();      ///< [m], A [rad]
@@ -16,11 +16,11 @@ struct AxisLimits {
   Axes max_jerk = Axes::Zero();          ///< [m/s^3], A [rad/s^3]
 };
 
-/// What planning a job needs to know about the machine.
+/// The machine data needed to plan a job.
 struct Machine {
   AxisLimits limits;
   double period = 0;                ///< control cycle T [s]
-  Axes park = Axes::Zero();         ///< position at the end of a job, clear of the work [m], A [rad]
+  Axes park = Axes::Zero();         ///< position at the end of a job, clear of the workpiece [m], A [rad]
   double max_job_duration = 86400;  ///< longest job accepted [s]
 };
 

@@ -7,11 +7,11 @@
 #include <string_view>
 
 /// @file
-/// The values of an enum with their names, and whatever else is known of each: one table beside the enum, with a row
-/// for every value in order, which `rowsOf` of the enum gives. Nothing else lists the values.
+/// The values of an enum, their names and other properties: one table beside the enum, with a row for every value in
+/// order. `rowsOf` of the enum returns the table. The values are listed nowhere else.
 namespace flute_grinder {
 
-/// A row of a table that has names alone; others derive from it.
+/// A table row with only a name; other row types derive from it.
 template <typename Enum>
 struct EnumRow {
   Enum value{};
@@ -26,7 +26,7 @@ constexpr bool isInOrder(const Row (&rows)[N]) noexcept {
   return true;
 }
 
-/// For values that come from outside and are not in the table: its members' defaults, and the name "unknown".
+/// The row for values from outside that are not in the table: default members, and the name "unknown".
 template <typename Row>
 inline constexpr Row kUnknownRow{};
 
@@ -39,7 +39,7 @@ constexpr const auto& rowOf(Enum value) noexcept {
   return i < std::size(rows) ? rows[i] : kUnknownRow<std::decay_t<decltype(rows[0])>>;
 }
 
-/// How many values an enum has.
+/// The number of values of an enum.
 template <typename Enum>
 constexpr int countOf() noexcept {
   return static_cast<int>(std::size(rowsOf(Enum{})));
@@ -51,7 +51,7 @@ constexpr auto toString(Enum value) noexcept -> decltype(rowsOf(value)->name) {
   return rowOf(value).name;
 }
 
-/// The value of a name; nothing where it is none.
+/// The value with this name; std::nullopt if there is none.
 template <typename Enum>
 constexpr std::optional<Enum> valueOf(std::string_view name) noexcept {
   for (const auto& row : rowsOf(Enum{})) {
@@ -60,7 +60,7 @@ constexpr std::optional<Enum> valueOf(std::string_view name) noexcept {
   return std::nullopt;
 }
 
-/// The names of those values that a condition holds for, e.g. "published, third_order, exact" of all.
+/// The names of the values that satisfy a condition, separated by commas, e.g. "published, third_order, exact".
 template <typename Enum, typename Condition>
 std::string namesOf(Condition condition) {
   std::string names;

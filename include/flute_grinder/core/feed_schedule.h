@@ -10,62 +10,62 @@
 
 namespace flute_grinder {
 
-constexpr double kMaxFeedOverride = 1.2;  ///< the fastest that an operator may ask for, of the job's feed
+constexpr double kMaxFeedOverride = 1.2;  ///< largest feed override, as a fraction of the job's feed
 
 namespace core {
 
-/// What holds the feed below the one asked for, and where along the stroke.
+/// What limits the feed to less than the requested feed, and where along the stroke.
 struct FeedLimit {
-  std::string cause;  ///< e.g. "axis_a velocity"; causeText() has it for the operator
-  double from_x = 0;  ///< first in the direction of the stroke [m]
+  std::string cause;  ///< e.g. "axis_a velocity"; causeText() converts it for the operator
+  double from_x = 0;  ///< the end reached first in the direction of the stroke [m]
   double to_x = 0;    ///< [m]
 };
 
 }  // namespace core
 
-/// Where along a stroke the feed must be cut so that no axis exceeds a limit, and what the feed law may do there.
+/// Where along a stroke the feed must be reduced so that no axis exceeds a limit, and the limits of the feed law there.
 ///
-/// A constant surface feed is a constant dX/dt = v. All that A asks for at that speed - velocity k v/u, acceleration
-/// k b v^2/u^2, jerk 2 k b^2 v^3/u^3 - depends on v/u alone, so that A bounds the speed by c u with one constant c: at
-/// the thin end of a cone the feed is cut in proportion to the radius and A turns evenly, elsewhere X goes evenly, and
-/// in between a blend keeps the jerk bounded. The schedule is a parameter s along the stroke for which both is
-/// "evenly": a feed law with constant limits in s obeys all limits of all axes, slows down ahead of a thin end by
-/// itself, and may be stopped and slowed anywhere.
+/// A constant surface feed is a constant dX/dt = v. At that speed the demands on A - velocity k v/u, acceleration k b
+/// v^2/u^2, jerk 2 k b^2 v^3/u^3 - depend only on v/u, so A limits the speed to c u with a single constant c. At the
+/// thin end of a cone the feed is therefore reduced in proportion to the radius, and A turns at constant speed;
+/// elsewhere X moves at constant speed; a blend between the two keeps the jerk bounded. The schedule is a parameter s
+/// along the stroke that advances at constant speed in both cases. A feed law with constant limits in s obeys all
+/// limits of all axes, slows down ahead of a thin end without further measures, and can be stopped or slowed anywhere.
 class FeedSchedule {
  public:
-  /// What a stroke asks for.
+  /// The requested stroke.
   struct Stroke {
     double from = 0;          ///< X at the start [m]
-    double to = 0;            ///< X at the end, on either side of the start [m]
+    double to = 0;            ///< X at the end, before or after the start [m]
     double surface_feed = 0;  ///< along the cutting edge [m/s]
-    double tolerance = 0;     ///< largest deviation at the cutter's surface [m]
+    double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
   };
 
-  /// @param cutter the cutter, whose curve exists over the whole stroke.
+  /// @param cutter the cutter; its curve must exist over the whole stroke.
   /// @param stroke the stroke.
   /// @param machine limits and control period.
   FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine);
 
-  /// Length of the stroke in s [m]: the travel in X, longer where the feed is cut.
+  /// Length of the stroke in s [m]: equal to the travel in X, or longer if the feed is reduced.
   double length() const noexcept { return length_; }
 
-  /// Bounds of the motion along s; the velocity is that of the job's feed times as much of kMaxFeedOverride as the axes
-  /// allow, which is none where A holds the feed back [m/s].
+  /// Limits of the motion along s. The velocity limit is the speed at the job's feed, times as much of kMaxFeedOverride
+  /// as the axes allow; no override above 1 is possible if A limits the feed [m/s].
   const MotionLimits& limits() const noexcept { return limits_; }
 
-  /// Speed along s at the job's feed, which is the speed of X where A does not hold it back [m/s].
+  /// Speed along s at the job's feed; equals the speed of X where A does not limit it [m/s].
   double feedSpeed() const noexcept { return feed_speed_; }
 
-  /// Way that it takes to reach the job's feed from rest. [m of s]
+  /// Distance along s needed to reach the job's feed from rest [m].
   double runUp() const noexcept;
 
-  /// X at s; exactly the stroke's end at s = length(). Real-time safe. [m]
+  /// X at s; exactly the end of the stroke at s = length(). Real-time safe. [m]
   double x(double s) const noexcept;
 
-  /// dX/dt over ds/dt at s: 1 where the feed is not cut for A. Real-time safe.
+  /// (dX/dt) / (ds/dt) at s: 1 where A does not reduce the feed. Real-time safe.
   double rate(double s) const noexcept;
 
-  /// What holds the feed below the one asked for; empty where nothing does.
+  /// What limits the feed to less than the requested feed; empty if nothing does.
   const std::vector<core::FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
 
  private:
@@ -74,21 +74,21 @@ class FeedSchedule {
   void placeOnCone(const LogCurve& curve);
 
   double parameterOf(double xi) const noexcept;  ///< inverse of distance()
-  double distance(double q) const noexcept;      ///< toward the thick end, from where the blend starts [m]
-  double slope(double q) const noexcept;         ///< its derivative
+  double distance(double q) const noexcept;      ///< from the start of the blend toward the thick end [m]
+  double slope(double q) const noexcept;         ///< derivative of distance()
 
   // Speeds: v = min(speed_, speed_per_radius_ * u).
   double feed_speed_ = 0;        ///< dX/dt at the job's feed, where A does not limit it [m/s]
-  double speed_ = 0;             ///< the same at the largest override [m/s]
+  double speed_ = 0;             ///< as feed_speed_, at the largest override [m/s]
   double speed_per_radius_ = 0;  ///< c [m/s]
   double tan_cone_ = 0;
   double sin_rake_ = 0;
   std::vector<core::FeedLimit> feed_limits_;
 
-  // The parameter q of the blend: cut below 0, blend from 0 to blend_, full feed above.
-  double beta_ = 0;        ///< relative growth of the speed per parameter where it is cut [1/m]
-  double blend_ = 0;       ///< [m]
-  double blend_rate_ = 1;  ///< rate at the blend's start
+  // The blend's parameter q: reduced feed below 0, blend from 0 to blend_, full feed above.
+  double beta_ = 0;        ///< relative growth of the speed per unit of q where the feed is reduced [1/m]
+  double blend_ = 0;       ///< length of the blend [m]
+  double blend_rate_ = 1;  ///< rate at the start of the blend
 
   MotionLimits limits_;
   double length_ = 0;

@@ -11,9 +11,9 @@
 
 namespace flute_grinder {
 
-/// In which order teeth and passes follow one another.
+/// The order of teeth and passes.
 enum class GrindOrder { kToothMajor, kPassMajor };
-/// Which way the strokes go.
+/// The direction of the strokes.
 enum class StrokeDirection { kFromEnd, kToEnd };
 
 /// With the names used in job files.
@@ -30,20 +30,20 @@ constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
 
 /// How the flutes are ground.
 struct GrindProcess {
-  double feed = 0;              ///< along the cutting edge, and of the infeed [m/s]
+  double feed = 0;              ///< along the cutting edge, and during infeed [m/s]
   double depth = 0;             ///< flute depth, radial [m]
   double infeed = 0;            ///< per pass; the last may be smaller [m]
-  double finish_infeed = 0;     ///< of one finishing pass at the end; 0 for none [m]
-  int spark_out = 0;            ///< passes without infeed after the last
-  double clearance = 0;         ///< between wheel and work for moves outside the cut [m]
+  double finish_infeed = 0;     ///< of a single finishing pass at the end; 0 for none [m]
+  int spark_out = 0;            ///< number of passes without infeed at the end
+  double clearance = 0;         ///< between wheel and workpiece, for moves outside the cut [m]
   double overtravel_end = 0;    ///< of the stroke beyond the small end, X < 0 [m]
-  double overtravel_shank = 0;  ///< of the stroke beyond the flute on the shank's side [m]
+  double overtravel_shank = 0;  ///< of the stroke beyond the flute on the shank side [m]
   GrindOrder order = GrindOrder::kToothMajor;
   StrokeDirection direction = StrokeDirection::kFromEnd;
   double wheel_diameter = 0;       ///< when new [m]
   double wheel_width = 0;          ///< [m]
-  double wheel_wear = 0;           ///< of the wheel's radius since Y was set; taken up by Y [m]
-  double wheel_wear_per_pass = 0;  ///< what each pass of any tooth adds to that; taken up before the next pass [m]
+  double wheel_wear = 0;           ///< of the wheel's radius since Y was set; compensated in Y [m]
+  double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
 };
 
 /// A pass of a tooth.
@@ -55,35 +55,35 @@ struct ToothPass {
 /// How the flutes are interpolated.
 struct GrindInterpolation {
   EvenStepRule even_step = EvenStepRule::kPublished;
-  double tolerance = 0;     ///< largest deviation at the cutter's surface [m]
-  double rotary_scale = 0;  ///< what one radian of A counts for in the step length [m/rad]
+  double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
+  double rotary_scale = 0;  ///< step length equivalent to one radian of A [m/rad]
 };
 
-/// All that describes a job, in SI, the same whether it came from a file or from a goal.
+/// The complete data of a job in SI units, the same for a job from a file or from a goal.
 struct GrindJob {
   CutterGeometry cutter;
-  std::vector<double> tooth_angles;  ///< of every tooth, from 0, ascending, below a full turn [rad]
+  std::vector<double> tooth_angles;  ///< of every tooth, from 0, ascending, below one full turn [rad]
   GrindProcess process;
   GrindInterpolation interpolation;
 };
 
-/// The tool for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
+/// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 
 constexpr int kMaxTeeth = 64;
 constexpr int kMaxSparkOut = 100;
-constexpr int kMaxPasses = 10000;         ///< of a tooth
+constexpr int kMaxPasses = 10000;         ///< per tooth
 constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
-constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest feed that is ground with [m/s]
+constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 
-/// Checks all numbers of a job, each for itself and against the others.
-/// @return one reason for each that is not allowed; empty for a good job.
+/// Checks all numbers of a job, individually and against each other.
+/// @return one reason for each number that is not allowed; empty if the job is valid.
 std::vector<core::Reason> validate(const GrindJob& job);
 
-/// The depth of every pass, first to last: infeed steps, the finishing pass, spark-out. [m]
+/// The depth of every pass in order: infeed steps, the finishing pass, spark-out. [m]
 std::vector<double> passDepths(const GrindProcess& process);
 
-/// The passes of all teeth in the order in which they are ground.
+/// The passes of all teeth, in grinding order.
 std::vector<ToothPass> passOrder(const GrindJob& job);
 
 }  // namespace flute_grinder

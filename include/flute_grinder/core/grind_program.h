@@ -10,7 +10,7 @@
 
 namespace flute_grinder {
 
-/// One move of a job, from where the one before ended.
+/// One move of a job, from the end of the previous move.
 struct Move {
   MoveKind kind = MoveKind::kLift;
   std::uint16_t tooth = 0;
@@ -18,17 +18,17 @@ struct Move {
   Axes to = Axes::Zero();  ///< [m], A [rad]
 };
 
-/// The ordered moves of all teeth and passes of a job. First up to the park position's height if the wheel stands
-/// lower; then for each pass A is indexed, the wheel runs in above the start, comes down to the clearance, plunges at
-/// feed, makes its stroke with overtravel, and retracts radially; last it returns to the park position. The wheel's
-/// wear is taken up by the plunge, and so never within a pass.
+/// The ordered moves of all teeth and passes of a job. If the wheel is lower than the park position, it first rises to
+/// that height. Then, for each pass: A is indexed, the wheel moves to above the start, descends to the clearance,
+/// plunges at feed, makes its stroke with overtravel, and retracts radially. At the end the wheel returns to the park
+/// position. The plunge compensates for wheel wear, so the compensation never changes within a pass.
 class GrindProgram {
  public:
   /// @param job a job that validate() accepts.
-  /// @param machine what it is to run on.
-  /// @param start where the axes stand [m], A [rad].
+  /// @param machine the machine that runs the job.
+  /// @param start the position of the axes at the start [m], A [rad].
   /// @param first first pass to grind.
-  /// @throw std::invalid_argument if `first` is not a pass of the job, or where the feed would have to be cut below
+  /// @throw std::invalid_argument if `first` is not a pass of the job, or if the feed would have to be reduced below
   ///        kMinFeed.
   GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
 
@@ -38,12 +38,12 @@ class GrindProgram {
   const Axes& start() const noexcept { return start_; }
   const std::vector<Move>& moves() const noexcept { return moves_; }
 
-  /// The stroke's way through the feed, the same for all teeth and passes.
+  /// The feed schedule of the stroke, the same for all teeth and passes.
   const FeedSchedule& schedule() const noexcept { return schedule_; }
   double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
   double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
 
-  /// Y at which the wheel is clear of the whole stroke [m].
+  /// Y at which the wheel is clear of the workpiece over the whole stroke [m].
   double clearanceHeight() const noexcept { return clearance_y_; }
 
  private:

@@ -7,22 +7,22 @@
 
 namespace flute_grinder {
 
-/// One number of a job: its names, its unit and its range. The job file, the check and the conversion to a goal go by
-/// the table of these.
+/// One number of a job: its names, its unit and its range. The job file, the checks and the conversion to a goal all
+/// use the table of these fields.
 struct JobField {
   const char* path;      ///< in messages, e.g. "process.wheel_diameter"
   const char* file_key;  ///< in a job file, e.g. "process.wheel.diameter_mm"
   Unit unit;
-  double min, max;        ///< allowed, in shop units, both included
-  bool optional = false;  ///< 0 where a job file leaves it out
+  double min, max;        ///< allowed range in shop units, inclusive
+  bool optional = false;  ///< whether a job file may omit it; it is then 0
 
   Quantity low() const { return {min * shopScale(unit), unit}; }
   Quantity high() const { return {max * shopScale(unit), unit}; }
 };
 
-/// Visits every number of a job but the teeth and the choices.
-/// @param visit called with each JobField and a function that returns the number of a GrindJob or of a GrindGoal, whose
-///        members bear the same names.
+/// Visits every number of a job except the tooth angles and the choices.
+/// @param visit called with each JobField and a function that returns the field's number from a GrindJob or a
+///        GrindGoal, whose members have the same names.
 template <typename Visit>
 void visitJobFields(const Visit& visit) {
   using F = JobField;
@@ -52,7 +52,7 @@ void visitJobFields(const Visit& visit) {
 }
 
 /// Visits the choices and counts of a job, which have other types in a goal.
-/// @param visit called with the path, the largest value allowed, and a function as that of visitJobFields().
+/// @param visit called with the path, the largest allowed value, and a function like that of visitJobFields().
 template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off
@@ -63,7 +63,7 @@ void visitJobChoices(const Visit& visit) {
   // clang-format on
 }
 
-/// The name of a field as its reader knows it: the path, or the operator's job file's key.
+/// The name of a field for the reader of a message: its path, or its key in the job file for the operator.
 std::string fieldName(const std::string& path, UnitSystem units);
 
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@ namespace flute_grinder {
 
 namespace core {
 
-/// Statistics of the setpoints of a job.
+/// Statistics of a job's setpoints.
 struct PathStatistics {
   std::uint64_t setpoints = 0;
   double duration = 0;                                 ///< [s]
@@ -21,50 +21,50 @@ struct PathStatistics {
   double max_odd_error = 0;                            ///< |theory - commanded| of A at odd points [rad]
   double max_even_error = 0;                           ///< the same at even points [rad]
   double max_deviation = 0;                            ///< normal to the helix at the cutter's surface [m]
-  double min_feed = 0, max_feed = 0;                   ///< pair by pair while at feed; 0 where it never is [m/s]
+  double min_feed = 0, max_feed = 0;                   ///< for each pair while at feed; 0 if never at feed [m/s]
   Axes max_velocity = Axes::Zero();                    ///< [m/s], A [rad/s]
   Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
   Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
-  Axes ripple_acceleration = Axes::Zero();             ///< over single cycles: the odd-even steps' [m/s^2], A [rad/s^2]
-  std::vector<FeedLimit> feed_limits;                  ///< what holds the feed below the one asked for, and where
+  Axes ripple_acceleration = Axes::Zero();  ///< over single cycles, from the odd-even steps [m/s^2], A [rad/s^2]
+  std::vector<FeedLimit> feed_limits;       ///< what limits the feed, and where
 };
 
 }  // namespace core
 
-/// Why a plan is refused.
+/// Why a plan was refused.
 enum class PlanFault {
   kNone,
   kInvalidJob,
   kLimit,
   kTolerance,
   kTooLong,  ///< longer than Machine::max_job_duration
-  kGivenUp,  ///< by the watch
+  kGivenUp,  ///< because PlanWatch returned false
 };
 
-/// Watches a plan that is being made, every millisecond or so.
-/// @param done part of the job that is generated and checked, 0..1.
-/// @return false to give the plan up.
+/// Called about every millisecond while a plan is computed.
+/// @param done fraction of the job that has been generated and checked, 0..1.
+/// @return false to give up planning.
 using PlanWatch = std::function<bool(double done)>;
 
 /// A job that was generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
-  std::vector<core::Reason> reasons;  ///< why not, one for each field, axis and kind of limit
+  std::vector<core::Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
   core::PathStatistics statistics;
-  std::vector<std::uint64_t> move_ends;         ///< last cycle of every move of the program
-  std::shared_ptr<const GrindProgram> program;  ///< null where the job's numbers are refused
+  std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
+  std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers were refused
 
   bool good() const { return fault == PlanFault::kNone; }
 };
 
-/// Generates and checks every setpoint of a job, just as the machine would get them, up to the machine's
-/// max_job_duration. Whatever the job and the machine, the answer is a good plan or one with reasons.
+/// Generates and checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
+/// max_job_duration. For any job and machine, the result is either a good plan or one with reasons.
 /// @param job the job; its numbers are checked too.
-/// @param machine what it is to run on.
-/// @param start where the axes stand [m], A [rad].
+/// @param machine the machine that runs the job.
+/// @param start the position of the axes at the start [m], A [rad].
 /// @param first first pass to grind.
-/// @param visit called with every setpoint, if given; all of them are finite.
-/// @param watch may give the plan up, if given.
+/// @param visit if given, called with every setpoint; all of them are finite.
+/// @param watch if given, may make the planner give up.
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 

@@ -9,55 +9,55 @@
 
 namespace flute_grinder {
 
-/// What a limit bounds.
+/// The quantity that a limit applies to.
 enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFinite };
 
-/// A setpoint that an axis may not follow.
+/// A setpoint that exceeds a limit of an axis.
 struct LimitViolation {
   int axis = 0;
   LimitedQuantity quantity = LimitedQuantity::kPosition;
   double value = 0;
   double limit = 0;
   std::uint64_t cycle = 0;
-  double x = 0;  ///< where along the cutter [m]
+  double x = 0;  ///< position along the cutter [m]
   MoveKind move = MoveKind::kLift;
   std::uint16_t tooth = 0;  ///< from 0
   std::uint16_t pass = 0;   ///< from 0
 };
 
-/// A violation as a reason. Not real-time safe.
+/// Converts a violation to a reason. Not real-time safe.
 core::Reason reasonOf(const LimitViolation& violation);
 
-/// Checks setpoints, one after another, against the axes' limits: position and velocity at every one, acceleration and
-/// jerk at the pair ends, by differences over two cycles, since within a pair they are those of the odd-even steps and
-/// not of the path. Excess due to rounding is ignored. Real-time safe.
+/// Checks consecutive setpoints against the axis limits. Position and velocity are checked at every setpoint;
+/// acceleration and jerk only at pair ends, from differences over two cycles, because within a pair they come from the
+/// odd-even steps and not from the path. Excess due to rounding is ignored. Real-time safe.
 class LimitCheck {
  public:
   /// @param limits the axes' limits.
   /// @param period control cycle [s].
   LimitCheck(const AxisLimits& limits, double period) noexcept;
 
-  /// Forgets the past: the next setpoint is taken as preceded by rest.
+  /// Discards the history: the axes are assumed to be at rest before the next setpoint.
   void restart() noexcept {
     seen_ = 0;
     slow_down_ = 1;
   }
 
-  /// The axes stood for a while, and go on with a factor of their speed: FeedLaw::slowDown(). What is known of the past
-  /// is taken to have gone that slowly too, from the next pair on.
-  /// @param factor above 0, below 1; others are not taken.
+  /// For axes that stood still for a while and continue at a fraction of their speed, see FeedLaw::slowDown(). The
+  /// stored history is scaled to the same speed, from the next pair on.
+  /// @param factor above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }
 
-  /// @return the first violation, if the setpoint is one; violations() has all.
+  /// @return the first violation of the setpoint, if there is one; begin() and end() give all of them.
   std::optional<LimitViolation> check(const Setpoint& setpoint) noexcept;
 
   /// All violations of the last setpoint checked.
   const LimitViolation* begin() const noexcept { return violations_.data(); }
   const LimitViolation* end() const noexcept { return violations_.data() + violation_count_; }
 
-  /// Of the last setpoint checked, or pair end: what it asked of the axes.
+  /// The velocity at the last setpoint checked; acceleration and jerk at the last pair end.
   const Axes& velocity() const noexcept { return velocity_; }
   const Axes& acceleration() const noexcept { return acceleration_; }
   const Axes& jerk() const noexcept { return jerk_; }
@@ -73,9 +73,9 @@ class LimitCheck {
   AxisLimits limits_;
   double inverse_period_;
   std::uint64_t seen_ = 0;
-  double slow_down_ = 1;  ///< of the next pair
+  double slow_down_ = 1;  ///< for the next pair
   Axes last_ = Axes::Zero();
-  Axes largest_ = Axes::Zero();  ///< position in size
+  Axes largest_ = Axes::Zero();  ///< largest magnitude of the position so far
   Axes ends_[3];                 ///< the last pair ends, newest first
   Axes velocity_ = Axes::Zero();
   Axes acceleration_ = Axes::Zero();

@@ -12,17 +12,17 @@ namespace flute_grinder {
 enum class MachineState : std::uint8_t {
   kDisabled,    ///< power off; commands follow the positions
   kReady,       ///< power on, at rest
-  kHoming,      ///< the drive looks for the axes' reference
-  kStarting,    ///< a job waits for spindle and coolant
-  kRunning,     ///< a job moves the axes
+  kHoming,      ///< the drive is searching for the axes' reference
+  kStarting,    ///< a job is waiting for spindle and coolant
+  kRunning,     ///< a job is moving the axes
   kHolding,     ///< stopping on the path
-  kHeld,        ///< at rest in the midst of a job
-  kRetracting,  ///< lifting the wheel off the work
-  kRetracted,   ///< at rest in the midst of a job, the wheel off the work
-  kResuming,    ///< on the way back to the place where the path was left
+  kHeld,        ///< at rest in the middle of a job
+  kRetracting,  ///< lifting the wheel off the workpiece
+  kRetracted,   ///< at rest in the middle of a job, with the wheel off the workpiece
+  kResuming,    ///< returning to the point where the path was left
   kCanceling,   ///< stopping on the path and lifting the wheel, to end the job
   kFault,       ///< power off after a fault, until reset
-  kLifting,     ///< lifting the wheel off the work, without a job
+  kLifting,     ///< lifting the wheel off the workpiece, without a job
 };
 
 inline constexpr EnumRow<MachineState> kMachineStates[]{
@@ -36,8 +36,8 @@ inline constexpr EnumRow<MachineState> kMachineStates[]{
 };
 constexpr auto& rowsOf(MachineState) noexcept { return kMachineStates; }
 
-/// What may change the state: requests from outside, in the order in which people are offered them, and what the loop
-/// sees by itself.
+/// Events that may change the state: requests from outside, in the order in which they are offered to people, and
+/// events that the loop detects itself.
 enum class MachineEvent : std::uint8_t {
   kEnable,
   kDisable,
@@ -49,24 +49,24 @@ enum class MachineEvent : std::uint8_t {
   kResume,
   kCancel,
   kLift,
-  kDone,    ///< what the state waited for has come: the reference, spindle and coolant, the path
+  kDone,    ///< the state's task or wait is complete: reference found, spindle and coolant ready, end of the path
   kAtRest,  ///< the axes have come to rest
   kFault,
 };
 
-/// How an event gets to the machine.
+/// How an event reaches the state machine.
 enum class EventKind : std::uint8_t {
-  kSeen,     ///< the loop sees it by itself
+  kSeen,     ///< detected by the loop itself
   kTrigger,  ///< a request without arguments
   kStop,     ///< a request that stops the axes
-  kStart,    ///< a request that brings a job
+  kStart,    ///< a request that starts a job
 };
 
-/// A request's name is its sub-command of `grind` too.
+/// The name of a request is also its sub-command of `grind`.
 struct EventRow : EnumRow<MachineEvent> {
   EventKind kind = EventKind::kSeen;
-  const char* service = nullptr;  ///< of the node, in its own namespace; null for none
-  const char* help = "";          ///< what a request does, for people
+  const char* service = nullptr;  ///< name in the node's own namespace; null for none
+  const char* help = "";          ///< what the request does, for people
 };
 
 inline constexpr EventRow kMachineEvents[]{
@@ -93,23 +93,23 @@ constexpr auto& rowsOf(MachineEvent) noexcept { return kMachineEvents; }
 constexpr bool isRequest(MachineEvent event) noexcept { return rowOf(event).kind != EventKind::kSeen; }
 /// Whether an event is a request that stops the axes.
 constexpr bool isStop(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kStop; }
-/// Whether an event is a request that neither stops the axes nor brings a job.
+/// Whether an event is a request that neither stops the axes nor starts a job.
 constexpr bool isTrigger(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kTrigger; }
-/// The node's service for a request; null where there is none.
+/// The node's service for a request; null if there is none.
 constexpr const char* serviceOf(MachineEvent event) noexcept { return rowOf(event).service; }
 
-/// The state after an event, or nothing where the state does not allow it. Real-time safe.
+/// The state after an event; std::nullopt if the state does not allow the event. Real-time safe.
 std::optional<MachineState> after(MachineState state, MachineEvent event) noexcept;
 
-/// Whether the drive has power and the loop checks it.
+/// Whether the drive has power and the loop checks the drive.
 constexpr bool isPowered(MachineState state) noexcept {
   return state != MachineState::kDisabled && state != MachineState::kFault;
 }
 
-/// Whether a job is under way, which a cancel would end.
+/// Whether a job is in progress, so that a cancel would end it.
 bool isInJob(MachineState state) noexcept;
 
-/// Which requests a state allows, e.g. "disable, start".
+/// The requests that a state allows, e.g. "disable, start".
 std::string allowedIn(MachineState state);
 
 }  // namespace flute_grinder

@@ -5,11 +5,11 @@
 
 namespace flute_grinder {
 
-/// How the even step finds its way back to the curve.
+/// How the even step returns to the curve.
 enum class EvenStepRule {
-  kPublished,   ///< the paper's equations 14 and 15; its even-step error accumulates
+  kPublished,   ///< the paper's equations 14 and 15; the error of the even steps accumulates
   kThirdOrder,  ///< circle and curve expanded in arc length to third order; local error fourth order
-  kExact,       ///< the circle's intersection with the curve; even points on the curve to rounding
+  kExact,       ///< the circle's intersection with the curve; even points are on the curve except for rounding
 };
 
 /// With the names used in job files.
@@ -28,48 +28,48 @@ struct CurvePoint {
 
 /// The two points of one odd-even pair.
 struct OddEvenPair {
-  CurvePoint odd;   ///< on the tangent of the curve at the pair's start
-  CurvePoint even;  ///< back at the curve
+  CurvePoint odd;   ///< on the curve's tangent at the start of the pair
+  CurvePoint even;  ///< back on the curve
 };
 
 /// Jiang & Chen's odd-even steps third-order interpolation of the logarithmic curve (paper, section 3), with two more
-/// rules for the even step. Both steps of a pair have the same length in the metric sqrt(dX^2 + (rho dA)^2), where the
-/// rotary scale rho [m/rad] states what one radian counts for; the paper measures X in mm and A in rad, rho = 0.001.
-/// The length may change from pair to pair and may be negative, which goes backwards. Real-time safe.
+/// rules for the even step. Both steps of a pair have the same length in the metric sqrt(dX^2 + (rho dA)^2). The rotary
+/// scale rho [m/rad] is the length equivalent to one radian; the paper measures X in mm and A in rad, so rho = 0.001.
+/// The step length may change from pair to pair; a negative length moves backwards. Real-time safe.
 class OddEvenInterpolator {
  public:
   /// @param curve the curve.
   /// @param rotary_scale rho [m/rad], positive.
-  /// @param rule the even step's rule.
-  /// @param start_x where to start, on the curve [m]; the whole path must stay where curve.u() > 0.
+  /// @param rule the rule for the even step.
+  /// @param start_x X of the start, on the curve [m]; the whole path must stay where curve.u() > 0.
   OddEvenInterpolator(const LogCurve& curve, double rotary_scale, EvenStepRule rule, double start_x) noexcept;
 
-  /// Goes on by one pair.
-  /// @param step_length length of either step in the metric [m].
+  /// Advances by one pair.
+  /// @param step_length length of each step in the metric [m].
   OddEvenPair next(double step_length) noexcept;
 
-  /// Goes on by the pair that advances by `dx` [m] in X, to rounding.
+  /// Advances by the pair that moves `dx` [m] in X, to within rounding.
   OddEvenPair advance(double dx) noexcept;
 
   /// The last even point, or the start.
   const CurvePoint& position() const noexcept { return p0_; }
 
-  /// The step length whose next pair advances by `dx` [m] in X; solved to rounding.
+  /// The step length for which the next pair advances by `dx` [m] in X; solved to within rounding.
   double stepLengthForAdvance(double dx) const noexcept;
 
-  /// The largest step length at `x` whose odd point leaves the curve by at most `a_error` [rad] in A (leading order:
-  /// |k b| step^2 / (2 h^2), which is the paper's tangent deviation step^2 |kappa| / 2 seen along A). Infinite where
-  /// the curve is straight. [m]
+  /// The largest step length at `x` whose odd point deviates from the curve by at most `a_error` [rad] in A (leading
+  /// order: |k b| step^2 / (2 h^2), which is the paper's tangent deviation step^2 |kappa| / 2 measured along A).
+  /// Infinite where the curve is straight. [m]
   static double largestStepLength(const LogCurve& curve, double rotary_scale, double x, double a_error) noexcept;
 
  private:
-  /// Increments of the two steps from p0_. [m], rad counted in the metric [m]
+  /// Increments of the two steps from p0_. [m]; A is scaled to the metric [m]
   struct Increments {
     double x1, ra1;
     double x2, ra2;
   };
 
-  /// What a pair needs to know of the curve at its start.
+  /// The properties of the curve at the start of a pair.
   struct Tangent {
     double u, inverse_h, cos, sin;
   };

@@ -5,11 +5,11 @@
 
 namespace flute_grinder {
 
-/// The units of the quantities that people read: each is one unit in SI and one in the workshop.
+/// The units of quantities in texts. Each stands for one SI unit and one shop unit.
 enum class Unit : std::uint8_t {
   kNone,                  ///< a plain number
   kMetre,                 ///< mm
-  kMetrePerSecond,        ///< of an axis: mm/s
+  kMetrePerSecond,        ///< of an axis; mm/s
   kMetrePerSecond2,       ///< mm/s^2
   kMetrePerSecond3,       ///< mm/s^3
   kRadian,                ///< deg
@@ -18,12 +18,12 @@ enum class Unit : std::uint8_t {
   kRadianPerSecond3,      ///< deg/s^3
   kSecond,                ///< s
   kFeedMetrePerSecond,    ///< mm/min
-  kDeviationMetre,        ///< of the path, and its tolerance: um
+  kDeviationMetre,        ///< of the path deviation and its tolerance; um
   kRotaryMetrePerRadian,  ///< mm/rad
 };
 constexpr int kUnitCount = 13;
 
-/// For whom a text is written: SI and ROS' names for programs and logs; mm, deg, mm/min and a job file's keys for the
+/// The reader of a text: SI units and ROS names for programs and logs; mm, deg, mm/min and job-file keys for the
 /// operator.
 enum class UnitSystem { kSi, kShop };
 
@@ -34,19 +34,19 @@ struct Quantity {
 };
 
 /// A number and its unit as text, e.g. "0.301 m" or "301 mm".
-/// @param digits significant ones.
+/// @param digits number of significant digits.
 std::string text(const Quantity& quantity, UnitSystem units, int digits = 6);
 
 /// A range as text, e.g. "0.1 to 100 mm". @param to has the unit of `from`.
 std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int digits = 6);
 
-/// SI value over shop value, e.g. 0.001 for millimetres.
+/// SI value divided by shop value, e.g. 0.001 for millimetres.
 double shopScale(Unit unit) noexcept;
 
-/// The unit of an axis' position (derivative 0), velocity (1), acceleration (2) or jerk (3).
+/// The unit of an axis position (derivative 0), velocity (1), acceleration (2) or jerk (3).
 Unit unitOf(int axis, int derivative) noexcept;
 
-/// e.g. "axis_x", or "axis X" for the operator.
+/// The axis name: "axis_x", or "axis X" for the operator.
 std::string axisName(int axis, UnitSystem units);
 
 }  // namespace flute_grinder

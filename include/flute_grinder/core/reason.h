@@ -9,24 +9,24 @@
 #include <utility>
 #include <vector>
 
-/// Types of the core that messages repeat bear the message's name, in a namespace of their own.
+/// Core types that have a counterpart among the messages have the message's name, in a separate namespace.
 namespace flute_grinder::core {
 
-/// What a reason says.
+/// The kind of a reason.
 enum class ReasonKind : std::uint8_t {
   kNone,
   // Why a job cannot be ground.
-  kOutOfRange,  ///< of a field: beyond `low` to `limit`
-  kNotBelow,    ///< of a field: `limit` or more
-  kAbove,       ///< of a field: more than `limit`
-  kNotAllowed,  ///< of a field: other than `detail` says; with `limit` behind it, unless 0
-  kFeedTooLow,  ///< `detail` holds the feed below `limit`, the slowest that is ground with
-  kParkInWork,  ///< the park position is below `limit`, where the work begins
+  kOutOfRange,  ///< a field is outside `low` to `limit`
+  kNotBelow,    ///< a field is `limit` or more
+  kAbove,       ///< a field is more than `limit`
+  kNotAllowed,  ///< a field is not as `detail` requires; `limit` is appended to the text unless it is 0
+  kFeedTooLow,  ///< `detail` restricts the feed to less than `limit`, the slowest allowed feed
+  kParkInWork,  ///< the park position is below `limit`, in the workpiece
   kTolerance,   ///< the path deviates by more than `limit`
-  kTooLong,     ///< the job takes longer than `limit`; value 0: not known how long
-  kGivenUp,     ///< planning was
-  kOther,       ///< as `detail` says
-  // A setpoint that an axis may not follow.
+  kTooLong,     ///< the job takes longer than `limit`; value 0 if the duration is unknown
+  kGivenUp,     ///< planning was given up
+  kOther,       ///< see `detail`
+  // A setpoint that exceeds a limit of an axis.
   kPosition,
   kVelocity,
   kAcceleration,
@@ -42,34 +42,34 @@ enum class ReasonKind : std::uint8_t {
   kUnderrun,
   kLate,
   kHoming,
-  kInterlock,  ///< `detail`; the job did not begin within `limit`
+  kInterlock,  ///< see `detail`; the job did not begin within `limit`
   kCanceled,
 };
 constexpr int kReasonKindCount = static_cast<int>(ReasonKind::kCanceled) + 1;
 
-/// Why a job is refused or has ended, or why the machine stopped, as data; text() puts it in words.
+/// Why a job was refused or has ended, or why the machine stopped, as data; text() converts it to words.
 struct Reason {
   ReasonKind kind = ReasonKind::kNone;
-  int axis = 0;             ///< of kParkInWork, the limits, kInvalidFeedback and kFollowingError
-  std::string field;        ///< of the kinds of a field: its path, e.g. "process.feed"
-  std::string detail;       ///< what else there is to say, without a number that has a unit
+  int axis = 0;             ///< for kParkInWork, the limits, kInvalidFeedback and kFollowingError
+  std::string field;        ///< for the kinds about a field: its path, e.g. "process.feed"
+  std::string detail;       ///< further information, without numbers that have a unit
   Unit unit = Unit::kNone;  ///< of value, low and limit
-  double value = 0;         ///< what is wrong, in SI
-  double low = 0;           ///< lower end of the range allowed, of kOutOfRange
-  double limit = 0;         ///< what is allowed, or the upper end of it
-  bool has_place = false;   ///< whether the five that follow are known
+  double value = 0;         ///< the wrong value, in SI
+  double low = 0;           ///< lower end of the allowed range, for kOutOfRange
+  double limit = 0;         ///< the allowed value, or the upper end of the allowed range
+  bool has_place = false;   ///< whether the next five members are known
   MoveKind move = MoveKind::kLift;
   int tooth = 0;            ///< from 0
   int pass = 0;             ///< from 0
   double x = 0;             ///< along the cutter [m]
-  std::uint64_t cycle = 0;  ///< of the setpoint, of the limits and kTolerance; the last one written, of kUnderrun
-  std::uint64_t count = 0;  ///< setpoints of which this is the worst; passes of the job, of kTooLong
+  std::uint64_t cycle = 0;  ///< of the setpoint, for the limits and kTolerance; of the last one, for kUnderrun
+  std::uint64_t count = 0;  ///< number of setpoints of which this is the worst; passes of the job, for kTooLong
 };
 
-/// A reason in words. Teeth and passes count from 1 in them.
+/// A reason in words, in which teeth and passes count from 1.
 std::string text(const Reason& reason, UnitSystem units);
 
-/// Reasons in words, with "; " in between.
+/// Reasons in words, separated by "; ".
 std::string text(const std::vector<Reason>& reasons, UnitSystem units);
 
 /// A job that cannot be ground on a machine; what() is the reason's text in SI.
@@ -83,7 +83,7 @@ class ReasonError : public std::invalid_argument {
   Reason reason_;
 };
 
-/// The cause of a feed limit for its reader: "axis_a velocity" is "axis A velocity" for the operator.
+/// The cause of a feed limit for the reader: "axis_a velocity" becomes "axis A velocity" for the operator.
 std::string causeText(const std::string& cause, UnitSystem units);
 
 }  // namespace flute_grinder::core

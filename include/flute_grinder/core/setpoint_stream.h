@@ -9,48 +9,48 @@
 
 namespace flute_grinder {
 
-/// The only producer of setpoints: planning, a dry run and the machine all take them from here, so that what was
-/// previewed is, bit for bit, what is streamed. Every move takes an even number of cycles, so that even cycles end a
-/// pair throughout. It can be held anywhere, slowed down, lifted off the work and brought back; each request takes
-/// effect with the next pair, and all motion stays within the axes' limits. While the axes rest there are no setpoints.
-/// A stream that cannot go on, which no program that planJob() accepts comes to, gives positions that are not a number
-/// from then on, for every check to refuse.
+/// The only source of setpoints: planning, dry runs and the machine all use it, so the previewed and the streamed
+/// setpoints are bit-identical. Every move takes an even number of cycles, so even cycles always end a pair. The motion
+/// can be held anywhere, slowed down, lifted off the workpiece and brought back; each request takes effect at the next
+/// pair, and all motion stays within the axis limits. While the axes are at rest there are no setpoints. If a stream
+/// cannot continue, which never happens with a program that planJob() accepts, all further positions are NaN, so every
+/// check rejects them.
 class SetpointStream {
  public:
-  /// At the program's start.
+  /// Starts at the start of the program.
   explicit SetpointStream(GrindProgram program);
 
-  /// The same without a copy of the program, which must be there.
+  /// The same without copying the program, which must not be null.
   explicit SetpointStream(std::shared_ptr<const GrindProgram> program);
 
-  /// The next setpoint; the first is where the program starts, at rest. Real-time safe.
-  /// @return false while the axes rest: at the program's end, after hold(), lifted after retract(), or at a feed
-  ///         override of 0; `setpoint` is then left as it was.
+  /// The next setpoint; the first is the program's start position, at rest. Real-time safe.
+  /// @return false while the axes are at rest: at the end of the program, after hold(), lifted after retract(), or at a
+  ///        feed override of 0; `setpoint` is then unchanged.
   bool next(Setpoint& setpoint) noexcept;
 
-  /// Speeds up or slows down what goes at feed, infeed and stroke; rapids keep their speed. Real-time safe.
-  /// @param fraction of the job's feed, 0 to kMaxFeedOverride; others are not taken. Above 1 the feed goes as far as
-  ///        the axes allow.
+  /// Changes the speed of the moves at feed, which are infeed and stroke; rapids keep their speed. Real-time safe.
+  /// @param fraction of the job's feed, 0 to kMaxFeedOverride; other values are ignored. Above 1 the feed is raised as
+  ///        far as the axes allow.
   void setFeedOverride(double fraction) noexcept;
 
   /// Stops on the path, as soon as the limits allow. Real-time safe.
   void hold() noexcept { holding_ = true; }
 
-  /// Whether hold() is in force.
+  /// Whether hold() is in effect.
   bool holding() const noexcept { return holding_; }
 
   /// For axes that stood still for a while: continues at reduced speed, then accelerates again. Real-time safe.
-  /// @param factor of the speed, above 0 and below 1; other values are ignored.
+  /// @param factor speed factor, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }
 
-  /// Goes on after hold(), from where the axes rest, or after retract(): a stroke is entered again ahead of the place
-  /// where it was left, by the way that it takes to reach feed. Real-time safe.
+  /// Continues after hold() from the current position, or after retract(): the wheel then re-enters a stroke ahead of
+  /// the point where it left it, by the distance needed to reach the feed. Real-time safe.
   void resume() noexcept;
 
-  /// Lifts the wheel radially off the work and stays there; not taken unless the axes rest ahead of the program's end.
-  /// Real-time safe.
+  /// Lifts the wheel radially off the workpiece, where it stays. Ignored unless the axes are at rest before the end of
+  /// the program. Real-time safe.
   void retract() noexcept;
 
   /// Whether the program has ended.
@@ -62,7 +62,7 @@ class SetpointStream {
   const GrindProgram& program() const noexcept { return *program_; }
 
  private:
-  /// What the axes are on: the program, or a part of the detour off the work and back.
+  /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.
   enum class Leg : std::uint8_t { kPath, kLift, kBack, kPlunge };
 
   bool beginPair() noexcept;
@@ -79,16 +79,16 @@ class SetpointStream {
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;
 
   std::shared_ptr<const GrindProgram> program_;
-  // What of it every cycle needs, one step nearer.
+  // Copies of the program's data that every cycle needs.
   ConicalCutter cutter_;
   FeedSchedule schedule_;
   LogCurve curve_;
   double period_;
   double override_ = 1;
-  double slow_down_ = 1;  ///< of the next pair
+  double slow_down_ = 1;  ///< for the next pair
   bool holding_ = false;
   bool stay_lifted_ = false;
-  bool lost_ = false;  ///< cannot go on
+  bool lost_ = false;  ///< the stream cannot continue
 
   Setpoint current_;
   bool started_ = false;
@@ -98,19 +98,19 @@ class SetpointStream {
   FeedLaw law_;
   double move_speed_ = 0;  ///< of the law, without override
 
-  // Of a straight move: the way is from_ + law * way_.
+  // For a straight move: position = from_ + law * way_.
   Axes from_ = Axes::Zero();
   Axes way_ = Axes::Zero();
   Axes to_ = Axes::Zero();
   double linear_way_ = 0;
 
-  // Of a stroke.
+  // For a stroke.
   OddEvenInterpolator interpolator_;
   CurvePoint even_point_;
-  double stroke_from_ = 0;  ///< parameter at which it was begun, or entered again
+  double stroke_from_ = 0;  ///< parameter at which the stroke was started or re-entered
   double y_offset_ = 0, a_offset_ = 0;
 
-  double reentry_ = 0;  ///< parameter of the stroke that was left by retract()
+  double reentry_ = 0;  ///< parameter at which retract() left the stroke
 };
 
 }  // namespace flute_grinder

@@ -8,23 +8,23 @@
 
 namespace flute_grinder {
 
-/// A cutter's curve interpolated with a fixed step length, as the paper's Table 1.
+/// A cutter's curve interpolated with a fixed step length, as in the paper's Table 1.
 struct StepTable {
   struct Row {
     CurvePoint point;
     double theory = 0;  ///< A of the curve at the point's X [rad]
     double error() const { return theory - point.a; }
   };
-  std::vector<Row> rows;          ///< the start at X = 0, then odd and even points in turn
+  std::vector<Row> rows;          ///< the start at X = 0, then alternating odd and even points
   double largest_odd_error = 0;   ///< [rad]
   double largest_even_error = 0;  ///< [rad]
-  bool complete = false;          ///< false if the steps are too long for the curve beyond the last row
+  bool complete = false;          ///< false if the steps are too long to continue on the curve after the last row
 
   double largestError() const { return std::max(largest_odd_error, largest_even_error); }
 };
 
-/// Interpolates a job's curve from X = 0 until a pair ends at or past the flute's end.
-/// @param rule in place of the job's own.
+/// Interpolates a job's curve from X = 0 until a pair ends at or beyond the end of the flute.
+/// @param rule used instead of the job's own rule.
 /// @param step_length in the metric of OddEvenInterpolator, positive [m].
 StepTable interpolateBySteps(const GrindJob& job, EvenStepRule rule, double step_length);
 

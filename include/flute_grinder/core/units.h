@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The one place where the operator's units (mm, deg, mm/min, um) meet the SI units of the code: multiply to come in,
-/// divide to go out.
+/// The only conversion between the operator's units (mm, deg, mm/min, um) and the SI units of the code: multiply to
+/// convert to SI, divide to convert back.
 namespace flute_grinder::units {
 
 constexpr double kPi = 3.14159265358979323846;

@@ -7,27 +7,27 @@
 
 namespace flute_grinder {
 
-/// Base class of a drive for the grinder's four axes: the buffers of their state and commands, with the joints axis_x,
-/// axis_y, axis_z and axis_a (kJointNames) and the handle "drive" registered on them. A driver implements init(),
-/// read(), which fills the state, and write(), which sends the commands.
+/// Base class of a drive for the grinder's four axes. It holds the state and command buffers, and registers the joints
+/// axis_x, axis_y, axis_z and axis_a (kJointNames) and the handle "drive". A driver implements init(), read(), which
+/// fills in the state, and write(), which sends the commands.
 class AxesHW : public RobotHW {
  public:
   AxesHW(const AxesHW&) = delete;
   AxesHW& operator=(const AxesHW&) = delete;
 
  protected:
-  /// A value for each axis, in the order of kJointNames.
+  /// One value per axis, in the order of kJointNames.
   using Buffer = std::array<double, kAxisCount>;
 
   AxesHW();
 
-  // The state, set by read().
+  // State, set by read().
   Buffer position_{};  ///< [m], A [rad]
   Buffer velocity_{};  ///< [m/s], A [rad/s]
   Buffer effort_{};    ///< [N], A [Nm]
   DriveStatus status_;
 
-  // The commands, sent by write().
+  // Commands, sent by write().
   Buffer command_{};  ///< positions [m], A [rad]
   DriveCommand drive_command_;
 

@@ -8,13 +8,14 @@
 
 namespace flute_grinder {
 
-/// A user-space component of LinuxCNC's HAL. A pin `<component>.<pin>` is linked to the signal `<pin>`, which the HAL
-/// file creates: the HAL file is loaded first, and stays loaded when the program starts and ends. Not real-time.
+/// A user-space component of LinuxCNC's HAL. Each pin `<component>.<pin>` is linked to the signal `<pin>`, which the
+/// HAL file creates. The HAL file is loaded first and stays loaded when this program starts and ends. Not real-time.
 class HalComponent {
  public:
-  /// Attaches to HAL. A component of the same name left by a dead program is removed; its signals stay.
-  /// @param name of the component, up to 20 characters.
-  /// @throw ParameterError if HAL does not run, denies permission, or has a component of that name whose program runs.
+  /// Attaches to HAL. Removes a component of the same name left by a dead program; its signals stay.
+  /// @param name name of the component, up to 20 characters.
+  /// @throw ParameterError if HAL is not running or denies permission, or if a running program has a component of that
+  ///        name.
   explicit HalComponent(const std::string& name);
   ~HalComponent();
   HalComponent(const HalComponent&) = delete;
@@ -23,22 +24,22 @@ class HalComponent {
   int id() const { return id_; }
   const std::string& name() const { return name_; }
 
-  /// Zeroed memory that HAL can access, for the pins' pointers.
-  /// @throw ParameterError if HAL has none left.
+  /// Zeroed memory accessible to HAL, for the pins' pointers.
+  /// @throw ParameterError if HAL has no memory left.
   void* allocate(std::size_t size) const;
 
   /// Creates a pin and links it to its signal.
-  /// @param name of pin and signal.
-  /// @param data where HAL puts the address of the value; from allocate().
-  /// @param required whether the signal must exist; ready() reports the missing ones.
-  /// @throw ParameterError if the signal is of another type or has another writer.
+  /// @param name name of pin and signal.
+  /// @param data where HAL stores the address of the value; from allocate().
+  /// @param required whether the signal must exist; ready() reports missing signals.
+  /// @throw ParameterError if the signal has another type or another writer.
   template <typename Value>
   void addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
     addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)), required);
   }
 
-  /// Reports to HAL that all pins exist.
-  /// @throw ParameterError that lists the missing signals.
+  /// Reports to HAL that all pins have been created.
+  /// @throw ParameterError listing the missing signals.
   void ready() const;
 
  private:
@@ -57,12 +58,12 @@ class HalComponent {
   std::vector<std::string> missing_;
 };
 
-/// Checks that a shared memory of HAL exists and that this user may access it.
-/// @param key as of shmget().
-/// @param what it is, for the message, e.g. "HAL".
+/// Checks that a HAL shared memory exists and that this user may access it.
+/// @param key key for shmget().
+/// @param what name of the memory for the error message, e.g. "HAL".
 /// @param remedy what to do if it does not exist.
 /// @return its size in bytes.
-/// @throw ParameterError unless it exists and may be read and written.
+/// @throw ParameterError unless it exists and is readable and writable.
 std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy);
 
 }  // namespace flute_grinder

@@ -12,11 +12,11 @@ namespace flute_grinder {
 
 /// Hardware behind LinuxCNC's HAL: Mesa cards, step generators, analog and EtherCAT servos. Commands go through the
 /// FIFO of a HAL `streamer`; each servo cycle plays exactly one. The fill level of the FIFO paces the control loop, so
-/// that the axes keep moving when this program is late by less than the buffer. The HAL file contains the emergency
-/// stop, the watchdog on the heartbeat and the enable chain; docs/shop-floor-pc.md lists the pins.
+/// the axes keep moving if this program is late by less than the buffer. The HAL file contains the emergency stop, the
+/// watchdog on the heartbeat and the enable chain; docs/shop-floor-pc.md lists the pins.
 ///
-/// Parameters, in the drive's namespace: `component`, the HAL component's name; `streamer`, the number of the streamer;
-/// `buffer` [s], how much motion the FIFO holds.
+/// Parameters, in the drive's namespace: `component`, name of the HAL component; `streamer`, number of the streamer;
+/// `buffer` [s], duration of the motion that the FIFO holds.
 class HalHardware : public AxesHW {
  public:
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
@@ -33,12 +33,12 @@ class HalHardware : public AxesHW {
       hal_bit_t *fault, *homed, *enable;
     };
     std::array<Joint, kAxisCount> joints;
-    // Of the machine, from HAL.
+    // Inputs from HAL, about the machine.
     hal_bit_t *enabled, *emergency_stop, *homing, *spindle_at_speed, *coolant_on, *probe_free;
     hal_float_t *servo_cycles, *servo_rate;
     hal_u32_t* played;
     hal_s32_t* underruns;
-    // To HAL.
+    // Outputs to HAL.
     hal_bit_t *enable, *heartbeat, *fault_reset, *home, *spindle_run, *coolant_run;
   };
 
@@ -55,15 +55,15 @@ class HalHardware : public AxesHW {
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
-  std::uint32_t buffer_ = 0;  ///< commands to keep in the FIFO
+  std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
 
-  std::uint32_t sent_ = 0;  ///< the last command's number
-  bool overflow_ = false;   ///< a command found the FIFO full
+  std::uint32_t sent_ = 0;  ///< number of the last command
+  bool overflow_ = false;   ///< the FIFO was full when a command was to be written
   double servo_cycles_ = 0;
-  int reset_cycles_ = 0;       ///< remaining of the reset pulse
+  int reset_cycles_ = 0;       ///< remaining cycles of the reset pulse
   bool homing_ = false;        ///< HAL was homing in the previous cycle
-  std::uint32_t settled_ = 0;  ///< number of the first command with the new reference
-  bool settling_ = false;      ///< commands with the old reference may still be queued
+  std::uint32_t settled_ = 0;  ///< number of the first command relative to the new reference
+  bool settling_ = false;      ///< commands relative to the old reference may still be queued
 };
 
 }  // namespace flute_grinder

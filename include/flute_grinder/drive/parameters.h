@@ -7,16 +7,16 @@
 
 namespace flute_grinder {
 
-/// A parameter that is missing or not allowed; what() names it, its value and what is allowed.
+/// A parameter that is missing or not allowed; what() gives its name, its value and the allowed values.
 class ParameterError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Reads parameters of one namespace; rejects one that is missing, of the wrong type or out of range.
+/// Reads parameters of one namespace; rejects any that are missing, of the wrong type or out of range.
 class ParameterReader {
  public:
-  /// @param parameters all of the namespace, as a struct.
+  /// @param parameters all parameters of the namespace, as a struct.
   /// @param ns the namespace, for messages, e.g. "/grinder".
   ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns);
 
@@ -25,7 +25,7 @@ class ParameterReader {
   double number(const std::string& path, double min, double max) const;
   /// @throw ParameterError unless the parameter is a bool.
   bool flag(const std::string& path) const;
-  /// @throw ParameterError unless the parameter is a string that is not empty.
+  /// @throw ParameterError unless the parameter is a non-empty string.
   std::string text(const std::string& path) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }

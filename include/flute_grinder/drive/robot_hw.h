@@ -13,13 +13,13 @@
 #include <vector>
 
 /// @file
-/// The drive interface, in the shape of ros_control's hardware_interface: the same names, argument orders and meanings,
-/// so that a ros_control driver becomes a driver for the grinder by changing its base class. In addition there are
-/// DriveHandle, for the signals of the machine that belong to no joint, and RobotHW::wait(), since the drive paces the
-/// control loop.
+/// The drive interface, modelled on ros_control's hardware_interface: names, argument order and meaning are the same,
+/// so a ros_control driver becomes a driver for the grinder when its base class is changed. There are two additions:
+/// DriveHandle, for machine signals that belong to no joint, and RobotHW::wait(), because the drive paces the control
+/// loop.
 namespace flute_grinder {
 
-/// A handle or an interface that is missing, or a handle with a null pointer.
+/// Thrown if a handle or an interface is missing, or if a handle has a null pointer.
 class HardwareInterfaceException : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -48,7 +48,7 @@ class JointStateHandle {
   const double* eff_ = nullptr;
 };
 
-/// Reads a joint and commands it. Real-time safe but for the constructor.
+/// Reads and commands a joint. Real-time safe except for the constructor.
 class JointHandle : public JointStateHandle {
  public:
   JointHandle() = default;
@@ -64,35 +64,35 @@ class JointHandle : public JointStateHandle {
   double* cmd_ = nullptr;
 };
 
-/// What a drive reports besides the joints' states.
+/// A drive's status, apart from the joint states.
 struct DriveStatus {
   bool enabled = false;              ///< power is on, the axes follow their commands
   bool emergency_stop = false;       ///< the emergency stop is pressed
   bool fault = false;                ///< the drive reports a fault of its own
   bool homed = false;                ///< positions refer to the machine's reference
-  bool homing = false;               ///< the axes are looking for the reference, as commanded
+  bool homing = false;               ///< the axes are searching for the reference, as commanded
   bool spindle_at_speed = false;     ///< the wheel turns at its grinding speed
   bool coolant_on = false;           ///< coolant flows
   bool probe_free = true;            ///< the measuring probe, if there is one, is out of the wheel's way
   std::uint64_t feedback_count = 0;  ///< incremented with each fresh set of positions
-  /// Of a drive that buffers: how many written commands had not reached the axes when the positions were read.
+  /// For a drive that buffers: number of written commands that had not reached the axes when the positions were read.
   std::uint32_t commands_waiting = 0;
-  std::uint64_t underruns = 0;  ///< servo cycles since the start in which powered axes found no command
+  std::uint64_t underruns = 0;  ///< servo cycles since the start in which the powered axes had no command
 };
 
-/// The most commands that a drive may buffer; the loop keeps as many, to compare the positions with.
+/// The largest number of commands that a drive may buffer; the loop keeps as many, for comparison with the positions.
 constexpr std::uint32_t kMaxCommandsWaiting = 4095;
 
-/// What a drive is commanded besides positions.
+/// Commands to a drive, apart from positions.
 struct DriveCommand {
   bool enable = false;   ///< power on; when false, the drive stops the axes at once
   bool reset = false;    ///< clear a fault of the drive; set for one cycle
-  bool home = false;     ///< look for the machine's reference while set; position commands are then ignored
+  bool home = false;     ///< search for the machine's reference while set; position commands are then ignored
   bool spindle = false;  ///< turn the wheel
   bool coolant = false;  ///< coolant on
 };
 
-/// Connects the machine's signals that belong to no joint. Real-time safe but for the constructor.
+/// Connects the machine signals that belong to no joint. Real-time safe except for the constructor.
 class DriveHandle {
  public:
   DriveHandle() = default;
@@ -109,14 +109,14 @@ class DriveHandle {
   DriveCommand* command_ = nullptr;
 };
 
-/// Handles by name.
+/// Handles, accessed by name.
 template <typename Handle>
 class HardwareResourceManager {
  public:
-  /// Adds a handle; one of the same name is replaced.
+  /// Adds a handle; replaces one of the same name.
   void registerHandle(const Handle& handle) { handles_[handle.getName()] = handle; }
 
-  /// @throw HardwareInterfaceException if there is none of that name.
+  /// @throw HardwareInterfaceException if there is no handle of that name.
   Handle getHandle(const std::string& name) const {
     const auto it = handles_.find(name);
     if (it == handles_.end()) throw HardwareInterfaceException("the drive has no handle '" + name + "'");
@@ -137,10 +137,10 @@ class JointStateInterface : public HardwareResourceManager<JointStateHandle> {};
 class PositionJointInterface : public HardwareResourceManager<JointHandle> {};
 class DriveInterface : public HardwareResourceManager<DriveHandle> {};
 
-/// Interfaces by type.
+/// Interfaces, accessed by type.
 class InterfaceManager {
  public:
-  /// Offers an interface, which must outlive this object.
+  /// Registers an interface, which must outlive this object.
   template <typename T>
   void registerInterface(T* interface) {
     interfaces_[std::type_index(typeid(T))] = interface;
@@ -157,30 +157,30 @@ class InterfaceManager {
   std::map<std::type_index, void*> interfaces_;
 };
 
-/// A drive. A plugin derives from it, or from AxesHW, which registers a JointStateInterface and a
+/// A drive. A plugin derives from this class, or from AxesHW, which registers a JointStateInterface and a
 /// PositionJointInterface with the joints axis_x, axis_y, axis_z and axis_a, and a DriveInterface with the handle
 /// "drive".
 class RobotHW : public InterfaceManager {
  public:
   virtual ~RobotHW() = default;
 
-  /// Initialises the drive; called once, before anything else, not in the control thread.
+  /// Initialises the drive; called once, before all other functions, and not in the control thread.
   /// @param root_nh the node's own namespace.
-  /// @param robot_hw_nh the drive's namespace, ~hardware, with its parameters.
+  /// @param robot_hw_nh the drive's namespace, ~hardware, which contains its parameters.
   /// @return false if the drive cannot be used; log the reason, or throw it.
   virtual bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) = 0;
 
   /// Reads positions and status. Real-time.
-  /// @param time of the cycle, for stamps.
-  /// @param period since the last cycle, monotonic.
+  /// @param time time of the cycle, for stamps.
+  /// @param period time since the last cycle, monotonic.
   virtual void read(const ros::Time& time, const ros::Duration& period) = 0;
 
-  /// Sends the commands. Real-time; arguments as of read().
+  /// Sends the commands. Real-time; same arguments as read().
   virtual void write(const ros::Time& time, const ros::Duration& period) = 0;
 
-  /// Blocks until the next cycle is due. By default cycles follow the monotonic clock, and missed cycles are skipped,
-  /// never made up for: the axes would have to move faster than planned. A drive with a clock of its own overrides
-  /// this.
+  /// Blocks until the next cycle is due. By default, cycles follow the monotonic clock. Missed cycles are skipped and
+  /// never made up, because the axes would then move faster than planned. A drive with its own clock overrides this
+  /// function.
   /// @param period nominal control period.
   virtual void wait(const ros::Duration& period);
 

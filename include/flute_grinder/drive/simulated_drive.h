@@ -8,16 +8,16 @@
 namespace flute_grinder {
 
 /// A simulated tool grinder. Each axis follows its command with a first-order lag and is read through an encoder; an
-/// incremental encoder reads 0 at the start position until the axis is homed. Homing moves the axes to their home
-/// positions, one after the other: Y, X, Z, A. The spindle runs up in a given time; coolant flows at once. The service
-/// ~hardware/inject_fault injects faults.
+/// incremental encoder reads 0 at the start position until the axis is homed. Homing moves the axes one at a time to
+/// their home positions, in the order Y, X, Z, A. The spindle reaches its speed in a given time; coolant flows at once.
+/// The service ~hardware/inject_fault injects faults.
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
 /// `absolute_encoders`, `spindle_run_up_time` [s].
 class SimulatedDrive : public AxesHW {
  public:
-  /// How one axis behaves.
+  /// Model of one axis.
   struct AxisModel {
     double time_constant = 0;    ///< [s]
     double counts_per_unit = 1;  ///< of the encoder [1/m or 1/rad]
@@ -27,7 +27,7 @@ class SimulatedDrive : public AxesHW {
   };
   using Model = std::array<AxisModel, kAxisCount>;
 
-  /// How encoders and spindle behave.
+  /// Model of encoders and spindle.
   struct Equipment {
     bool absolute_encoders = true;   ///< homed from the start
     double spindle_run_up_time = 0;  ///< [s]
@@ -52,9 +52,9 @@ class SimulatedDrive : public AxesHW {
   /// Initialises the drive without ROS.
   void init(const Model& model, const Equipment& equipment);
 
-  /// Injects a fault from the next read() on, or removes all (kNone); a drive fault stays until it is reset. Thread
-  /// safe.
-  /// @param axis of kStuckAxis and kNanFeedback.
+  /// Injects a fault from the next read() on, or removes all faults (kNone); a drive fault stays until it is reset.
+  /// Thread safe.
+  /// @param axis for kStuckAxis and kNanFeedback.
   void inject(Fault fault, int axis = kX);
 
  private:
@@ -73,7 +73,7 @@ class SimulatedDrive : public AxesHW {
   Axes offset_ = Axes::Zero();  ///< of the encoders' readings
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;  ///< fraction of full speed
-  Buffer sent_{};             ///< commands as of the last write()
+  Buffer sent_{};             ///< commands at the last write()
 };
 
 }  // namespace flute_grinder

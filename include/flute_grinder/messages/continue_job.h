@@ -8,10 +8,10 @@
 
 namespace flute_grinder {
 
-/// Has a goal begin where the journal says that the job was left.
-/// @param progress as the grinder tells it.
+/// Makes a goal start where a job was left, according to the journal.
+/// @param progress progress reported by the grinder.
 /// @param job the goal's job.
-/// @return why it cannot be; empty if it can.
+/// @return why this is not possible; empty if it is.
 std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal);
 
 }  // namespace flute_grinder

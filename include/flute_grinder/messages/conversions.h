@@ -12,10 +12,10 @@
 #include <vector>
 
 /// @file
-/// The one place where messages and the types of core meet. Both are in SI.
+/// The only conversion between messages and core types. Both use SI units.
 namespace flute_grinder {
 
-/// The job of a goal, unchecked: a choice that is out of range stays so, for validate() to refuse.
+/// The job of a goal, unchecked: a choice that is out of range is kept, so validate() rejects it.
 GrindJob jobFromGoal(const GrindGoal& goal);
 
 /// The goal of a job.
@@ -24,18 +24,18 @@ GrindGoal goalFromJob(const GrindJob& job);
 /// @param tooth_angles of every tooth [rad].
 Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
 
-/// What a cutter's message says but its teeth.
+/// Everything in a cutter's message except its teeth.
 CutterGeometry fromMessage(const Cutter& message);
 
-/// Identifies a job: SHA-256 of its numbers, in hexadecimal. What a goal says beside the job does not count.
-/// @throw std::runtime_error if the computer cannot compute it.
+/// Identifies a job: SHA-256 of its numbers, in hexadecimal. The other data of a goal are not included.
+/// @throw std::runtime_error if the hash cannot be computed.
 std::string jobDigest(const GrindJob& job);
 
 PathStatistics toMessage(const core::PathStatistics& statistics);
 core::PathStatistics fromMessage(const PathStatistics& message);
 
-/// @param actual where the drive said the axes were when the setpoint was made [m], A [rad].
-/// @param cycle_period measured, from the control cycle before to the one that made the setpoint [s].
+/// @param actual the axis positions reported by the drive when the setpoint was generated [m], A [rad].
+/// @param cycle_period measured time from the previous control cycle to the one that generated the setpoint [s].
 WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual, double cycle_period);
 Setpoint fromMessage(const WrittenSetpoint& message);
 

@@ -5,9 +5,9 @@
 
 namespace flute_grinder {
 
-/// The code of GrindResult for a plan that is refused.
+/// The GrindResult code for a refused plan.
 int errorCode(PlanFault fault);
-/// The code of GrindResult for a fault that ended a job.
+/// The GrindResult code for a fault that ended a job.
 int errorCode(FaultKind fault);
 
 }  // namespace flute_grinder

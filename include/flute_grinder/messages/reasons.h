@@ -10,22 +10,22 @@
 #include <vector>
 
 /// @file
-/// Reasons as messages, and what the operator reads of them.
+/// Converts reasons to and from messages, and to texts for the operator.
 namespace flute_grinder {
 
 Reason toMessage(const core::Reason& reason);
 std::vector<Reason> toMessage(const std::vector<core::Reason>& reasons);
 
-/// @return a reason of kNone where the message has a kind, axis, unit or move that is not one.
+/// @return a reason of kNone if the message has an invalid kind, axis, unit or move.
 core::Reason fromMessage(const Reason& message);
 
 /// Why the machine is in a fault, or why the last job did not begin, in the operator's units; empty otherwise.
 std::string faultText(const GrinderState& state);
 
-/// How a goal ended, in the operator's units; the grinder's own text where it sends no reasons.
+/// How a goal ended, in the operator's units; the grinder's own text if it sent no reasons.
 std::string resultText(const GrindResult& result);
 
-/// Why a job cannot be ground, in the operator's units; the grinder's own texts where it sends no reasons.
+/// Why a job cannot be ground, in the operator's units; the grinder's own texts if it sent no reasons.
 std::vector<std::string> planTexts(const Plan::Response& plan);
 
 }  // namespace flute_grinder

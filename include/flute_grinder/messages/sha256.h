@@ -5,8 +5,8 @@
 
 namespace flute_grinder {
 
-/// The SHA-256 of some bytes, 64 digits in lower-case hexadecimal.
-/// @throw std::runtime_error if the computer cannot compute it.
+/// The SHA-256 of `count` bytes, as 64 lower-case hexadecimal digits.
+/// @throw std::runtime_error if the hash cannot be computed.
 std::string sha256Hex(const void* bytes, std::size_t count);
 
 }  // namespace flute_grinder

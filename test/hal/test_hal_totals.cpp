@@ -91,8 +91,10 @@ class Totals : public ::testing::Test {
   /// Writes one new place after the other until the FIFO has got `total` commands since HAL was started.
   void moveUntil(std::size_t total) {
     while (written_.size() < total) {
+      const std::size_t before = written_.size();
       command_ += Axes(1e-6, -2e-6, 3e-6, 1e-5);
       cycle(true);
+      ASSERT_GT(written_.size(), before) << "the power was lost: the host stalled for longer than the buffer lasts";
     }
   }
 
@@ -123,14 +125,14 @@ class Totals : public ::testing::Test {
 TEST_F(Totals, LastSetpointIsPlayedAndNothingIsLeftBehind) {
   switchPower(true);
   for (const std::size_t total : {kDepth - 1, 2 * kDepth, 3 * kDepth + 1}) {
-    moveUntil(total);
+    ASSERT_NO_FATAL_FAILURE(moveUntil(total));
     rest();
     expectAllPlayed(total);
   }
 
   // A program that stops in the midst of a move, of all places there: HAL keeps the last command back, which must
   // neither count as played nor be played when there is power again.
-  moveUntil(4 * kDepth);
+  ASSERT_NO_FATAL_FAILURE(moveUntil(4 * kDepth));
   const auto deadline = Clock::now() + kPatience;
   while (read().enabled && Clock::now() < deadline) ros::WallDuration(0.001).sleep();
   const DriveStatus stopped = read();

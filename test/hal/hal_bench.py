@@ -108,7 +108,7 @@ def parameters(**hardware):
 class Node:
     """A grinder's node on HAL. Longer than shipped (None), `feedback_timeout` lets a host that stalls not end a test."""
 
-    def __init__(self, name='grinder', prefix=(), feedback_timeout=0.5, **hardware):
+    def __init__(self, name='grinder', prefix=(), feedback_timeout=1, **hardware):
         self.name = name
         machine = parameters(**hardware)
         if feedback_timeout:

@@ -35,21 +35,21 @@ void copyFields(const From& from, To& to) {
 template <typename From, typename To>
 To convertedStatistics(const From& from) {
   To to;
-  const auto copyArray = [](const auto& array, auto& copy) {
+  const auto copy_array = [](const auto& array, auto& copy) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(array.size()); ++i) copy[i] = array[i];
   };
   to.setpoints = from.setpoints;
   to.duration = from.duration;
-  copyArray(from.move_duration, to.move_duration);
+  copy_array(from.move_duration, to.move_duration);
   to.max_odd_error = from.max_odd_error;
   to.max_even_error = from.max_even_error;
   to.max_deviation = from.max_deviation;
   to.min_feed = from.min_feed;
   to.max_feed = from.max_feed;
-  copyArray(from.max_velocity, to.max_velocity);
-  copyArray(from.max_acceleration, to.max_acceleration);
-  copyArray(from.max_jerk, to.max_jerk);
-  copyArray(from.ripple_acceleration, to.ripple_acceleration);
+  copy_array(from.max_velocity, to.max_velocity);
+  copy_array(from.max_acceleration, to.max_acceleration);
+  copy_array(from.max_jerk, to.max_jerk);
+  copy_array(from.ripple_acceleration, to.ripple_acceleration);
   for (const auto& limit : from.feed_limits) {
     auto& copy = to.feed_limits.emplace_back();
     copy.cause = limit.cause;

@@ -65,6 +65,7 @@ Reason toMessage(const core::Reason& reason) { return converted<core::Reason, Re
 
 std::vector<Reason> toMessage(const std::vector<core::Reason>& reasons) {
   std::vector<Reason> messages;
+  messages.reserve(reasons.size());
   for (const core::Reason& reason : reasons) messages.push_back(toMessage(reason));
   return messages;
 }

@@ -103,7 +103,8 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   });
   spawn(4, [this](std::mt19937& random) {
     if (random() % 50 == 0) {
-      EXPECT_TRUE(loop_->stop(StopRequests::kStops[random() % 3]).text.find("no answer") == std::string::npos);
+      const RequestReply reply = loop_->stop(StopRequests::kStops[random() % 3]);
+      EXPECT_TRUE(reply.answered || !reply.accepted) << "a stop that timed out counts as accepted";
     }
     std::this_thread::sleep_for(std::chrono::microseconds(20));
   });

@@ -1,6 +1,8 @@
 #include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/messages/conversions.h"
 
+#include "core/generators.h"
+
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
 
@@ -18,14 +20,8 @@ namespace flute_grinder {
 namespace {
 
 Machine machine() {
-  Machine m;
-  m.limits.min_position << -0.3, -0.2, -0.2, -200;
-  m.limits.max_position << 0.3, 0.2, 0.2, 200;
-  m.limits.max_velocity << 0.2, 0.1, 0.1, 20;
-  m.limits.max_acceleration << 2, 2, 2, 200;
-  m.limits.max_jerk << 50, 50, 50, 5000;
+  Machine m = test_support::plainMachine();
   m.period = 2e-3;
-  m.park << 0, 0.05, 0, 0;
   m.max_job_duration = 4;
   return m;
 }

@@ -3,6 +3,8 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/job_plan.h"
 
+#include "core/generators.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,19 +18,10 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-Machine machine() {
-  Machine m;
-  m.limits.min_position << -0.3, -0.2, -0.2, -200;
-  m.limits.max_position << 0.3, 0.2, 0.2, 200;
-  m.limits.max_velocity << 0.2, 0.1, 0.1, 20;
-  m.limits.max_acceleration << 2, 2, 2, 200;
-  m.limits.max_jerk << 50, 50, 50, 5000;
-  m.period = 1e-3;
-  m.park << 0, 0.05, 0, 0;
-  return m;
+GrindProgram program() {
+  return GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), test_support::plainMachine(),
+                      test_support::plainMachine().park);
 }
-
-GrindProgram program() { return GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), machine(), machine().park); }
 
 /// What a drive must never say, and may all the same.
 std::vector<double> hostileValues() {
@@ -120,7 +113,8 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
   job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
   job.process.depth = job.process.infeed = 0.01e-3;
-  const MarkerArray array = ToolPath(GrindProgram(job, machine(), machine().park)).markers();
+  const MarkerArray array =
+      ToolPath(GrindProgram(job, test_support::plainMachine(), test_support::plainMachine().park)).markers();
   std::size_t points = 0;
   for (const Marker& m : array.markers) points += m.points.size();
   EXPECT_GT(points, 1000u);

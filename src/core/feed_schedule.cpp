@@ -14,22 +14,6 @@ namespace {
 /// fractions.
 constexpr double kLongestStep = 0.125;
 
-/// The limit on X that results from the limits of X, Y and Z; Y and Z move in proportion to X.
-struct ForX {
-  double limit;
-  const char* axis;
-};
-
-ForX forX(const Axes& limit, double tan_cone, double sin_rake) {
-  ForX lowest{limit[kX], kJointNames[kX]};
-  const auto bound = [&](double candidate, int axis) {
-    if (candidate < lowest.limit) lowest = {candidate, kJointNames[static_cast<std::size_t>(axis)]};
-  };
-  bound(limit[kY] / std::abs(tan_cone), kY);
-  bound(limit[kZ] / std::abs(tan_cone * sin_rake), kZ);
-  return lowest;
-}
-
 /// The lowest of several bounds, and its cause.
 struct Bound {
   double value = std::numeric_limits<double>::infinity();
@@ -45,11 +29,46 @@ struct Bound {
 }  // namespace
 
 FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine)
-    : tan_cone_(cutter.tanCone()), sin_rake_(cutter.sinRake()), from_(stroke.from), to_(stroke.to) {
+    : y_per_x_(std::max(std::abs(cutter.tanCone()), std::abs(cutter.tanCone() + stroke.taper))),
+      from_(stroke.from),
+      to_(stroke.to) {
   const LogCurve curve(cutter);
+  const double z_per_x = cutter.tanCone() * cutter.sinRake();
+  const ZCorrection::Bounds correction = stroke.z_correction.bounds();
+  z_per_x_ = std::max(std::abs(z_per_x + correction.least_first), std::abs(z_per_x + correction.largest_first));
+  z_bend_ = correction.second;
+  z_twist_ = correction.third;
   chooseSpeeds(cutter, stroke, machine);
   chooseBlendAndLimits(curve, machine.limits);
   placeOnCone(curve);
+}
+
+/// The limit on X that results from the limits of X, Y and Z.
+FeedSchedule::ForX FeedSchedule::forX(const Axes& limit) const noexcept {
+  ForX lowest{limit[kX], kJointNames[kX]};
+  const auto bound = [&](double candidate, int axis) {
+    if (candidate < lowest.limit) lowest = {candidate, kJointNames[static_cast<std::size_t>(axis)]};
+  };
+  bound(limit[kY] / y_per_x_, kY);
+  bound(limit[kZ] / z_per_x_, kZ);
+  return lowest;
+}
+
+/// What the bending of Z leaves of its acceleration, and so much that the share of it in the jerk of Z, 3 Z'' v dv/dt,
+/// stays within a quarter of that limit.
+FeedSchedule::ForX FeedSchedule::accelerationForX(const AxisLimits& limits, double speed) const noexcept {
+  Axes left = limits.max_acceleration;
+  if (z_bend_ > 0) {
+    const double within_jerk = z_per_x_ * limits.max_jerk[kZ] / (12 * z_bend_ * speed);
+    left[kZ] = std::min(left[kZ] - z_bend_ * speed * speed, within_jerk);
+  }
+  return forX(left);
+}
+
+FeedSchedule::ForX FeedSchedule::jerkForX(const AxisLimits& limits, double speed) const noexcept {
+  Axes left = limits.max_jerk;
+  left[kZ] -= z_twist_ * speed * speed * speed + 3 * z_bend_ * speed * accelerationForX(limits, speed).limit;
+  return forX(left);
 }
 
 void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine) {
@@ -62,7 +81,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   const double u_thin = curve.u(thin_x);
   const double u_thick = curve.u(from_thin ? stroke.to : stroke.from);
   const double wanted = stroke.surface_feed / cutter.edgePerTravel();
-  const ForX velocity = forX(limits.max_velocity, tan_cone_, sin_rake_);
+  const ForX velocity = forX(limits.max_velocity);
 
   // The speeds of a pair's steps differ from their mean by at most b v T/u, and must obey the velocity limits too.
   const double turning = std::min(kMaxFeedOverride * wanted, velocity.limit) / u_thin;
@@ -78,6 +97,9 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
   }
   even.add(velocity.limit / ripple, velocity.axis + std::string(" velocity"));
+  // A quarter of the limits of Z, each, is for its bending.
+  even.add(std::sqrt(limits.max_acceleration[kZ] / (4 * z_bend_)), "axis_z acceleration");
+  even.add(std::cbrt(limits.max_jerk[kZ] / (4 * z_twist_)), "axis_z jerk");
   if (even.value < wanted) feed_limits_.push_back({even.cause, stroke.from, stroke.to});
   feed_speed_ = std::min(wanted, even.value);
 
@@ -94,8 +116,8 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     return;
   }
   // Where A turns at constant speed, X accelerates: dv/dt = b c v.
-  const ForX acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_);
-  const ForX jerk = forX(limits.max_jerk, tan_cone_, sin_rake_);
+  const ForX acceleration = accelerationForX(limits, feed_speed_);
+  const ForX jerk = jerkForX(limits, feed_speed_);
   per_radius.add(acceleration.limit / (2 * b * feed_speed_), acceleration.axis + std::string(" acceleration"));
   per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), jerk.axis + std::string(" jerk"));
   feed_limits_.push_back({per_radius.cause, stroke.from, stroke.to});  // placeOnCone() may shorten it
@@ -110,8 +132,8 @@ void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits&
   const double b = std::abs(curve.b());
   const double a_slope = std::abs(curve.k()) / u;
   const double a_curvature = a_slope * b / u;
-  const double x_acceleration = forX(limits.max_acceleration, tan_cone_, sin_rake_).limit;
-  const double x_jerk = forX(limits.max_jerk, tan_cone_, sin_rake_).limit;
+  const double x_acceleration = accelerationForX(limits, v).limit;
+  const double x_jerk = jerkForX(limits, v).limit;
   const double a_acceleration = limits.max_acceleration[kA];
   const double a_jerk = limits.max_jerk[kA];
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -11,8 +12,8 @@ namespace {
 /// Computes the statistics of a stream of setpoints.
 class StatisticsAccumulator {
  public:
-  StatisticsAccumulator(const ConicalCutter& cutter, double period, core::PathStatistics& statistics)
-      : cutter_(cutter), period_(period), s_(statistics) {}
+  StatisticsAccumulator(const GrindProgram& program, core::PathStatistics& statistics)
+      : program_(program), period_(program.machine().period), s_(statistics) {}
 
   void add(const Setpoint& p, const LimitCheck& check) {
     if (s_.setpoints++ == 0) return;  // the first setpoint is the start of the job: nothing has moved yet
@@ -38,19 +39,20 @@ class StatisticsAccumulator {
 
  private:
   void addStroke(const Setpoint& p) {
+    const ConicalCutter& cutter = program_.cutter(p.tooth);
     const double error = std::abs(p.path_error);
     double& max_error = p.step == StepKind::kOdd ? s_.max_odd_error : s_.max_even_error;
     max_error = std::max(max_error, error);
-    deviation_ = error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+    deviation_ = error * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
     s_.max_deviation = std::max(s_.max_deviation, deviation_);
     if (p.step == StepKind::kEven && p.at_feed) {
-      const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * cutter_.edgePerTravel();
+      const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * cutter.edgePerTravel();
       s_.max_feed = std::max(s_.max_feed, feed);
       s_.min_feed = s_.min_feed == 0 ? feed : std::min(s_.min_feed, feed);
     }
   }
 
-  const ConicalCutter& cutter_;
+  const GrindProgram& program_;
   double period_;
   core::PathStatistics& s_;
   std::array<std::uint64_t, kMoveKindCount> cycles_{};
@@ -119,9 +121,12 @@ class ViolationCollector {
 /// square of the step length. The schedule keeps them within the tolerance at any override, except with the published
 /// rule, whose even points drift.
 double overrideFactor(const GrindProgram& program) {
-  if (program.job().interpolation.even_step != EvenStepRule::kPublished) return 1;
-  const FeedSchedule& schedule = program.schedule();
-  return std::pow(schedule.limits().velocity / schedule.feedSpeed(), 2);
+  double factor = 1;
+  if (program.job().interpolation.even_step != EvenStepRule::kPublished) return factor;
+  for (const Helix& helix : program.helices()) {
+    factor = std::max(factor, std::pow(helix.schedule.limits().velocity / helix.schedule.feedSpeed(), 2));
+  }
+  return factor;
 }
 
 void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
@@ -143,8 +148,12 @@ void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine,
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
 double leastDuration(const GrindJob& job, const ToothPass& first) {
   const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
-  const double way = job.process.clearance + travel * ConicalCutter(job.cutter).edgePerTravel();
   const auto teeth = static_cast<double>(job.tooth_angles.size());
+  double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
+  for (int i = 0; i < static_cast<int>(job.tooth_angles.size()); ++i) {
+    edge = std::min(edge, ConicalCutter(cutterOf(job, i)).edgePerTravel());
+  }
+  const double way = job.process.clearance + travel * edge;
   const auto passes = static_cast<double>(passDepths(job.process).size());
   const double before = job.process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
                                                                      : first.pass * teeth + first.tooth;
@@ -192,12 +201,12 @@ void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(
   const double tolerance = program.job().interpolation.tolerance;
   const double factor = overrideFactor(program);
   LimitCheck check(program.machine().limits, program.machine().period);
-  StatisticsAccumulator accumulator(program.cutter(), program.machine().period, plan.statistics);
+  StatisticsAccumulator accumulator(program, plan.statistics);
   ViolationCollector violations(tolerance, plan);
   plan.move_ends.assign(program.moves().size(), 0);
   Setpoint p;
   while (stream.next(p)) {
-    if (check.check(p)) {
+    if (check.check(p, program.machine().work_offset)) {
       std::for_each(check.begin(), check.end(), [&](const auto& v) { violations.add(v); });
       if (!p.position.isFinite().all()) break;
     }
@@ -243,7 +252,10 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     refuse(plan, PlanFault::kInvalidJob, std::move(reason));
     return plan;
   }
-  plan.statistics.feed_limits = plan.program->schedule().feedLimits();
+  for (const Helix& helix : plan.program->helices()) {
+    const std::vector<core::FeedLimit>& limits = helix.schedule.feedLimits();
+    plan.statistics.feed_limits.insert(plan.statistics.feed_limits.end(), limits.begin(), limits.end());
+  }
   SetpointStream stream(plan.program);
   Supervisor supervisor(watch, plan);
   runThrough(stream, plan, visit, supervisor);

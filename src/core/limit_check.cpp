@@ -10,6 +10,8 @@ namespace {
 /// Relative excess that can result from sampling a motion exactly at its limit.
 constexpr double kRelativeRounding = 1e-9;
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
 /// Whether every |value| is within its limit; false for NaN. Branch-free for speed.
 bool within(const Axes& value, const Axes& limit) noexcept {
   bool good = true;
@@ -29,7 +31,7 @@ bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
 LimitCheck::LimitCheck(const AxisLimits& limits, double period) noexcept
     : limits_(limits), inverse_period_(1 / period), ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
 
-std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexcept {
+std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const Axes& offset) noexcept {
   const Axes& p = setpoint.position;
   if (seen_++ == 0) {
     last_ = p;
@@ -42,7 +44,14 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint) noexce
   last_ = p;
 
   violation_count_ = 0;
-  if (!between(p, limits_.min_position, limits_.max_position)) checkPosition(setpoint);
+  // A machine position at its limit is rounded on the way to work coordinates, and on the way back. Both sums are
+  // exact for an offset of 0.
+  const Axes machine = p + offset;
+  const Axes rounding =
+      (offset == 0).select(0, kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs())));
+  if (!between(machine, limits_.min_position - rounding, limits_.max_position + rounding)) {
+    checkPosition(setpoint, machine, rounding);
+  }
   if (!within(velocity_, limits_.max_velocity)) {
     checkSize(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_);
   }
@@ -61,15 +70,14 @@ void LimitCheck::slowPastDown() noexcept {
   slow_down_ = 1;
 }
 
-void LimitCheck::checkPosition(const Setpoint& setpoint) noexcept {
-  const Axes& p = setpoint.position;
+void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& position, const Axes& rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const bool low = p[axis] < limits_.min_position[axis];
+    const bool low = position[axis] < limits_.min_position[axis] - rounding[axis];
     const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];
-    if (!std::isfinite(p[axis])) {
-      report(setpoint, axis, LimitedQuantity::kNotFinite, p[axis], limit);
-    } else if (low || p[axis] > limit) {
-      report(setpoint, axis, LimitedQuantity::kPosition, p[axis], limit);
+    if (!std::isfinite(position[axis])) {
+      report(setpoint, axis, LimitedQuantity::kNotFinite, position[axis], limit);
+    } else if (low || position[axis] > limit + rounding[axis]) {
+      report(setpoint, axis, LimitedQuantity::kPosition, position[axis], limit);
     }
   }
 }
@@ -97,7 +105,7 @@ void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, c
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     // A position is the sum of a few numbers no larger than the largest so far, each rounded to half an epsilon.
-    const double noise = 2 * std::numeric_limits<double>::epsilon() * largest_[axis] * rounding;
+    const double noise = 2 * kEpsilon * largest_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);
     }

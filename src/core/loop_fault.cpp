@@ -35,6 +35,7 @@ const char* toString(Interlock interlock) noexcept {
     case Interlock::kSpindle: return "the spindle is not at speed";
     case Interlock::kCoolant: return "no coolant flows";
     case Interlock::kProbe: return "the measuring probe is in the way";
+    case Interlock::kSwivel: return "the swivel is not at the job's angle";
   }
   return "unknown";
 }

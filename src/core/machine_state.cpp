@@ -23,6 +23,7 @@ constexpr Transition kTransitions[]{
     {S::kReady, E::kHome, S::kHoming},
     {S::kReady, E::kStart, S::kStarting},
     {S::kReady, E::kLift, S::kLifting},
+    {S::kReady, E::kJog, S::kJogging},
     {S::kReady, E::kFault, S::kFault},
 
     // The drive controls homing itself; only switching its power off stops it.
@@ -69,6 +70,7 @@ constexpr Transition kTransitions[]{
     {S::kRetracted, E::kDisable, S::kCanceling},
     {S::kRetracted, E::kResume, S::kResuming},
     {S::kRetracted, E::kCancel, S::kCanceling},
+    {S::kRetracted, E::kJog, S::kJoggingRetracted},
     {S::kRetracted, E::kFault, S::kFault},
 
     {S::kResuming, E::kDisable, S::kCanceling},
@@ -92,6 +94,21 @@ constexpr Transition kTransitions[]{
     {S::kLifting, E::kCancel, S::kLifting},
     {S::kLifting, E::kAtRest, S::kReady},
     {S::kLifting, E::kFault, S::kFault},
+
+    // Each of the stops ends the jog; a continuous jog is requested again and again.
+    {S::kJogging, E::kDisable, S::kJogging},
+    {S::kJogging, E::kHold, S::kJogging},
+    {S::kJogging, E::kCancel, S::kJogging},
+    {S::kJogging, E::kJog, S::kJogging},
+    {S::kJogging, E::kAtRest, S::kReady},
+    {S::kJogging, E::kFault, S::kFault},
+
+    {S::kJoggingRetracted, E::kDisable, S::kCanceling},
+    {S::kJoggingRetracted, E::kHold, S::kJoggingRetracted},
+    {S::kJoggingRetracted, E::kCancel, S::kCanceling},
+    {S::kJoggingRetracted, E::kJog, S::kJoggingRetracted},
+    {S::kJoggingRetracted, E::kAtRest, S::kRetracted},
+    {S::kJoggingRetracted, E::kFault, S::kFault},
 };
 
 }  // namespace

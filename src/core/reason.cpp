@@ -19,7 +19,7 @@ class Writer {
   std::string what() const {
     switch (r_.kind) {
       case ReasonKind::kNone: return "";
-      case ReasonKind::kOutOfRange: return refused(range());
+      case ReasonKind::kOutOfRange: return refused(range() + (r_.detail.empty() ? "" : ", " + r_.detail));
       case ReasonKind::kNotBelow: return refused("less than " + digits(r_.limit) + ", " + r_.detail);
       case ReasonKind::kAbove: return refused("up to " + r_.detail + ", " + digits(r_.limit));
       case ReasonKind::kNotAllowed: return refused(r_.detail + (r_.limit == 0 ? "" : " " + digits(r_.limit)));
@@ -33,6 +33,32 @@ class Writer {
         return name("interpolation.tolerance") + " = " + limit() + ": the path deviates by " + value() +
                " at the largest feed override" + place() + "; lower " + name("process.feed") +
                ", or set interpolation.even_step to exact";
+      case ReasonKind::kRake:
+        return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
+               " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " of it; change " + name("process.setup_swivel") + " or " + name("process.setup_height");
+      case ReasonKind::kLand:
+        return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
+               ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");
+      case ReasonKind::kCore: return name("process.depth") + ": the core is cut through at X = " + x() + "; lower it";
+      case ReasonKind::kIncomplete:
+        return name("process.overtravel_end") + ", " + name("process.overtravel_shank") + ": the flutes are complete " +
+               (r_.value > r_.low
+                    ? "from X = " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
+                    : std::string("nowhere")) +
+               "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
+      case ReasonKind::kCollision:
+        return "collision_clearance = " + limit() + ": " + r_.detail +
+               (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
+      case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
+      case ReasonKind::kUnevenRake:
+        return name("process.z_law") + " = constant_rake: tooth " + tooth() +
+               (r_.low <= r_.value ? " is ground with " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+                                         " to " + value() + " at best, asked " + limit() + "; allowed: within " +
+                                         flute_grinder::text(Quantity{kEvenRake, r_.unit}, units_) + " of it"
+                                   : std::string(" has no rake face over its whole flute")) +
+               "; change " + name("process.setup_swivel") + " or " + name("process.setup_height") + ", or raise " +
+               name("process.overtravel_end") + " or " + name("process.overtravel_shank");
       case ReasonKind::kTooLong:
         return "max_job_duration = " + limit() + ": the job takes " + (r_.value > 0 ? value() + " or more" : "longer") +
                " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
@@ -87,6 +113,7 @@ class Writer {
   std::string value() const { return flute_grinder::text(Quantity{r_.value, r_.unit}, units_); }
   std::string limit() const { return flute_grinder::text(Quantity{r_.limit, r_.unit}, units_); }
   std::string x() const { return flute_grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
+  std::string tooth() const { return std::to_string(r_.tooth + 1); }
   std::string number() const { return flute_grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
   std::string range() const {
     return flute_grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
@@ -101,6 +128,19 @@ class Writer {
     const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
     const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
     return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
+  }
+
+  /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.
+  std::string swivel() const {
+    const std::string target = flute_grinder::text(Quantity{r_.limit, r_.unit}, UnitSystem::kShop, kFieldDigits);
+    const std::string allowed =
+        "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of that; set it to " + target;
+    if (r_.detail == "measured") return "the swivel stands at " + digits(r_.value) + allowed;
+    const std::string confirm =
+        " and confirm it: grind confirm-swivel " +
+        flute_grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, UnitSystem::kShop, kFieldDigits);
+    if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + target + confirm;
+    return "the swivel is confirmed at " + digits(r_.value) + allowed + confirm;
   }
 
   const Reason& r_;

@@ -26,11 +26,9 @@ SetpointStream::SetpointStream(GrindProgram program)
 
 SetpointStream::SetpointStream(std::shared_ptr<const GrindProgram> program)
     : program_(std::move(program)),
-      cutter_(program_->cutter()),
-      schedule_(program_->schedule()),
-      curve_(cutter_),
+      helix_(&program_->helix(program_->moves().front().tooth)),
       period_(program_->machine().period),
-      interpolator_(curve_, program_->job().interpolation.rotary_scale, program_->job().interpolation.even_step,
+      interpolator_(helix_->curve, program_->job().interpolation.rotary_scale, program_->job().interpolation.even_step,
                     program_->strokeFrom()) {
   const Move& first = program_->moves().front();
   current_.position = program_->start();
@@ -53,7 +51,7 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   } else if (current_.move == MoveKind::kStroke) {
     if (mid_pair_) {
       strokePoint(even_point_, StepKind::kEven);
-      current_.move_fraction = strokeParameter() / schedule_.length();
+      current_.move_fraction = strokeParameter() / helix_->schedule.length();
     } else {
       strokePair();
     }
@@ -82,12 +80,22 @@ void SetpointStream::retract() noexcept {
   stay_lifted_ = true;
   if (leg_ == Leg::kLift) return;
   if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
-    reentry_ = std::max(0.0, strokeParameter() - schedule_.runUp());
+    reentry_ = std::max(0.0, strokeParameter() - helix_->schedule.runUp());
   }
   leg_ = Leg::kLift;
-  Axes lifted = current_.position;
-  lifted[kY] = std::max(lifted[kY], program_->clearanceHeight());
-  beginStraight(MoveKind::kLift, lifted);
+  lifted_ = current_.position;
+  lifted_[kY] = std::max(lifted_[kY], program_->clearanceHeight());
+  beginStraight(MoveKind::kLift, lifted_);
+}
+
+void SetpointStream::adopt(Setpoint& setpoint) noexcept {
+  if (!lifted()) return;
+  current_.position = setpoint.position;
+  current_.velocity = setpoint.velocity;
+  current_.feed = setpoint.feed;
+  current_.move = setpoint.move;
+  ++current_.cycle;
+  setpoint = current_;
 }
 
 bool SetpointStream::finished() const noexcept {
@@ -113,6 +121,10 @@ bool SetpointStream::beginNext() noexcept {
       return true;
     case Leg::kLift:
       if (stay_lifted_) return false;
+      if ((current_.position != lifted_).any()) {
+        beginWayBack();
+        return true;
+      }
       if (left_stroke) {
         leg_ = Leg::kBack;
         beginReturn();
@@ -125,7 +137,7 @@ bool SetpointStream::beginNext() noexcept {
     case Leg::kBack: {
       leg_ = Leg::kPlunge;
       Axes on_path = current_.position;
-      on_path[kY] = cutter_.y(on_path[kX]) + y_offset_;
+      on_path[kY] = strokeY(on_path[kX]);
       beginStraight(MoveKind::kInfeed, on_path);
       return true;
     }
@@ -138,20 +150,36 @@ bool SetpointStream::beginNext() noexcept {
 }
 
 void SetpointStream::beginMove(const Move& move) noexcept {
+  helix_ = &program_->helix(move.tooth);
   current_.tooth = move.tooth;
   current_.pass = move.pass;
   current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
   current_.move_fraction = 0;
   if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
-  y_offset_ = current_.position[kY] - cutter_.y(program_->strokeFrom());
+  taper_ = move.taper;
+  y_offset_ = 0;
+  y_offset_ = current_.position[kY] - strokeY(program_->strokeFrom());
   a_offset_ = program_->job().tooth_angles[move.tooth];
   beginStroke(0);
 }
 
+void SetpointStream::beginWayBack() noexcept {
+  const Axes& at = current_.position;
+  Axes above = lifted_;
+  above[kY] = std::max(at[kY], lifted_[kY]);
+  if (at[kY] < lifted_[kY]) {
+    Axes up = at;
+    up[kY] = lifted_[kY];
+    return beginStraight(MoveKind::kLift, up);
+  }
+  if ((at != above).any()) return beginStraight(MoveKind::kPosition, above);
+  beginStraight(MoveKind::kApproach, lifted_);
+}
+
 void SetpointStream::beginReturn() noexcept {
-  const double x = schedule_.x(reentry_);
+  const double x = helix_->schedule.x(reentry_);
   Axes above;
-  above << x, current_.position[kY], cutter_.z(x), a_offset_ + curve_.a(x);
+  above << x, current_.position[kY], helix_->z(x), a_offset_ + helix_->curve.a(x);
   beginStraight(MoveKind::kPosition, above);
 }
 
@@ -183,8 +211,8 @@ void SetpointStream::beginStroke(double s) noexcept {
   const GrindInterpolation& settings = program_->job().interpolation;
   current_.move = MoveKind::kStroke;
   stroke_from_ = s;
-  interpolator_ = OddEvenInterpolator(curve_, settings.rotary_scale, settings.even_step, schedule_.x(s));
-  beginLaw(schedule_.limits(), schedule_.length() - s, schedule_.feedSpeed());
+  interpolator_ = OddEvenInterpolator(helix_->curve, settings.rotary_scale, settings.even_step, helix_->schedule.x(s));
+  beginLaw(helix_->schedule.limits(), helix_->schedule.length() - s, helix_->schedule.feedSpeed());
 }
 
 void SetpointStream::beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept {
@@ -199,7 +227,7 @@ double SetpointStream::targetSpeed() const noexcept {
 }
 
 double SetpointStream::strokeParameter() const noexcept {
-  return law_.finished() ? schedule_.length() : stroke_from_ + law_.position();
+  return law_.finished() ? helix_->schedule.length() : stroke_from_ + law_.position();
 }
 
 void SetpointStream::straightStep() noexcept {
@@ -214,21 +242,21 @@ void SetpointStream::straightStep() noexcept {
 }
 
 void SetpointStream::strokePair() noexcept {
-  const auto steady = [&] { return law_.cruising() && schedule_.rate(stroke_from_ + law_.position()) == 1; };
+  const auto steady = [&] { return law_.cruising() && helix_->schedule.rate(stroke_from_ + law_.position()) == 1; };
   const bool was_steady = steady();
   law_.advance(2 * period_);
   const double s = strokeParameter();
-  const double dx = schedule_.x(s) - interpolator_.position().x;
+  const double dx = helix_->schedule.x(s) - interpolator_.position().x;
   const OddEvenPair pair = interpolator_.advance(dx);
-  current_.feed = law_.speed() * schedule_.rate(s) * cutter_.edgePerTravel();
+  current_.feed = law_.speed() * helix_->schedule.rate(s) * helix_->cutter.edgePerTravel();
   current_.at_feed = was_steady && steady();
   even_point_ = pair.even;
   strokePoint(pair.odd, StepKind::kOdd);
 }
 
 void SetpointStream::strokePoint(const CurvePoint& point, StepKind step) noexcept {
-  current_.position << point.x, cutter_.y(point.x) + y_offset_, cutter_.z(point.x), a_offset_ + point.a;
-  current_.path_error = curve_.a(point.x) - point.a;
+  current_.position << point.x, strokeY(point.x), helix_->z(point.x), a_offset_ + point.a;
+  current_.path_error = helix_->curve.a(point.x) - point.a;
   current_.step = step;
 }
 

@@ -6,6 +6,7 @@
 #include <ros/serialization.h>
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 #include <vector>
 
@@ -65,6 +66,13 @@ GrindJob jobFromGoal(const GrindGoal& goal) {
   GrindJob job;
   copyFields(goal, job);
   job.tooth_angles = goal.cutter.tooth_angles;
+  job.spiral_angles = goal.cutter.spiral_angles;
+  const std::vector<double>& points = goal.process.wheel_points;
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    // A place without a radius becomes a point that validate() refuses.
+    const double radius = i + 1 < points.size() ? points[i + 1] : std::numeric_limits<double>::quiet_NaN();
+    job.wheel_points.push_back({points[i], radius});
+  }
   return job;
 }
 
@@ -72,6 +80,10 @@ GrindGoal goalFromJob(const GrindJob& job) {
   GrindGoal goal;
   copyFields(job, goal);
   goal.cutter.tooth_angles = job.tooth_angles;
+  goal.cutter.spiral_angles = job.spiral_angles;
+  for (const ProfilePoint& point : job.wheel_points) {
+    goal.process.wheel_points.insert(goal.process.wheel_points.end(), {point.w, point.radius});
+  }
   return goal;
 }
 

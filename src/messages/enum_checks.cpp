@@ -70,7 +70,8 @@ constexpr bool has(std::string_view text) {
 }
 
 static_assert(has<EvenStepRule>(message_text::kInterpolation));
-static_assert(has<GrindOrder, StrokeDirection>(message_text::kProcess));
+static_assert(has<CutDirection>(message_text::kCutter));
+static_assert(has<GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(message_text::kProcess));
 static_assert(has<MachineState>(message_text::kGrinderState));
 static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
 static_assert(PathStatistics::_move_duration_type::static_size == kMoveKindCount, "PathStatistics.move_duration");

@@ -7,9 +7,11 @@ namespace flute_grinder {
 int errorCode(PlanFault fault) {
   switch (fault) {
     case PlanFault::kNone: return GrindResult::SUCCESSFUL;
-    case PlanFault::kInvalidJob: return GrindResult::INVALID_GOAL;
     case PlanFault::kLimit: return GrindResult::LIMIT_VIOLATED;
     case PlanFault::kTolerance: return GrindResult::PATH_TOLERANCE_VIOLATED;
+    case PlanFault::kInvalidJob:
+    case PlanFault::kTool:
+    case PlanFault::kCollision:
     case PlanFault::kTooLong: return GrindResult::INVALID_GOAL;
     case PlanFault::kGivenUp: return GrindResult::CANCELED;
   }

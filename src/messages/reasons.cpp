@@ -23,7 +23,11 @@ static_assert(is(Reason::DRIVE_FAULT, K::kDriveFault) && is(Reason::POWER_LOST, 
 static_assert(is(Reason::STALE_FEEDBACK, K::kStaleFeedback) && is(Reason::INVALID_FEEDBACK, K::kInvalidFeedback));
 static_assert(is(Reason::FOLLOWING_ERROR, K::kFollowingError) && is(Reason::UNDERRUN, K::kUnderrun));
 static_assert(is(Reason::LATE, K::kLate) && is(Reason::HOMING, K::kHoming) && is(Reason::INTERLOCK, K::kInterlock));
-static_assert(is(Reason::CANCELED, K::kCanceled) && Reason::CANCELED + 1 == core::kReasonKindCount);
+static_assert(is(Reason::CANCELED, K::kCanceled) && is(Reason::RAKE, K::kRake) && is(Reason::LAND, K::kLand));
+static_assert(is(Reason::CORE, K::kCore) && is(Reason::INCOMPLETE, K::kIncomplete));
+static_assert(is(Reason::COLLISION, K::kCollision) && is(Reason::SWIVEL, K::kSwivel));
+static_assert(is(Reason::UNEVEN_RAKE, K::kUnevenRake));
+static_assert(Reason::UNEVEN_RAKE + 1 == core::kReasonKindCount);
 
 static_assert(is(Reason::UNIT_NONE, Unit::kNone) && is(Reason::METRE, Unit::kMetre));
 static_assert(is(Reason::METRE_PER_SECOND, Unit::kMetrePerSecond));

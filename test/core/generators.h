@@ -62,6 +62,8 @@ inline rc::Gen<CutterGeometry> cutterGeometry() {
     g.spiral_angle = *spiralAngle();
     g.rake_angle = *uniform(-20 * units::kDegree, 20 * units::kDegree);
     g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
+    g.rake_tolerance = 0.5 * units::kDegree;
+    g.shank_diameter = 10e-3;
     return g;
   });
 }
@@ -114,6 +116,20 @@ inline rc::Gen<GrindJob> job() {
   });
 }
 
+/// Over the whole stroke of a job, from hardly any to one that takes much of the limits of Z.
+inline rc::Gen<ZCorrection> zCorrection(const GrindJob& job) {
+  return rc::gen::exec([=] {
+    ZCorrection c;
+    const double length = job.process.overtravel_end + job.cutter.flute_length + job.process.overtravel_shank;
+    c.from = -job.process.overtravel_end;
+    c.pieces = *whole(1, ZCorrection::kMostPieces);
+    c.piece = length / c.pieces;
+    const double size = length * *logUniform(1e-5, 3e-2);
+    for (int i = 0; i < c.coefficientCount(); ++i) c.coefficients[static_cast<std::size_t>(i)] = size * *uniform(-1, 1);
+    return c;
+  });
+}
+
 inline double edgePerTravel(const CutterGeometry& g) {
   return std::sqrt(1 + std::pow(std::tan(g.cone_angle), 2) + std::pow(std::tan(g.spiral_angle), 2));
 }
@@ -161,9 +177,37 @@ inline rc::Gen<Work> toothedWork(double cycles) {
   });
 }
 
+/// The same with a correction of Z, which often takes a good part of what the machine's Z can.
+inline rc::Gen<Work> correctedWork(double cycles) {
+  return rc::gen::exec([=] {
+    Work w = *toothedWork(cycles);
+    w.job.process.z_law = ZLaw::kConstantRake;
+    w.job.z_corrections.assign(w.job.tooth_angles.size(), *zCorrection(w.job));
+    const ZCorrection::Bounds bend = w.job.z_corrections[0].bounds();
+    const double speed = w.job.process.feed / edgePerTravel(w.job.cutter);
+    const auto keep = [&](double& limit, double taken, double least) {
+      limit = std::clamp(taken / *uniform(0.1, 1), least, limit);
+    };
+    keep(w.machine.limits.max_acceleration[kZ], bend.second * speed * speed, 0.01);
+    keep(w.machine.limits.max_jerk[kZ], bend.third * speed * speed * speed, 0.1);
+    const FeedSchedule::Stroke stroke{-w.job.process.overtravel_end,
+                                      w.job.cutter.flute_length + w.job.process.overtravel_shank,
+                                      w.job.process.feed,
+                                      w.job.interpolation.tolerance,
+                                      0,
+                                      w.job.z_corrections[0]};
+    // A much bent one may be too slow for a test, or for a job.
+    const FeedSchedule schedule(ConicalCutter(w.job.cutter), stroke, w.machine);
+    RC_PRE(schedule.length() / schedule.feedSpeed() / w.machine.period < 10 * cycles);
+    RC_PRE(schedule.feedSpeed() > 2 * kMinFeed);
+    return w;
+  });
+}
+
 /// The paper's cutter: D1 10 mm, S 30 deg, C 5 deg, r 8 deg, 30 mm.
 inline CutterGeometry paperCutter() {
-  return {10e-3, 5 * units::kDegree, 30 * units::kDegree, 8 * units::kDegree, 30e-3};
+  return {10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
+          30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
 }
 
 /// The paper's cutter at 600 mm/min in one pass.

@@ -44,7 +44,11 @@ inline std::vector<std::string> reasonsWith(const JobPlan& plan, const std::stri
 /// A cutter on which `published` drifts off: D1 2 mm, C 15 deg, S 45 deg.
 inline GrindJob steepJob() {
   GrindJob j = paperJob();
-  j.cutter = {2e-3, 15 * units::kDegree, 45 * units::kDegree, 0, 20e-3};
+  j.cutter.end_diameter = 2e-3;
+  j.cutter.cone_angle = 15 * units::kDegree;
+  j.cutter.spiral_angle = 45 * units::kDegree;
+  j.cutter.rake_angle = 0;
+  j.cutter.flute_length = 20e-3;
   j.process.overtravel_end = 0;
   j.process.depth = j.process.infeed = 0.2e-3;
   return j;

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/core/conical_cutter.h"
 #include "flute_grinder/core/odd_even_interpolator.h"
+#include "flute_grinder/core/z_correction.h"
 
 #include <cmath>
 
@@ -25,6 +26,23 @@ struct ReferenceCurve {
   /// A(x + dx) - A(x)
   Real delta(Real x, Real dx) const { return b == 0 ? k * dx : k / b * std::log1p(b * dx / u(x)); }
 };
+
+/// The B-spline of a degree whose knots are 0, 1, 2, ..., by the recursion of Cox and de Boor.
+inline Real bSpline(int degree, Real t) {
+  if (degree == 0) return t >= 0 && t < 1 ? 1 : 0;
+  return (t * bSpline(degree - 1, t) + (degree + 1 - t) * bSpline(degree - 1, t - 1)) / degree;
+}
+
+/// A correction of Z within its range [m].
+inline Real referenceCorrection(const ZCorrection& c, Real x) {
+  Real sum = 0;
+  if (c.pieces == 0) return sum;
+  const Real t = (x - c.from) / c.piece;
+  for (int i = 0; i < c.coefficientCount(); ++i) {
+    sum += c.coefficients[static_cast<std::size_t>(i)] * bSpline(ZCorrection::kDegree, t - i + ZCorrection::kDegree);
+  }
+  return sum;
+}
 
 struct ReferencePair {
   Real x1, a1;  ///< the odd point, relative to the pair's start

@@ -236,7 +236,8 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
     }
     RC_ASSERT(direction * (to - x) >= -rounding[kX]);
     RC_ASSERT(std::abs(p.position[kY] - (x * growth - work.job.process.depth)) <= 2 * rounding[kY]);
-    RC_ASSERT(std::abs(p.position[kZ] - x * growth * sin_rake) <= 2 * rounding[kZ] + 1e-18);
+    const Real correction = referenceCorrection(zCorrectionOf(work.job, p.tooth), x);
+    RC_ASSERT(std::abs(p.position[kZ] - (x * growth * sin_rake + correction)) <= 2 * rounding[kZ] + 1e-18);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
     if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
     if (ends) RC_ASSERT(p.move_fraction == 1);

@@ -17,31 +17,39 @@ constexpr double kPi = 3.141592653589793238462643383279502884;
 
 // Line numbers in the rows below are those of this text.
 const char* const kGood =
-    "cutter:\n"                          // 1
-    "  end_diameter_mm: 6\n"             // 2
-    "  cone_angle_deg: -1\n"             // 3
-    "  spiral_angle_deg: -45\n"          // 4
-    "  rake_angle_deg: 12\n"             // 5
-    "  flute_length_mm: 25\n"            // 6
-    "  teeth: 4\n"                       // 7
-    "process:\n"                         // 8
-    "  feed_mm_min: 200\n"               // 9
-    "  depth_mm: 1.5\n"                  // 10
-    "  infeed_mm: 0.5\n"                 // 11
-    "  finish_infeed_mm: 0.05\n"         // 12
-    "  spark_out: 1\n"                   // 13
-    "  clearance_mm: 5\n"                // 14
-    "  overtravel_mm: [1, 2]\n"          // 15
-    "  order: pass_major\n"              // 16
-    "  direction: to_end\n"              // 17
-    "  wheel:\n"                         // 18
-    "    diameter_mm: 100\n"             // 19
-    "    width_mm: 8\n"                  // 20
-    "    wear_mm: 0.3\n"                 // 21
-    "interpolation:\n"                   // 22
-    "  even_step: third_order\n"         // 23
-    "  tolerance_um: 2\n"                // 24
-    "  rotary_scale_mm_per_rad: 1.5\n";  // 25
+    "cutter:\n"                                      // 1
+    "  end_diameter_mm: 6\n"                         // 2
+    "  cone_angle_deg: -1\n"                         // 3
+    "  spiral_angle_deg: -45\n"                      // 4
+    "  rake_angle_deg: 12\n"                         // 5
+    "  flute_length_mm: 25\n"                        // 6
+    "  teeth: 4\n"                                   // 7
+    "  cut: left_hand\n"                             // 8
+    "  rake_tolerance_deg: 0.25\n"                   // 9
+    "  shank_diameter_mm: 10\n"                      // 10
+    "process:\n"                                     // 11
+    "  feed_mm_min: 200\n"                           // 12
+    "  depth_mm: 1.5\n"                              // 13
+    "  infeed_mm: 0.5\n"                             // 14
+    "  finish_infeed_mm: 0.05\n"                     // 15
+    "  spark_out: 1\n"                               // 16
+    "  clearance_mm: 5\n"                            // 17
+    "  overtravel_mm: [1, 2]\n"                      // 18
+    "  order: pass_major\n"                          // 19
+    "  direction: to_end\n"                          // 20
+    "  wheel:\n"                                     // 21
+    "    diameter_mm: 100\n"                         // 22
+    "    width_mm: 8\n"                              // 23
+    "    wear_mm: 0.3\n"                             // 24
+    "    profile: angled\n"                          // 25
+    "    angle_deg: 20\n"                            // 26
+    "    side: lower\n"                              // 27
+    "    corner_radius_mm: [0.1, 0.2]\n"             // 28
+    "  setup: {swivel_deg: -46, height_mm: 1.25}\n"  // 29
+    "interpolation:\n"                               // 30
+    "  even_step: third_order\n"                     // 31
+    "  tolerance_um: 2\n"                            // 32
+    "  rotary_scale_mm_per_rad: 1.5\n";              // 33
 
 /// The good text with one piece of it replaced.
 std::string with(const std::string& piece, const std::string& replacement) {
@@ -110,9 +118,77 @@ TEST(JobFile, TurnsEveryFigureIntoSi) {
   EXPECT_DOUBLE_EQ(job.process.wheel_diameter, 0.1);
   EXPECT_DOUBLE_EQ(job.process.wheel_width, 0.008);
   EXPECT_DOUBLE_EQ(job.process.wheel_wear, 0.0003);
+  EXPECT_EQ(job.cutter.cut, CutDirection::kLeftHand);
+  EXPECT_DOUBLE_EQ(job.cutter.rake_tolerance, kPi / 720);
+  EXPECT_DOUBLE_EQ(job.cutter.shank_diameter, 0.01);
+  EXPECT_EQ(job.process.wheel_profile, WheelShape::kAngled);
+  EXPECT_DOUBLE_EQ(job.process.wheel_angle, kPi / 9);
+  EXPECT_EQ(job.process.wheel_side, WheelFace::kLower);
+  EXPECT_DOUBLE_EQ(job.process.wheel_corner_radius_lower, 0.0001);
+  EXPECT_DOUBLE_EQ(job.process.wheel_corner_radius_upper, 0.0002);
+  EXPECT_DOUBLE_EQ(job.process.setup_swivel, -46 * kPi / 180);
+  EXPECT_DOUBLE_EQ(job.process.setup_height, 0.00125);
   EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kThirdOrder);
   EXPECT_DOUBLE_EQ(job.interpolation.tolerance, 2e-6);
   EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.0015);
+}
+
+TEST(JobFile, ReadsWhatMayBeLeftOut) {
+  const GrindJob plain = parseJob(kGood, "job.yaml");
+  EXPECT_EQ(plain.process.depth_end, 0);
+  EXPECT_EQ(plain.process.depthEnd(), plain.process.depth);
+  EXPECT_FALSE(plain.process.incomplete_ok);
+  EXPECT_TRUE(plain.spiral_angles.empty());
+  EXPECT_EQ(parseJob(with("    corner_radius_mm: [0.1, 0.2]\n", ""), "f").process.wheel_corner_radius_upper, 0);
+  EXPECT_DOUBLE_EQ(
+      parseJob(with("  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_end_mm: 1.75\n"), "f").process.depthEnd(), 0.00175);
+  EXPECT_TRUE(parseJob(with("  order:", "  incomplete_ok: true\n  order:"), "f").process.incomplete_ok);
+}
+
+const std::vector<std::string> kUnsolved{"process.setup_swivel", "process.setup_height", "process.depth"};
+
+TEST(JobFile, LeavesOutTheSetUpThatIsYetToBeFound) {
+  const std::string setup = "  setup: {swivel_deg: -46, height_mm: 1.25}\n";
+  GrindJob job = parseJob(with(setup, ""), "job.yaml", kUnsolved);
+  EXPECT_EQ(job.process.setup_swivel, 0);
+  EXPECT_EQ(job.process.setup_height, 0);
+  EXPECT_DOUBLE_EQ(job.process.depth, 0.0015);
+  job = parseJob(with(", height_mm: 1.25", ""), "job.yaml", kUnsolved);
+  EXPECT_DOUBLE_EQ(job.process.setup_swivel, -46 * kPi / 180);
+  EXPECT_THROW(parseJob(with(", height_mm: 1.25", ""), "job.yaml", {"process.setup_swivel"}), JobFileError);
+}
+
+TEST(JobFile, LeavesOutTheDepthOnlyBesideACore) {
+  const auto parse = [](const std::string& core) {
+    std::string text = with("  depth_mm: 1.5\n", "");
+    return parseJob(text.insert(text.find("process:"), core), "job.yaml", kUnsolved);
+  };
+  EXPECT_DOUBLE_EQ(parse("  core_diameter_mm: 3.5\n").process.depth, 0.00125);
+  EXPECT_THROW(parse(""), JobFileError);
+}
+
+TEST(JobFile, TellsHowAMissingSetUpIsFound) {
+  EXPECT_EQ(errorOf(with("setup: {swivel_deg: -46, height_mm: 1.25}", "setup: {height_mm: 1.25}")),
+            "job.yaml:1: process.setup.swivel_deg is missing; allowed: -80 to 80 deg; 'grind setup --write' finds it");
+  EXPECT_EQ(errorOf(with("  depth_mm: 1.5\n", "")),
+            "job.yaml:1: process.depth_mm is missing; allowed: 0.001 to 50 mm; 'grind setup --write' finds it for a "
+            "cutter.core_diameter_mm");
+}
+
+TEST(JobFile, ReadsASpiralAnglePerTooth) {
+  const GrindJob job = parseJob(with("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]"), "job.yaml");
+  EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
+  ASSERT_EQ(job.spiral_angles.size(), 4u);
+  for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(cutterOf(job, i).spiral_angle, (i - 45) * kPi / 180);
+}
+
+TEST(JobFile, ReadsAWheelOfPoints) {
+  const GrindJob job = parseJob(with("    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                                     "    profile: points\n    points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n"),
+                                "job.yaml");
+  ASSERT_EQ(job.wheel_points.size(), 3u);
+  EXPECT_DOUBLE_EQ(job.wheel_points[0].w, -0.004);
+  EXPECT_DOUBLE_EQ(job.wheel_points[2].radius, 0.0485);
 }
 
 TEST(JobFile, SpacesCountedTeethEvenly) {
@@ -178,11 +254,11 @@ INSTANTIATE_TEST_SUITE_P(
     All, JobFileMistake,
     ::testing::Values(
         Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:22", "paint"}},
+        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:30", "paint"}},
         Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", {"job.yaml:8", "cutter.colour"}},
         Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", {"job.yaml:8", "cutter.colour"}},
         Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:15", "process.overtravel_mm[2]"}},
+        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:18", "process.overtravel_mm[2]"}},
         Mistake{"MissingKey", "  depth_mm: 1.5\n", "", {"job.yaml", "process.depth_mm", "missing", "0.001 to 50 mm"}},
         Mistake{"MissingTeeth", "  teeth: 4\n", "", {"job.yaml", "cutter.teeth", "missing", "1 to 64"}},
         Mistake{"MissingChoice",
@@ -197,11 +273,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"DuplicateKey",
                 "  depth_mm: 1.5\n",
                 "  depth_mm: 1.5\n  depth_mm: 1.6\n",
-                {"job.yaml:11", "process.depth_mm", "second time"}},
+                {"job.yaml:14", "process.depth_mm", "second time"}},
         Mistake{"DuplicateKeySameValue",
                 "  depth_mm: 1.5\n",
                 "  depth_mm: 1.5\n  depth_mm: 1.5\n",
-                {"job.yaml:11", "process.depth_mm", "second time"}},
+                {"job.yaml:14", "process.depth_mm", "second time"}},
         Mistake{"WrongTypeNumber",
                 "end_diameter_mm: 6",
                 "end_diameter_mm: six",
@@ -209,25 +285,25 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NumberWithUnit",
                 "feed_mm_min: 200",
                 "feed_mm_min: 200mm/min",
-                {"job.yaml:9", "process.feed_mm_min", "200mm/min", "0.1 to 10000 mm/min"}},
+                {"job.yaml:12", "process.feed_mm_min", "200mm/min", "0.1 to 10000 mm/min"}},
         Mistake{"NoValue",
                 "feed_mm_min: 200",
                 "feed_mm_min:",
-                {"job.yaml:9", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
+                {"job.yaml:12", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
         Mistake{"WrongTypeTeeth", "teeth: 4", "teeth: four", {"job.yaml:7", "cutter.teeth", "four", "1 to 64"}},
         Mistake{"BrokenTeeth", "teeth: 4", "teeth: 4.5", {"job.yaml:7", "cutter.teeth", "4.5", "1 to 64"}},
         Mistake{"BrokenSparkOut",
                 "spark_out: 1",
                 "spark_out: 1.5",
-                {"job.yaml:13", "process.spark_out", "1.5", "0 to 100"}},
+                {"job.yaml:16", "process.spark_out", "1.5", "0 to 100"}},
         Mistake{"NotANumber",
                 "depth_mm: 1.5",
                 "depth_mm: .nan",
-                {"job.yaml:10", "process.depth_mm", "nan", "0.001 to 50 mm"}},
+                {"job.yaml:13", "process.depth_mm", "nan", "0.001 to 50 mm"}},
         Mistake{"Infinite",
                 "depth_mm: 1.5",
                 "depth_mm: .inf",
-                {"job.yaml:10", "process.depth_mm", "inf", "0.001 to 50 mm"}},
+                {"job.yaml:13", "process.depth_mm", "inf", "0.001 to 50 mm"}},
         Mistake{"MinusInfinite",
                 "cone_angle_deg: -1",
                 "cone_angle_deg: -.inf",
@@ -235,7 +311,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"TooLargeForANumber",
                 "depth_mm: 1.5",
                 "depth_mm: 1e999",
-                {"job.yaml:10", "process.depth_mm", "0.001 to 50 mm"}},
+                {"job.yaml:13", "process.depth_mm", "0.001 to 50 mm"}},
         Mistake{"OutOfRange",
                 "cone_angle_deg: -1",
                 "cone_angle_deg: 31",
@@ -243,41 +319,41 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NestedOutOfRange",
                 "width_mm: 8",
                 "width_mm: 800",
-                {"job.yaml:20", "process.wheel.width_mm", "800 mm", "0.1 to 100 mm"}},
+                {"job.yaml:23", "process.wheel.width_mm", "800 mm", "0.1 to 100 mm"}},
         Mistake{"WearPerPassOutOfRange",
                 "    wear_mm: 0.3\n",
                 "    wear_mm: 0.3\n    wear_per_pass_mm: 1.5\n",
-                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "1.5 mm", "0 to 1 mm"}},
+                {"job.yaml:25", "process.wheel.wear_per_pass_mm", "1.5 mm", "0 to 1 mm"}},
         Mistake{"WearPerPassOfAWord",
                 "    wear_mm: 0.3\n",
                 "    wear_mm: 0.3\n    wear_per_pass_mm: some\n",
-                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "some", "0 to 1 mm"}},
+                {"job.yaml:25", "process.wheel.wear_per_pass_mm", "some", "0 to 1 mm"}},
         Mistake{"WearPerPassWithoutAValue",
                 "    wear_mm: 0.3\n",
                 "    wear_mm: 0.3\n    wear_per_pass_mm:\n",
-                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "(nothing)", "0 to 1 mm"}},
+                {"job.yaml:25", "process.wheel.wear_per_pass_mm", "(nothing)", "0 to 1 mm"}},
         Mistake{"WearPerPassTwice",
                 "    wear_mm: 0.3\n",
                 "    wear_mm: 0.3\n    wear_per_pass_mm: 0.1\n    wear_per_pass_mm: 0.2\n",
-                {"job.yaml:23", "process.wheel.wear_per_pass_mm", "second time"}},
+                {"job.yaml:26", "process.wheel.wear_per_pass_mm", "second time"}},
         Mistake{"WearPerPassTakesAllOfTheWheel",
                 "    wear_mm: 0.3\n",
-                "    wear_mm: 49\n    wear_per_pass_mm: 0.5\n",
-                {"job.yaml:22", "process.wheel.wear_per_pass_mm", "0.5 mm", "less than 0.0"}},
+                "    wear_mm: 47\n    wear_per_pass_mm: 0.5\n",
+                {"job.yaml:25", "process.wheel.wear_per_pass_mm", "0.5 mm", "less than 0.15 mm"}},
         Mistake{"OvertravelOutOfRange",
                 "[1, 2]",
                 "[1, 200]",
-                {"job.yaml:15", "process.overtravel_mm[1]", "200 mm", "0 to 100 mm"}},
+                {"job.yaml:18", "process.overtravel_mm[1]", "200 mm", "0 to 100 mm"}},
         Mistake{"NegativeFeed",
                 "feed_mm_min: 200",
                 "feed_mm_min: -200",
-                {"job.yaml:9", "process.feed_mm_min", "-200 mm/min", "0.1 to 10000 mm/min"}},
+                {"job.yaml:12", "process.feed_mm_min", "-200 mm/min", "0.1 to 10000 mm/min"}},
         Mistake{"NoTeeth", "teeth: 4", "teeth: 0", {"job.yaml:7", "cutter.teeth", "0", "1 to 64"}},
         Mistake{"TooManyTeeth", "teeth: 4", "teeth: 65", {"job.yaml:7", "cutter.teeth", "65", "1 to 64"}},
         Mistake{"TooManySparkOut",
                 "spark_out: 1",
                 "spark_out: 101",
-                {"job.yaml:13", "process.spark_out", "101", "0 to 100"}},
+                {"job.yaml:16", "process.spark_out", "101", "0 to 100"}},
         Mistake{"TwoWaysOfTeeth",
                 "  teeth: 4\n",
                 "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
@@ -301,21 +377,84 @@ INSTANTIATE_TEST_SUITE_P(
                 "tooth_angles_deg: [0, half]",
                 {"job.yaml:7", "cutter.tooth_angles_deg[1]", "half", "ascending"}},
         Mistake{
-            "BadOrder", "pass_major", "tooth", {"job.yaml:16", "process.order", "tooth", "tooth_major, pass_major"}},
+            "BadOrder", "pass_major", "tooth", {"job.yaml:19", "process.order", "tooth", "tooth_major, pass_major"}},
         Mistake{
-            "BadDirection", "to_end", "From_End", {"job.yaml:17", "process.direction", "From_End", "from_end, to_end"}},
+            "BadDirection", "to_end", "From_End", {"job.yaml:20", "process.direction", "From_End", "from_end, to_end"}},
         Mistake{"BadEvenStep",
                 "third_order",
                 "fourth_order",
-                {"job.yaml:23", "interpolation.even_step", "fourth_order", "published, third_order, exact"}},
+                {"job.yaml:31", "interpolation.even_step", "fourth_order", "published, third_order, exact"}},
+        Mistake{"MissingSetup",
+                "  setup: {swivel_deg: -46, height_mm: 1.25}\n",
+                "  setup: {swivel_deg: -46}\n",
+                {"job.yaml", "process.setup.height_mm", "missing", "-100 to 100 mm"}},
+        Mistake{"MissingProfile",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "",
+                {"job.yaml", "process.wheel.profile", "missing", "straight, angled, full_radius, cup, points"}},
+        Mistake{"MissingSide", "    side: lower\n", "", {"job.yaml", "process.wheel.side", "missing", "upper, lower"}},
+        Mistake{"SideOfAStraightWheel",
+                "    profile: angled\n    angle_deg: 20\n",
+                "    profile: straight\n",
+                {"job.yaml:26", "process.wheel.side", "not a key"}},
+        Mistake{"AngleOfAStraightWheel",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: straight\n    angle_deg: 20\n",
+                {"job.yaml:26", "process.wheel.angle_deg", "20 deg", "0 for this profile"}},
+        Mistake{"AngledWithoutAnAngle",
+                "    angle_deg: 20\n",
+                "",
+                {"job.yaml", "process.wheel.angle_deg", "0 deg", "more than 0 for this profile"}},
+        Mistake{"AngledToAPoint",
+                "angle_deg: 20",
+                "angle_deg: 80.95",
+                {"job.yaml:26", "process.wheel.angle_deg", "80.95 deg", "0 to 80 deg"}},
+        Mistake{"CornersWiderThanTheWheel",
+                "[0.1, 0.2]",
+                "[4, 4.5]",
+                {"job.yaml:28", "process.wheel.corner_radius_mm[0]", "8.5 mm", "wheel's width", "8 mm"}},
+        Mistake{"OneCorner", "[0.1, 0.2]", "[0.1]", {"job.yaml", "process.wheel.corner_radius_mm[1]", "missing"}},
+        Mistake{"PointsWithoutPoints",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: points\n",
+                {"job.yaml", "process.wheel.points_mm", "[w, radius]"}},
+        Mistake{"PointsOfAnotherWidth",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: points\n    points_mm: [[-3, 50], [3, 49]]\n",
+                {"job.yaml:23", "process.wheel.width_mm", "8 mm", "its points", "6 mm"}},
+        Mistake{"PointsNotAscending",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: points\n    points_mm: [[-4, 50], [-4, 49], [4, 50]]\n",
+                {"job.yaml:26", "process.wheel.points_mm", "-4 mm", "ascending"}},
+        Mistake{"HalfAPoint",
+                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
+                {"job.yaml:26", "process.wheel.points_mm[1]", "not a pair"}},
+        Mistake{"BadCut", "left_hand", "left", {"job.yaml:8", "cutter.cut", "left", "right_hand, left_hand"}},
+        Mistake{"IncompleteOkOfAWord",
+                "  order: pass_major\n",
+                "  incomplete_ok: perhaps\n  order: pass_major\n",
+                {"job.yaml:19", "process.incomplete_ok", "perhaps", "true, false"}},
+        Mistake{"TwoWaysOfSpirals",
+                "  spiral_angle_deg: -45\n",
+                "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
+                {"job.yaml:4", "cutter.spiral_angle_deg", "cutter.spiral_angles_deg", "one of the two"}},
+        Mistake{"SpiralsOfSomeTeeth",
+                "spiral_angle_deg: -45",
+                "spiral_angles_deg: [-45, -44]",
+                {"job.yaml:4", "cutter.spiral_angles_deg", "2", "as many as teeth, 4"}},
+        Mistake{"SpiralOutOfRange",
+                "spiral_angle_deg: -45",
+                "spiral_angles_deg: [-45, -44, -61, -44]",
+                {"job.yaml:4", "cutter.spiral_angles_deg", "-61 deg", "-60 to 60 deg"}},
         Mistake{"DeeperThanTheCutter",
                 "depth_mm: 1.5",
                 "depth_mm: 2.8",
-                {"job.yaml:10", "process.depth_mm", "2.8 mm", "less than 2.56", "smallest radius"}},
+                {"job.yaml:13", "process.depth_mm", "2.8 mm", "less than 2.56", "radius at the flute's end"}},
         Mistake{"FinishAboveDepth",
                 "finish_infeed_mm: 0.05",
                 "finish_infeed_mm: 2",
-                {"job.yaml:12", "process.finish_infeed_mm", "2 mm", "1.5 mm"}}),
+                {"job.yaml:15", "process.finish_infeed_mm", "2 mm", "1.5 mm"}}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(JobFile, TellsAllOfSeveralErrors) {
@@ -324,9 +463,9 @@ TEST(JobFile, TellsAllOfSeveralErrors) {
   text += "extra: 1\n";
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 3) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:10", "process.depth_mm", "deep"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:16", "process.order", "any"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:26", "extra"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:13", "process.depth_mm", "deep"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:19", "process.order", "any"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:34", "extra"}));
 }
 
 TEST(JobFile, TellsAllFiguresOutOfRange) {
@@ -334,13 +473,13 @@ TEST(JobFile, TellsAllFiguresOutOfRange) {
   text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 2) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:10", "process.depth_mm", "51 mm"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:9", "process.feed_mm_min", "0 mm/min"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:13", "process.depth_mm", "51 mm"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:12", "process.feed_mm_min", "0 mm/min"}));
 }
 
 TEST(JobFile, RefusesASectionThatStandsTwice) {
   const std::string error = errorOf(with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:14", "process"})) << "got: " << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:17", "process"})) << "got: " << error;
 }
 
 TEST(JobFile, RefusesAPathAsAKey) {
@@ -359,7 +498,7 @@ TEST(JobFile, RefusesASectionThatIsNotAMap) {
   const std::string text =
       std::string(kGood).substr(0, std::string(kGood).find("interpolation:")) + "interpolation: exact\n";
   const std::string error = errorOf(text);
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:22", "interpolation"})) << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:30", "interpolation"})) << error;
   EXPECT_TRUE(hasLineWith(error, {"interpolation.tolerance_um", "missing"})) << error;
 }
 
@@ -377,7 +516,7 @@ TEST(JobFile, RefusesAKeyThatIsNotAWord) {
   } catch (const std::exception& e) {
     error = std::string("not a JobFileError: ") + e.what();
   }
-  EXPECT_EQ(error.find("job.yaml:26"), 0u) << error;
+  EXPECT_EQ(error.find("job.yaml:34"), 0u) << error;
 }
 
 TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
@@ -415,7 +554,7 @@ TEST(JobFile, NamesAnEmptyFile) {
 TEST(JobFile, NamesTheFileAndLineOfAnErrorInIt) {
   const std::string path = ::testing::TempDir() + "flute_grinder_bad_job.yaml";
   std::ofstream(path) << with("depth_mm: 1.5", "depth_mm: deep");
-  EXPECT_EQ(fileErrorOf(path).find(path + ":10: process.depth_mm = deep"), 0u) << fileErrorOf(path);
+  EXPECT_EQ(fileErrorOf(path).find(path + ":13: process.depth_mm = deep"), 0u) << fileErrorOf(path);
 }
 
 }  // namespace

@@ -97,7 +97,13 @@ void spoilChoices(Dice& dice, GrindJob& job) {
     job.process.spark_out = dice.of({-1, kMaxSparkOut, kMaxSparkOut + 1, std::numeric_limits<int>::max()});
   if (dice.once(8)) job.process.order = static_cast<GrindOrder>(whole());
   if (dice.once(8)) job.process.direction = static_cast<StrokeDirection>(whole());
+  if (dice.once(16)) job.process.z_law = static_cast<ZLaw>(whole());
+  if (dice.once(16)) job.z_corrections.resize(static_cast<std::size_t>(dice.below(3)));
   if (dice.once(4)) job.interpolation.even_step = static_cast<EvenStepRule>(whole());
+  if (dice.once(16)) job.cutter.cut = static_cast<CutDirection>(whole());
+  if (dice.once(16)) job.process.wheel_profile = static_cast<WheelShape>(whole());
+  if (dice.once(16)) job.wheel_points = {{-4e-3, 50e-3}, {dice.within(-5e-3, 5e-3), 50e-3}};
+  if (dice.once(16)) job.spiral_angles = {job.cutter.spiral_angle, dice.within(-2, 2)};
   if (dice.once(8)) job.tooth_angles = anyTeeth(dice);
 }
 
@@ -137,6 +143,7 @@ GrindJob allowedJob(Dice& dice) {
   if (dice.once(2)) g.cone_angle *= dice.scaled(1e-12, 1);
   const double apex = -g.end_diameter / 2 / std::tan(g.cone_angle);
   const double close = 1 - dice.scaled(1e-15, 1);
+  g.core_diameter = dice.once(2) ? g.end_diameter * dice.within(0, 0.99) : 0;
   g.flute_length = dice.scaled(0.1e-3, 3e-3);
   p.overtravel_shank = dice.within(0, 1e-3);
   p.overtravel_end = dice.within(0, 1e-3);
@@ -146,6 +153,8 @@ GrindJob allowedJob(Dice& dice) {
   p.infeed = dice.once(4) ? p.depth / dice.below(4) : p.depth;
   p.finish_infeed = dice.once(3) ? p.depth * dice.within(0, 1) : 0;
   p.clearance = dice.scaled(0.1e-3, 2e-3);
+  p.depth_end = dice.once(3) ? p.depth * dice.within(0.1, 2) : 0;
+  p.wheel_angle = p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
   p.wheel_diameter = 0.1;
   p.wheel_wear = 0;
   p.wheel_wear_per_pass = dice.once(3) ? dice.scaled(1e-9, 1e-6) : 0;
@@ -156,6 +165,7 @@ GrindJob allowedJob(Dice& dice) {
   job.interpolation.even_step = dice.of({EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact});
   p.direction = dice.of({StrokeDirection::kFromEnd, StrokeDirection::kToEnd});
   if (dice.once(4)) job.tooth_angles = {0, dice.within(0.1, 6)};
+  if (job.tooth_angles.size() == 2 && dice.once(2)) job.spiral_angles = {g.spiral_angle, dice.within(-1, 1)};
   return job;
 }
 

@@ -71,6 +71,22 @@ TEST(JobPlan, RefusesAFirstPassThatIsNotThere) {
   EXPECT_TRUE(contains(textOf(plan), "first_tooth = 1"));
 }
 
+TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
+  Machine machine = plainMachine();
+  machine.swivel = {-0.5, 0.75};
+  GrindJob job = paperJob();
+  for (const double swivel : {-0.5, 0.0, 0.75}) {
+    job.process.setup_swivel = swivel;
+    EXPECT_TRUE(planOf(job, machine).good()) << swivel;
+  }
+  for (const double swivel : {-0.500001, 0.750001}) {
+    job.process.setup_swivel = swivel;
+    const JobPlan plan = planOf(job, machine);
+    EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+    EXPECT_TRUE(contains(textOf(plan), "; allowed: -0.5 to 0.75 rad, to which the machine swivels")) << textOf(plan);
+  }
+}
+
 TEST(JobPlan, RefusesABadMachine) {
   Machine machine = plainMachine();
   machine.period = 0;

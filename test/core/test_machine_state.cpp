@@ -23,26 +23,28 @@ using E = MachineEvent;
 
 /// The state after every event; "-" where it is refused.
 constexpr const char* kTable = R"(
-state      enable disable   home   start    hold     resume   retract    lift    cancel    reset    done    at_rest   fault
-disabled   ready  disabled  -      -        -        -        -          -       -         disabled -       -         -
-ready      ready  disabled  homing starting -        -        -          lifting -         -        -       -         fault
-homing     -      disabled  -      -        disabled -        -          -       disabled  -        ready   -         fault
-starting   -      canceling -      -        starting starting -          -       canceling -        running ready     fault
-running    -      canceling -      -        holding  -        -          -       canceling -        -       ready     fault
-holding    -      canceling -      -        holding  resuming -          -       canceling -        -       held      fault
-held       -      canceling -      -        held     resuming retracting -       canceling -        -       -         fault
-retracting -      canceling -      -        holding  -        -          -       canceling -        -       retracted fault
-retracted  -      canceling -      -        -        resuming -          -       canceling -        -       -         fault
-resuming   -      canceling -      -        holding  -        -          -       canceling -        running -         fault
-canceling  -      canceling -      -        canceling -       -          -       canceling -        -       ready     fault
-fault      -      fault     -      -        -        -        -          -       -         disabled -       -         -
-lifting    -      lifting   -      -        lifting  -        -          -       lifting   -        -       ready     fault
+state             enable disable   home   start    hold              resume   retract    lift    jog               cancel    reset    done    at_rest   fault
+disabled          ready  disabled  -      -        -                 -        -          -       -                 -         disabled -       -         -
+ready             ready  disabled  homing starting -                 -        -          lifting jogging           -         -        -       -         fault
+homing            -      disabled  -      -        disabled          -        -          -       -                 disabled  -        ready   -         fault
+starting          -      canceling -      -        starting          starting -          -       -                 canceling -        running ready     fault
+running           -      canceling -      -        holding           -        -          -       -                 canceling -        -       ready     fault
+holding           -      canceling -      -        holding           resuming -          -       -                 canceling -        -       held      fault
+held              -      canceling -      -        held              resuming retracting -       -                 canceling -        -       -         fault
+retracting        -      canceling -      -        holding           -        -          -       -                 canceling -        -       retracted fault
+retracted         -      canceling -      -        -                 resuming -          -       jogging_retracted canceling -        -       -         fault
+resuming          -      canceling -      -        holding           -        -          -       -                 canceling -        running -         fault
+canceling         -      canceling -      -        canceling         -        -          -       -                 canceling -        -       ready     fault
+fault             -      fault     -      -        -                 -        -          -       -                 -         disabled -       -         -
+lifting           -      lifting   -      -        lifting           -        -          -       -                 lifting   -        -       ready     fault
+jogging           -      jogging   -      -        jogging           -        -          -       jogging           jogging   -        -       ready     fault
+jogging_retracted -      canceling -      -        jogging_retracted -        -          -       jogging_retracted canceling -        -       retracted fault
 )";
 const std::vector<S> kStates{S::kDisabled,  S::kReady, S::kHoming,     S::kStarting,  S::kRunning,
                              S::kHolding,   S::kHeld,  S::kRetracting, S::kRetracted, S::kResuming,
-                             S::kCanceling, S::kFault, S::kLifting};
-const std::vector<E> kEvents{E::kEnable, E::kDisable, E::kHome,  E::kStart, E::kHold,   E::kResume, E::kRetract,
-                             E::kLift,   E::kCancel,  E::kReset, E::kDone,  E::kAtRest, E::kFault};
+                             S::kCanceling, S::kFault, S::kLifting,    S::kJogging,   S::kJoggingRetracted};
+const std::vector<E> kEvents{E::kEnable, E::kDisable, E::kHome,   E::kStart, E::kHold, E::kResume, E::kRetract,
+                             E::kLift,   E::kJog,     E::kCancel, E::kReset, E::kDone, E::kAtRest, E::kFault};
 
 /// The words of the table, row by row.
 std::vector<std::vector<std::string>> words() {
@@ -68,7 +70,7 @@ std::string cellName(const TestParamInfo<std::tuple<std::size_t, std::size_t>>& 
   return words().at(std::get<0>(info.param) + 1).front() + "_" + words().front().at(std::get<1>(info.param) + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 13), Range<std::size_t>(0, 13)), cellName);
+INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 15), Range<std::size_t>(0, 14)), cellName);
 
 TEST(MachineState, StatesHaveNames) {
   for (std::size_t i = 0; i < kStates.size(); ++i) EXPECT_EQ(toString(kStates[i]), words().at(i + 1).front());
@@ -84,7 +86,7 @@ TEST(MachineState, EventsHaveNames) {
 
 TEST(MachineState, RequestsAreWhatComesFromOutside) {
   for (const E event : {E::kEnable, E::kDisable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift,
-                        E::kCancel, E::kReset}) {
+                        E::kJog, E::kCancel, E::kReset}) {
     EXPECT_TRUE(isRequest(event)) << toString(event);
   }
   for (const E event : {E::kDone, E::kAtRest, E::kFault}) EXPECT_FALSE(isRequest(event)) << toString(event);
@@ -108,15 +110,17 @@ TEST(MachineState, StopsAreHoldCancelAndDisable) {
   }
 }
 
-TEST(MachineState, TriggersAreTheRequestsThatNeitherStopNorStart) {
+TEST(MachineState, TriggersAreTheRequestsThatNeitherStopNorTakeArguments) {
   for (const E event : kEvents) {
-    EXPECT_EQ(isTrigger(event), isRequest(event) && !isStop(event) && event != E::kStart) << toString(event);
+    const bool takes = event == E::kStart || event == E::kJog;
+    EXPECT_EQ(isTrigger(event), isRequest(event) && !isStop(event) && !takes) << toString(event);
   }
 }
 
-TEST(MachineState, RequestsHaveServicesButThoseThatGoByTheAction) {
+TEST(MachineState, RequestsHaveServicesButThoseThatGoOtherwise) {
   for (const E event : kEvents) {
-    const bool by_service = isRequest(event) && event != E::kStart && event != E::kCancel;
+    const bool otherwise = event == E::kStart || event == E::kCancel || event == E::kJog;
+    const bool by_service = isRequest(event) && !otherwise;
     const char* named = event == E::kReset ? "reset_fault" : toString(event);
     EXPECT_STREQ(serviceOf(event), by_service ? named : nullptr);
   }
@@ -134,6 +138,19 @@ TEST(MachineState, OnlyReadyStartsAJobHomesOrLifts) {
   }
 }
 
+TEST(MachineState, AJogLeadsBackToWhereItWasBegun) {
+  for (const S from : kStates) {
+    const std::optional<S> jogging = after(from, E::kJog);
+    EXPECT_EQ(jogging.has_value(),
+              from == S::kReady || from == S::kRetracted || from == S::kJogging || from == S::kJoggingRetracted)
+        << toString(from);
+    if (from == S::kReady || from == S::kRetracted) EXPECT_EQ(after(*jogging, E::kAtRest), from);
+    if (jogging) EXPECT_EQ(after(*jogging, E::kJog), jogging);
+  }
+  EXPECT_FALSE(isInJob(S::kJogging));
+  EXPECT_TRUE(isInJob(S::kJoggingRetracted));
+}
+
 TEST(MachineState, EveryStateUnderPowerCanFault) {
   for (const S state : kStates) {
     const bool powered = state != S::kDisabled && state != S::kFault;
@@ -144,18 +161,20 @@ TEST(MachineState, EveryStateUnderPowerCanFault) {
 
 TEST(MachineState, AllowedInListsTheRequestsOfTheState) {
   EXPECT_EQ(allowedIn(S::kDisabled), "enable, disable, reset");
-  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start, lift");
+  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start, lift, jog");
   EXPECT_EQ(allowedIn(S::kHoming), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kStarting), "disable, hold, resume, cancel");
   EXPECT_EQ(allowedIn(S::kRunning), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kHolding), "disable, hold, resume, cancel");
   EXPECT_EQ(allowedIn(S::kHeld), "disable, hold, resume, retract, cancel");
   EXPECT_EQ(allowedIn(S::kRetracting), "disable, hold, cancel");
-  EXPECT_EQ(allowedIn(S::kRetracted), "disable, resume, cancel");
+  EXPECT_EQ(allowedIn(S::kRetracted), "disable, resume, cancel, jog");
   EXPECT_EQ(allowedIn(S::kResuming), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kCanceling), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kFault), "disable, reset");
   EXPECT_EQ(allowedIn(S::kLifting), "disable, hold, cancel");
+  EXPECT_EQ(allowedIn(S::kJogging), "disable, hold, cancel, jog");
+  EXPECT_EQ(allowedIn(S::kJoggingRetracted), "disable, hold, cancel, jog");
 }
 
 TEST(MachineState, WhatIsNoStateOrEventIsRefused) {

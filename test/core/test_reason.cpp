@@ -46,6 +46,10 @@ std::function<void(Reason&)> field(const char* path, const char* detail = "") {
   return [=](Reason& r) { r.field = path, r.detail = detail; };
 }
 
+std::function<void(Reason&)> swivel(const char* detail) {
+  return [=](Reason& r) { r.field = "process.setup_swivel", r.detail = detail, r.low = kPi / 1800; };
+}
+
 std::function<void(Reason&)> ofAxis(int axis) {
   return [=](Reason& r) { r.axis = axis; };
 }
@@ -72,6 +76,10 @@ const Row kRows[]{
      "interpolation.rotary_scale_mm_per_rad = 2000 mm/rad; allowed: 0.001 to 1000 mm/rad"},
     {Kind::kOutOfRange, "Choice", Unit::kNone, 9, 1, field("process.order"), "process.order = 9; allowed: 0 to 1",
      "process.order = 9; allowed: 0 to 1"},
+    {Kind::kOutOfRange, "Swivel", Unit::kRadian, kPi / 2, kPi / 3,
+     [](Reason& r) { r.field = "process.setup_swivel", r.detail = "to which the machine swivels", r.low = -kPi / 3; },
+     "process.setup_swivel = 1.570796327 rad; allowed: -1.047197551 to 1.047197551 rad, to which the machine swivels",
+     "process.setup.swivel_deg = 90 deg; allowed: -60 to 60 deg, to which the machine swivels"},
     {Kind::kNotBelow, "Depth", Unit::kMetre, 0.006, 0.005, field("process.depth", "the cutter's smallest radius"),
      "process.depth = 0.006 m; allowed: less than 0.005 m, the cutter's smallest radius",
      "process.depth_mm = 6 mm; allowed: less than 5 mm, the cutter's smallest radius"},
@@ -111,6 +119,34 @@ const Row kRows[]{
      "process.infeed_mm, or the parameter"},
     {Kind::kGivenUp, "GivenUp", Unit::kNone, 0, 0, nothing, "given up while it was planned",
      "given up while it was planned"},
+    {Kind::kCollision, "Hit", Unit::kMetre, 0, 0.001,
+     [](Reason& r) {
+       r.detail = "wheel and collet";
+       atStroke(r);
+     },
+     "collision_clearance = 0.001 m: wheel and collet hit each other (at stroke of tooth 1, pass 2, X = 0.0123 m)",
+     "collision_clearance = 1 mm: wheel and collet hit each other (stroke, tooth 1, pass 2, X = 12.3 mm)"},
+    {Kind::kCollision, "TooClose", Unit::kMetre, 0.0004, 0.001, field("", "spindle and work_head"),
+     "collision_clearance = 0.001 m: spindle and work_head come within 0.0004 m of each other",
+     "collision_clearance = 1 mm: spindle and work_head come within 0.4 mm of each other"},
+    {Kind::kSwivel, "SwivelUnknown", Unit::kRadian, std::numeric_limits<double>::quiet_NaN(), kPi / 8, swivel(""),
+     "process.setup_swivel = 0.3926990817 rad: the swivel is not confirmed; set it to 22.5 deg and confirm it: grind "
+     "confirm-swivel 22.5",
+     "process.setup.swivel_deg = 22.5 deg: the swivel is not confirmed; set it to 22.5 deg and confirm it: grind "
+     "confirm-swivel 22.5"},
+    {Kind::kSwivel, "SwivelConfirmed", Unit::kRadian, kPi / 6, -kPi / 8, swivel("confirmed"),
+     "process.setup_swivel = -0.3926990817 rad: the swivel is confirmed at 0.5235987756 rad; allowed: within "
+     "0.00174533 "
+     "rad of that; set it to -22.5 deg and confirm it: grind confirm-swivel -22.5",
+     "process.setup.swivel_deg = -22.5 deg: the swivel is confirmed at 30 deg; allowed: within 0.1 deg of that; set it "
+     "to -22.5 deg and confirm it: grind confirm-swivel -22.5"},
+    {Kind::kSwivel, "SwivelMeasured", Unit::kRadian, kPi / 6, kPi / 8, swivel("measured"),
+     "process.setup_swivel = 0.3926990817 rad: the swivel stands at 0.5235987756 rad; allowed: within 0.00174533 rad "
+     "of "
+     "that; set it to 22.5 deg",
+     "process.setup.swivel_deg = 22.5 deg: the swivel stands at 30 deg; allowed: within 0.1 deg of that; set it to "
+     "22.5 "
+     "deg"},
     {Kind::kOther, "Other", Unit::kNone, 0, 0, field("", "first_tooth = 1"), "first_tooth = 1", "first_tooth = 1"},
     {Kind::kPosition, "PositionOfX", Unit::kMetre, 0.401, 0.3, setpointsOf(kX),
      "axis_x position 0.401 m is 0.101 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.0123 m)",
@@ -181,6 +217,57 @@ const Row kRows[]{
     {Kind::kInterlock, "Interlock", Unit::kSecond, 10.5, 10, field("", "no coolant flows"),
      "no coolant flows 10.5 s after the job was started, allowed 10 s",
      "no coolant flows 10.5 s after the job was started, allowed 10 s"},
+    {Kind::kRake, "Rake", Unit::kRadian, 0.25 * kPi, kPi / 18,
+     [](Reason& r) {
+       r.low = kPi / 360;
+       r.tooth = 2;
+       r.x = 0.0123;
+     },
+     "cutter.rake_angle = 0.174533 rad: tooth 3 is ground with 0.785398 rad at X = 0.0123 m; allowed: within "
+     "0.00872665 rad "
+     "of it; change process.setup_swivel or process.setup_height",
+     "cutter.rake_angle_deg = 10 deg: tooth 3 is ground with 45 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
+     "change "
+     "process.setup.swivel_deg or process.setup.height_mm"},
+    {Kind::kLand, "Land", Unit::kRadian, 0.75 * kPi, 0.5 * kPi, [](Reason& r) { r.x = 0.0123; },
+     "no land is left on tooth 1 at X = 0.0123 m: its flute takes 2.35619 rad, its pitch is 1.5708 rad; lower "
+     "process.wheel_width or process.depth",
+     "no land is left on tooth 1 at X = 12.3 mm: its flute takes 135 deg, its pitch is 90 deg; lower "
+     "process.wheel.width_mm or process.depth_mm"},
+    {Kind::kCore, "Core", Unit::kMetre, 0, 0, [](Reason& r) { r.x = 0.0123; },
+     "process.depth: the core is cut through at X = 0.0123 m; lower it",
+     "process.depth_mm: the core is cut through at X = 12.3 mm; lower it"},
+    {Kind::kIncomplete, "Incomplete", Unit::kMetre, 0.025, 0.03, [](Reason& r) { r.low = 0.002; },
+     "process.overtravel_end, process.overtravel_shank: the flutes are complete from X = 0.002 m to 0.025 m; allowed: "
+     "over the "
+     "whole flute length, 0 to 0.03 m, unless process.incomplete_ok is true",
+     "process.overtravel_mm[0], process.overtravel_mm[1]: the flutes are complete from X = 2 mm to 25 mm; allowed: "
+     "over the whole "
+     "flute length, 0 to 30 mm, unless process.incomplete_ok is true"},
+    {Kind::kIncomplete, "IncompleteAtTheMiddle", Unit::kMetre, 0, 0.03, nothing,
+     "process.overtravel_end, process.overtravel_shank: the flutes are complete nowhere; allowed: over the whole flute "
+     "length, 0 "
+     "to 0.03 m, unless process.incomplete_ok is true",
+     "process.overtravel_mm[0], process.overtravel_mm[1]: the flutes are complete nowhere; allowed: over the whole "
+     "flute length, 0 "
+     "to 30 mm, unless process.incomplete_ok is true"},
+    {Kind::kUnevenRake, "UnevenRake", Unit::kRadian, kPi / 4, kPi / 18,
+     [](Reason& r) {
+       r.low = kPi / 36;
+       r.tooth = 1;
+     },
+     "process.z_law = constant_rake: tooth 2 is ground with 0.0872665 rad to 0.785398 rad at best, asked 0.174533 rad; "
+     "allowed: within 8.72665e-05 rad of it; change process.setup_swivel or process.setup_height, or raise "
+     "process.overtravel_end or process.overtravel_shank",
+     "process.z_law = constant_rake: tooth 2 is ground with 5 deg to 45 deg at best, asked 10 deg; allowed: within "
+     "0.005 "
+     "deg of it; change process.setup.swivel_deg or process.setup.height_mm, or raise process.overtravel_mm[0] or "
+     "process.overtravel_mm[1]"},
+    {Kind::kUnevenRake, "NoRakeFace", Unit::kRadian, 0, kPi / 18, [](Reason& r) { r.low = 1; },
+     "process.z_law = constant_rake: tooth 1 has no rake face over its whole flute; change process.setup_swivel or "
+     "process.setup_height, or raise process.overtravel_end or process.overtravel_shank",
+     "process.z_law = constant_rake: tooth 1 has no rake face over its whole flute; change process.setup.swivel_deg or "
+     "process.setup.height_mm, or raise process.overtravel_mm[0] or process.overtravel_mm[1]"},
     {Kind::kCanceled, "Canceled", Unit::kNone, 0, 0, atStroke,
      "canceled; stopped on the path (at stroke of tooth 1, pass 2, X = 0.0123 m)",
      "canceled; stopped on the path (stroke, tooth 1, pass 2, X = 12.3 mm)"},

@@ -1,5 +1,6 @@
 // A stream whose wheel is retracted from wherever it rests, and comes back.
 
+#include "flute_grinder/core/axis_move.h"
 #include "flute_grinder/core/setpoint_stream.h"
 
 #include "stream_checks.h"
@@ -255,6 +256,169 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     EXPECT_TRUE(stream.finished());
     EXPECT_TRUE((p.position == plainMachine().park).all());
   }
+}
+
+/// Moves an axis by a distance, as by hand.
+void jog(SetpointStream& stream, const Machine& machine, Setpoint& last, int axis, double distance,
+         std::vector<Setpoint>* seen = nullptr) {
+  AxisMove move(machine);
+  move.begin(MoveKind::kPosition, last.position, axis, last.position[axis] + distance,
+             machine.limits.max_velocity[axis]);
+  Setpoint p;
+  move.next(p);  // at rest
+  while (move.next(p)) {
+    stream.adopt(p);
+    last = p;
+    if (seen) seen->push_back(p);
+  }
+}
+
+/// A retracted job that is jogged some times, and the same without.
+struct Jogged {
+  std::vector<Setpoint> seen;         ///< from the lift's last setpoint on
+  std::size_t resumed = 0;            ///< index of the last setpoint before resume
+  std::vector<Setpoint> undisturbed;  ///< from resume on, without the jogs
+  Axes lifted = Axes::Zero();
+};
+
+/// Holds a job at a random moment, retracts, and jogs the axes off the work.
+Jogged jogRetracted(const Work& work) {
+  const auto planned = all(work);
+  const auto moment = static_cast<std::size_t>(static_cast<double>(planned.size() - 1) * *uniform(0, 1));
+  Jogged result;
+  SetpointStream stream(work.program());
+  Setpoint p;
+  for (std::size_t i = 0; i <= moment; ++i) RC_ASSERT(stream.next(p));
+  stream.hold();
+  while (stream.next(p)) {
+  }
+  RC_PRE(!stream.finished());
+  RC_ASSERT(!stream.lifted());
+  stream.retract();
+  while (stream.next(p)) {
+  }
+  RC_ASSERT(stream.lifted());
+  result.lifted = p.position;
+  result.seen.push_back(p);
+  SetpointStream plain = stream;
+  for (int jogs = *whole(1, 4); jogs > 0; --jogs) {
+    // Above the work or, as if by the rounding of an offset, a little below.
+    const int axis = *whole(kX, kA);
+    const double lowest = axis == kY ? -1e-9 : -0.01;
+    jog(stream, work.machine, p, axis, (axis == kA ? 30 : 1) * *uniform(lowest, 0.01), &result.seen);
+    RC_ASSERT(!stream.next(p));
+    RC_ASSERT(stream.lifted());
+  }
+  result.resumed = result.seen.size() - 1;
+  for (SetpointStream* s : {&stream, &plain}) {
+    s->resume();
+    auto& into = s == &plain ? result.undisturbed : result.seen;
+    while (s->next(p)) into.push_back(p);
+    RC_ASSERT(s->finished());
+  }
+  return result;
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, JoggedWhileRetractedItComesBackOverTheWorkAndGoesOnWithTheSameBits, ()) {
+  const Work work = *test_support::work(kCycles / 3);
+  const Jogged jogged = jogRetracted(work);
+  const auto& seen = jogged.seen;
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    RC_ASSERT(seen[i].cycle == seen[i - 1].cycle + 1);
+    RC_ASSERT(seen[i].move_index >= seen[i - 1].move_index);
+  }
+  // Behind the way back, every setpoint is that of the job that was not jogged, but for its number.
+  RC_ASSERT(seen.size() - jogged.resumed > jogged.undisturbed.size());
+  const std::size_t back = seen.size() - jogged.undisturbed.size();
+  for (std::size_t i = 0; i < jogged.undisturbed.size(); ++i) {
+    const Setpoint& a = seen[back + i];
+    const Setpoint& b = jogged.undisturbed[i];
+    RC_ASSERT((a.position == b.position).all());
+    RC_ASSERT(a.move == b.move && a.move_index == b.move_index && a.move_fraction == b.move_fraction);
+    RC_ASSERT(a.path_error == b.path_error && a.feed == b.feed && a.step == b.step && a.at_feed == b.at_feed);
+  }
+  // The way back: up, across, down, each to its end, and never lower than it has to be.
+  RC_ASSERT((seen[back - 1].position == jogged.lifted).all());
+  const double low = std::min(seen[jogged.resumed].position[kY], jogged.lifted[kY]);
+  const double high = std::max(seen[jogged.resumed].position[kY], jogged.lifted[kY]);
+  for (std::size_t i = jogged.resumed + 1; i < back; ++i) {
+    const Setpoint& p = seen[i];
+    RC_ASSERT(p.step == StepKind::kNone && !p.at_feed && p.path_error == 0);
+    const Axes step = p.position - seen[i - 1].position;
+    const bool across = step[kX] != 0 || step[kZ] != 0 || step[kA] != 0;
+    if (across) RC_ASSERT(p.position[kY] == high && step[kY] == 0);
+    if (step[kY] < 0) {
+      RC_ASSERT((p.position == Axes(jogged.lifted[kX], p.position[kY], jogged.lifted[kZ], jogged.lifted[kA])).all());
+    }
+    RC_ASSERT(p.position[kY] >= low);
+  }
+  RC_ASSERT(beyondLimits(seen, work.machine) == "");
+}
+
+TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
+  PaperStroke ride(10e-3);
+  const auto expectIgnored = [&](const char* when) {
+    SetpointStream a = ride.stream(), b = ride.stream();
+    EXPECT_FALSE(a.lifted()) << when;
+    Setpoint other;
+    other.cycle = 77;
+    other.position << 0.1, 0.1, 0.1, 0.1;
+    a.adopt(other);
+    EXPECT_EQ(other.cycle, 77u) << when;
+    a.resume();
+    b.resume();
+    Setpoint p, q;
+    while (a.next(p)) {
+      ASSERT_TRUE(b.next(q));
+      ASSERT_TRUE((p.position == q.position).all() && p.cycle == q.cycle) << when;
+    }
+  };
+  expectIgnored("running");
+  ride.stream().hold();
+  ride.runToRest();
+  expectIgnored("held");
+  ride.stream().retract();
+  ride.next();
+  ride.next();
+  expectIgnored("lifting");
+  ride.stream().hold();
+  ride.runToRest();
+  expectIgnored("held in the lift");
+  ride.stream().retract();
+  ride.runToRest();
+  EXPECT_TRUE(ride.stream().lifted());
+  ride.stream().resume();
+  expectIgnored("resumed");
+}
+
+TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
+  PaperStroke ride(10e-3);
+  SetpointStream& stream = ride.stream();
+  stream.hold();
+  ride.runToRest();
+  stream.retract();
+  ride.runToRest();
+  const Axes lifted = ride.last().position;
+  for (int cycles = 50; cycles < 400; cycles += 50) {
+    Setpoint last = ride.last();
+    jog(stream, plainMachine(), last, kX, 0.05);
+    jog(stream, plainMachine(), last, kY, 0.02);
+    jog(stream, plainMachine(), last, kA, -1);
+    stream.resume();
+    for (int i = 0; i < cycles; ++i) ASSERT_TRUE(ride.next());
+    ASSERT_FALSE(stream.onPath());
+    stream.hold();
+    ride.runToRest();
+    ASSERT_GE(ride.last().position[kY], lifted[kY]);
+    stream.retract();
+    ride.runToRest();
+    ASSERT_TRUE(stream.lifted());
+    ASSERT_GE(ride.last().position[kY], lifted[kY]);
+  }
+  stream.resume();
+  ride.runToRest();
+  EXPECT_TRUE(stream.finished());
+  EXPECT_TRUE((ride.last().position == plainMachine().park).all());
 }
 
 TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {

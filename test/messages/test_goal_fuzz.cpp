@@ -28,7 +28,7 @@ Machine machine() {
 
 GrindGoal goodGoal() {
   GrindJob j;
-  j.cutter = {10e-3, 0.09, 0.5, 0.1, 2e-3};
+  j.cutter = {10e-3, 0.09, 0.5, 0.1, 2e-3, CutDirection::kRightHand, 0.01, 10e-3};
   j.tooth_angles = {0, 1};
   j.process.feed = 0.02;
   j.process.depth = 0.5e-3;
@@ -50,8 +50,6 @@ std::vector<std::uint8_t> bytesOf(const GrindGoal& goal) {
   return bytes;
 }
 
-constexpr int kTeethCount = 40;  ///< place of the count of teeth among the bytes, behind five numbers
-
 /// @return whether the bytes are a goal's.
 bool goalOf(std::vector<std::uint8_t> bytes, GrindGoal& goal) {
   ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -69,9 +67,14 @@ void expectSame(const GrindJob& a, const GrindJob& b) {
   visitJobFields([&](const JobField& f, auto of) { EXPECT_TRUE(sameBits(of(a), of(b))) << f.path; });
   ASSERT_EQ(a.tooth_angles.size(), b.tooth_angles.size());
   for (std::size_t i = 0; i < a.tooth_angles.size(); ++i) EXPECT_TRUE(sameBits(a.tooth_angles[i], b.tooth_angles[i]));
+  EXPECT_EQ(a.spiral_angles.size(), b.spiral_angles.size());
+  EXPECT_EQ(a.wheel_points.size(), b.wheel_points.size());
+  EXPECT_EQ(a.cutter.cut, b.cutter.cut);
+  EXPECT_EQ(a.process.wheel_profile, b.process.wheel_profile);
   EXPECT_EQ(a.process.spark_out, b.process.spark_out);
   EXPECT_EQ(a.process.order, b.process.order);
   EXPECT_EQ(a.process.direction, b.process.direction);
+  EXPECT_EQ(a.process.z_law, b.process.z_law);
   EXPECT_EQ(a.interpolation.even_step, b.interpolation.even_step);
 }
 
@@ -82,7 +85,7 @@ bool answer(const GrindGoal& goal) {
   expectSame(job, jobFromGoal(goalFromJob(job)));
   EXPECT_EQ(jobDigest(job), jobDigest(jobFromGoal(goalFromJob(job))));
   const Machine m = machine();
-  const JobPlan plan = planJob(job, m, m.park, {goal.first_tooth, goal.first_pass});
+  JobPlan plan = planJob(job, m, m.park, {goal.first_tooth, goal.first_pass});
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(validate(job).empty() || plan.fault == PlanFault::kInvalidJob);
   const PathStatistics message = toMessage(plan.statistics);
@@ -93,6 +96,22 @@ bool answer(const GrindGoal& goal) {
 
 TEST(GoalFuzz, TheGoodGoalIsGood) { EXPECT_TRUE(answer(goodGoal())); }
 
+TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestTellsWhich) {
+  GrindGoal goal = goodGoal();
+  const std::string published = jobDigest(jobFromGoal(goal));
+  goal.process.z_law = Process::CONSTANT_RAKE;
+  GrindJob job = jobFromGoal(goal);
+  EXPECT_EQ(job.process.z_law, ZLaw::kConstantRake);
+  const std::string digest = jobDigest(job);
+  EXPECT_NE(digest, published);
+  // What is computed for it is not part of what is asked.
+  job.z_corrections.resize(1);
+  job.z_corrections[0].pieces = 3;
+  EXPECT_EQ(jobDigest(job), digest);
+  goal.process.z_law = 2;
+  EXPECT_EQ(validate(jobFromGoal(goal)).at(0).field, "process.z_law");
+}
+
 /// Bytes of a goal, three of them spoiled or all up to its name.
 std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   const GrindGoal good = goodGoal();
@@ -102,9 +121,6 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   for (std::size_t n = 0; n < (all ? before_name : 3); ++n) {
     bytes[all ? n : dice() % bytes.size()] = static_cast<std::uint8_t>(dice());
   }
-  // Roscpp takes memory for as many teeth as a message claims to have, before it looks whether they are there.
-  std::fill_n(bytes.begin() + kTeethCount, 4, std::uint8_t{0});
-  bytes[kTeethCount] = static_cast<std::uint8_t>(dice() % 8 == 0 ? dice() % 9 : good.cutter.tooth_angles.size());
   if (dice() % 16 == 0) bytes.resize(dice() % (bytes.size() + 1));
   return bytes;
 }
@@ -119,22 +135,41 @@ TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
     ++goals;
     if (answer(goal)) ++good_jobs;
   }
-  EXPECT_GT(goals, 14000);
+  EXPECT_GT(goals, 13000);
   EXPECT_GT(good_jobs, 1000);
 }
 
 /// Every number of a goal, one by one.
 std::vector<double*> numbersOf(GrindGoal& g) {
-  std::vector<double*> numbers{&g.cutter.end_diameter,     &g.cutter.cone_angle,
-                               &g.cutter.spiral_angle,     &g.cutter.rake_angle,
-                               &g.cutter.flute_length,     &g.process.feed,
-                               &g.process.depth,           &g.process.infeed,
-                               &g.process.finish_infeed,   &g.process.clearance,
-                               &g.process.overtravel_end,  &g.process.overtravel_shank,
-                               &g.process.wheel_diameter,  &g.process.wheel_width,
-                               &g.process.wheel_wear,      &g.process.wheel_wear_per_pass,
-                               &g.interpolation.tolerance, &g.interpolation.rotary_scale};
-  for (double& angle : g.cutter.tooth_angles) numbers.push_back(&angle);
+  std::vector<double*> numbers{&g.cutter.end_diameter,
+                               &g.cutter.cone_angle,
+                               &g.cutter.spiral_angle,
+                               &g.cutter.rake_angle,
+                               &g.cutter.flute_length,
+                               &g.process.feed,
+                               &g.cutter.rake_tolerance,
+                               &g.cutter.shank_diameter,
+                               &g.process.depth_end,
+                               &g.process.wheel_angle,
+                               &g.process.wheel_corner_radius_lower,
+                               &g.process.wheel_corner_radius_upper,
+                               &g.process.setup_swivel,
+                               &g.process.setup_height,
+                               &g.process.depth,
+                               &g.process.infeed,
+                               &g.process.finish_infeed,
+                               &g.process.clearance,
+                               &g.process.overtravel_end,
+                               &g.process.overtravel_shank,
+                               &g.process.wheel_diameter,
+                               &g.process.wheel_width,
+                               &g.process.wheel_wear,
+                               &g.process.wheel_wear_per_pass,
+                               &g.interpolation.tolerance,
+                               &g.interpolation.rotary_scale};
+  for (std::vector<double>* list : {&g.cutter.tooth_angles, &g.cutter.spiral_angles, &g.process.wheel_points}) {
+    for (double& number : *list) numbers.push_back(&number);
+  }
   return numbers;
 }
 
@@ -164,6 +199,9 @@ TEST(GoalFuzz, GoalsWithHostileNumbersAreAnswered) {
     if (i % 6 == 0) goal.process.order = static_cast<std::uint8_t>(dice());
     if (i % 7 == 0) goal.process.direction = static_cast<std::uint8_t>(dice());
     if (i % 8 == 0) goal.interpolation.even_step = static_cast<std::uint8_t>(dice());
+    if (i % 11 == 0) goal.process.wheel_profile = static_cast<std::uint8_t>(dice());
+    if (i % 12 == 0) goal.process.wheel_points = {-1e-3, 50e-3, hostile[dice() % 15]};
+    if (i % 13 == 0) goal.cutter.spiral_angles = {0.5, hostile[dice() % 15]};
     if (i % 9 == 0) goal.first_tooth = static_cast<std::uint16_t>(dice());
     if (i % 10 == 0) goal.first_pass = static_cast<std::uint16_t>(dice());
     if (i % 400 == 0) goal.cutter.tooth_angles.assign(100000, hostile[dice() % 15]);

@@ -1,6 +1,19 @@
 #pragma once
 
+#include "flute_grinder/core/enum_table.h"
+
 namespace flute_grinder {
+
+/// Which way a cutter turns, and so which wall of a flute is its rake face: the edges of a right-hand cutter move
+/// toward falling angles A.
+enum class CutDirection { kRightHand, kLeftHand };
+
+/// With the names used in job files.
+inline constexpr EnumRow<CutDirection> kCutDirections[]{
+    {CutDirection::kRightHand, "right_hand"},
+    {CutDirection::kLeftHand, "left_hand"},
+};
+constexpr auto& rowsOf(CutDirection) noexcept { return kCutDirections; }
 
 /// The dimensions of a conical end mill as given in a job file or goal, unchecked.
 struct CutterGeometry {
@@ -9,6 +22,16 @@ struct CutterGeometry {
   double spiral_angle = 0;  ///< S, from the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
   double rake_angle = 0;    ///< r [rad]
   double flute_length = 0;  ///< along the cutter's axis [m]
+  CutDirection cut = CutDirection::kRightHand;
+  double rake_tolerance = 0;  ///< largest allowed difference of the ground rake from the asked one [rad]
+  double shank_diameter = 0;  ///< [m]
+  double core_diameter = 0;   ///< asked at the small end; 0: whatever the depth leaves [m]
+  double neck_length = 0;     ///< from the flute's end to the shank; 0: not known [m]
+};
+
+/// A part of the cutter's axis.
+struct Range {
+  double from = 0, to = 0;  ///< X [m]
 };
 
 /// A conical end mill with constant rake and spiral angle (paper, section 2).

@@ -4,6 +4,7 @@
 #include "flute_grinder/core/conical_cutter.h"
 #include "flute_grinder/core/feed_law.h"
 #include "flute_grinder/core/log_curve.h"
+#include "flute_grinder/core/z_correction.h"
 
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ struct FeedLimit {
 /// elsewhere X moves at constant speed; a blend between the two keeps the jerk bounded. The schedule is a parameter s
 /// along the stroke that advances at constant speed in both cases. A feed law with constant limits in s obeys all
 /// limits of all axes, slows down ahead of a thin end without further measures, and can be stopped or slowed anywhere.
+///
+/// Y moves in proportion to X, and so does Z by the published law. With a correction, what the bending of Z takes of
+/// its limits is not there for the motion of X: (d2Z/dX2) v^2 of the acceleration, (d3Z/dX3) v^3 + 3 (d2Z/dX2) v dv/dt
+/// of the jerk. The feed remains that of the helix A(X) on the cone: a correction moves the ground edge round the cone
+/// by about as much as Z, some micrometres per millimetre of X, which changes the edge's length by a thousandth.
 class FeedSchedule {
  public:
   /// The requested stroke.
@@ -39,6 +45,8 @@ class FeedSchedule {
     double to = 0;            ///< X at the end, before or after the start [m]
     double surface_feed = 0;  ///< along the cutting edge [m/s]
     double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
+    double taper = 0;         ///< largest value, by magnitude, that passes add to the cone's dY/dX; they may add less
+    ZCorrection z_correction{};  ///< added to Z
   };
 
   /// @param cutter the cutter; its curve must exist over the whole stroke.
@@ -69,6 +77,14 @@ class FeedSchedule {
   const std::vector<core::FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
 
  private:
+  /// A limit of X, and the axis that it comes from.
+  struct ForX {
+    double limit;
+    const char* axis;
+  };
+  ForX forX(const Axes& limit) const noexcept;
+  ForX accelerationForX(const AxisLimits& limits, double speed) const noexcept;
+  ForX jerkForX(const AxisLimits& limits, double speed) const noexcept;
   void chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine);
   void chooseBlendAndLimits(const LogCurve& curve, const AxisLimits& limits);
   void placeOnCone(const LogCurve& curve);
@@ -81,8 +97,10 @@ class FeedSchedule {
   double feed_speed_ = 0;        ///< dX/dt at the job's feed, where A does not limit it [m/s]
   double speed_ = 0;             ///< as feed_speed_, at the largest override [m/s]
   double speed_per_radius_ = 0;  ///< c [m/s]
-  double tan_cone_ = 0;
-  double sin_rake_ = 0;
+  double y_per_x_ = 0;           ///< largest |dY/dX|
+  double z_per_x_ = 0;           ///< largest |dZ/dX|
+  double z_bend_ = 0;            ///< largest |d^2 Z/dX^2| [1/m]
+  double z_twist_ = 0;           ///< largest |d^3 Z/dX^3| [1/m^2]
   std::vector<core::FeedLimit> feed_limits_;
 
   // The blend's parameter q: reduced feed below 0, blend from 0 to blend_, full feed above.

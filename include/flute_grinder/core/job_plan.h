@@ -5,8 +5,10 @@
 #include "flute_grinder/core/setpoint_stream.h"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace flute_grinder {
@@ -37,6 +39,8 @@ enum class PlanFault {
   kInvalidJob,
   kLimit,
   kTolerance,
+  kTool,  ///< nobody would want the tool
+  kCollision,
   kTooLong,  ///< longer than Machine::max_job_duration
   kGivenUp,  ///< because PlanWatch returned false
 };
@@ -46,13 +50,23 @@ enum class PlanFault {
 /// @return false to give up planning.
 using PlanWatch = std::function<bool(double done)>;
 
+/// The place on a path where two bodies are closest.
+struct ClosestPlace {
+  double distance = std::numeric_limits<double>::infinity();  ///< 0 if the bodies touch [m]
+  std::string first, second;                                  ///< the bodies: <collision> names, wheel, cutter, shank
+  Axes axes = Axes::Zero();                                   ///< [m], A [rad]
+  std::size_t leg = 0;                                        ///< of the path; of a plan, the move
+};
+
 /// A job that was generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
   std::vector<core::Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
   core::PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
-  std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers were refused
+  std::optional<Range> complete;                ///< where the flutes would be complete, if that was checked
+  std::optional<ClosestPlace> closest;          ///< of wheel, machine and cutter, if that was checked
+  std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers or its law of Z were refused
 
   bool good() const { return fault == PlanFault::kNone; }
 };
@@ -60,8 +74,8 @@ struct JobPlan {
 /// Generates and checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
 /// max_job_duration. For any job and machine, the result is either a good plan or one with reasons.
 /// @param job the job; its numbers are checked too.
-/// @param machine the machine that runs the job.
-/// @param start the position of the axes at the start [m], A [rad].
+/// @param machine the machine that runs the job, with the job's work offset.
+/// @param start the position of the axes at the start, in work coordinates [m], A [rad].
 /// @param first first pass to grind.
 /// @param visit if given, called with every setpoint; all of them are finite.
 /// @param watch if given, may make the planner give up.

@@ -16,10 +16,10 @@ enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFin
 struct LimitViolation {
   int axis = 0;
   LimitedQuantity quantity = LimitedQuantity::kPosition;
-  double value = 0;
+  double value = 0;  ///< of a position, in machine coordinates
   double limit = 0;
   std::uint64_t cycle = 0;
-  double x = 0;  ///< position along the cutter [m]
+  double x = 0;  ///< position along the cutter, in work coordinates [m]
   MoveKind move = MoveKind::kLift;
   std::uint16_t tooth = 0;  ///< from 0
   std::uint16_t pass = 0;   ///< from 0
@@ -50,8 +50,10 @@ class LimitCheck {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }
 
+  /// @param offset machine position - position of the setpoint [m], A [rad]. Only positions depend on it: velocity,
+  ///        acceleration and jerk come from the setpoints, so that plan and machine find the same, bit for bit.
   /// @return the first violation of the setpoint, if there is one; begin() and end() give all of them.
-  std::optional<LimitViolation> check(const Setpoint& setpoint) noexcept;
+  std::optional<LimitViolation> check(const Setpoint& setpoint, const Axes& offset = Axes::Zero()) noexcept;
 
   /// All violations of the last setpoint checked.
   const LimitViolation* begin() const noexcept { return violations_.data(); }
@@ -64,7 +66,7 @@ class LimitCheck {
 
  private:
   void slowPastDown() noexcept;
-  void checkPosition(const Setpoint& setpoint) noexcept;
+  void checkPosition(const Setpoint& setpoint, const Axes& position, const Axes& rounding) noexcept;
   void checkPairEnd(const Setpoint& setpoint) noexcept;
   void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                  double rounding) noexcept;

@@ -14,6 +14,7 @@ enum class Interlock : std::uint8_t {
   kSpindle,  ///< not at speed
   kCoolant,  ///< not flowing
   kProbe,    ///< in the wheel's path
+  kSwivel,   ///< not at the job's angle
 };
 
 /// Describes the open interlock, e.g. "the spindle is not at speed"; empty for kNone.

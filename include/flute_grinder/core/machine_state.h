@@ -10,29 +10,39 @@ namespace flute_grinder {
 
 /// What the machine is doing.
 enum class MachineState : std::uint8_t {
-  kDisabled,    ///< power off; commands follow the positions
-  kReady,       ///< power on, at rest
-  kHoming,      ///< the drive is searching for the axes' reference
-  kStarting,    ///< a job is waiting for spindle and coolant
-  kRunning,     ///< a job is moving the axes
-  kHolding,     ///< stopping on the path
-  kHeld,        ///< at rest in the middle of a job
-  kRetracting,  ///< lifting the wheel off the workpiece
-  kRetracted,   ///< at rest in the middle of a job, with the wheel off the workpiece
-  kResuming,    ///< returning to the point where the path was left
-  kCanceling,   ///< stopping on the path and lifting the wheel, to end the job
-  kFault,       ///< power off after a fault, until reset
-  kLifting,     ///< lifting the wheel off the workpiece, without a job
+  kDisabled,          ///< power off; commands follow the positions
+  kReady,             ///< power on, at rest
+  kHoming,            ///< the drive is searching for the axes' reference
+  kStarting,          ///< a job is waiting for spindle and coolant
+  kRunning,           ///< a job is moving the axes
+  kHolding,           ///< stopping on the path
+  kHeld,              ///< at rest in the middle of a job
+  kRetracting,        ///< lifting the wheel off the workpiece
+  kRetracted,         ///< at rest in the middle of a job, with the wheel off the workpiece
+  kResuming,          ///< returning to the point where the path was left
+  kCanceling,         ///< stopping on the path and lifting the wheel, to end the job
+  kFault,             ///< power off after a fault, until reset
+  kLifting,           ///< lifting the wheel off the workpiece, without a job
+  kJogging,           ///< an axis is moved by hand, without a job
+  kJoggingRetracted,  ///< an axis is moved by hand in the middle of a job, with the wheel off the workpiece
 };
 
 inline constexpr EnumRow<MachineState> kMachineStates[]{
-    {MachineState::kDisabled, "disabled"},   {MachineState::kReady, "ready"},
-    {MachineState::kHoming, "homing"},       {MachineState::kStarting, "starting"},
-    {MachineState::kRunning, "running"},     {MachineState::kHolding, "holding"},
-    {MachineState::kHeld, "held"},           {MachineState::kRetracting, "retracting"},
-    {MachineState::kRetracted, "retracted"}, {MachineState::kResuming, "resuming"},
-    {MachineState::kCanceling, "canceling"}, {MachineState::kFault, "fault"},
+    {MachineState::kDisabled, "disabled"},
+    {MachineState::kReady, "ready"},
+    {MachineState::kHoming, "homing"},
+    {MachineState::kStarting, "starting"},
+    {MachineState::kRunning, "running"},
+    {MachineState::kHolding, "holding"},
+    {MachineState::kHeld, "held"},
+    {MachineState::kRetracting, "retracting"},
+    {MachineState::kRetracted, "retracted"},
+    {MachineState::kResuming, "resuming"},
+    {MachineState::kCanceling, "canceling"},
+    {MachineState::kFault, "fault"},
     {MachineState::kLifting, "lifting"},
+    {MachineState::kJogging, "jogging"},
+    {MachineState::kJoggingRetracted, "jogging_retracted"},
 };
 constexpr auto& rowsOf(MachineState) noexcept { return kMachineStates; }
 
@@ -49,6 +59,7 @@ enum class MachineEvent : std::uint8_t {
   kResume,
   kCancel,
   kLift,
+  kJog,
   kDone,    ///< the state's task or wait is complete: reference found, spindle and coolant ready, end of the path
   kAtRest,  ///< the axes have come to rest
   kFault,
@@ -60,6 +71,7 @@ enum class EventKind : std::uint8_t {
   kTrigger,  ///< a request without arguments
   kStop,     ///< a request that stops the axes
   kStart,    ///< a request that starts a job
+  kJog,      ///< a request that moves an axis
 };
 
 /// The name of a request is also its sub-command of `grind`.
@@ -83,6 +95,7 @@ inline constexpr EventRow kMachineEvents[]{
     {{MachineEvent::kResume, "resume"}, EventKind::kTrigger, "resume", "continue after hold or retract"},
     {{MachineEvent::kCancel, "cancel"}, EventKind::kStop, nullptr, "stop on the path, lift the wheel and end the job"},
     {{MachineEvent::kLift, "lift"}, EventKind::kTrigger, "lift", "lift the wheel off the work, without a job"},
+    {{MachineEvent::kJog, "jog"}, EventKind::kJog, nullptr, "move an axis by hand"},
     {{MachineEvent::kDone, "done"}},
     {{MachineEvent::kAtRest, "at rest"}},
     {{MachineEvent::kFault, "fault"}},
@@ -93,7 +106,7 @@ constexpr auto& rowsOf(MachineEvent) noexcept { return kMachineEvents; }
 constexpr bool isRequest(MachineEvent event) noexcept { return rowOf(event).kind != EventKind::kSeen; }
 /// Whether an event is a request that stops the axes.
 constexpr bool isStop(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kStop; }
-/// Whether an event is a request that neither stops the axes nor starts a job.
+/// Whether an event is a request without arguments that does not stop the axes.
 constexpr bool isTrigger(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kTrigger; }
 /// The node's service for a request; null if there is none.
 constexpr const char* serviceOf(MachineEvent event) noexcept { return rowOf(event).service; }

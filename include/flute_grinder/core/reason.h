@@ -16,7 +16,7 @@ namespace flute_grinder::core {
 enum class ReasonKind : std::uint8_t {
   kNone,
   // Why a job cannot be ground.
-  kOutOfRange,  ///< a field is outside `low` to `limit`
+  kOutOfRange,  ///< a field is outside `low` to `limit`; `detail`, if there is one, says whose range
   kNotBelow,    ///< a field is `limit` or more
   kAbove,       ///< a field is more than `limit`
   kNotAllowed,  ///< a field is not as `detail` requires; `limit` is appended to the text unless it is 0
@@ -44,8 +44,16 @@ enum class ReasonKind : std::uint8_t {
   kHoming,
   kInterlock,  ///< see `detail`; the job did not begin within `limit`
   kCanceled,
+  // Why nobody would want the tool that a job grinds.
+  kRake,        ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kLand,        ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
+  kCore,        ///< the wheel cuts through the core; at `x`
+  kIncomplete,  ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
+  kCollision,   ///< `detail`, two bodies, come within `value` of each other, 0 if they hit; allowed: `limit` or more
+  kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
+  kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
 };
-constexpr int kReasonKindCount = static_cast<int>(ReasonKind::kCanceled) + 1;
+constexpr int kReasonKindCount = static_cast<int>(ReasonKind::kUnevenRake) + 1;
 
 /// Why a job was refused or has ended, or why the machine stopped, as data; text() converts it to words.
 struct Reason {

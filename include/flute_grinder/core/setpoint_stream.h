@@ -53,6 +53,16 @@ class SetpointStream {
   /// the program. Real-time safe.
   void retract() noexcept;
 
+  /// Whether the wheel rests lifted after retract(), so that the axes may be moved by other means.
+  bool lifted() const noexcept { return leg_ == Leg::kLift && stay_lifted_ && !mid_pair_ && !lost_ && law_.finished(); }
+
+  /// Takes over a setpoint that moves the axes by other means, and numbers it as the stream's own. They must come in
+  /// pairs, and end at rest. After resume() the stream first returns to where retract() lifted the wheel to: up to at
+  /// least that height, across, then down; from there it continues as if the axes had not been moved. Ignored unless
+  /// lifted(). Real-time safe.
+  /// @param setpoint changed but for position, velocity, feed and kind of move.
+  void adopt(Setpoint& setpoint) noexcept;
+
   /// Whether the program has ended.
   bool finished() const noexcept;
 
@@ -68,21 +78,20 @@ class SetpointStream {
   bool beginPair() noexcept;
   bool beginNext() noexcept;
   void beginMove(const Move& move) noexcept;
+  void beginWayBack() noexcept;
   void beginReturn() noexcept;
   void beginStraight(MoveKind kind, const Axes& to) noexcept;
   void beginStroke(double s) noexcept;
   void beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept;
   double targetSpeed() const noexcept;
   double strokeParameter() const noexcept;
+  double strokeY(double x) const noexcept { return helix_->cutter.y(x) + x * taper_ + y_offset_; }
   void straightStep() noexcept;
   void strokePair() noexcept;
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;
 
   std::shared_ptr<const GrindProgram> program_;
-  // Copies of the program's data that every cycle needs.
-  ConicalCutter cutter_;
-  FeedSchedule schedule_;
-  LogCurve curve_;
+  const Helix* helix_;  ///< of the program, for the current tooth
   double period_;
   double override_ = 1;
   double slow_down_ = 1;  ///< for the next pair
@@ -109,8 +118,10 @@ class SetpointStream {
   CurvePoint even_point_;
   double stroke_from_ = 0;  ///< parameter at which the stroke was started or re-entered
   double y_offset_ = 0, a_offset_ = 0;
+  double taper_ = 0;  ///< added to the cone's dY/dX
 
-  double reentry_ = 0;  ///< parameter at which retract() left the stroke
+  double reentry_ = 0;          ///< parameter at which retract() left the stroke
+  Axes lifted_ = Axes::Zero();  ///< position to which retract() lifts the wheel [m], A [rad]
 };
 
 }  // namespace flute_grinder

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flute_grinder/collision/collision_check.h"
+#include "flute_grinder/core/grind_program.h"
+#include "flute_grinder/core/job_plan.h"
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// The path of a program, from its start on, with straight legs in X, Y and Z.
+struct ProgramPath {
+  std::vector<Axes> points;
+  std::vector<std::size_t> moves;  ///< of every leg, the program's move
+};
+
+/// A move is a leg. A stroke whose Z is corrected is bent: it is so many legs that they are within 1 um of it.
+ProgramPath pathOf(const GrindProgram& program);
+
+/// What the job of a program adds to the machine's bodies. The wheel is that of the job's start.
+CollisionJob collisionJobOf(const GrindProgram& program);
+
+/// Finds the closest place of a job. Takes a few milliseconds.
+/// @param plan gets the closest place, and the reason if the bodies hit each other or come closer than
+///        Machine::collision_clearance. Left as it is if the job's numbers were refused or planning was given up.
+void checkCollision(JobPlan& plan, const MachineShapes& machine);
+
+}  // namespace flute_grinder

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "flute_grinder/collision/solid.h"
+
+#include <urdf_model/model.h>
+#include <urdf_world/types.h>
+
+#include <Eigen/Geometry>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A body of the machine, with X, Y and Z of the axes at zero.
+struct MachinePart {
+  Solid solid;
+  std::string link;
+  std::string carrier;      ///< the nearest link up the tree with a shape, on which this one slides or turns
+  Eigen::Matrix3d motion;   ///< of the body, for a motion of X, Y and Z
+  bool with_wheel = false;  ///< moves with the wheel, not with the cutter or the bed
+  bool turns = false;       ///< turns with the cutter
+};
+
+/// The machine's bodies: the <collision> shapes of a URDF with the joints and links that urdf/grinder.urdf has. The
+/// bodies that turn with axis_a count as what they sweep in a turn, so that the angle of A makes no difference.
+class MachineShapes {
+ public:
+  /// @param urdf the robot description in XML.
+  /// @throw std::invalid_argument naming the link, or what else is wrong: no joint of an axis, no link `cutter` or
+  ///        `wheel`, or a shape that is no box, cylinder or sphere.
+  explicit MachineShapes(const std::string& urdf);
+
+  /// The bodies with the joints y_zero [m] and wheel_swivel [rad] set for a job.
+  std::vector<MachinePart> parts(double y_zero, double swivel) const;
+
+  /// A part without a body, for what a job fastens to a link. The pose of its solid is the link's.
+  MachinePart on(const std::string& link, double y_zero, double swivel) const;
+
+ private:
+  using Joints = std::map<std::string, double>;
+
+  Eigen::Isometry3d pose(const std::string& link, const Joints& joints) const;
+  bool isBelow(const std::string& link, const std::string& other) const;
+  const urdf::Link& link(const std::string& name) const { return *model_->getLink(name); }
+
+  urdf::ModelInterfaceSharedPtr model_;
+  std::string turning_;     ///< child link of axis_a
+  std::string wheel_side_;  ///< the first link toward the wheel that the cutter does not hang on
+};
+
+}  // namespace flute_grinder

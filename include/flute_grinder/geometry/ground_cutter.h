@@ -1,0 +1,90 @@
+#pragma once
+
+#include "flute_grinder/geometry/wheel_sweep.h"
+
+#include <optional>
+#include <vector>
+
+namespace flute_grinder {
+
+/// What is measured of a tooth in a section. What does not exist there, as the land of a tooth whose land is ground
+/// away, is left out.
+struct ToothSection {
+  std::optional<double> edge;         ///< angle of the cutting edge, counted as A is [rad]
+  std::optional<double> rake;         ///< radial, at the edge [rad]
+  std::optional<double> normal_rake;  ///< normal to the edge [rad]
+  std::optional<double> flute;        ///< angle that the flute takes at the outer circle [rad]
+  std::optional<double> land;         ///< angle between this flute and the next one behind its edge [rad]
+  std::optional<double> spiral;       ///< of the ground edge against the axis [rad]
+  double depth = 0;                   ///< of the flute below the outer circle [m]
+  bool complete = false;              ///< over its whole depth, as a longer stroke would leave it
+};
+
+constexpr double kLeastCore = 1e-6;  ///< radius of a core that still holds the teeth together [m]
+
+/// A section of the ground cutter, normal to its axis.
+struct GroundSection {
+  double x = 0;            ///< [m]
+  double radius = 0;       ///< of the blank [m]
+  double core_radius = 0;  ///< least that is left; the blank's where nothing is removed [m]
+  std::vector<ToothSection> teeth;
+};
+
+/// What strokes of the wheel remove together: a tooth's flute.
+using Flute = std::vector<WheelSweep>;
+
+/// Where a flute is ground.
+struct GroundTooth {
+  double angle = 0;       ///< added to A of the flute's strokes [rad]
+  std::size_t flute = 0;  ///< which
+};
+
+/// The cutter that a job's strokes leave, measured in sections. Teeth that share a flute cost no more than one.
+class GroundCutter {
+ public:
+  /// @param flutes the distinct ones, for a tooth at angle 0.
+  /// @param teeth in ascending angles within one turn.
+  /// @throw std::invalid_argument if a flute has no strokes, or a tooth's is not there.
+  GroundCutter(const ConicalCutter& cutter, CutDirection direction, std::vector<Flute> flutes,
+               std::vector<GroundTooth> teeth);
+
+  /// @param x of the section, where the blank has a radius [m].
+  GroundSection section(double x) const;
+
+  /// The area that is removed in a section [m^2].
+  double areaRemoved(const GroundSection& section) const { return areaRemoved(section.x, section.core_radius); }
+
+  /// Where all flutes are complete, to 10 um.
+  /// @param from,to ends of the range that is looked at [m].
+  /// @return the longest part about the range's middle; nothing if a flute is not complete there.
+  std::optional<Range> completeRange(double from, double to) const;
+
+  /// The volume that is removed between two sections, by the areas of some in between [m^3].
+  double volumeRemoved(double from, double to, int sections) const;
+
+  /// The arc that one of the flutes, of a tooth at angle 0, takes of the circle of radius `r` at `x`.
+  std::optional<Arc> arc(const Flute& flute, double x, double r) const;
+
+  const ConicalCutter& cutter() const noexcept { return cutter_; }
+  CutDirection direction() const noexcept { return direction_; }
+  const std::vector<Flute>& flutes() const noexcept { return flutes_; }
+  const std::vector<GroundTooth>& teeth() const noexcept { return teeth_; }
+
+ private:
+  /// The rake face at the blank's radius.
+  std::optional<Wall> rakeFace(const Flute& flute, double x) const;
+  double coreRadius(const Flute& flute, double x) const;
+  double coreRadius(double x) const;
+  double areaRemoved(double x, double core_radius) const;
+  ToothSection measure(const Flute& flute, double x) const;
+  bool isComplete(const Flute& flute, double x, double core_radius) const;
+  bool isComplete(double x) const;
+  std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
+
+  ConicalCutter cutter_;
+  CutDirection direction_;
+  std::vector<Flute> flutes_;
+  std::vector<GroundTooth> teeth_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/geometry/ground_cutter.h"
+
+namespace flute_grinder {
+
+/// The wheel of a job, when new.
+/// @param job a job that validate() accepts.
+/// @throw std::invalid_argument if the corner radii do not fit the profile, with the value and what is allowed.
+WheelProfile wheelOf(const GrindJob& job);
+
+/// How the machine is set for a job.
+WheelSetup setupOf(const GrindJob& job);
+
+/// The stroke of a pass of a tooth, as if the tooth were at angle 0.
+/// @param tooth from 0. @param depth of the pass where the flute is deepest [m]. @param wear of the wheel, taken up by
+///        Y [m]. @throw as zCorrectionOf().
+GrindStroke strokeOf(const GrindJob& job, int tooth, double depth, double wear);
+
+/// What the wheel removes in a stroke of a tooth.
+/// @param job as for wheelOf(). @param tooth from 0. @param wear of the wheel [m]. @throw as wheelOf().
+WheelSweep sweepOf(const GrindJob& job, int tooth, double wear, const GrindStroke& stroke);
+
+/// The cutter that a job grinds: each tooth's deepest pass with the wheel as worn by then. The passes before remove
+/// nothing more. @param job as for wheelOf(). @throw as wheelOf() and zCorrectionOf().
+GroundCutter groundCutterOf(const GrindJob& job);
+
+/// What a ground cutter was found to be.
+struct CutterCheck {
+  std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
+  std::vector<core::Reason> reasons;  ///< why nobody would want it
+};
+
+/// Measures the ground cutter at both ends and in the middle of the flute: every tooth has a land, the core is whole,
+/// the rake is within the job's tolerance, and the flutes are complete over their length unless the job allows
+/// otherwise. Takes a few milliseconds.
+CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
+
+/// The same of the cutter that a plan's job grinds.
+/// @param plan gets the reasons why nobody would want the cutter, and where its flutes are complete. Left as it is if
+///        the job's numbers were refused or planning was given up.
+void checkGroundCutter(JobPlan& plan);
+
+/// Plans a job by planJob() with its law of Z, and checks the cutter that it grinds: withZLaw(), planJob() and
+/// checkGroundCutter(). A law of Z that does not exist makes a plan with the reason and without a program.
+JobPlan planGroundJob(GrindJob job, const Machine& machine, const Axes& start, const ToothPass& first = {},
+                      const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
+
+}  // namespace flute_grinder

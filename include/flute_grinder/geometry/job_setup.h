@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flute_grinder/core/job_edit.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/setup_solver.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+/// @file
+/// The set-up for a job: what `grind setup` and the panel tell, and write into the job's file.
+namespace flute_grinder {
+
+/// The set-up for a job, and the tool that the job then grinds.
+struct JobSetup {
+  GrindJob job;                               ///< with the set-up, as it would be read from its file
+  std::vector<JobEdit> edits;                 ///< what makes the file say so
+  std::array<double, 2> overtravel{};         ///< that the set-up needs, at the small end and at the shank [m]
+  std::array<double, 2> overtravel_before{};  ///< of the job as it was [m]
+  double least_rake = 0, largest_rake = 0;    ///< over the flute and the teeth [rad]
+  double core_diameter = 0;                   ///< at X = 0 [m]
+  double land = 0;                            ///< least over the flute and the teeth, along the circle [m]
+  CutterCheck check;                          ///< what a plan would find wrong with the tool
+  SetupLimit limit = SetupLimit::kSwivel;     ///< what comes nearest to its limit
+  double margin = 0;                          ///< as of SolvedSetup
+};
+
+/// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.
+std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
+
+/// Solves the set-up of a job: the rake at both ends of the flute, and the core at X = 0 if the job asks for one. The
+/// wheel is taken with its wear at the job's start, and of unequal spirals the middle. The figures are rounded to what
+/// is written into a file, and measured as such. Takes up to some tenths of a second; a job with both a depth at the
+/// flute's end and a depth to be found takes several times as long.
+/// @param job read with unsolvedFields().
+/// @param swivel that the machine allows [rad].
+/// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.
+std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
+                                                  std::optional<SetupFigure> keep);
+
+}  // namespace flute_grinder

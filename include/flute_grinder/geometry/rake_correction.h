@@ -1,0 +1,30 @@
+#pragma once
+
+#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/geometry/ground_cutter.h"
+
+#include <optional>
+
+namespace flute_grinder {
+
+/// A correction of Z, and the rake that is ground with it.
+struct RakeCorrection {
+  ZCorrection z;
+  double least_rake = 0, largest_rake = 0;  ///< over the flute [rad]
+};
+
+/// The correction of Z over X with which the rake is the same over the whole flute: what the published law leaves,
+/// which the set-up makes right at the flute's ends only. Found by Newton's method on the spline's coefficients, in a
+/// tenth of a second.
+/// @param nominal_radius of the wheel, for which Y = 0 touches the small end [m].
+/// @param stroke with its overtravel, without a correction; the spline covers it.
+/// @param rake asked, radial [rad].
+/// @param watch if given, may make it give up, within some milliseconds.
+/// @return the best correction found, whose rake the caller compares with what is allowed; nothing if the flute is not
+///         ground over its whole length.
+/// @throw core::ReasonError if it has given up.
+std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, CutDirection direction,
+                                          const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
+                                          const GrindStroke& stroke, double rake, const PlanWatch& watch = {});
+
+}  // namespace flute_grinder

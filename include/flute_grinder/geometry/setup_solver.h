@@ -1,0 +1,94 @@
+#pragma once
+
+#include "flute_grinder/core/enum_table.h"
+#include "flute_grinder/geometry/ground_cutter.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+/// @file
+/// The set-up for a tool: which swivel, wheel height and depth give the rake and the core that are asked.
+namespace flute_grinder {
+
+/// A figure of the set-up that the operator keeps.
+enum class SetupFigure : std::uint8_t { kSwivel, kHeight, kDepth };
+constexpr EnumRow<SetupFigure> kSetupFigures[] = {
+    {SetupFigure::kSwivel, "swivel"}, {SetupFigure::kHeight, "height"}, {SetupFigure::kDepth, "depth"}};
+constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
+
+/// What the tool shall be, and what there is to grind it with.
+struct SetupRequest {
+  CutterGeometry cutter;  ///< its rake angle is the one in Z = X tan C sin r
+  CutDirection direction = CutDirection::kRightHand;
+  double rake = 0;                                          ///< radial, asked at both ends of the flute [rad]
+  std::vector<double> tooth_angles;                         ///< ascending within one turn [rad]
+  WheelProfile wheel = WheelProfile::straight(0.1, 0.003);  ///< as it is, with its wear
+  double nominal_radius = 0;                                ///< of the wheel, for which Y = 0 touches the small end [m]
+  double depth = 0;                                         ///< of the flute at X = 0, where Y = -depth [m]
+  double y_per_x = 0;                                       ///< of a core taper, added to the cone's
+  std::optional<double> core_diameter;                      ///< at X = 0, in place of the depth [m]
+  double least_swivel = 0, largest_swivel = 0;              ///< that the machine allows [rad]
+  /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then
+  /// passes the axis at the height R sin r.
+  std::optional<SetupFigure> keep;
+  WheelSetup kept;  ///< the swivel or height that is kept
+};
+
+/// What comes nearest to its limit in a set-up.
+enum class SetupLimit : std::uint8_t { kSwivel, kLand, kCore };
+constexpr EnumRow<SetupLimit> kSetupLimits[] = {
+    {SetupLimit::kSwivel, "swivel"}, {SetupLimit::kLand, "land"}, {SetupLimit::kCore, "core"}};
+constexpr const auto& rowsOf(SetupLimit) noexcept { return kSetupLimits; }
+
+/// A set-up, and the tool that it grinds with as long a stroke as it needs.
+struct SolvedSetup {
+  WheelSetup setup;
+  double depth = 0;                           ///< of the flute: Y = -depth at X = 0 [m]
+  double least_rake = 0, largest_rake = 0;    ///< over the flute [rad]
+  double core_diameter = 0;                   ///< at X = 0 [m]
+  double land = 0;                            ///< least over the flute and the teeth, along the circle [m]
+  std::array<double, 2> overtravel{};         ///< beyond X = 0 and beyond the flute's end, for it to be complete [m]
+  double complete_from = 0, complete_to = 0;  ///< along the cutter; less than the flute only near a cone's apex [m]
+  SetupLimit limit = SetupLimit::kSwivel;
+  double margin = 0;  ///< to that limit: of the machine's swivel, the pitch or the radius
+};
+
+/// Why there is no set-up.
+enum class SetupProblem : std::uint8_t {
+  kOverdetermined,  ///< rake and core take all three figures; none can be kept
+  kSwivel,          ///< only beyond the machine's swivel: asked is the nearest, reachable the machine's
+  kRake,            ///< asked is the rake at both ends, reachable what the far end gets with it at the small end
+  kCore,            ///< asked is the core's diameter, reachable those with this wheel
+  kWall,            ///< the wheel's circumference forms the rake face, not its face or edge
+  kLand,            ///< the flutes meet: asked is a land above 0, reachable what is left, negative
+};
+
+/// A problem's name, and the job's field whose change helps.
+struct SetupProblemRow : EnumRow<SetupProblem> {
+  const char* change = "";
+};
+constexpr SetupProblemRow kSetupProblems[] = {
+    {{SetupProblem::kOverdetermined, "overdetermined"}, "cutter.core_diameter"},
+    {{SetupProblem::kSwivel, "swivel"}, "cutter.spiral_angle"},
+    {{SetupProblem::kRake, "rake"}, "cutter.rake_angle"},
+    {{SetupProblem::kCore, "core"}, "process.wheel_diameter"},
+    {{SetupProblem::kWall, "wall"}, "process.depth"},
+    {{SetupProblem::kLand, "land"}, "process.wheel_width"}};
+constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
+
+/// No set-up gives what is asked, and what could be had. Without a figure the last three are 0.
+struct SetupRefusal {
+  SetupProblem problem = SetupProblem::kRake;
+  double asked = 0;               ///< [rad] or [m]
+  double least = 0, largest = 0;  ///< reachable [rad] or [m]
+};
+
+/// Solves a set-up: the rake at both ends of the flute, and at X = 0 the core if it is asked. Of several solutions,
+/// that whose rake face the wheel's face or edge forms the deepest. Takes some tenths of a second.
+/// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.
+std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request);
+
+}  // namespace flute_grinder

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "flute_grinder/geometry/wheel_sweep.h"
+
+#include <array>
+
+namespace flute_grinder {
+
+/// The three figures of a set-up that make the tool.
+struct SetupPoint {
+  double swivel = 0;  ///< [rad]
+  double height = 0;  ///< of the wheel's centre above the axis at Z = 0 [m]
+  double depth = 0;   ///< Y = -depth at X = 0 [m]
+};
+
+/// What a right-hand cutter becomes in a set-up, with a stroke as long as the cone allows.
+class SetupTrial {
+ public:
+  /// @param nominal_radius of the wheel, for which Y = 0 touches the small end [m].
+  /// @param y_per_x of a core taper, added to the cone's.
+  SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, double y_per_x);
+
+  const ConicalCutter& cutter() const noexcept { return cutter_; }
+  const WheelProfile& wheel() const noexcept { return wheel_; }
+
+  WheelSweep sweep(const SetupPoint& point) const;
+
+  /// Radial, at the edge; NaN where the wheel does not reach the outer circle, or the point is none [rad].
+  double rake(const SetupPoint& point, double x) const;
+
+  /// Of the section at X = 0; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
+  double coreRadius(const SetupPoint& point) const;
+
+  /// The depth that leaves a core at X = 0; NaN if none does [m].
+  double depthFor(double swivel, double height, double core_radius) const;
+
+  /// How much of the rake face's depth the wheel's upper face and edge form, from the outer circle inward, in a
+  /// section.
+  double formedByFace(const WheelSweep& sweep, double x) const;
+
+  /// Where a section's walls are formed.
+  struct Reach {
+    double from, to;  ///< on the stroke [m]
+    bool complete;    ///< a longer stroke, if the cone allowed it, would not move a wall
+  };
+  Reach reach(const WheelSweep& sweep, double x) const;
+
+ private:
+  ConicalCutter cutter_;
+  WheelProfile wheel_;
+  double nominal_radius_, y_per_x_;
+  std::array<double, 2> longest_;  ///< ends of the stroke [m]
+  double face_from_;               ///< w on the wheel from which on its profile belongs to the upper face [m]
+};
+
+}  // namespace flute_grinder

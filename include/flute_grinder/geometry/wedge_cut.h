@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace flute_grinder {
+
+/// What is cut out of a solid so that its inside can be seen: all between two half planes that end at the X axis.
+struct Wedge {
+  double from = 0, to = 0;  ///< angles of the half planes, less than half a turn apart [rad]
+};
+
+/// Cuts a wedge out of flat-faced pieces.
+class WedgeCut {
+ public:
+  using Polygon = std::vector<Eigen::Vector3d>;  ///< convex, corners in order
+
+  /// @throw std::invalid_argument unless `to` is beyond `from`, by less than half a turn.
+  explicit WedgeCut(const Wedge& wedge);
+
+  /// What the wedge leaves of a triangle. Where it cuts an edge is the same for both triangles at that edge.
+  std::vector<Polygon> outside(const std::array<Eigen::Vector3d, 3>& triangle) const;
+
+  /// The faces that the wedge leaves on a tetrahedron, facing into the wedge.
+  /// @param tetrahedron of positive volume, unless it is turned inside out: then its faces are so as well.
+  std::vector<Polygon> faces(const std::array<Eigen::Vector3d, 4>& tetrahedron) const;
+
+ private:
+  Eigen::Vector3d from_, to_;  ///< normals of the half planes, into the wedge
+};
+
+}  // namespace flute_grinder

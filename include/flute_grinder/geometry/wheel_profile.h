@@ -1,0 +1,69 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+
+#include <array>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A grinding wheel: a filled solid of revolution between two flat faces. Evaluation is real-time safe.
+class WheelProfile {
+ public:
+  /// A profile of straight lines between corners, the ends rounded where asked.
+  /// @param corners from the lower face to the upper: at least two, w strictly ascending, radii positive.
+  /// @param corner_radii fillets between profile and lower face, profile and upper face; 0 for a sharp edge [m].
+  /// @throw std::invalid_argument naming the value and what is allowed.
+  explicit WheelProfile(std::vector<ProfilePoint> corners, const std::array<double, 2>& corner_radii = {0, 0});
+
+  /// Straight wheel (FEPA 1A1).
+  static WheelProfile straight(double diameter, double width, const std::array<double, 2>& corner_radii = {0, 0});
+
+  /// Bevelled wheel (FEPA 1V1), and the rim of a flaring cup (11V9).
+  /// @param angle between bevel and spindle axis; positive if the upper face is the larger one [rad].
+  static WheelProfile angled(double diameter, double width, double angle,
+                             const std::array<double, 2>& corner_radii = {0, 0});
+
+  /// Full-radius wheel (FEPA 1F1): the profile is a semicircle over the width.
+  static WheelProfile fullRadius(double diameter, double width);
+
+  double lowerFace() const noexcept { return corners_.front().w; }  ///< w of the lower face [m]
+  double upperFace() const noexcept { return corners_.back().w; }   ///< w of the upper face [m]
+  double largestRadius() const noexcept { return largest_radius_; }
+
+  /// Where the profile's lines meet, before the ends are rounded.
+  const std::vector<ProfilePoint>& corners() const noexcept { return corners_; }
+
+  /// Radius of the profile at `w`, which is taken to lie between the faces [m].
+  double radius(double w) const noexcept;
+
+  /// d radius / dw at `w`, which is taken to lie between the faces; at a corner that of the side below it.
+  double slope(double w) const noexcept;
+
+  /// The wheel the other way up.
+  WheelProfile mirrored() const;
+
+  /// The wheel after its radius has worn by `wear` [m].
+  WheelProfile worn(double wear) const;
+
+ private:
+  /// Where a circle rounds the profile off.
+  struct Fillet {
+    double from = 0, to = 0;             ///< range of w; empty for a sharp edge [m]
+    double w = 0, radius = 0, size = 0;  ///< centre, and radius of the circle [m]
+
+    bool covers(double at) const noexcept { return at >= from && at < to; }
+    double at(double w_here) const noexcept;
+    double slopeAt(double w_here) const noexcept;
+  };
+
+  std::size_t lineAt(double w) const noexcept;  ///< the corner at its upper end
+  Fillet fillet(bool upper, double size) const;
+
+  std::vector<ProfilePoint> corners_;
+  std::array<double, 2> corner_radii_;
+  std::array<Fillet, 2> fillets_;
+  double largest_radius_ = 0;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,133 @@
+#pragma once
+
+#include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/conical_cutter.h"
+#include "flute_grinder/core/log_curve.h"
+#include "flute_grinder/core/z_correction.h"
+#include "flute_grinder/geometry/wheel_profile.h"
+
+#include <optional>
+#include <vector>
+
+namespace flute_grinder {
+
+/// How the machine is set for a wheel.
+struct WheelSetup {
+  double swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
+  double height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+};
+
+/// How far the axes are off the job's path at an X.
+struct PathDeviation {
+  double y = 0, z = 0, a = 0;  ///< [m], A [rad]
+};
+
+/// The deepest stroke of a tooth: X runs from one end to the other, the other axes follow as on the job's path.
+struct GrindStroke {
+  double from = 0, to = 0;     ///< X at the ends [m]
+  double y = 0;                ///< Y at X = 0: the flute's depth, negative, plus the wear that Y takes up [m]
+  double y_per_x = 0;          ///< added to the cone's own, for a core taper
+  double a = 0;                ///< A at X = 0 [rad]
+  ZCorrection z_correction{};  ///< added to Z
+  /// Of a stroke that was recorded: at even distances between the ends, from the lesser X on, linear in between; empty
+  /// for none.
+  std::vector<PathDeviation> deviations{};
+};
+
+/// A part of a circle about the cutter's axis.
+struct Arc {
+  double low = 0, high = 0;  ///< ends, counted as A is [rad]
+  bool complete = true;      ///< a longer stroke would not make it any longer
+};
+
+/// A wall of a groove where it meets a circle about the cutter's axis.
+struct Wall {
+  double angle = 0;      ///< counted as A is [rad]
+  double slope = 0;      ///< d angle / d radius [rad/m]
+  double w = 0;          ///< the place on the wheel's profile that forms it [m]
+  double axis_x = 0;     ///< where on the stroke it is formed [m]
+  bool complete = true;  ///< a longer stroke would not move it
+};
+
+/// What a wheel removes from a cutter's blank in one stroke: for each circle about the cutter's axis, the arc that the
+/// wheel goes through. Each end of an arc is an extremum over the stroke, found on the continuous path and not among
+/// discrete poses, which would err to first order. Lifts and plunges are along the radius and remove nothing more.
+///
+/// Frame: the cutter's, X from the small end to the shank, Y toward the wheel at A = 0, Z up.
+class WheelSweep {
+ public:
+  /// @param nominal_radius of the wheel, for which Y = 0 touches the small end's circle [m].
+  /// @throw std::invalid_argument unless the swivel is within a quarter turn and the stroke's figures are finite.
+  WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
+             const GrindStroke& stroke);
+
+  /// @param x of the circle. @param r its radius, positive [m].
+  /// @return the arc that is removed; nothing if the wheel does not reach the circle.
+  std::optional<Arc> arc(double x, double r) const;
+
+  /// One end of the arc, with its slope over the radius from the wheel's normal where it forms the wall. Costs half an
+  /// arc.
+  /// @param high the end at the larger angle, else the other one.
+  std::optional<Wall> wall(double x, double r, bool high) const;
+
+  /// The least radius that is removed from a blank at `x`, to a nanometre; infinite if nothing is, 0 if the wheel cuts
+  /// through the axis [m].
+  double leastRadius(double x, double blank_radius) const;
+
+  /// How much deeper the stroke must go for the least radius at `x` to become `radius`; infinite if no depth does [m].
+  double deeperFor(double x, double radius) const;
+
+  const GrindStroke& stroke() const noexcept { return stroke_; }
+
+ private:
+  /// Where the wheel stands while the axes are at an X, and which way round the cutter.
+  struct Pose {
+    double axis_x, dx, y, z, a;
+  };
+  struct Window {
+    double from, to;
+  };
+
+  PathDeviation deviation(double axis_x) const noexcept;
+  PathDeviation deviationSlope(double axis_x) const noexcept;  ///< by X
+  Pose pose(double x, double axis_x) const noexcept;
+  double lowestPoint(double axis_x) const noexcept;
+  /// Where an endless stroke could reach a circle, and the part of it that the stroke has.
+  Window reach(double x, double r) const noexcept;
+  std::optional<Window> window(double x, double r) const noexcept;
+  std::optional<double> endAt(const Pose& pose, double r, bool high) const;
+  double endOver(double x, double axis_x, double r, bool high) const;
+  double outside(const Pose& pose, double r, double theta) const noexcept;
+  struct Extremum {
+    double value;
+    double axis_x;
+  };
+  Extremum extremum(double x, double r, const Window& window, bool high) const;
+  /// Whether no longer stroke, as long as the cone is open, would take an end of an arc farther.
+  bool isComplete(double x, double r, const Extremum& end, bool high) const;
+  Extremum anyExtremum(double x, double r, const Window& window, bool high) const;
+  /// A normal of the wheel, its length free: along the cutter's radius, in the sense of rising angles, and along the
+  /// wheel's motion against the cutter.
+  struct Normal {
+    double radial, tangential, along_motion;
+  };
+  Normal normal(const Pose& pose, double r, double theta, double w) const noexcept;
+  /// The least of a function of the wheel's lower side in a section, and where on the stroke.
+  struct Least {
+    double value, axis_x;
+  };
+  template <typename Function>
+  Least least(double x, double largest_height, const Function& f) const;
+  Least leastSquare(double x) const;
+  std::optional<Window> narrowWindow(double x, double r, double step) const;
+
+  LogCurve curve_;
+  WheelProfile wheel_;
+  GrindStroke stroke_;
+  double height_, sin_, cos_;
+  double centre_, y_per_x_, z_per_x_;
+  Window open_;                   ///< where the cone is open
+  double deepest_deviation_ = 0;  ///< the least of Y [m]
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,156 @@
+#include "flute_grinder/collision/machine_shapes.h"
+
+#include "flute_grinder/core/axes.h"
+
+#include <urdf_parser/urdf_parser.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr const char* kYZero = "y_zero";
+constexpr const char* kSwivel = "wheel_swivel";
+constexpr const char* kCutter = "cutter";
+constexpr const char* kWheel = "wheel";
+
+[[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("robot_description: " + what); }
+
+Eigen::Vector3d toEigen(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
+  const urdf::Rotation& r = pose.rotation;
+  return Eigen::Translation3d(toEigen(pose.position)) * Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized();
+}
+
+/// The motion of a joint's child in the joint's frame.
+Eigen::Isometry3d motionOf(const urdf::Joint& joint, double position) {
+  const Eigen::Vector3d axis = toEigen(joint.axis).normalized();
+  switch (joint.type) {
+    case urdf::Joint::FIXED: return Eigen::Isometry3d::Identity();
+    case urdf::Joint::PRISMATIC: return Eigen::Isometry3d(Eigen::Translation3d(position * axis));
+    default: return Eigen::Isometry3d(Eigen::AngleAxisd(position, axis));
+  }
+}
+
+std::string nameOf(const urdf::Collision& shape, const urdf::Link& link) {
+  return shape.name.empty() ? link.name : shape.name;
+}
+
+Solid toSolid(const urdf::Collision& shape, const urdf::Link& link) {
+  const std::string what = "link " + link.name + ", <collision> " + nameOf(shape, link) + ": ";
+  const auto positive = [&](double size, const char* name) {
+    if (!(size > 0 && std::isfinite(size)))
+      refuse(what + name + " = " + std::to_string(size) + " m; allowed: positive");
+    return size;
+  };
+  Solid solid;
+  if (const auto* box = dynamic_cast<const urdf::Box*>(shape.geometry.get())) {
+    for (const double side : {box->dim.x, box->dim.y, box->dim.z}) positive(side, "size");
+    solid = Solid::box(toEigen(box->dim));
+  } else if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(shape.geometry.get())) {
+    solid = Solid::cylinder(positive(cylinder->radius, "radius"), positive(cylinder->length, "length"));
+  } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(shape.geometry.get())) {
+    solid = Solid::sphere(positive(sphere->radius, "radius"));
+  } else {
+    refuse(what + "no box, cylinder or sphere; allowed: these");
+  }
+  solid.name = nameOf(shape, link);
+  solid.pose = toEigen(shape.origin);
+  return solid;
+}
+
+void requireJoints(const urdf::ModelInterface& model) {
+  for (const auto& [name, joint] : model.joints_) {
+    if (joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR) {
+      refuse("joint " + name + " is floating or planar; allowed: fixed, prismatic, revolute, continuous");
+    }
+  }
+  const auto require = [&](const char* name, bool linear) {
+    const auto joint = model.getJoint(name);
+    if (!joint) refuse(std::string("no joint ") + name);
+    if ((joint->type == urdf::Joint::PRISMATIC) != linear || joint->type == urdf::Joint::FIXED) {
+      refuse(std::string("joint ") + name + " must be " + (linear ? "prismatic" : "revolute"));
+    }
+  };
+  for (int axis = 0; axis < kAxisCount; ++axis) require(kJointNames[static_cast<std::size_t>(axis)], axis != kA);
+  require(kYZero, true);
+  require(kSwivel, false);
+  for (const char* name : {kCutter, kWheel}) {
+    if (!model.getLink(name)) refuse(std::string("no link ") + name);
+  }
+}
+
+}  // namespace
+
+MachineShapes::MachineShapes(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
+  if (!model_) throw std::invalid_argument("robot_description is not a URDF");
+  requireJoints(*model_);
+  turning_ = model_->getJoint(kJointNames[kA])->child_link_name;
+  if (!isBelow(kCutter, turning_)) refuse("link cutter does not turn with axis_a");
+  if (isBelow(kWheel, turning_)) refuse("link wheel turns with axis_a");
+  for (const urdf::Link* at = &link(kWheel); at && !isBelow(kCutter, at->name); at = at->getParent().get()) {
+    wheel_side_ = at->name;
+  }
+  if (wheel_side_.empty()) refuse("link cutter moves with link wheel");
+  parts(0, 0);
+}
+
+std::vector<MachinePart> MachineShapes::parts(double y_zero, double swivel) const {
+  const Eigen::Isometry3d turning = pose(turning_, {{kYZero, y_zero}, {kSwivel, swivel}});
+  const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
+  const Eigen::Isometry3d axis =
+      turning * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), toEigen(axis_a.axis));
+  std::vector<MachinePart> parts;
+  for (const auto& [name, link] : model_->links_) {
+    for (const urdf::CollisionSharedPtr& shape : link->collision_array) {
+      MachinePart part = on(name, y_zero, swivel);
+      const Eigen::Isometry3d link_pose = part.solid.pose;
+      part.solid = toSolid(*shape, *link);
+      part.solid.pose = link_pose * part.solid.pose;
+      if (part.turns) part.solid = part.solid.swept(axis);
+      parts.push_back(std::move(part));
+    }
+  }
+  return parts;
+}
+
+MachinePart MachineShapes::on(const std::string& name, double y_zero, double swivel) const {
+  Joints joints{{kYZero, y_zero}, {kSwivel, swivel}};
+  MachinePart part;
+  part.link = name;
+  part.with_wheel = isBelow(name, wheel_side_);
+  part.turns = isBelow(name, turning_);
+  part.solid.pose = pose(name, joints);
+  for (int axis = kX; axis <= kZ; ++axis) {
+    joints[kJointNames[static_cast<std::size_t>(axis)]] = 1;
+    part.motion.col(axis) = pose(name, joints).translation() - part.solid.pose.translation();
+    joints[kJointNames[static_cast<std::size_t>(axis)]] = 0;
+  }
+  const urdf::Link* carrier = link(name).getParent().get();
+  while (carrier && carrier->collision_array.empty()) carrier = carrier->getParent().get();
+  if (carrier) part.carrier = carrier->name;
+  return part;
+}
+
+Eigen::Isometry3d MachineShapes::pose(const std::string& name, const Joints& joints) const {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (const urdf::Link* at = &link(name); at->parent_joint; at = at->getParent().get()) {
+    const urdf::Joint& joint = *at->parent_joint;
+    const auto position = joints.find(joint.name);
+    pose = toEigen(joint.parent_to_joint_origin_transform) *
+           motionOf(joint, position == joints.end() ? 0 : position->second) * pose;
+  }
+  return pose;
+}
+
+bool MachineShapes::isBelow(const std::string& name, const std::string& other) const {
+  for (const urdf::Link* at = &link(name); at; at = at->getParent().get()) {
+    if (at->name == other) return true;
+  }
+  return false;
+}
+
+}  // namespace flute_grinder

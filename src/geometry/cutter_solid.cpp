@@ -1,0 +1,279 @@
+#include "flute_grinder/geometry/cutter_solid.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTurn = 2 * units::kPi;
+
+struct Layer {
+  double x;
+  std::vector<PolarPoint> outline;
+};
+
+OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution) {
+  const std::vector<GroundTooth>& teeth = cutter.teeth();
+  double widest = teeth.empty() ? 0 : kTurn + teeth.front().angle - teeth.back().angle;
+  for (std::size_t i = 1; i < teeth.size(); ++i) widest = std::max(widest, teeth[i].angle - teeth[i - 1].angle);
+  const double columns = std::ceil(widest / kTurn * static_cast<double>(resolution.around));
+  return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns))};
+}
+
+/// The sections of cone and shank, with the layers between them.
+std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
+                            const OutlineGrid& grid) {
+  std::vector<Layer> layers;
+  const LogCurve curve(cutter.cutter());
+  const auto add = [&](double x, double radius) {
+    Layer next{x, sectionOutline(cutter, x, radius, grid)};
+    if (!layers.empty() && x > layers.back().x) {
+      const Layer last = layers.back();
+      const double twist = std::abs(curve.a(x) - curve.a(last.x));
+      const double parts = std::ceil(twist / kTurn * static_cast<double>(resolution.around));
+      for (double part = 1; part < parts; ++part) {
+        Layer& layer = layers.emplace_back(Layer{last.x + part / parts * (x - last.x), last.outline});
+        for (std::size_t i = 0; i < layer.outline.size(); ++i) {
+          layer.outline[i] = between(last.outline[i], next.outline[i], part / parts);
+        }
+      }
+    }
+    layers.push_back(std::move(next));
+  };
+  const double step = (extent.to - extent.from) / static_cast<double>(resolution.sections - 1);
+  for (std::size_t i = 0; i < resolution.sections; ++i) {
+    const double x = i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
+    add(x, cutter.cutter().radius(x));
+  }
+  if (!(extent.shank_to > extent.to)) return layers;
+  const double shank = extent.shank_diameter / 2;
+  const auto is_whole = [&] {
+    const auto& outline = layers.back().outline;
+    return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
+  };
+  double x = extent.to;
+  for (int i = 1; x < extent.shank_to; ++i) {
+    add(x, shank);
+    x = is_whole() ? extent.shank_to : std::min(extent.shank_to, extent.to + i * step);
+  }
+  add(extent.shank_to, shank);
+  return layers;
+}
+
+/// Corners of a part, by indices of vertices.
+using Triangle = std::array<std::uint32_t, 3>;
+using Tetrahedron = std::array<std::uint32_t, 4>;
+
+/// A section divided into triangles. Each body between two flutes has rings and columns, since the axis is not to be
+/// seen from every point of an undercut wall. Besides the points of the outline there are those within it.
+class SectionMesh {
+ public:
+  SectionMesh(const OutlineGrid& grid, CutDirection direction) : grid_(grid), centre_(index(grid.teeth, 0, 1)) {
+    for (std::size_t body = 0; body < grid.teeth; ++body) {
+      tooth_.push_back(static_cast<std::uint16_t>(grid.tooth(grid.land(body, 0), direction)));
+      for (std::size_t k = 0; k < grid.columns; ++k) add(centre_, at(body, 0, k), at(body, 0, k + 1));
+      for (std::size_t ring = 0; ring < grid.rings; ++ring) {
+        for (std::size_t k = 0; k < grid.columns; ++k) {
+          add(at(body, ring, k), at(body, ring + 1, k), at(body, ring + 1, k + 1));
+          add(at(body, ring, k), at(body, ring + 1, k + 1), at(body, ring, k + 1));
+        }
+      }
+    }
+  }
+
+  /// Counterclockwise as seen from the shank; those of the bodies one after another.
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  std::uint16_t toothOf(std::size_t triangle) const { return tooth_[triangle / (triangles_.size() / grid_.teeth)]; }
+
+  /// The points of a section: its outline, and those within it, the centre last.
+  std::vector<PolarPoint> points(const std::vector<PolarPoint>& outline) const {
+    std::vector<PolarPoint> all = outline;
+    for (std::size_t body = 0; body < grid_.teeth; ++body) {
+      for (std::size_t ring = 0; ring < grid_.rings; ++ring) {
+        const PolarPoint from = outline[grid_.high(body, ring)];
+        PolarPoint to = outline[grid_.lowOfNext(body, ring)];
+        if (ring == 0 && body + 1 == grid_.teeth) to.turns += 1;
+        for (std::size_t k = 1; k < grid_.columns; ++k) {
+          all.push_back(between(from, to, static_cast<double>(k) / static_cast<double>(grid_.columns)));
+        }
+      }
+    }
+    all.push_back({0, 0});
+    return all;
+  }
+
+ private:
+  std::uint32_t index(std::size_t body, std::size_t ring, std::size_t column) const {
+    return static_cast<std::uint32_t>(grid_.size() + (body * grid_.rings + ring) * (grid_.columns - 1) + column - 1);
+  }
+  /// A point of a body: ring 0 joins the floors of its two flutes, the last one is the land.
+  std::uint32_t at(std::size_t body, std::size_t ring, std::size_t column) const {
+    if (ring == grid_.rings) return static_cast<std::uint32_t>(grid_.land(body, column));
+    if (column == 0) return static_cast<std::uint32_t>(grid_.high(body, ring));
+    if (column == grid_.columns) return static_cast<std::uint32_t>(grid_.lowOfNext(body, ring));
+    return index(body, ring, column);
+  }
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles_.push_back({a, b, c}); }
+
+  OutlineGrid grid_;
+  std::uint32_t centre_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint16_t> tooth_;  ///< by bodies
+};
+
+/// Joins layers to a solid.
+class Joiner {
+ public:
+  /// @param with_inside whether what lies within is divided into tetrahedra as well.
+  Joiner(const OutlineGrid& grid, CutDirection direction, bool with_inside)
+      : grid_(grid), direction_(direction), mesh_(grid, direction), with_inside_(with_inside) {}
+
+  void add(const Layer& layer, bool is_end) {
+    begin_ = end_;
+    end_ = static_cast<std::uint32_t>(solid_.vertices.size());
+    for (const PolarPoint& p : with_inside_ || is_end ? mesh_.points(layer.outline) : layer.outline) {
+      const double angle = kTurn * (p.turns - std::floor(p.turns));
+      solid_.vertices.emplace_back(layer.x, p.radius * std::cos(angle), p.radius * std::sin(angle));
+    }
+  }
+
+  /// What is between the two layers added last.
+  /// @param is_step they are at the same X.
+  void joinLayers(bool is_step) {
+    const auto n = static_cast<std::uint32_t>(grid_.size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t next = (i + 1) % n;
+      const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid_.kind(i, direction_);
+      const auto tooth = static_cast<std::uint16_t>(grid_.tooth(i, direction_));
+      // The diagonal goes from the lower index to the higher, as in the tetrahedra.
+      const std::uint32_t from = std::min(i, next), to = std::max(i, next);
+      addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
+      addTriangle({begin_ + from, end_ + next, end_ + i}, kind, tooth);
+    }
+    if (!with_inside_) return;
+    for (const Triangle& t : mesh_.triangles()) addPrism(t);
+  }
+
+  /// The face at the layer added last.
+  void close(bool toward_shank) {
+    for (std::size_t i = 0; i < mesh_.triangles().size(); ++i) {
+      auto [a, b, c] = mesh_.triangles()[i];
+      if (!toward_shank) std::swap(b, c);
+      addTriangle({end_ + a, end_ + b, end_ + c}, SurfaceKind::kEndFace, mesh_.toothOf(i));
+    }
+  }
+
+  CutterSolid take() { return std::move(solid_); }
+
+  /// The solid without a wedge.
+  CutterSolid takeWithout(const Wedge& wedge) const {
+    const WedgeCut cut(wedge);
+    CutterSolid rest;
+    const auto& at = solid_.vertices;
+    for (const SolidTriangle& t : solid_.triangles) {
+      const auto& v = t.vertices;
+      for (const WedgeCut::Polygon& p : cut.outside({at[v[0]], at[v[1]], at[v[2]]})) append(rest, p, t.kind, t.tooth);
+    }
+    for (const Tetrahedron& v : inside_) {
+      for (const WedgeCut::Polygon& p : cut.faces({at[v[0]], at[v[1]], at[v[2]], at[v[3]]})) {
+        append(rest, p, SurfaceKind::kCut, 0);
+      }
+    }
+    return rest;
+  }
+
+ private:
+  /// What is between a triangle of the last layer but one and that of the last. The diagonals of its sides go from the
+  /// lower index to the higher, so that they fit those of its neighbours.
+  void addPrism(Triangle t) {
+    const auto tetrahedron = [&, odd = isOdd(t)](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+      inside_.push_back(odd ? Tetrahedron{b, a, c, d} : Tetrahedron{a, b, c, d});
+    };
+    std::sort(t.begin(), t.end());
+    const auto [a, b, c] = t;
+    tetrahedron(begin_ + a, begin_ + b, begin_ + c, end_ + c);
+    tetrahedron(begin_ + a, begin_ + b, end_ + c, end_ + b);
+    tetrahedron(begin_ + a, end_ + a, end_ + b, end_ + c);
+  }
+
+  /// Whether sorting turns it over.
+  static bool isOdd(const Triangle& t) { return (t[0] > t[1]) ^ (t[1] > t[2]) ^ (t[0] > t[2]); }
+
+  static bool hasArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    return !(a == b || b == c || c == a);
+  }
+
+  static void append(CutterSolid& solid, const WedgeCut::Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
+    const auto first = static_cast<std::uint32_t>(solid.vertices.size());
+    solid.vertices.insert(solid.vertices.end(), polygon.begin(), polygon.end());
+    for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
+      if (!hasArea(polygon[0], polygon[i], polygon[i + 1])) continue;
+      solid.triangles.push_back({{first, first + i, first + i + 1}, kind, tooth});
+    }
+  }
+
+  void addTriangle(const Triangle& v, SurfaceKind kind, std::uint16_t tooth) {
+    if (!hasArea(solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]])) return;
+    solid_.triangles.push_back({v, kind, tooth});
+  }
+
+  OutlineGrid grid_;
+  CutDirection direction_;
+  SectionMesh mesh_;
+  bool with_inside_;
+  CutterSolid solid_;
+  std::vector<Tetrahedron> inside_;
+  std::uint32_t begin_ = 0, end_ = 0;  ///< first vertices of the two layers added last
+};
+
+void check(const SolidExtent& extent, const SolidResolution& resolution) {
+  const auto require = [](bool good, const char* name, double value, const char* allowed) {
+    if (good) return;
+    std::ostringstream text;
+    text << "solid: " << name << " = " << value << "; allowed: " << allowed;
+    throw std::invalid_argument(text.str());
+  };
+  require(std::isfinite(extent.from), "from", extent.from, "a finite X [m]");
+  require(extent.to > extent.from && std::isfinite(extent.to), "to", extent.to, "beyond `from`, finite [m]");
+  require(std::isfinite(extent.shank_to), "shank_to", extent.shank_to, "a finite X [m]");
+  require(!(extent.shank_to > extent.to) || (extent.shank_diameter > 0 && std::isfinite(extent.shank_diameter)),
+          "shank_diameter", extent.shank_diameter, "positive and finite [m]");
+  require(resolution.sections >= 2, "sections", static_cast<double>(resolution.sections), "from 2");
+  require(resolution.around >= 3, "around", static_cast<double>(resolution.around), "from 3");
+}
+
+}  // namespace
+
+double CutterSolid::volume() const {
+  double six = 0;
+  for (const SolidTriangle& t : triangles) {
+    six += vertices[t.vertices[0]].dot(vertices[t.vertices[1]].cross(vertices[t.vertices[2]]));
+  }
+  return six / 6;
+}
+
+CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
+                        const std::optional<Wedge>& cut_out) {
+  check(extent, resolution);
+  const OutlineGrid grid = gridOf(cutter, resolution);
+  const std::vector<Layer> layers = layersOf(cutter, extent, resolution, grid);
+  Joiner joiner(grid, cutter.direction(), cut_out.has_value());
+  joiner.add(layers.front(), true);
+  joiner.close(false);
+  for (std::size_t i = 1; i < layers.size(); ++i) {
+    joiner.add(layers[i], i + 1 == layers.size());
+    joiner.joinLayers(layers[i].x == layers[i - 1].x);
+  }
+  joiner.close(true);
+  return cut_out ? joiner.takeWithout(*cut_out) : joiner.take();
+}
+
+}  // namespace flute_grinder

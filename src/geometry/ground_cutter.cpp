@@ -1,0 +1,210 @@
+#include "flute_grinder/geometry/ground_cutter.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTurn = 2 * units::kPi;
+/// For the slope of the edge, of the blank's radius: small against the curvature, large against rounding.
+constexpr double kDifference = 1e-4;
+constexpr int kRings = 64;        ///< for the area of a section
+constexpr int kRingsOfDepth = 6;  ///< on which a flute must be complete
+constexpr double kRangeAccuracy = 10e-6;
+
+/// An angle within one turn.
+double withinTurn(double angle) { return angle - kTurn * std::floor(angle / kTurn); }
+
+/// How much of a turn some arcs cover together.
+double covered(std::vector<Arc>& arcs) {
+  std::vector<Arc> parts;
+  for (const Arc& arc : arcs) {
+    if (arc.high - arc.low >= kTurn) return kTurn;
+    const double low = withinTurn(arc.low);
+    const double high = low + (arc.high - arc.low);
+    parts.push_back({low, std::min(high, kTurn)});
+    if (high > kTurn) parts.push_back({0, high - kTurn});
+  }
+  std::sort(parts.begin(), parts.end(), [](const Arc& a, const Arc& b) { return a.low < b.low; });
+  double sum = 0, end = 0;
+  for (const Arc& part : parts) {
+    sum += std::max(0.0, part.high - std::max(part.low, end));
+    end = std::max(end, part.high);
+  }
+  return sum;
+}
+
+}  // namespace
+
+GroundCutter::GroundCutter(const ConicalCutter& cutter, CutDirection direction, std::vector<Flute> flutes,
+                           std::vector<GroundTooth> teeth)
+    : cutter_(cutter), direction_(direction), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
+  for (const Flute& flute : flutes_) {
+    if (flute.empty()) throw std::invalid_argument("a flute has 0 strokes; allowed: 1 or more");
+  }
+  for (const GroundTooth& tooth : teeth_) {
+    if (tooth.flute < flutes_.size()) continue;
+    throw std::invalid_argument("a tooth's flute = " + std::to_string(tooth.flute) + "; allowed: below " +
+                                std::to_string(flutes_.size()));
+  }
+}
+
+std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) const {
+  std::optional<Arc> all;
+  for (const WheelSweep& sweep : flute) {
+    const auto one = sweep.arc(x, r);
+    if (!one) continue;
+    if (!all) {
+      all = one;
+      continue;
+    }
+    // Whether an end is complete is for the stroke to say that goes farther there.
+    const bool complete = (one->low < all->low ? one->complete : all->complete) &&
+                          (one->high > all->high ? one->complete : all->complete);
+    all = Arc{std::min(all->low, one->low), std::max(all->high, one->high), complete};
+  }
+  return all;
+}
+
+std::optional<Wall> GroundCutter::rakeFace(const Flute& flute, double x) const {
+  const bool high = direction_ == CutDirection::kRightHand;
+  std::optional<Wall> outermost;
+  for (const WheelSweep& sweep : flute) {
+    const auto wall = sweep.wall(x, cutter_.radius(x), high);
+    if (!wall) continue;
+    if (!outermost || (high ? wall->angle > outermost->angle : wall->angle < outermost->angle)) outermost = wall;
+  }
+  return outermost;
+}
+
+double GroundCutter::coreRadius(const Flute& flute, double x) const {
+  double least = cutter_.radius(x);
+  for (const WheelSweep& sweep : flute) least = std::min(least, sweep.leastRadius(x, cutter_.radius(x)));
+  return least;
+}
+
+double GroundCutter::coreRadius(double x) const {
+  double least = cutter_.radius(x);
+  for (const Flute& flute : flutes_) least = std::min(least, coreRadius(flute, x));
+  return least;
+}
+
+double GroundCutter::areaRemoved(double x, double core_radius) const {
+  const double depth = cutter_.radius(x) - core_radius;
+  double area = 0;
+  for (int i = 0; i < kRings; ++i) {
+    // Closer to one another toward the core, where the arcs open like a root.
+    const double u = (i + 0.5) / kRings;
+    const double r = core_radius + depth * u * u;
+    std::vector<std::optional<Arc>> of_flutes;
+    for (const Flute& flute : flutes_) of_flutes.push_back(arc(flute, x, r));
+    std::vector<Arc> arcs;
+    for (const GroundTooth& tooth : teeth_) {
+      if (const auto& a = of_flutes[tooth.flute]) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
+    }
+    area += covered(arcs) * r * depth * 2 * u / kRings;
+  }
+  return area;
+}
+
+std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<ToothSection>& measured) const {
+  // Behind an edge that moves toward falling angles lies what has larger ones.
+  const std::size_t n = teeth_.size();
+  const bool right = direction_ == CutDirection::kRightHand;
+  const std::size_t next = right ? (tooth + 1) % n : (tooth + n - 1) % n;
+  const ToothSection& own = measured[teeth_[tooth].flute];
+  const ToothSection& other = measured[teeth_[next].flute];
+  if (!own.edge || !other.edge) return std::nullopt;
+  const bool around = right ? next <= tooth : next >= tooth;
+  const double pitch = std::abs(teeth_[next].angle - teeth_[tooth].angle + (around ? (right ? kTurn : -kTurn) : 0));
+  const double ahead = right ? *other.edge - *own.edge : *own.edge - *other.edge;
+  const double left = pitch + ahead - *other.flute;
+  if (!(left > 0)) return std::nullopt;
+  return left;
+}
+
+bool GroundCutter::isComplete(const Flute& flute, double x, double core_radius) const {
+  const double depth = cutter_.radius(x) - core_radius;
+  for (int i = 1; i <= kRingsOfDepth; ++i) {
+    const auto ring = arc(flute, x, core_radius + depth * i / kRingsOfDepth);
+    if (!ring || !ring->complete) return false;
+  }
+  return true;
+}
+
+ToothSection GroundCutter::measure(const Flute& flute, double x) const {
+  const double r = cutter_.radius(x);
+  const double h = kDifference * r;
+  ToothSection section;
+  const double core = coreRadius(flute, x);
+  section.depth = r - core;
+  const auto at = arc(flute, x, r);
+  const auto face = rakeFace(flute, x);
+  if (!at || !face) return section;
+  section.edge = face->angle;
+  section.rake = std::atan(direction_ == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
+  section.flute = at->high - at->low;
+  const auto ahead = rakeFace(flute, x + h), behind = rakeFace(flute, x - h);
+  if (ahead && behind) {
+    section.spiral = std::atan(r * (ahead->angle - behind->angle) / (2 * h));
+    section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));
+  }
+  section.complete = isComplete(flute, x, core);
+  return section;
+}
+
+GroundSection GroundCutter::section(double x) const {
+  GroundSection section;
+  section.x = x;
+  section.radius = section.core_radius = cutter_.radius(x);
+  std::vector<ToothSection> measured;
+  for (const Flute& flute : flutes_) {
+    measured.push_back(measure(flute, x));
+    section.core_radius = std::min(section.core_radius, section.radius - measured.back().depth);
+  }
+  for (std::size_t i = 0; i < teeth_.size(); ++i) {
+    section.teeth.push_back(measured[teeth_[i].flute]);
+    ToothSection& tooth = section.teeth.back();
+    if (tooth.edge) *tooth.edge += teeth_[i].angle;
+    tooth.land = land(i, measured);
+  }
+  return section;
+}
+
+bool GroundCutter::isComplete(double x) const {
+  return std::all_of(flutes_.begin(), flutes_.end(),
+                     [&](const Flute& flute) { return isComplete(flute, x, coreRadius(flute, x)); });
+}
+
+std::optional<Range> GroundCutter::completeRange(double from, double to) const {
+  const double middle = (from + to) / 2;
+  if (!isComplete(middle)) return std::nullopt;
+  const auto last = [&](double out) {
+    if (isComplete(out)) return out;
+    double in = middle;
+    while (std::abs(out - in) > kRangeAccuracy) {
+      const double x = (in + out) / 2;
+      (isComplete(x) ? in : out) = x;
+    }
+    return in;
+  };
+  return Range{last(from), last(to)};
+}
+
+double GroundCutter::volumeRemoved(double from, double to, int sections) const {
+  double volume = 0;
+  const double step = (to - from) / sections;
+  for (int i = 0; i < sections; ++i) {
+    const double x = from + (i + 0.5) * step;
+    volume += areaRemoved(x, coreRadius(x)) * step;
+  }
+  return volume;
+}
+
+}  // namespace flute_grinder

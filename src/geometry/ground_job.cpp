@@ -1,0 +1,201 @@
+#include "flute_grinder/geometry/ground_job.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+using core::ReasonKind;
+
+constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
+
+std::array<double, 2> cornerRadii(const GrindProcess& p) {
+  return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
+}
+
+/// Of every tooth, the wheel's wear in its deepest pass: the first at full depth, for which the wheel is largest [m].
+std::vector<double> wearOfTeeth(const GrindJob& job) {
+  const std::vector<ToothPass> order = passOrder(job);
+  const std::vector<double> depths = passDepths(job.process);
+  const auto deepest = std::max_element(depths.begin(), depths.end()) - depths.begin();
+  const std::vector<double> of_passes = wearOfPasses(job);
+  std::vector<double> wear(job.tooth_angles.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (order[i].pass != deepest) continue;
+    wear[static_cast<std::size_t>(order[i].tooth)] = of_passes[i];
+  }
+  return wear;
+}
+
+/// Collects what is wrong with a cutter.
+class Checker {
+ public:
+  explicit Checker(const GrindJob& job) : job_(job) {}
+
+  void check(const GroundSection& section) {
+    if (!(section.core_radius > kLeastCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
+    for (std::size_t i = 0; i < section.teeth.size(); ++i) {
+      const ToothSection& tooth = section.teeth[i];
+      const int number = static_cast<int>(i);
+      if (tooth.flute && !tooth.land) add(ReasonKind::kLand, section.x, number, Unit::kRadian, *tooth.flute, pitch(i));
+      if (!tooth.complete) continue;
+      const double asked = job_.cutter.rake_angle, tolerance = job_.cutter.rake_tolerance;
+      if (std::abs(*tooth.rake - asked) <= tolerance) continue;
+      add(ReasonKind::kRake, section.x, number, Unit::kRadian, *tooth.rake, asked, tolerance);
+    }
+  }
+
+  void checkRange(const std::optional<Range>& complete) {
+    const double length = job_.cutter.flute_length;
+    if (job_.process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
+    const Range range = complete.value_or(Range{});
+    add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
+  }
+
+  /// Of each kind the first one: a fault of the set-up shows in every section of every tooth.
+  std::vector<core::Reason> take() { return std::move(reasons_); }
+
+ private:
+  /// From a tooth to the one whose flute bounds its land [rad].
+  double pitch(std::size_t tooth) const {
+    const std::vector<double>& angles = job_.tooth_angles;
+    const std::size_t before =
+        job_.cutter.cut == CutDirection::kRightHand ? tooth : (tooth + angles.size() - 1) % angles.size();
+    return (before + 1 < angles.size() ? angles[before + 1] : 2 * units::kPi) - angles[before];
+  }
+
+  void add(ReasonKind kind, double x, int tooth, Unit unit, double value, double limit, double low = 0) {
+    const auto same = [&](const core::Reason& r) { return r.kind == kind; };
+    if (std::any_of(reasons_.begin(), reasons_.end(), same)) return;
+    core::Reason reason;
+    reason.kind = kind;
+    reason.x = x;
+    reason.tooth = tooth;
+    reason.unit = unit;
+    reason.value = value;
+    reason.limit = limit;
+    reason.low = low;
+    reasons_.push_back(std::move(reason));
+  }
+
+  const GrindJob& job_;
+  std::vector<core::Reason> reasons_;
+};
+
+core::Reason otherReason(const std::invalid_argument& error) {
+  core::Reason reason;
+  reason.kind = ReasonKind::kOther;
+  reason.detail = error.what();
+  return reason;
+}
+
+/// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
+GroundCutter groundCutterOf(const GrindJob& job, double same_wear) {
+  const std::vector<double> wear = wearOfTeeth(job);
+  std::vector<Flute> flutes;
+  std::vector<GroundTooth> teeth;
+  const auto spiral = [&](std::size_t i) { return cutterOf(job, static_cast<int>(i)).spiral_angle; };
+  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) {
+    std::size_t same = 0;
+    while (same < i && !(std::abs(wear[same] - wear[i]) <= same_wear && spiral(same) == spiral(i))) ++same;
+    teeth.push_back({job.tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
+    if (same < i) continue;
+    const int tooth = static_cast<int>(i);
+    flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job.process.deepest(), wear[i]))});
+  }
+  return GroundCutter(ConicalCutter(job.cutter), job.cutter.cut, std::move(flutes), std::move(teeth));
+}
+
+}  // namespace
+
+WheelProfile wheelOf(const GrindJob& job) {
+  const GrindProcess& p = job.process;
+  switch (p.wheel_profile) {
+    case WheelShape::kStraight: return WheelProfile::straight(p.wheel_diameter, p.wheel_width, cornerRadii(p));
+    case WheelShape::kFullRadius: return WheelProfile::fullRadius(p.wheel_diameter, p.wheel_width);
+    case WheelShape::kPoints: return WheelProfile(job.wheel_points, cornerRadii(p));
+    case WheelShape::kAngled:
+    case WheelShape::kCup: break;
+  }
+  const double angle = p.wheel_side == WheelFace::kUpper ? p.wheel_angle : -p.wheel_angle;
+  return WheelProfile::angled(p.wheel_diameter, p.wheel_width, angle, cornerRadii(p));
+}
+
+WheelSetup setupOf(const GrindJob& job) { return {job.process.setup_swivel, job.process.setup_height}; }
+
+GrindStroke strokeOf(const GrindJob& job, int tooth, double depth, double wear) {
+  const GrindProcess& p = job.process;
+  const DepthLaw law = depthLaw(job, depth);
+  GrindStroke stroke;
+  stroke.from = -p.overtravel_end;
+  stroke.to = job.cutter.flute_length + p.overtravel_shank;
+  if (p.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
+  stroke.y = -law.at_end - wear;
+  stroke.y_per_x = law.taper;
+  stroke.z_correction = zCorrectionOf(job, tooth);
+  return stroke;
+}
+
+WheelSweep sweepOf(const GrindJob& job, int tooth, double wear, const GrindStroke& stroke) {
+  return {ConicalCutter(cutterOf(job, tooth)), wheelOf(job).worn(wear), job.process.wheel_diameter / 2, setupOf(job),
+          stroke};
+}
+
+GroundCutter groundCutterOf(const GrindJob& job) { return groundCutterOf(job, 0); }
+
+CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
+  const double length = job.cutter.flute_length;
+  Checker checker(job);
+  bool complete = true;
+  for (const double x : {0.0, length / 2, length}) {
+    const GroundSection section = cutter.section(x);
+    checker.check(section);
+    for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
+  }
+  const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
+  checker.checkRange(range);
+  return {range, checker.take()};
+}
+
+void checkGroundCutter(JobPlan& plan) {
+  if (!plan.program || plan.fault == PlanFault::kGivenUp) return;
+  const GrindJob& job = plan.program->job();
+  std::vector<core::Reason> reasons;
+  try {
+    CutterCheck check = checkGroundCutter(job, groundCutterOf(job, kSameWear));
+    plan.complete = check.complete;
+    reasons = std::move(check.reasons);
+  } catch (const std::invalid_argument& error) {
+    reasons.push_back(otherReason(error));
+  }
+  if (plan.good() && !reasons.empty()) plan.fault = PlanFault::kTool;
+  plan.reasons.insert(plan.reasons.end(), reasons.begin(), reasons.end());
+}
+
+JobPlan planGroundJob(GrindJob job, const Machine& machine, const Axes& start, const ToothPass& first,
+                      const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  JobPlan plan;
+  try {
+    // Of an invalid job, planJob() tells what is wrong.
+    if (validate(job).empty()) job = withZLaw(std::move(job), watch);
+  } catch (const core::ReasonError& error) {
+    plan.fault = error.reason().kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+    plan.reasons.push_back(error.reason());
+    return plan;
+  } catch (const std::invalid_argument& error) {
+    plan.fault = PlanFault::kTool;
+    plan.reasons.push_back(otherReason(error));
+    return plan;
+  }
+  plan = planJob(job, machine, start, first, visit, watch);
+  checkGroundCutter(plan);
+  return plan;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,233 @@
+#include "flute_grinder/geometry/job_setup.h"
+
+#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kSections = 8;
+constexpr int kMostSolves = 16;               ///< for a depth with which the taper toward the flute's end agrees
+constexpr double kSameDepth = 0.3e-6;         ///< [m]
+constexpr double kNear = 3 * units::kDegree;  ///< within which the swivel of a slightly other depth is
+
+// Decimals in a file. The rake changes by up to 1/R for a height, 0.0006 deg for 10 nm at a radius of 1 mm, and by a
+// few times as much as the swivel.
+constexpr int kAngleDecimals = 4;
+constexpr int kLengthDecimals = 5;
+constexpr int kOvertravelDecimals = 2;
+
+/// The number that a file has with so many decimals [SI].
+double rounded(double value, double scale, int decimals) {
+  const double unit = std::pow(10, decimals);
+  return std::round(value / scale * unit) / unit * scale;
+}
+
+/// A number as it is written, without zeros at its end.
+std::string textOf(double value, double scale, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value / scale);
+  std::string number = text;
+  number.erase(number.find_last_not_of('0') + 1);
+  if (number.back() == '.') number.pop_back();
+  return number == "-0" ? "0" : number;
+}
+
+JobEdit editOf(const char* path, double value, int decimals) {
+  JobEdit edit{fieldName(path, UnitSystem::kShop), ""};
+  visitJobFields([&](const JobField& field, auto) {
+    if (field.path == std::string_view(path)) edit.value = textOf(value, shopScale(field.unit), decimals);
+  });
+  return edit;
+}
+
+std::string asked(const char* path, double value, Unit unit) {
+  return fieldName(path, UnitSystem::kShop) + " = " + text(Quantity{value, unit}, UnitSystem::kShop, 5);
+}
+
+std::string range(const SetupRefusal& r, Unit unit) {
+  return text(Quantity{r.least, unit}, Quantity{r.largest, unit}, UnitSystem::kShop, 5);
+}
+
+std::string textOf(const SetupRefusal& r, std::optional<SetupFigure> keep) {
+  const std::string change = "; change " + fieldName(rowOf(r.problem).change, UnitSystem::kShop);
+  switch (r.problem) {
+    case SetupProblem::kOverdetermined:
+      return "rake and core take swivel, height and depth together; allowed: no --keep, or no " +
+             fieldName(rowOf(r.problem).change, UnitSystem::kShop);
+    case SetupProblem::kSwivel:
+      return keep == SetupFigure::kSwivel
+                 ? asked("process.setup_swivel", r.asked, Unit::kRadian) + "; the machine swivels " +
+                       range(r, Unit::kRadian) + "; change it"
+                 : "the set-up takes a swivel of " + text(Quantity{r.asked, Unit::kRadian}, UnitSystem::kShop, 5) +
+                       "; the machine swivels " + range(r, Unit::kRadian) + change;
+    case SetupProblem::kRake:
+      return asked("cutter.rake_angle", r.asked, Unit::kRadian) + " at both ends of the flute; " +
+             (r.least <= r.largest ? "reachable: " + range(r, Unit::kRadian)
+                                   : std::string("this wheel reaches the cutter in no set-up")) +
+             change;
+    case SetupProblem::kCore:
+      return r.asked > 0 ? asked("cutter.core_diameter", r.asked, Unit::kMetre) +
+                               "; reachable with this wheel: " + range(r, Unit::kMetre) + change
+                         : "the wheel cuts through the core; lower " + fieldName("process.depth", UnitSystem::kShop);
+    case SetupProblem::kWall:
+      return "the wheel's circumference would form the rake face, not its face or edge; it can in no set-up with this "
+             "depth" +
+             change;
+    case SetupProblem::kLand:
+      return "no land is left: the flutes overlap by " + text(Quantity{-r.least, Unit::kMetre}, UnitSystem::kShop, 3) +
+             " along the circle" + change;
+  }
+  return "";
+}
+
+SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
+  const GrindProcess& p = job.process;
+  SetupRequest r;
+  r.cutter = job.cutter;
+  if (!job.spiral_angles.empty()) {
+    const auto [least, largest] = std::minmax_element(job.spiral_angles.begin(), job.spiral_angles.end());
+    r.cutter.spiral_angle = (*least + *largest) / 2;
+  }
+  r.direction = job.cutter.cut;
+  r.rake = job.cutter.rake_angle;
+  r.tooth_angles = job.tooth_angles;
+  r.wheel = wheelOf(job).worn(p.wheel_wear);
+  r.nominal_radius = p.wheel_diameter / 2 - p.wheel_wear;  // Y follows the wear
+  r.depth = p.depth;
+  if (job.cutter.core_diameter > 0) r.core_diameter = job.cutter.core_diameter;
+  r.least_swivel = swivel.from;
+  r.largest_swivel = swivel.to;
+  r.keep = keep;
+  r.kept = {p.setup_swivel, p.setup_height};
+  return r;
+}
+
+/// Solves a request whose taper is that from its depth to the job's at the flute's end: the taper follows the depth,
+/// and the depth the taper.
+/// @return what solveSetup() does; nothing if no depth agrees with its taper.
+std::optional<std::variant<SolvedSetup, SetupRefusal>> solveTapered(const GrindJob& job, const SetupRequest& request) {
+  if (!(job.process.depth_end > 0)) return solveSetup(request);
+  double depth = request.depth;
+  const auto solve = [&](const Range& swivel) {
+    SetupRequest tapered = request;
+    tapered.y_per_x = (depth - job.process.depth_end) / job.cutter.flute_length;
+    tapered.least_swivel = swivel.from;
+    tapered.largest_swivel = swivel.to;
+    return solveSetup(tapered);
+  };
+  const auto agrees = [&](const SolvedSetup& found) { return std::abs(found.depth - depth) <= kSameDepth; };
+  const Range whole{request.least_swivel, request.largest_swivel};
+  auto result = solve(whole);
+  for (int i = 0; i < kMostSolves; ++i) {
+    const auto* found = std::get_if<SolvedSetup>(&result);
+    if (!found || agrees(*found)) break;
+    depth = found->depth;
+    const double swivel = found->setup.swivel;
+    const bool kept = request.keep == SetupFigure::kSwivel;
+    result = solve(kept ? whole : Range{std::max(whole.from, swivel - kNear), std::min(whole.to, swivel + kNear)});
+  }
+  // The limits are those of the whole range.
+  result = solve(whole);
+  const auto* found = std::get_if<SolvedSetup>(&result);
+  if (found && !agrees(*found)) return std::nullopt;
+  return result;
+}
+
+std::variant<SolvedSetup, std::string> solved(const GrindJob& job, const SetupRequest& request) {
+  const auto result = solveTapered(job, request);
+  if (!result) {
+    return "no depth agrees with " + fieldName("process.depth_end", UnitSystem::kShop) + "; change it, or keep " +
+           fieldName("process.depth", UnitSystem::kShop);
+  }
+  if (const auto* refusal = std::get_if<SetupRefusal>(&*result)) return textOf(*refusal, request.keep);
+  return std::get<SolvedSetup>(*result);
+}
+
+/// Puts the solved figures into the job, as they are read from a file.
+void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
+  GrindProcess& p = setup.job.process;
+  const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
+    field = rounded(value, scale, decimals);
+    setup.edits.push_back(editOf(path, field, decimals));
+  };
+  // A depth that stays keeps the file's decimals; one for a core may be missing there.
+  const bool for_core = setup.job.cutter.core_diameter > 0 && keep != SetupFigure::kDepth;
+  if (for_core || solved.depth != p.depth)
+    take("process.depth", p.depth, solved.depth, units::kMillimetre, kLengthDecimals);
+  if (keep != SetupFigure::kSwivel) {
+    take("process.setup_swivel", p.setup_swivel, solved.setup.swivel, units::kDegree, kAngleDecimals);
+  }
+  if (keep != SetupFigure::kHeight) {
+    take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
+  }
+  setup.overtravel = solved.overtravel;
+  setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};
+  const auto lengthen = [&](const char* path, double& field, double needed) {
+    if (field >= needed) return;
+    const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
+    take(path, field, needed + up, units::kMillimetre, kOvertravelDecimals);
+  };
+  lengthen("process.overtravel_end", p.overtravel_end, solved.overtravel[0]);
+  lengthen("process.overtravel_shank", p.overtravel_shank, solved.overtravel[1]);
+  setup.limit = solved.limit;
+  setup.margin = solved.margin;
+}
+
+/// @throw core::ReasonError as withZLaw().
+void measure(JobSetup& setup) {
+  const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
+  setup.land = setup.least_rake = std::numeric_limits<double>::infinity();
+  setup.largest_rake = -setup.least_rake;
+  for (int i = 0; i <= kSections; ++i) {
+    const GroundSection section = cutter.section(setup.job.cutter.flute_length * i / kSections);
+    if (i == 0) setup.core_diameter = 2 * section.core_radius;
+    for (const ToothSection& tooth : section.teeth) {
+      setup.land = std::min(setup.land, tooth.land.value_or(0) * section.radius);
+      if (!tooth.rake) continue;
+      setup.least_rake = std::min(setup.least_rake, *tooth.rake);
+      setup.largest_rake = std::max(setup.largest_rake, *tooth.rake);
+    }
+  }
+  setup.check = checkGroundCutter(setup.job, cutter);
+}
+
+}  // namespace
+
+std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
+  std::vector<std::string> fields;
+  if (keep != SetupFigure::kSwivel) fields.emplace_back("process.setup_swivel");
+  if (keep != SetupFigure::kHeight) fields.emplace_back("process.setup_height");
+  if (keep != SetupFigure::kDepth) fields.emplace_back("process.depth");
+  return fields;
+}
+
+std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
+                                                  std::optional<SetupFigure> keep) {
+  try {
+    const auto result = solved(job, requestOf(job, swivel, keep));
+    if (const auto* refusal = std::get_if<std::string>(&result)) return *refusal;
+    JobSetup setup;
+    setup.job = job;
+    take(std::get<SolvedSetup>(result), keep, setup);
+    const std::vector<core::Reason> reasons = validate(setup.job);
+    if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons, UnitSystem::kShop);
+    measure(setup);
+    return setup;
+  } catch (const core::ReasonError& error) {
+    return core::text(error.reason(), UnitSystem::kShop);
+  } catch (const std::invalid_argument& error) {
+    return std::string(error.what());
+  }
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,247 @@
+#include "flute_grinder/geometry/section_outline.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTurn = 2 * units::kPi;
+constexpr double kNearFloor = 1e-9;    ///< above a flute's floor [m]
+constexpr std::uintmax_t kSteps = 60;  ///< to where two walls meet
+
+double squared(double v) { return v * v; }
+
+double roundedTurns(double turns) { return std::ldexp(std::nearbyint(std::ldexp(turns, 40)), -40); }
+
+PolarPoint polar(double radius, double angle) { return {radius, roundedTurns(angle / kTurn)}; }
+
+/// The walls of a flute in a section, for a tooth at angle 0. Each circle is computed once.
+class FluteWalls {
+ public:
+  FluteWalls(const GroundCutter& cutter, const Flute& flute, double x, double blank_radius)
+      : cutter_(cutter), flute_(flute), x_(x), core_(blank_radius) {
+    for (const WheelSweep& sweep : flute) core_ = std::min(core_, sweep.leastRadius(x, blank_radius));
+    const double depth = blank_radius - core_;
+    // The floor is a point, in the middle of what is removed a little above it.
+    for (double above = kNearFloor; empty_ && above < depth; above *= 4) {
+      const auto arc = cutter.arc(flute, x, core_ + above);
+      empty_ = !arc;
+      if (arc) floor_ = *arc;
+    }
+    if (!empty_) return;
+    const double a = angleNearest();
+    core_ = blank_radius;
+    floor_ = {a, a};
+  }
+
+  bool empty() const { return empty_; }
+  double core() const { return core_; }
+  double floor() const { return (floor_.low + floor_.high) / 2; }
+
+  const Arc& at(double r) {
+    const auto [place, is_new] = arcs_.try_emplace(r, floor_);
+    if (is_new) place->second = cutter_.arc(flute_, x_, r).value_or(floor_);
+    return place->second;
+  }
+
+ private:
+  /// Of the wheel where it passes the section, or stands nearest to it.
+  double angleNearest() const {
+    double nearest = std::numeric_limits<double>::max(), angle = 0;
+    for (const WheelSweep& sweep : flute_) {
+      const GrindStroke& s = sweep.stroke();
+      const double axis_x = std::clamp(x_, std::min(s.from, s.to), std::max(s.from, s.to));
+      if (std::abs(axis_x - x_) >= nearest) continue;
+      nearest = std::abs(axis_x - x_);
+      angle = s.a + LogCurve(cutter_.cutter()).a(axis_x);
+    }
+    return angle;
+  }
+
+  const GroundCutter& cutter_;
+  const Flute& flute_;
+  double x_;
+  double core_;
+  bool empty_ = true;
+  Arc floor_;
+  std::map<double, Arc> arcs_;
+};
+
+/// Makes the outline of one section.
+class Outliner {
+ public:
+  Outliner(const GroundCutter& cutter, double x, double blank_radius, const OutlineGrid& grid)
+      : cutter_(cutter), blank_(blank_radius), grid_(grid), points_(grid.size()) {
+    for (const Flute& flute : cutter.flutes()) walls_.emplace_back(cutter, flute, x, blank_radius);
+    for (std::size_t i = 0; i < grid.teeth; ++i) {
+      if (!walls(i).empty()) cut_.push_back(i);
+      if (walls(i).core() >= kLeastCore) continue;
+      std::ostringstream text;
+      text << "core radius = " << walls(i).core() << " m at x = " << x << " m; allowed: from " << kLeastCore << " m";
+      throw std::invalid_argument(text.str());
+    }
+  }
+
+  std::vector<PolarPoint> outline() {
+    leaveOutSwallowed();
+    if (cut_.empty()) {
+      fillLands(0, polar(blank_, floor(0)), grid_.teeth, polar(blank_, floor(grid_.teeth)));
+      fillWall(true, 0, blank_);
+      fillWall(false, grid_.teeth, blank_);
+    }
+    for (std::size_t i = 0; i < cut_.size(); ++i) fillBody(cut_[i], next(i));
+    return std::move(points_);
+  }
+
+ private:
+  /// Flutes are counted on over the turns.
+  FluteWalls& walls(std::size_t flute) { return walls_[cutter_.teeth()[flute % grid_.teeth].flute]; }
+  double laps(std::size_t flute) const {
+    const std::size_t whole = flute / grid_.teeth;
+    return static_cast<double>(whole);
+  }
+  double angle(std::size_t flute) const { return cutter_.teeth()[flute % grid_.teeth].angle + kTurn * laps(flute); }
+  double floor(std::size_t flute) { return angle(flute) + walls(flute).floor(); }
+  double high(std::size_t flute, double r) { return angle(flute) + walls(flute).at(r).high; }
+  double low(std::size_t flute, double r) { return angle(flute) + walls(flute).at(r).low; }
+  std::size_t next(std::size_t i) const { return i + 1 < cut_.size() ? cut_[i + 1] : cut_[0] + grid_.teeth; }
+
+  /// Where ring `ring` of a wall lies that ends at the radius `top`.
+  double radius(std::size_t flute, std::size_t ring, double top) {
+    if (ring == grid_.rings) return top;
+    const double core = walls(flute).core();
+    return core + (top - core) * squared(static_cast<double>(ring) / static_cast<double>(grid_.rings));
+  }
+
+  std::size_t shallower(std::size_t a, std::size_t b) { return walls(a).core() > walls(b).core() ? a : b; }
+
+  /// What is left between a flute and the next on the circle of radius r.
+  double gap(std::size_t from, std::size_t to, double r) { return low(to, r) - high(from, r); }
+
+  void leaveOutSwallowed() {
+    for (std::size_t i = 0; i < cut_.size() && cut_.size() > 1;) {
+      const std::size_t from = cut_[i], to = next(i);
+      if (gap(from, to, walls(shallower(from, to)).core()) > 0) {
+        ++i;
+        continue;
+      }
+      cut_.erase(std::find(cut_.begin(), cut_.end(), shallower(from, to) % grid_.teeth));
+      i = 0;
+    }
+  }
+
+  /// The radius up to which there is something between a flute and the next.
+  double top(std::size_t from, std::size_t to) {
+    const std::size_t shallow = shallower(from, to);
+    double inside = walls(shallow).core();
+    for (std::size_t ring = 1; ring <= grid_.rings; ++ring) {
+      const double r = radius(shallow, ring, blank_);
+      if (gap(from, to, r) > 0) {
+        inside = r;
+        continue;
+      }
+      const auto f = [&](double at) { return gap(from, to, at); };
+      std::uintmax_t steps = kSteps;
+      const auto meet =
+          boost::math::tools::toms748_solve(f, inside, r, boost::math::tools::eps_tolerance<double>(45), steps);
+      return meet.first;
+    }
+    return blank_;
+  }
+
+  /// The body between a flute and the next that removes something.
+  void fillBody(std::size_t from, std::size_t to) {
+    const double r = top(from, to);
+    PolarPoint first = polar(r, high(from, r)), last = polar(r, low(to, r));
+    if (r < blank_) first = last = between(first, last, 0.5);
+    fillWall(true, from, r);
+    fillWall(false, to, r);
+    fillLands(from, first, to, last);
+  }
+
+  void fillWall(bool of_high, std::size_t flute, double top) {
+    for (std::size_t ring = 0; ring < grid_.rings; ++ring) {
+      const double r = radius(flute, ring, top);
+      const double a = ring == 0 || walls(flute).empty() ? floor(flute) : of_high ? high(flute, r) : low(flute, r);
+      if (of_high) {
+        set(flute, grid_.high(flute, ring), polar(r, a));
+      } else if (ring > 0) {
+        set(flute - 1, grid_.lowOfNext(flute - 1, ring), polar(r, a));
+      }
+    }
+  }
+
+  /// The land between the walls of two flutes; those in between, which remove nothing, shrink to a point of it.
+  void fillLands(std::size_t from, const PolarPoint& first, std::size_t to, const PolarPoint& last) {
+    PolarPoint begin = first;
+    for (std::size_t flute = from; flute < to; ++flute) {
+      const bool ends = flute + 1 == to;
+      PolarPoint end = ends ? last : polar(first.radius, floor(flute + 1));
+      end.turns = std::clamp(end.turns, begin.turns, last.turns);
+      for (std::size_t column = 0; column <= grid_.columns; ++column) {
+        const double part = static_cast<double>(column) / static_cast<double>(grid_.columns);
+        set(flute, grid_.land(flute, column), between(begin, end, part));
+      }
+      for (std::size_t ring = 1; ring < grid_.rings && !ends; ++ring) {
+        set(flute, grid_.lowOfNext(flute, ring), end);
+      }
+      for (std::size_t ring = 0; ring < grid_.rings && !ends; ++ring) {
+        set(flute + 1, grid_.high(flute + 1, ring), end);
+      }
+      begin = end;
+    }
+  }
+
+  void set(std::size_t flute, std::size_t point, PolarPoint value) {
+    value.turns -= laps(flute);
+    points_[point] = value;
+  }
+
+  const GroundCutter& cutter_;
+  double blank_;
+  OutlineGrid grid_;
+  std::vector<FluteWalls> walls_;
+  std::vector<std::size_t> cut_;  ///< the flutes that remove something, ascending
+  std::vector<PolarPoint> points_;
+};
+
+}  // namespace
+
+PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part) noexcept {
+  return {from.radius + part * (to.radius - from.radius), from.turns + roundedTurns(part * (to.turns - from.turns))};
+}
+
+SurfaceKind OutlineGrid::kind(std::size_t point, CutDirection direction) const noexcept {
+  const std::size_t within = point % perTooth();
+  if (within >= rings && within < rings + columns) return SurfaceKind::kLand;
+  const bool high_wall = within < rings;
+  return high_wall == (direction == CutDirection::kRightHand) ? SurfaceKind::kRakeFace : SurfaceKind::kFluteBack;
+}
+
+std::size_t OutlineGrid::tooth(std::size_t point, CutDirection direction) const noexcept {
+  const std::size_t body = point / perTooth() % teeth;
+  return direction == CutDirection::kRightHand ? body : (body + 1) % teeth;
+}
+
+std::vector<PolarPoint> sectionOutline(const GroundCutter& cutter, double x, double blank_radius,
+                                       const OutlineGrid& grid) {
+  if (grid.teeth == 0 || grid.teeth != cutter.teeth().size() || grid.rings < 2 || grid.columns < 1) {
+    std::ostringstream text;
+    text << "grid of " << grid.teeth << " teeth, " << grid.rings << " rings, " << grid.columns
+         << " columns; allowed: the cutter's " << cutter.teeth().size() << " teeth, from 2 rings, from 1 column";
+    throw std::invalid_argument(text.str());
+  }
+  return Outliner(cutter, x, blank_radius, grid).outline();
+}
+
+}  // namespace flute_grinder

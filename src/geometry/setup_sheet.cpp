@@ -1,0 +1,140 @@
+#include "flute_grinder/geometry/setup_sheet.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+constexpr int kPlaces = 400;       ///< at which the wheel's largest radius is looked for
+constexpr double kLargest = 1e-6;  ///< of the radius, that the largest one may fall short
+
+std::string format(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string format(const char* format, ...) {
+  char text[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+double mm(double metres) { return metres / kMillimetre; }
+double deg(double radians) { return radians / kDegree; }
+
+/// The middle of where a wheel's circumference is largest, along its spindle [m].
+double largestPlace(const WheelProfile& wheel) {
+  const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
+  const auto is_largest = [&](int i) {
+    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kLargest);
+  };
+  int first = 0, last = kPlaces;
+  while (first < kPlaces && !is_largest(first)) ++first;
+  while (last > first && !is_largest(last)) --last;
+  return from + length * (first + last) / 2 / kPlaces;
+}
+
+/// "+ 1.200 mm", or "- 1.200 mm"
+std::string added(double metres) { return format("%c %.3f mm", metres < 0 ? '-' : '+', std::abs(mm(metres))); }
+
+std::string line(const char* name, const std::string& text) { return format("  %-16s", name) + text + "\n"; }
+
+std::string wheelText(const GrindProcess& p) {
+  std::string text =
+      format("%s, D %g mm, %g mm wide", toString(p.wheel_profile), mm(p.wheel_diameter), mm(p.wheel_width));
+  if (isTapered(p.wheel_profile))
+    text += format(", %g deg, larger face %s", deg(p.wheel_angle), toString(p.wheel_side));
+  if (p.wheel_wear > 0) text += format(", worn by %g mm", mm(p.wheel_wear));
+  return text;
+}
+
+std::string overtravelText(const JobSetup& setup) {
+  const auto& [end, shank] = setup.overtravel;
+  const auto& [end_before, shank_before] = setup.overtravel_before;
+  std::string text = format("%.2f mm beyond the small end, %.2f mm toward the shank; the job has %g and %g mm", mm(end),
+                            mm(shank), mm(end_before), mm(shank_before));
+  if (end > end_before || shank > shank_before) text += ": too little";
+  return text;
+}
+
+std::string whatToSet(const JobSetup& setup, const Range& swivel) {
+  const GrindProcess& p = setup.job.process;
+  return "set\n" + line("wheel", wheelText(p)) +
+         line("swivel", format("%.3f deg; the machine's range is %g to %g deg", deg(p.setup_swivel), deg(swivel.from),
+                               deg(swivel.to))) +
+         line("height", format("%.3f mm, of the wheel's centre above the cutter's axis at Z = 0", mm(p.setup_height))) +
+         line("", format("upper face %.3f mm, lower face %.3f mm, where they are deepest in the cutter",
+                         mm(upperFaceHeight(setup.job)), mm(lowerFaceHeight(setup.job)))) +
+         line("depth", format("%.3f mm at X = 0", mm(p.depth))) + line("overtravel", overtravelText(setup));
+}
+
+std::string whatToTouch(const GrindJob& job) {
+  const TouchOff touch = touchOffOf(job);
+  const double end = job.cutter.end_diameter;
+  const auto reads = [&](const std::string& formula, double at_end) {
+    return line("", format("reads %s: %.3f mm for D = %g mm", formula.c_str(), mm(at_end), mm(end)));
+  };
+  return "touch off, with D the blank's diameter where the wheel touches it\n" +
+         line("Z", "swivel at 0, wheel's lower face on top of the blank") +
+         reads("D/2 " + added(touch.z), end / 2 + touch.z) +
+         line("Y", format("swivel set, Z = %.3f mm, wheel's circumference against the blank", mm(touch.z_for_y))) +
+         reads(format("(D - %g)/2 ", mm(end)) + (touch.y == 0 ? "mm" : added(touch.y)), touch.y);
+}
+
+std::string whatComesOut(const JobSetup& setup) {
+  const CutterGeometry& cutter = setup.job.cutter;
+  const auto& complete = setup.check.complete;
+  std::string core = format("%.3f mm at X = 0", mm(setup.core_diameter));
+  if (cutter.core_diameter > 0) core += format("; asked %g mm", mm(cutter.core_diameter));
+  return "comes out\n" +
+         line("rake", format("%.3f to %.3f deg; asked %g deg within %g deg", deg(setup.least_rake),
+                             deg(setup.largest_rake), deg(cutter.rake_angle), deg(cutter.rake_tolerance))) +
+         line("core", core) + line("land", format("%.3f mm or more", mm(setup.land))) +
+         line("flutes complete",
+              complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to)) : std::string("nowhere"));
+}
+
+std::string whatLimits(const JobSetup& setup, const Range& swivel) {
+  const double percent = 100 * setup.margin;
+  switch (setup.limit) {
+    case SetupLimit::kSwivel:
+      return line("swivel", format("%.3f deg from the end of the machine's range",
+                                   deg(setup.margin * (swivel.to - swivel.from))));
+    case SetupLimit::kLand: return line("land", format("%.1f %% of the least pitch is left", percent));
+    case SetupLimit::kCore: return line("core", format("%.1f %% of the small end's diameter is left", percent));
+  }
+  return "";
+}
+
+}  // namespace
+
+TouchOff touchOffOf(const GrindJob& job) {
+  const GrindProcess& p = job.process;
+  const WheelProfile wheel = wheelOf(job);
+  TouchOff touch;
+  touch.y = 0 - p.wheel_wear;
+  touch.z_for_y = -(p.setup_height + largestPlace(wheel) * std::cos(p.setup_swivel));
+  touch.z = -wheel.lowerFace() - p.setup_height;
+  return touch;
+}
+
+double upperFaceHeight(const GrindJob& job) {
+  return job.process.setup_height + wheelOf(job).upperFace() / std::cos(job.process.setup_swivel);
+}
+
+double lowerFaceHeight(const GrindJob& job) {
+  return job.process.setup_height + wheelOf(job).lowerFace() / std::cos(job.process.setup_swivel);
+}
+
+std::string setupSheet(const JobSetup& setup, const Range& swivel) {
+  return whatToSet(setup, swivel) + whatToTouch(setup.job) + whatComesOut(setup) + "limited by\n" +
+         whatLimits(setup, swivel);
+}
+
+}  // namespace flute_grinder

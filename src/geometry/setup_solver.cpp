@@ -1,0 +1,366 @@
+#include "flute_grinder/geometry/setup_solver.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/plane_roots.h"
+#include "flute_grinder/geometry/setup_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTolerance = 1e-6;                    ///< of the rake [rad], and of the core by its radius
+constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns of the search
+constexpr int kFinerOnLine = 8;                        ///< where one unknown is looked for
+constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
+constexpr int kFaceSteps = 64;
+constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the small end's radius
+constexpr int kDepthSteps = 48;
+constexpr double kQuarter = units::kPi / 2;
+constexpr int kLeastColumns = 4;
+constexpr int kSections = 8;           ///< in which a set-up is judged
+constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
+constexpr double kSameRake = 0.1 * units::kDegree;
+constexpr int kHalvings = 20;       ///< of the flute, for where it is complete
+constexpr double kBeyond = 1e-5;    ///< added to the overtravel, for the precision of an extremum's place [m]
+constexpr double kCylinder = 1e-6;  ///< a cone whose radius changes less than this over its length is a cylinder
+
+/// What is looked for: two unknowns, or v alone.
+struct Unknowns {
+  std::optional<SearchRange> u;
+  SearchRange v;
+  std::function<SetupPoint(double u, double v)> point;
+};
+
+class Search {
+ public:
+  Search(const SetupTrial& trial, const SetupRequest& request)
+      : trial_(trial), request_(request), radius_(request.cutter.end_diameter / 2) {}
+
+  bool isCylinder() const {
+    return std::abs(std::tan(request_.cutter.cone_angle)) < kCylinder && std::abs(request_.y_per_x) < kCylinder;
+  }
+
+  /// All the set-ups that give what is asked, with a swivel between two.
+  std::vector<SetupPoint> solutions(double least_swivel, double largest_swivel) const {
+    const Unknowns unknowns = this->unknowns(least_swivel, largest_swivel);
+    std::vector<SetupPoint> points;
+    if (!unknowns.u) {
+      for (const LineRoot& root : line(unknowns, 0)) points.push_back(unknowns.point(0, root.at));
+      return points;
+    }
+    const auto first = [&](double u, double v) { return rakeError(unknowns.point(u, v), 0); };
+    const auto second = [&](double u, double v) { return secondError(unknowns.point(u, v)); };
+    for (const PlaneRoot& root : planeRoots(first, second, *unknowns.u, unknowns.v, kTolerance)) {
+      points.push_back(unknowns.point(root.u, root.v));
+    }
+    return points;
+  }
+
+  /// Why there is no solution: how far rake or core can be had.
+  SetupRefusal unreachable() const {
+    const Unknowns unknowns = this->unknowns(request_.least_swivel, request_.largest_swivel);
+    Range rakes, seconds, cores;
+    for (int i = 0; i <= (unknowns.u ? unknowns.u->steps : 0); ++i) {
+      const double u = unknowns.u ? unknowns.u->at(i) : 0;
+      for (int j = 0; j <= unknowns.v.steps; ++j) {
+        SetupPoint point = unknowns.point(u, unknowns.v.at(j));
+        rakes.add(trial_.rake(point, 0));
+        if (!request_.core_diameter) continue;
+        point.depth = 2 * radius_;
+        cores.add(2 * trial_.coreRadius(point));
+      }
+      if (!unknowns.u) continue;
+      for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
+    }
+    if (rakes.empty() && request_.core_diameter) {
+      return {SetupProblem::kCore, *request_.core_diameter, cores.least, request_.cutter.end_diameter};
+    }
+    if (seconds.empty()) return {SetupProblem::kRake, request_.rake, rakes.least, rakes.largest};
+    if (!isCylinder()) {
+      return {SetupProblem::kRake, request_.rake, request_.rake + seconds.least, request_.rake + seconds.largest};
+    }
+    const double core = *request_.core_diameter;
+    return {SetupProblem::kCore, core, core * (1 + seconds.least), core * (1 + seconds.largest)};
+  }
+
+ private:
+  struct Range {
+    double least = std::numeric_limits<double>::infinity(), largest = -least;
+    void add(double value) {
+      if (std::isnan(value)) return;
+      least = std::min(least, value);
+      largest = std::max(largest, value);
+    }
+    bool empty() const { return least > largest; }
+  };
+
+  bool keeps(SetupFigure figure) const { return request_.keep == figure; }
+
+  Unknowns unknowns(double least_swivel, double largest_swivel) const {
+    const int columns = static_cast<int>(std::ceil((largest_swivel - least_swivel) / kSwivelStep));
+    const SearchRange swivels{least_swivel, largest_swivel, std::max(kLeastColumns, columns)};
+    const SearchRange faces{-1, 1, kFaceSteps};
+    const SearchRange depths{kLeastDepth * radius_, kMostDepth * radius_, kDepthSteps};
+    const SearchRange line{least_swivel, largest_swivel, kFinerOnLine * swivels.steps};
+    const SearchRange face_line{-1, 1, kFinerOnLine * kFaceSteps};
+    const double swivel = request_.kept.swivel, height = request_.kept.height, depth = request_.depth;
+    if (!isCylinder()) {
+      if (keeps(SetupFigure::kSwivel)) {
+        return {depths, faces, [=](double u, double v) {
+                  return SetupPoint{swivel, heightAt(swivel, v * highestFace(swivel)), u};
+                }};
+      }
+      if (keeps(SetupFigure::kHeight)) {
+        return {depths, swivels, [=](double u, double v) { return SetupPoint{v, height, u}; }};
+      }
+      return {swivels, faces, [this](double u, double v) { return withDepth(u, heightAt(u, v * highestFace(u))); }};
+    }
+    if (keeps(SetupFigure::kDepth) && request_.core_diameter) {
+      return {swivels, faces, [=](double u, double v) {
+                return SetupPoint{u, heightAt(u, v * highestFace(u)), depth};
+              }};
+    }
+    if (keeps(SetupFigure::kSwivel)) {
+      return {{}, face_line, [=](double, double v) {
+                return withDepth(swivel, heightAt(swivel, v * highestFace(swivel)));
+              }};
+    }
+    if (keeps(SetupFigure::kHeight)) {
+      return {{}, line, [=](double, double v) { return withDepth(v, height); }};
+    }
+    const double face = radius_ * std::sin(request_.rake);
+    return {{}, line, [=](double, double v) { return withDepth(v, heightAt(v, face)); }};
+  }
+
+  /// The height of the upper face, at its lowest point, beyond which it no longer comes below the outer circle
+  /// anywhere.
+  double highestFace(double swivel) const {
+    const double depth = request_.core_diameter ? radius_ : std::min(request_.depth, radius_);
+    const double reach = std::sqrt(2 * trial_.wheel().largestRadius() * depth);
+    return radius_ + reach * std::abs(std::sin(swivel));
+  }
+
+  /// The wheel's height for its upper face, at its lowest point, to have a height above the axis.
+  double heightAt(double swivel, double face) const { return face - trial_.wheel().upperFace() / std::cos(swivel); }
+
+  SetupPoint withDepth(double swivel, double height) const {
+    if (!request_.core_diameter) return {swivel, height, request_.depth};
+    return {swivel, height, trial_.depthFor(swivel, height, *request_.core_diameter / 2)};
+  }
+
+  std::vector<LineRoot> line(const Unknowns& unknowns, double u) const {
+    return lineRoots([&](double v) { return rakeError(unknowns.point(u, v), 0); }, unknowns.v, kTolerance);
+  }
+
+  double rakeError(const SetupPoint& point, double x) const { return trial_.rake(point, x) - request_.rake; }
+
+  double secondError(const SetupPoint& point) const {
+    if (!isCylinder()) return rakeError(point, request_.cutter.flute_length);
+    return 2 * trial_.coreRadius(point) / *request_.core_diameter - 1;
+  }
+
+  const SetupTrial& trial_;
+  const SetupRequest& request_;
+  double radius_;
+};
+
+void requireFinite(const char* name, double value, bool good, const char* allowed) {
+  if (good && std::isfinite(value)) return;
+  std::ostringstream text;
+  text << name << " = " << value << "; allowed: " << allowed;
+  throw std::invalid_argument(text.str());
+}
+
+void check(const SetupRequest& r) {
+  requireFinite("rake", r.rake, std::abs(r.rake) < kQuarter, "within (-pi/2, pi/2) [rad]");
+  requireFinite("nominal_radius", r.nominal_radius, r.nominal_radius > 0, "positive [m]");
+  requireFinite("y_per_x", r.y_per_x, true, "finite");
+  requireFinite("least_swivel", r.least_swivel, std::abs(r.least_swivel) < kQuarter, "within (-pi/2, pi/2) [rad]");
+  requireFinite("largest_swivel", r.largest_swivel, r.largest_swivel > r.least_swivel && r.largest_swivel < kQuarter,
+                "above the least one, below pi/2 [rad]");
+  if (r.core_diameter) {
+    requireFinite("core_diameter", *r.core_diameter, *r.core_diameter > 0 && *r.core_diameter < r.cutter.end_diameter,
+                  "positive, below the end diameter [m]");
+  }
+  if (!r.core_diameter || r.keep == SetupFigure::kDepth) {
+    requireFinite("depth", r.depth, r.depth > 0, "positive [m]");
+  }
+  if (r.keep == SetupFigure::kHeight) requireFinite("kept.height", r.kept.height, true, "finite [m]");
+  if (r.keep == SetupFigure::kSwivel) {
+    requireFinite("kept.swivel", r.kept.swivel, std::abs(r.kept.swivel) < kQuarter, "within (-pi/2, pi/2) [rad]");
+  }
+  requireFinite("teeth", static_cast<double>(r.tooth_angles.size()), !r.tooth_angles.empty(), "1 or more");
+}
+
+/// The same tool in the mirror: a left-hand cutter becomes a right-hand one.
+SetupRequest mirrored(SetupRequest r) {
+  r.direction = CutDirection::kRightHand;
+  r.cutter.spiral_angle = -r.cutter.spiral_angle;
+  r.cutter.rake_angle = -r.cutter.rake_angle;
+  r.wheel = r.wheel.mirrored();
+  r.kept = {-r.kept.swivel, -r.kept.height};
+  std::swap(r.least_swivel, r.largest_swivel);
+  r.least_swivel = -r.least_swivel;
+  r.largest_swivel = -r.largest_swivel;
+  return r;
+}
+
+double leastPitch(const std::vector<double>& angles) {
+  double least = angles.front() + 2 * units::kPi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) least = std::min(least, angles[i] - angles[i - 1]);
+  return least;
+}
+
+/// The tool that a set-up grinds, and what is wrong with it.
+struct Judged {
+  SolvedSetup solved;
+  double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
+  std::optional<SetupProblem> problem;
+};
+
+/// One end of the range over which the flute is complete, between a place where it is and one where it is not.
+double completeEnd(const SetupTrial& trial, const WheelSweep& sweep, double complete, double incomplete) {
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (complete + incomplete) / 2;
+    (trial.reach(sweep, middle).complete ? complete : incomplete) = middle;
+  }
+  return complete;
+}
+
+void measureReach(const SetupTrial& trial, const WheelSweep& sweep, SolvedSetup& solved) {
+  const double length = trial.cutter().geometry().flute_length;
+  solved.complete_to = length;
+  for (const double x : {0.0, length / 2, length}) {
+    const auto reach = trial.reach(sweep, x);
+    solved.overtravel[0] = std::max(solved.overtravel[0], -reach.from);
+    solved.overtravel[1] = std::max(solved.overtravel[1], reach.to - length);
+    if (reach.complete) continue;
+    if (x <= length / 2) solved.complete_from = completeEnd(trial, sweep, length, x);
+    if (x == length) solved.complete_to = completeEnd(trial, sweep, 0, x);
+  }
+  // As precise as an extremum's place is known.
+  for (double& beyond : solved.overtravel) {
+    if (beyond > 0) beyond += kBeyond;
+  }
+}
+
+void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
+  const double swivel = std::min(s.setup.swivel - request.least_swivel, request.largest_swivel - s.setup.swivel);
+  const double radius = request.cutter.end_diameter / 2;
+  const std::pair<SetupLimit, double> margins[] = {
+      {SetupLimit::kSwivel, swivel / (request.largest_swivel - request.least_swivel)},
+      {SetupLimit::kLand, s.land / (pitch * radius)},
+      {SetupLimit::kCore, s.core_diameter / 2 / radius}};
+  std::tie(s.limit, s.margin) = *std::min_element(std::begin(margins), std::end(margins),
+                                                  [](const auto& a, const auto& b) { return a.second < b.second; });
+}
+
+Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
+  const double length = request.cutter.flute_length;
+  const double pitch = leastPitch(request.tooth_angles);
+  const WheelSweep sweep = trial.sweep(point);
+  Judged judged;
+  SolvedSetup& s = judged.solved;
+  s.setup = {point.swivel, point.height};
+  s.depth = point.depth;
+  s.least_rake = s.land = std::numeric_limits<double>::infinity();
+  s.largest_rake = -s.least_rake;
+  for (int i = 0; i <= kSections; ++i) {
+    const double x = length * i / kSections;
+    const double r = trial.cutter().radius(x);
+    const auto high = sweep.wall(x, r, true), low = sweep.wall(x, r, false);
+    if (!high || !low) {
+      judged.problem = SetupProblem::kWall;
+      return judged;
+    }
+    const double rake = std::atan(-r * high->slope);
+    s.least_rake = std::min(s.least_rake, rake);
+    s.largest_rake = std::max(s.largest_rake, rake);
+    s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
+    judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
+  }
+  s.core_diameter = 2 * trial.coreRadius(point);
+  measureReach(trial, sweep, s);
+  findLimit(request, pitch, s);
+  if (!(judged.formed_by_face >= kFormedByFace)) {
+    judged.problem = SetupProblem::kWall;
+  } else if (!(s.core_diameter > 0)) {
+    judged.problem = SetupProblem::kCore;
+  } else if (!(s.land > 0)) {
+    judged.problem = SetupProblem::kLand;
+  }
+  return judged;
+}
+
+/// The better of two: with the lesser problem, then with the steadier rake, then with more of the rake face formed by
+/// the wheel's face. Differences of the rake that nobody measures do not count.
+bool isBetter(const Judged& a, const Judged& b) {
+  const auto order = [](const Judged& j) {
+    const double spread = j.solved.largest_rake - j.solved.least_rake;
+    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(),
+                      std::floor(spread / kSameRake), -j.formed_by_face, spread);
+  };
+  return order(a) < order(b);
+}
+
+std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
+                           const std::vector<SetupPoint>& points) {
+  std::optional<Judged> best;
+  for (const SetupPoint& point : points) {
+    const Judged judged = judge(trial, request, point);
+    if (!best || isBetter(judged, *best)) best = judged;
+  }
+  return best;
+}
+
+SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
+  switch (*judged.problem) {
+    case SetupProblem::kLand: return {SetupProblem::kLand, 0, judged.solved.land, judged.solved.land};
+    case SetupProblem::kCore: return {SetupProblem::kCore, request.core_diameter.value_or(0), 0, 0};
+    default: return {*judged.problem};
+  }
+}
+
+}  // namespace
+
+std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) {
+  check(request);
+  if (request.direction == CutDirection::kLeftHand) {
+    auto result = solveSetup(mirrored(request));
+    if (auto* solved = std::get_if<SolvedSetup>(&result)) {
+      solved->setup = {-solved->setup.swivel, -solved->setup.height};
+    } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
+      refusal = {refusal.problem, -refusal.asked, -refusal.largest, -refusal.least};
+    }
+    return result;
+  }
+  const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
+  const Search search(trial, request);
+  if (!search.isCylinder() && request.core_diameter && request.keep) return SetupRefusal{SetupProblem::kOverdetermined};
+  const auto beyond = [&](double swivel) {
+    return SetupRefusal{SetupProblem::kSwivel, swivel, request.least_swivel, request.largest_swivel};
+  };
+  if (request.keep == SetupFigure::kSwivel &&
+      !(request.kept.swivel >= request.least_swivel && request.kept.swivel <= request.largest_swivel)) {
+    return beyond(request.kept.swivel);
+  }
+  const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
+  if (here && !here->problem) return here->solved;
+  for (const auto& [least, largest] :
+       {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
+    if (!(least < largest)) continue;
+    const auto there = best(trial, request, search.solutions(least, largest));
+    if (there && !there->problem) return beyond(there->solved.setup.swivel);
+  }
+  return here ? refusal(request, *here) : search.unreachable();
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,93 @@
+#include "flute_grinder/geometry/setup_trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kOfApex = 0.98;  ///< of the way to the apex, the stroke may go
+constexpr int kRings = 10;        ///< of a wall, on which is asked what forms it
+constexpr int kRingsOfReach = 6;
+constexpr double kFloor = 1e-5;        ///< of the depth: where a wall passes into the floor
+constexpr int kPlacesOfProfile = 400;  ///< at which the wheel's largest radius is looked for
+constexpr double kLargest = 1e-6;      ///< of the radius, that the largest one may fall short
+constexpr double kOnFace = 1e-8;       ///< how far below the edge still is the edge [m]
+
+/// The place of the largest radius that is nearest to the upper face.
+double largestPlace(const WheelProfile& wheel) {
+  const double step = (wheel.upperFace() - wheel.lowerFace()) / kPlacesOfProfile;
+  for (int i = kPlacesOfProfile; i > 0; --i) {
+    const double w = wheel.lowerFace() + i * step;
+    if (wheel.radius(w) >= wheel.largestRadius() * (1 - kLargest)) return w;
+  }
+  return wheel.lowerFace();
+}
+
+}  // namespace
+
+SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, double y_per_x)
+    : cutter_(cutter),
+      wheel_(wheel),
+      nominal_radius_(nominal_radius),
+      y_per_x_(y_per_x),
+      face_from_(largestPlace(wheel)) {
+  // Farther than a wheel reaches at any depth.
+  const double far = 4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length;
+  const double apex = -cutter.radius(0) / cutter.tanCone();
+  longest_ = {cutter.tanCone() > 0 ? std::max(-far, kOfApex * apex) : -far,
+              cutter.tanCone() < 0 ? std::min(far, kOfApex * apex) : far};
+}
+
+WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
+  return {cutter_, wheel_, nominal_radius_, {p.swivel, p.height}, {longest_[0], longest_[1], -p.depth, y_per_x_, 0}};
+}
+
+double SetupTrial::rake(const SetupPoint& point, double x) const {
+  if (std::isnan(point.depth)) return kNone;
+  const double r = cutter_.radius(x);
+  const auto wall = sweep(point).wall(x, r, true);
+  return wall ? std::atan(-r * wall->slope) : kNone;
+}
+
+double SetupTrial::coreRadius(const SetupPoint& point) const {
+  const double radius = sweep(point).leastRadius(0, std::numeric_limits<double>::max());
+  return std::isfinite(radius) ? radius : kNone;
+}
+
+double SetupTrial::depthFor(double swivel, double height, double core_radius) const {
+  const double depth = sweep({swivel, height, 0}).deeperFor(0, core_radius);
+  return std::isfinite(depth) ? depth : kNone;
+}
+
+double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {
+  const double r = cutter_.radius(x);
+  const double depth = r - sweep.leastRadius(x, r);
+  for (int i = 0; i < kRings; ++i) {
+    const auto wall = sweep.wall(x, r - depth * i / kRings, true);
+    if (!wall || wall->w < face_from_ - kOnFace) return static_cast<double>(i) / kRings;
+  }
+  return 1;
+}
+
+SetupTrial::Reach SetupTrial::reach(const WheelSweep& sweep, double x) const {
+  const double r = cutter_.radius(x);
+  const double core = sweep.leastRadius(x, r);
+  Reach reach{x, x, true};
+  for (int i = 0; i <= kRingsOfReach; ++i) {
+    const double part = i == 0 ? kFloor : static_cast<double>(i) / kRingsOfReach;
+    for (const bool high : {false, true}) {
+      const auto wall = sweep.wall(x, core + part * (r - core), high);
+      if (!wall) return {x, x, false};
+      reach.from = std::min(reach.from, wall->axis_x);
+      reach.to = std::max(reach.to, wall->axis_x);
+      reach.complete = reach.complete && wall->complete;
+    }
+  }
+  return reach;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,54 @@
+#include "flute_grinder/geometry/stl.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <Eigen/Geometry>
+
+#include <cstring>
+#include <string>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr std::size_t kHeaderSize = 80;
+constexpr std::size_t kTriangleSize = 50;
+
+/// Appends a number, its lowest byte first.
+void append(std::string& bytes, std::uint32_t number) {
+  for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(number >> shift & 0xff));
+}
+
+void append(std::string& bytes, const Eigen::Vector3f& v) {
+  for (int i = 0; i < 3; ++i) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &v[i], sizeof bits);
+    append(bytes, bits);
+  }
+}
+
+}  // namespace
+
+void writeStl(std::ostream& out, const CutterSolid& solid) {
+  std::string bytes;
+  bytes.reserve(solid.triangles.size() * kTriangleSize);
+  std::uint32_t count = 0;
+  for (const SolidTriangle& t : solid.triangles) {
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3f {
+      return (solid.vertices[t.vertices[i]] / units::kMillimetre).cast<float>();
+    };
+    const Eigen::Vector3f a = corner(0), b = corner(1), c = corner(2);
+    if (a == b || b == c || c == a) continue;
+    ++count;
+    append(bytes, (b - a).cross(c - a).normalized());
+    for (const auto& v : {a, b, c}) append(bytes, v);
+    bytes.append(2, '\0');
+  }
+  // A text that begins with "solid" would be taken for the other form of STL.
+  std::string head = "flute_grinder, lengths in mm";
+  head.resize(kHeaderSize, ' ');
+  append(head, count);
+  out << head << bytes;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,376 @@
+#include "flute_grinder/geometry/wheel_sweep.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNone = -kInfinite;
+constexpr int kPosesPerWindow = 32;  ///< from which an extremum is refined
+constexpr int kAnglesPerPose = 8;    ///< from which the wheel's deepest place on a circle is refined
+constexpr std::uintmax_t kMaxSteps = 60;
+constexpr int kHalvings = 30;          ///< of a step between poses, for where a circle near the floor is reached
+constexpr int kDiscs = 16;             ///< of the wheel, from which its least radius is refined
+constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
+constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
+constexpr double kSameAngle = 1e-12;   ///< by which a longer stroke must move an end to count as farther [rad]
+constexpr double kNearestApex = 0.05;  ///< of the small end's radius: nearer its apex a cone turns without end
+
+void requireFinite(const char* name, double value) {
+  if (std::isfinite(value)) return;
+  std::ostringstream text;
+  text << name << " = " << value << "; allowed: a finite number";
+  throw std::invalid_argument(text.str());
+}
+
+/// The root of a function of which the ends of an interval have different signs, or one of them is 0.
+template <typename Function>
+double root(const Function& f, double a, double fa, double b, double fb) {
+  if (fa == 0) return a;
+  if (fb == 0) return b;
+  std::uintmax_t steps = kMaxSteps;
+  const auto bracket =
+      a < b ? boost::math::tools::toms748_solve(f, a, b, fa, fb, boost::math::tools::eps_tolerance<double>(52), steps)
+            : boost::math::tools::toms748_solve(f, b, a, fb, fa, boost::math::tools::eps_tolerance<double>(52), steps);
+  return (bracket.first + bracket.second) / 2;
+}
+
+}  // namespace
+
+WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
+                       const WheelSetup& setup, const GrindStroke& stroke)
+    : curve_(cutter),
+      wheel_(wheel),
+      stroke_(stroke),
+      height_(setup.height),
+      sin_(std::sin(setup.swivel)),
+      cos_(std::cos(setup.swivel)),
+      centre_(cutter.geometry().end_diameter / 2 + nominal_radius + stroke.y),
+      y_per_x_(cutter.tanCone() + stroke.y_per_x),
+      z_per_x_(cutter.tanCone() * cutter.sinRake()) {
+  if (!(std::abs(setup.swivel) < units::kPi / 2)) {
+    std::ostringstream text;
+    text << "setup.swivel = " << setup.swivel << " rad; allowed: within (-pi/2, pi/2)";
+    throw std::invalid_argument(text.str());
+  }
+  requireFinite("setup.height", setup.height);
+  for (const double value : {stroke.from, stroke.to, stroke.y, stroke.y_per_x, stroke.a})
+    requireFinite("stroke", value);
+  for (const PathDeviation& d : stroke.deviations) {
+    for (const double value : {d.y, d.z, d.a}) requireFinite("stroke's deviation", value);
+  }
+  const double nearest = (kNearestApex - 1) / curve_.b();
+  open_ = {curve_.b() > 0 ? nearest : -kInfinite, curve_.b() < 0 ? nearest : kInfinite};
+  const auto lower = [](const PathDeviation& a, const PathDeviation& b) { return a.y < b.y; };
+  const auto deepest = std::min_element(stroke.deviations.begin(), stroke.deviations.end(), lower);
+  if (deepest != stroke.deviations.end()) deepest_deviation_ = deepest->y;
+}
+
+PathDeviation WheelSweep::deviation(double axis_x) const noexcept {
+  const std::vector<PathDeviation>& all = stroke_.deviations;
+  if (all.empty()) return {};
+  const double from = std::min(stroke_.from, stroke_.to), length = std::abs(stroke_.to - stroke_.from);
+  const double last = static_cast<double>(all.size() - 1);
+  const double at = length > 0 ? std::clamp((axis_x - from) / length, 0.0, 1.0) * last : 0;
+  const auto i = static_cast<std::size_t>(at);
+  if (i + 1 >= all.size()) return all.back();
+  const double part = at - static_cast<double>(i);
+  const auto between = [&](double PathDeviation::*axis) {
+    return all[i].*axis + part * (all[i + 1].*axis - all[i].*axis);
+  };
+  return {between(&PathDeviation::y), between(&PathDeviation::z), between(&PathDeviation::a)};
+}
+
+PathDeviation WheelSweep::deviationSlope(double axis_x) const noexcept {
+  const std::size_t count = stroke_.deviations.size();
+  if (count < 2) return {};
+  const double step = std::abs(stroke_.to - stroke_.from) / static_cast<double>(count - 1);
+  if (!(step > 0)) return {};
+  const PathDeviation before = deviation(axis_x - step), after = deviation(axis_x + step);
+  const double span = 2 * step;
+  return {(after.y - before.y) / span, (after.z - before.z) / span, (after.a - before.a) / span};
+}
+
+WheelSweep::Pose WheelSweep::pose(double x, double axis_x) const noexcept {
+  const PathDeviation off = deviation(axis_x);
+  const double z = height_ + axis_x * z_per_x_ + stroke_.z_correction.at(axis_x).z + off.z;
+  return {axis_x, x - axis_x, centre_ + axis_x * y_per_x_ + off.y, z, stroke_.a + curve_.a(axis_x) + off.a};
+}
+
+double WheelSweep::lowestPoint(double axis_x) const noexcept {
+  return centre_ + axis_x * y_per_x_ + deepest_deviation_ - wheel_.largestRadius();
+}
+
+double WheelSweep::outside(const Pose& p, double r, double theta) const noexcept {
+  const double dy = r * std::cos(theta) - p.y;
+  const double dz = r * std::sin(theta) - p.z;
+  const double w = dz * cos_ - p.dx * sin_;
+  const double t = dz * sin_ + p.dx * cos_;
+  return std::sqrt(dy * dy + t * t) - wheel_.radius(std::clamp(w, wheel_.lowerFace(), wheel_.upperFace()));
+}
+
+WheelSweep::Window WheelSweep::reach(double x, double r) const noexcept {
+  const double width = std::max(std::abs(wheel_.lowerFace()), std::abs(wheel_.upperFace())) * std::abs(sin_);
+  const double radius = wheel_.largestRadius();
+  // Where the wheel's circle, seen from the side and moved by the width either way, meets the height r: on a cone its
+  // centre rises with X.
+  const double above = centre_ + x * y_per_x_ + deepest_deviation_ - r;
+  const double stretch = 1 / (cos_ * cos_);
+  const double a = y_per_x_ * y_per_x_ + stretch;
+  const auto end = [&](double side) {
+    const double b = y_per_x_ * above - side * width * stretch;
+    const double square = b * b - a * (above * above + width * width * stretch - radius * radius);
+    return side * std::max(width, square > 0 ? (-side * b + std::sqrt(square)) / a : 0);
+  };
+  return {x + end(-1), x + end(1)};
+}
+
+std::optional<WheelSweep::Window> WheelSweep::window(double x, double r) const noexcept {
+  const Window all = reach(x, r);
+  const Window w{std::max(std::min(stroke_.from, stroke_.to), all.from),
+                 std::min(std::max(stroke_.from, stroke_.to), all.to)};
+  if (!(w.from < w.to) || std::min(lowestPoint(w.from), lowestPoint(w.to)) >= r) return std::nullopt;
+  return w;
+}
+
+std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) const {
+  const double lowest = p.y - wheel_.largestRadius();
+  if (lowest >= r) return std::nullopt;
+  // Where the circle lies between the wheel's faces and not below its lowest point.
+  const double open = std::acos(std::clamp(lowest / r, 0.0, 1.0));
+  const auto at_face = [&](double w) { return std::asin(std::clamp((p.z + (w + p.dx * sin_) / cos_) / r, -1.0, 1.0)); };
+  const double least = std::max(-open, at_face(wheel_.lowerFace()));
+  const double most = std::min(open, at_face(wheel_.upperFace()));
+  if (!(least < most)) return std::nullopt;
+
+  const auto f = [&](double theta) { return outside(p, r, theta); };
+  const double end = high ? most : least;
+  const double f_end = f(end);
+  if (f_end <= 0) return end;
+  double inside = high ? least : most;
+  double f_inside = f(inside);
+  const double step = (most - least) / kAnglesPerPose;
+  for (int i = 1; i < kAnglesPerPose; ++i) {
+    const double theta = least + i * step;
+    const double value = f(theta);
+    if (value < f_inside) inside = theta, f_inside = value;
+  }
+  if (f_inside > 0) {
+    std::uintmax_t steps = kMaxSteps;
+    std::tie(inside, f_inside) = boost::math::tools::brent_find_minima(f, std::max(least, inside - step),
+                                                                       std::min(most, inside + step), 26, steps);
+    if (!(f_inside <= 0)) return std::nullopt;
+  }
+  return root(f, inside, f_inside, end, f_end);
+}
+
+double WheelSweep::endOver(double x, double axis_x, double r, bool high) const {
+  const Pose p = pose(x, axis_x);
+  const auto end = endAt(p, r, high);
+  if (!end) return kNone;
+  return high ? *end + p.a : -(*end + p.a);
+}
+
+WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& window, bool high) const {
+  // The largest end of the arcs, or the least by its negative.
+  const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
+  std::array<double, kPosesPerWindow + 1> value;
+  const double step = (window.to - window.from) / kPosesPerWindow;
+  for (int i = 0; i <= kPosesPerWindow; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
+  const auto first = std::max_element(value.begin(), value.end());
+  double best = *first;
+  double best_at = static_cast<double>(first - value.begin());
+  const auto at = [&](int i) { return i < 0 || i > kPosesPerWindow ? kNone : value[static_cast<std::size_t>(i)]; };
+  // In steps, since the search ends at a fixed part of its variable.
+  const auto search = [&](int i, int side) {
+    const auto lost = [&](double along) {
+      const double e = end(window.from + (i + along) * step);
+      return e == kNone ? std::numeric_limits<double>::max() : -e;
+    };
+    std::uintmax_t steps = kMaxSteps;
+    const auto peak =
+        boost::math::tools::brent_find_minima(lost, std::min(side, 0) * 1.0, std::max(side, 0) * 1.0, 26, steps);
+    if (-peak.second > best) best = -peak.second, best_at = i + peak.first;
+  };
+  for (int i = 0; i <= kPosesPerWindow; ++i) {
+    if (at(i) == kNone || (at(i) == at(i - 1) && at(i) == at(i + 1))) continue;
+    const auto rises = [&](int side) {
+      return i + side >= 0 && i + side <= kPosesPerWindow && end(window.from + (i + side * kAside) * step) > at(i);
+    };
+    if (at(i) >= at(i - 1) && at(i) >= at(i + 1)) {
+      // Any peak among the poses may be the highest on either side of it.
+      const bool before = rises(-1), after = rises(1);
+      if (i > 0 && (before || !after)) search(i, -1);
+      if (i < kPosesPerWindow && (after || !before)) search(i, 1);
+      continue;
+    }
+    // A peak may also lie between the last pose that reaches the circle and the next one.
+    for (const int side : {-1, 1}) {
+      if (at(i + side) == kNone && rises(side)) search(i, side);
+    }
+  }
+  double axis_x = window.from + best_at * step;
+  // A straight flute's wall is formed all along the stroke; then it is here.
+  if (const double here = std::clamp(x, window.from, window.to); end(here) >= best) axis_x = here;
+  return {best, axis_x};
+}
+
+bool WheelSweep::isComplete(double x, double r, const Extremum& end, bool high) const {
+  const Window all = reach(x, r);
+  const auto farther = [&](double from, double to) {
+    return from < to && extremum(x, r, {from, to}, high).value > end.value + kSameAngle;
+  };
+  return !farther(std::max(all.from, open_.from), std::min(all.to, std::min(stroke_.from, stroke_.to))) &&
+         !farther(std::max(all.from, std::max(stroke_.from, stroke_.to)), std::min(all.to, open_.to));
+}
+
+template <typename Function>
+WheelSweep::Least WheelSweep::least(double x, double largest_height, const Function& f) const {
+  // Along the stroke, for the disc of the wheel at w, f is convex: one search finds its least value.
+  const auto of_disc = [&](double w) -> Least {
+    const double radius = wheel_.radius(w);
+    double from = std::max(std::min(stroke_.from, stroke_.to), x - (radius * cos_ - w * sin_));
+    double to = std::min(std::max(stroke_.from, stroke_.to), x + (radius * cos_ + w * sin_));
+    const double rise = z_per_x_ - sin_ / cos_;
+    const double height = height_ + (w + x * sin_) / cos_;
+    if (std::isfinite(largest_height)) {
+      if (rise == 0 && std::abs(height) > largest_height) return {kInfinite, x};
+      if (rise != 0) {
+        const double one = (largest_height - height) / rise, other = (-largest_height - height) / rise;
+        from = std::max(from, std::min(one, other));
+        to = std::min(to, std::max(one, other));
+      }
+    }
+    if (!(from <= to)) return {kInfinite, x};
+    const auto along = [&](double axis_x) {
+      const double t = (w * sin_ + x - axis_x) / cos_;
+      const PathDeviation off = deviation(axis_x);
+      const double y = centre_ + axis_x * y_per_x_ + off.y - std::sqrt(std::max(0.0, radius * radius - t * t));
+      return f(y, height + axis_x * rise + stroke_.z_correction.at(axis_x).z + off.z);
+    };
+    std::uintmax_t steps = kMaxSteps;
+    const auto found = boost::math::tools::brent_find_minima(along, from, to, 26, steps);
+    return {found.second, found.first};
+  };
+  const double step = (wheel_.upperFace() - wheel_.lowerFace()) / kDiscs;
+  const auto at = [&](double i) { return of_disc(std::min(wheel_.lowerFace() + i * step, wheel_.upperFace())); };
+  std::array<Least, kDiscs + 1> discs;
+  for (int i = 0; i <= kDiscs; ++i) discs[static_cast<std::size_t>(i)] = at(i);
+  Least best = discs[0];
+  for (int i = 0; i <= kDiscs; ++i) {
+    const auto here = static_cast<std::size_t>(i);
+    if (discs[here].value < best.value) best = discs[here];
+    if (i > 0 && discs[here].value > discs[here - 1].value) continue;
+    if (i < kDiscs && discs[here].value > discs[here + 1].value) continue;
+    std::uintmax_t steps = kMaxSteps;
+    const double from = std::max(0, i - 1), to = std::min(kDiscs, i + 1);
+    const auto value = [&](double disc) { return at(disc).value; };
+    const Least found = at(boost::math::tools::brent_find_minima(value, from, to, 26, steps).first);
+    if (found.value < best.value) best = found;
+  }
+  return best;
+}
+
+WheelSweep::Least WheelSweep::leastSquare(double x) const {
+  const auto square = [](double y, double z) { return (y > 0 ? y * y : 0) + z * z; };
+  return least(x, std::numeric_limits<double>::infinity(), square);
+}
+
+std::optional<WheelSweep::Window> WheelSweep::narrowWindow(double x, double r, double step) const {
+  // Near the floor, circles are reached along less of the stroke than a step between poses.
+  const Least lowest = leastSquare(x);
+  const auto reached = [&](double axis_x) { return endAt(pose(x, axis_x), r, true).has_value(); };
+  if (!(lowest.value < r * r) || !reached(lowest.axis_x)) return std::nullopt;
+  const auto end = [&](double outside) {
+    double inside = lowest.axis_x;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (inside + outside) / 2;
+      (reached(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  };
+  return Window{end(std::max(lowest.axis_x - step, std::min(stroke_.from, stroke_.to))),
+                end(std::min(lowest.axis_x + step, std::max(stroke_.from, stroke_.to)))};
+}
+
+WheelSweep::Extremum WheelSweep::anyExtremum(double x, double r, const Window& window, bool high) const {
+  const Extremum found = extremum(x, r, window, high);
+  if (found.value != kNone) return found;
+  const auto narrow = narrowWindow(x, r, (window.to - window.from) / kPosesPerWindow);
+  return narrow ? extremum(x, r, *narrow, high) : found;
+}
+
+std::optional<Arc> WheelSweep::arc(double x, double r) const {
+  const auto w = window(x, r);
+  if (!w) return std::nullopt;
+  const Extremum high = anyExtremum(x, r, *w, true);
+  if (high.value == kNone) return std::nullopt;
+  const Extremum low = anyExtremum(x, r, *w, false);
+  return Arc{-low.value, high.value, isComplete(x, r, low, false) && isComplete(x, r, high, true)};
+}
+
+WheelSweep::Normal WheelSweep::normal(const Pose& p, double r, double theta, double w) const noexcept {
+  const double y = r * std::cos(theta), z = r * std::sin(theta);
+  const double dy = y - p.y, dz = z - p.z;
+  const double t = dz * sin_ + p.dx * cos_;
+  const double from_axis = std::sqrt(dy * dy + t * t);
+  // Of a flat face, or of the profile.
+  const bool upper = w > wheel_.upperFace(), lower = w < wheel_.lowerFace();
+  const double axial = upper ? 1 : lower ? -1 : -wheel_.slope(w);
+  const double radial = upper || lower ? 0 : 1 / from_axis;
+  const double n_x = radial * t * cos_ - axial * sin_;
+  const double n_y = radial * dy;
+  const double n_z = radial * t * sin_ + axial * cos_;
+  const PathDeviation off = deviationSlope(p.axis_x);
+  const double tangential = (n_z * y - n_y * z) / r;
+  return {(n_y * y + n_z * z) / r, tangential,
+          n_x + n_y * (y_per_x_ + off.y) + n_z * (z_per_x_ + stroke_.z_correction.at(p.axis_x).first + off.z) +
+              (curve_.slope(p.axis_x) + off.a) * r * tangential};
+}
+
+std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
+  const auto range = window(x, r);
+  if (!range) return std::nullopt;
+  const Extremum end = anyExtremum(x, r, *range, high);
+  if (end.value == kNone) return std::nullopt;
+  const double angle = high ? end.value : -end.value;
+  const Pose p = pose(x, end.axis_x);
+  const double theta = angle - p.a;
+  const double w = std::clamp((r * std::sin(theta) - p.z) * cos_ - p.dx * sin_, wheel_.lowerFace(), wheel_.upperFace());
+
+  // The wheel moves along its groove's wall: of the normals about the point, one at a corner of the profile being any
+  // between those of its two sides, the wall's is the one square to the wheel's motion.
+  const bool on_face = outside(p, r, theta) < -kCorner;
+  const double face = w + (2 * w > wheel_.lowerFace() + wheel_.upperFace() ? 1 : -1) * wheel_.largestRadius();
+  const Normal below = normal(p, r, theta, on_face ? face : w - kCorner);
+  const Normal above = normal(p, r, theta, on_face ? face : w + kCorner);
+  const double difference = above.along_motion - below.along_motion;
+  const double part = difference == 0 ? 0.5 : std::clamp(-below.along_motion / difference, 0.0, 1.0);
+  const double radial = below.radial + part * (above.radial - below.radial);
+  const double tangential = below.tangential + part * (above.tangential - below.tangential);
+  return Wall{angle, -radial / (r * tangential), w, end.axis_x, isComplete(x, r, end, high)};
+}
+
+double WheelSweep::leastRadius(double x, double blank_radius) const {
+  const double radius = std::sqrt(leastSquare(x).value);
+  return radius < blank_radius ? radius : std::numeric_limits<double>::infinity();
+}
+
+double WheelSweep::deeperFor(double x, double radius) const {
+  const auto deeper = [&](double y, double z) { return y - std::sqrt(std::max(0.0, radius * radius - z * z)); };
+  return least(x, radius, deeper).value;
+}
+
+}  // namespace flute_grinder

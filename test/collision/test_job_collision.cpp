@@ -1,0 +1,236 @@
+#include "flute_grinder/collision/job_collision.h"
+
+#include "core/generators.h"
+#include "core/reference.h"
+#include "flute_grinder/core/units.h"
+#include "machine.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace flute_grinder {
+namespace {
+
+using test_support::plainMachine;
+using units::kDegree;
+
+/// The paper's cutter with a shank of 16 mm, ground with a wheel of 100 mm.
+GrindJob paperJob() {
+  GrindJob job = test_support::paperJob();
+  job.cutter.shank_diameter = 0.016;
+  job.process.setup_swivel = 31.769 * kDegree;
+  return job;
+}
+
+/// A cylinder of 10 mm with flutes of 20 mm, 1.6 mm deep.
+GrindJob cylinderJob(double shank_diameter) {
+  GrindJob job = paperJob();
+  job.cutter.cone_angle = 0;
+  job.cutter.flute_length = 0.02;
+  job.cutter.shank_diameter = shank_diameter;
+  job.process.depth = job.process.infeed = 0.0016;
+  return job;
+}
+
+GrindProgram programOf(const GrindJob& job, const Axes& offset = Axes::Zero()) {
+  Machine machine = plainMachine();
+  machine.collision_clearance = 1e-3;
+  machine.work_offset = offset;
+  return {job, machine, machine.park - offset};
+}
+
+/// A plan as planJob() makes it, without its setpoints.
+JobPlan checked(const GrindJob& job, const std::string& urdf = shippedUrdf(), const Axes& offset = Axes::Zero()) {
+  JobPlan plan;
+  plan.program = std::make_shared<const GrindProgram>(programOf(job, offset));
+  checkCollision(plan, MachineShapes(urdf));
+  return plan;
+}
+
+TEST(JobCollision, ThePapersJobHitsNothing) {
+  const JobPlan plan = checked(paperJob());
+  EXPECT_TRUE(plan.good());
+  EXPECT_TRUE(plan.reasons.empty());
+  ASSERT_TRUE(plan.closest);
+  EXPECT_GT(plan.closest->distance, 1e-3);
+  EXPECT_NE(plan.closest->second, "shank");
+}
+
+TEST(JobCollision, AWheelOf500MmOnAFluteOf160MmIsRefused) {
+  GrindJob job = paperJob();
+  job.process.wheel_diameter = 0.5;
+  job.cutter.flute_length = 0.16;
+  const JobPlan plan = checked(job);
+  EXPECT_EQ(plan.fault, PlanFault::kCollision);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_EQ(plan.reasons[0].kind, core::ReasonKind::kCollision);
+  EXPECT_EQ(plan.reasons[0].value, 0);
+  EXPECT_EQ(plan.reasons[0].limit, 1e-3);
+}
+
+TEST(JobCollision, AHitIsRefusedWithoutAClearanceToo) {
+  GrindJob job = paperJob();
+  job.cutter.flute_length = 0.06;
+  Machine machine = plainMachine();
+  machine.collision_clearance = 0;
+  JobPlan plan;
+  plan.program = std::make_shared<const GrindProgram>(job, machine, machine.park);
+  checkCollision(plan, MachineShapes(shippedUrdf()));
+  EXPECT_EQ(plan.fault, PlanFault::kCollision);
+}
+
+/// The wheel's rim and the edge of the collet, in the plane Z = 0.
+TEST(JobCollision, ATenthOfAMillimetreDecides) {
+  for (const double wanted : {-0.1e-3, 0.9e-3, 1.1e-3}) {
+    GrindJob job = cylinderJob(0.01);
+    job.process.setup_swivel = 0;
+    const double across = 0.055 - 0.0016 - 0.021;
+    const double x = 0.062 - std::sqrt(std::pow(0.05 + wanted, 2) - across * across);
+    job.cutter.flute_length = x - job.process.overtravel_shank;
+    const JobPlan plan = checked(job, SmallMachine().urdf());
+    EXPECT_EQ(plan.good(), wanted > 1e-3) << wanted;
+    EXPECT_NEAR(plan.closest->distance, std::max(0.0, wanted), 3e-6);
+    if (plan.good()) continue;
+    const core::Reason& reason = plan.reasons.at(0);
+    EXPECT_EQ(reason.detail, "wheel and collet");
+    EXPECT_TRUE(reason.has_place);
+    EXPECT_EQ(reason.value, plan.closest->distance);
+    EXPECT_EQ(reason.x, plan.closest->axes[kX]);
+  }
+}
+
+TEST(JobCollision, TeethAndPassesDoNotChangeTheClosestPlace) {
+  GrindJob job = paperJob();
+  const ClosestPlace one = *checked(job).closest;
+  job.tooth_angles = {0, 1, 2, 3};
+  job.process.infeed = job.process.depth / 7;
+  const ClosestPlace many = *checked(job).closest;
+  EXPECT_NEAR(many.distance, one.distance, 2.2e-6);
+  EXPECT_EQ(many.first + many.second, one.first + one.second);
+}
+
+/// A job with a bow of Z of some tenths of a millimetre.
+GrindJob bentJob() {
+  GrindJob job = paperJob();
+  job.process.infeed = job.process.depth / 2;
+  job.process.z_law = ZLaw::kConstantRake;
+  ZCorrection bow;
+  bow.from = -job.process.overtravel_end;
+  bow.pieces = 4;
+  bow.piece = (job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank) / bow.pieces;
+  for (int i = 0; i < bow.coefficientCount(); ++i) {
+    bow.coefficients[static_cast<std::size_t>(i)] = 0.3e-3 * std::sin(1.1 * i);
+  }
+  job.z_corrections.assign(job.tooth_angles.size(), bow);
+  return job;
+}
+
+TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
+  const GrindProgram program = programOf(bentJob());
+  const ProgramPath path = pathOf(program);
+  ASSERT_EQ(path.moves.size() + 1, path.points.size());
+  std::size_t legs_of_strokes = 0;
+  for (std::size_t leg = 0; leg < path.moves.size(); ++leg) {
+    const Axes &from = path.points[leg], &to = path.points[leg + 1];
+    const Move& move = program.moves().at(path.moves[leg]);
+    const bool last = leg + 1 == path.moves.size() || path.moves[leg + 1] != path.moves[leg];
+    EXPECT_TRUE(!last || (to == move.to).all());
+    if (move.kind != MoveKind::kStroke) continue;
+    ++legs_of_strokes;
+    for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Axes at = (1 - part) * from + part * to;
+      const double z = at[kX] * std::tan(5 * units::kDegree) * std::sin(8 * units::kDegree) +
+                       static_cast<double>(test_support::referenceCorrection(bentJob().z_corrections[0], at[kX]));
+      EXPECT_NEAR(at[kZ], z, 1.001e-6);
+      EXPECT_NEAR(at[kY],
+                  program.moves().at(path.moves[leg] - 1).to[kY] +
+                      (at[kX] - program.strokeFrom()) * std::tan(5 * units::kDegree),
+                  1e-12);
+    }
+  }
+  EXPECT_GT(legs_of_strokes, 20u);
+  EXPECT_EQ(pathOf(programOf(paperJob())).moves.size(), programOf(paperJob()).moves().size());
+}
+
+TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
+  GrindJob job = bentJob();
+  job.process.wheel_diameter = 0.5;
+  job.cutter.flute_length = 0.16;
+  const JobPlan plan = checked(job);
+  EXPECT_EQ(plan.fault, PlanFault::kCollision);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_EQ(plan.reasons[0].move, plan.program->moves().at(plan.closest->leg).kind);
+  EXPECT_EQ(plan.reasons[0].x, plan.closest->axes[kX]);
+}
+
+TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
+  GrindJob job = paperJob();
+  job.process.infeed = job.process.depth / 3;
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    job.process.direction = direction;
+    const Axes end = collisionJobOf(programOf(job)).stroke_end;
+    const double x = job.cutter.flute_length + job.process.overtravel_shank;
+    EXPECT_DOUBLE_EQ(end[kX], x);
+    EXPECT_NEAR(end[kY], x * std::tan(job.cutter.cone_angle) - job.process.depth, 1e-12);
+  }
+}
+
+TEST(JobCollision, AShankMayStandOutByTheFlutesDepthAndNoMore) {
+  for (const double shank_diameter : {0.008, 0.010, 0.0131}) {
+    EXPECT_TRUE(checked(cylinderJob(shank_diameter)).good()) << shank_diameter;
+  }
+  for (const double shank_diameter : {0.0134, 0.02, 0.04}) {
+    const JobPlan plan = checked(cylinderJob(shank_diameter));
+    EXPECT_EQ(plan.fault, PlanFault::kCollision) << shank_diameter;
+    EXPECT_EQ(plan.reasons.at(0).detail, "wheel and shank");
+  }
+  GrindJob with_neck = cylinderJob(0.02);
+  with_neck.cutter.neck_length = 0.038;
+  EXPECT_TRUE(checked(with_neck).good());
+}
+
+/// The shipped machine with a place for the origin of a joint.
+std::string withOrigin(std::string urdf, const std::string& joint, const std::string& origin) {
+  const std::size_t begin = urdf.find("<joint name=\"" + joint + "\"");
+  return urdf.insert(urdf.find('>', begin) + 1, "<origin xyz=\"" + origin + "\"/>");
+}
+
+/// Compared with a machine whose table and chuck stand elsewhere by as much.
+TEST(JobCollision, TheWorkOffsetOfXSaysHowFarTheCutterStandsOut) {
+  for (const double stands_in : {-0.02, -0.01, 0.005}) {
+    const std::string in = std::to_string(stands_in), out = std::to_string(-stands_in);
+    const std::string moved = withOrigin(withOrigin(shippedUrdf(), "axis_x", out + " 0 0"), "x_zero", in + " 0 0");
+    const JobPlan expected = checked(paperJob(), moved);
+    const JobPlan plan = checked(paperJob(), shippedUrdf(), {stands_in, 0.02, 0.01, 3});
+    ASSERT_TRUE(plan.closest && expected.closest);
+    EXPECT_NEAR(plan.closest->distance, expected.closest->distance, 4e-6) << stands_in;
+    EXPECT_EQ(plan.closest->first + plan.closest->second, expected.closest->first + expected.closest->second);
+    EXPECT_EQ(plan.good(), expected.good());
+  }
+  // The collet's mouth is 62 mm from the end of a cutter without offset, and the wheel goes to 37 mm.
+  const JobPlan plan = checked(paperJob(), shippedUrdf(), {0.025, 0, 0, 0});
+  EXPECT_EQ(plan.fault, PlanFault::kCollision);
+  EXPECT_EQ(plan.reasons.at(0).detail, "wheel and collet");
+}
+
+TEST(JobCollision, AddsItsReasonToThoseThatAreThere) {
+  JobPlan plan;
+  plan.program = std::make_shared<const GrindProgram>(programOf(cylinderJob(0.04)));
+  plan.fault = PlanFault::kLimit;
+  plan.reasons.resize(2);
+  checkCollision(plan, MachineShapes(shippedUrdf()));
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  EXPECT_EQ(plan.reasons.size(), 3u);
+}
+
+TEST(JobCollision, LeavesAPlanWithoutAProgramAsItIs) {
+  JobPlan plan;
+  plan.fault = PlanFault::kInvalidJob;
+  checkCollision(plan, MachineShapes(shippedUrdf()));
+  EXPECT_TRUE(plan.reasons.empty());
+  EXPECT_FALSE(plan.closest);
+}
+
+}  // namespace
+}  // namespace flute_grinder

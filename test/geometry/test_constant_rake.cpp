@@ -1,0 +1,278 @@
+// Jobs with z_law constant_rake: the rake that is ground, by sections and by brute force, and what is refused.
+
+#include "brute_force.h"
+
+#include "core/generators.h"
+#include "core/reference.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace flute_grinder {
+namespace {
+
+using core::ReasonKind;
+using units::kDegree;
+using units::kMillimetre;
+
+constexpr int kParts = 25;  ///< of the flute, between the sections measured; the correction is made for others
+
+/// A cutter, a straight wheel, and what it is asked, in the shop's units.
+struct Shop {
+  double diameter = 5, cone = 10, spiral = 20, rake = 14, length = 15, depth = 0.7, wheel = 75, width = 1.5;
+  CutDirection cut = CutDirection::kRightHand;
+};
+
+SetupRequest requestFor(const Shop& s) {
+  SetupRequest r;
+  r.cutter = {s.diameter * kMillimetre, s.cone * kDegree, s.spiral * kDegree, s.rake * kDegree, s.length * kMillimetre};
+  r.direction = s.cut;
+  r.rake = s.rake * kDegree;
+  r.tooth_angles = {0};
+  r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
+  r.nominal_radius = s.wheel / 2 * kMillimetre;
+  r.depth = s.depth * kMillimetre;
+  r.least_swivel = -60 * kDegree;
+  r.largest_swivel = 60 * kDegree;
+  return r;
+}
+
+/// The job with the set-up that gives the rake at both ends, and nothing where there is none.
+std::optional<GrindJob> jobFor(const Shop& s) {
+  const auto result = solveSetup(requestFor(s));
+  const auto* solved = std::get_if<SolvedSetup>(&result);
+  if (!solved || solved->complete_from > 0 || solved->complete_to < s.length * kMillimetre) return std::nullopt;
+  GrindJob job = test_support::paperJob();
+  job.cutter = requestFor(s).cutter;
+  job.cutter.cut = s.cut;
+  job.cutter.rake_tolerance = 2 * kDegree;
+  job.cutter.shank_diameter = 10 * kMillimetre;
+  job.process.wheel_diameter = s.wheel * kMillimetre;
+  job.process.wheel_width = s.width * kMillimetre;
+  job.process.depth = job.process.infeed = solved->depth;
+  job.process.setup_swivel = solved->setup.swivel;
+  job.process.setup_height = solved->setup.height;
+  // The correction moves where the ends of the flute are formed by a little.
+  job.process.overtravel_end = solved->overtravel[0] + 0.2 * kMillimetre;
+  job.process.overtravel_shank = solved->overtravel[1] + 0.2 * kMillimetre;
+  job.process.z_law = ZLaw::kConstantRake;
+  return job;
+}
+
+GrindJob steepJob() { return jobFor({}).value(); }
+
+/// The largest error of the rake over the flute [deg]; infinite where there is none.
+double rakeError(const GroundCutter& cutter, const GrindJob& job) {
+  double largest = 0;
+  for (int i = 0; i <= kParts; ++i) {
+    for (const ToothSection& tooth : cutter.section(job.cutter.flute_length * i / kParts).teeth) {
+      const double error = tooth.rake && tooth.complete ? std::abs(*tooth.rake - job.cutter.rake_angle) : 10;
+      largest = std::max(largest, error / kDegree);
+    }
+  }
+  return largest;
+}
+
+double publishedRakeError(GrindJob job) {
+  job.process.z_law = ZLaw::kPublished;
+  return rakeError(groundCutterOf(job), job);
+}
+
+core::Reason refusalOf(const GrindJob& job) {
+  try {
+    withZLaw(job);
+  } catch (const core::ReasonError& error) {
+    return error.reason();
+  }
+  ADD_FAILURE() << "not refused";
+  return {};
+}
+
+Machine roomyMachine() {
+  Machine machine = test_support::plainMachine();
+  machine.park << -0.02, 0.08, 0, 0;
+  return machine;
+}
+
+// D1 5, C 10, S 20, r 14, depth 0.7, wheel 75 x 1.5: 14.61 deg amid by the published law, as another program computed.
+TEST(ConstantRake, OnASteepConeTheRakeIsTheSameOverTheWholeFlute) {
+  for (const Shop& shop : {Shop{}, Shop{6, 7, -25, 12, 18, 0.9, 80, 2, CutDirection::kLeftHand}}) {
+    const GrindJob job = jobFor(shop).value();
+    EXPECT_GT(publishedRakeError(job), 0.2);
+    EXPECT_LT(rakeError(groundCutterOf(withZLaw(job)), job), 0.005);
+  }
+}
+
+TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
+  std::mt19937 dice(7);
+  const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(dice); };
+  int solved = 0, bent = 0;
+  for (int i = 0; i < 40 && solved < 14; ++i) {
+    const bool left = i % 2 == 1;
+    Shop s{draw(4, 14), draw(-1, 11), draw(12, 35), draw(4, 15), draw(10, 30), 0, draw(60, 125), draw(1, 3)};
+    s.depth = s.diameter * draw(0.08, 0.17);
+    if (left) s.spiral = -s.spiral, s.cut = CutDirection::kLeftHand;
+    const auto job = jobFor(s);
+    if (!job) continue;
+    SCOPED_TRACE(testing::Message() << i << ": " << toolText(job->cutter, 1) << ", depth " << s.depth << ", wheel "
+                                    << s.wheel << " x " << s.width);
+    GrindJob with_law;
+    try {
+      with_law = withZLaw(*job);
+    } catch (const core::ReasonError& error) {
+      ADD_FAILURE() << core::text(error.reason(), UnitSystem::kShop);
+      continue;
+    }
+    ++solved;
+    if (publishedRakeError(*job) > 0.005) ++bent;
+    EXPECT_LE(rakeError(groundCutterOf(with_law), *job), 0.005);
+    const SetupRequest request = requestFor(s);
+    brute::Bench bench{request, job->process.setup_swivel,   job->process.setup_height, job->process.depth, 800,
+                       100,     with_law.z_corrections.at(0)};
+    for (const double part : {0.13, 0.5, 0.83}) {
+      EXPECT_NEAR(bench.rake(part * job->cutter.flute_length) / kDegree, s.rake, 0.005) << part;
+    }
+  }
+  EXPECT_GE(solved, 10);
+  EXPECT_GE(bent, 6);
+}
+
+TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
+  GrindJob job = steepJob();
+  job.tooth_angles = {0, 1.5, 3.1, 4.6};
+  job.spiral_angles = {20 * kDegree, 20.2 * kDegree, 20 * kDegree, 20.2 * kDegree};
+  job.process.z_law = ZLaw::kConstantRake;
+  const GrindJob with_law = withZLaw(job);
+  ASSERT_EQ(with_law.z_corrections.size(), 4u);
+  const auto same = [&](std::size_t i, std::size_t k) {
+    return with_law.z_corrections[i].coefficients == with_law.z_corrections[k].coefficients;
+  };
+  EXPECT_TRUE(same(0, 2) && same(1, 3));
+  EXPECT_FALSE(same(0, 1));
+  EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
+}
+
+TEST(ConstantRake, TheSameJobGivesTheSameBits) {
+  GrindJob again = withZLaw(steepJob());
+  const GrindJob once = again;
+  again.z_corrections[0].coefficients[2] += 1e-6;  // of a job that was computed before nothing is taken
+  again = withZLaw(again);
+  EXPECT_EQ(std::memcmp(&again.z_corrections[0], &once.z_corrections[0], sizeof(ZCorrection)), 0);
+  GrindJob published = again;
+  published.process.z_law = ZLaw::kPublished;
+  EXPECT_TRUE(withZLaw(published).z_corrections.empty());
+}
+
+TEST(ConstantRake, ACylinderNeedsNoCorrection) {
+  GrindJob job = jobFor({10, 0, 30, 8, 30, 1.6, 100, 3}).value();
+  job.tooth_angles = {0, 3};
+  const GrindJob with_law = withZLaw(job);
+  for (const ZCorrection& c : with_law.z_corrections) {
+    for (double x = -0.01; x < 0.04; x += 0.001) EXPECT_LT(std::abs(c.at(x).z), 1e-9);
+  }
+}
+
+TEST(ConstantRake, TheWheelIsThatOfTheJobsStart) {
+  GrindJob job = steepJob();
+  job.process.wheel_wear = 5 * kMillimetre;
+  EXPECT_LT(rakeError(groundCutterOf(withZLaw(job)), job), 0.005);
+}
+
+TEST(ConstantRake, EitherWayOfTheStrokeTheCorrectionIsTheSame) {
+  GrindJob job = steepJob();
+  const GrindJob there = withZLaw(job);
+  job.process.direction = StrokeDirection::kToEnd;
+  EXPECT_EQ(withZLaw(job).z_corrections[0].coefficients, there.z_corrections[0].coefficients);
+}
+
+TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
+  GrindJob job = steepJob();
+  job.process.setup_swivel += 25 * kDegree;
+  const core::Reason reason = refusalOf(job);
+  EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
+  EXPECT_DOUBLE_EQ(reason.limit, 14 * kDegree);
+  EXPECT_GT(std::max(reason.value - reason.limit, reason.limit - reason.low), 0.005 * kDegree);
+  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park);
+  EXPECT_EQ(plan.fault, PlanFault::kTool);
+  EXPECT_EQ(plan.program, nullptr);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kUnevenRake);
+}
+
+TEST(ConstantRake, AWheelThatDoesNotReachTheFluteIsRefused) {
+  GrindJob job = steepJob();
+  job.process.setup_height = 90 * kMillimetre;
+  const core::Reason reason = refusalOf(job);
+  EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
+  EXPECT_GT(reason.low, reason.value);
+}
+
+TEST(ConstantRake, AnInvalidJobIsRefusedByItsNumbers) {
+  GrindJob job = steepJob();
+  job.process.depth = 0;
+  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park);
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  EXPECT_EQ(plan.reasons.at(0).field, "process.depth");
+}
+
+TEST(ConstantRake, ItGivesUpWhenToldTo) {
+  const GrindJob job = steepJob();
+  int looks = 0;
+  const PlanWatch never_again = [&](double) { return ++looks < 5; };
+  try {
+    withZLaw(job, never_again);
+    FAIL();
+  } catch (const core::ReasonError& error) {
+    EXPECT_EQ(error.reason().kind, ReasonKind::kGivenUp);
+  }
+  EXPECT_EQ(looks, 5);
+  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park, {}, {}, [](double) { return false; });
+  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(plan.program, nullptr);
+}
+
+TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
+  const GrindJob job = steepJob();
+  EXPECT_THROW(groundCutterOf(job), std::invalid_argument);
+}
+
+// From the job to the streamed setpoints and back to the cutter.
+TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
+  const GrindJob job = steepJob();
+  RecordedStrokes strokes(withZLaw(job));
+  Axes actual = roomyMachine().park;
+  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park, {}, [&](const Setpoint& p) {
+    strokes.add(p, actual);
+    actual = p.position;
+  });
+  strokes.finish();
+  ASSERT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  const GrindJob& with_law = plan.program->job();
+  const ConicalCutter cutter(job.cutter);
+  SetpointStream stream(plan.program);
+  Setpoint p;
+  int points = 0;
+  while (stream.next(p)) {
+    if (p.step == StepKind::kNone) continue;
+    const double x = p.position[kX];
+    const double z = cutter.z(x) + static_cast<double>(test_support::referenceCorrection(with_law.z_corrections[0], x));
+    EXPECT_NEAR(p.position[kZ], z, 1e-17);
+    ++points;
+  }
+  EXPECT_GT(points, 1000);
+  for (const RecordedStroke& stroke : strokes.strokes()) {
+    for (const PathDeviation& d : stroke.deviations) EXPECT_LT(std::abs(d.z), 1e-12);
+  }
+  EXPECT_LT(rakeError(strokes.cutter(), job), 0.006);  // sampled from setpoints
+}
+
+}  // namespace
+}  // namespace flute_grinder

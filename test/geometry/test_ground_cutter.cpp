@@ -1,0 +1,477 @@
+// The ground cutter against closed forms, an explicit edge circle, and membership by brute force.
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_cutter.h"
+
+#include "geometry/ground_case.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace flute_grinder {
+namespace {
+
+using test_support::Case;
+using test_support::faceFor;
+using units::kDegree;
+using units::kMillimetre;
+constexpr double kMicrodegree = 1e-6 * kDegree;
+
+// Documented, each computed by two other programs.
+TEST(GroundCutter, ACylinderSwivelledToItsSpiralAngleHasThriceTheRake) {
+  Case c;
+  c.face = faceFor(10, 8);
+  EXPECT_NEAR(c.rakeAt(20), 25.420, 0.001);
+  c.swivel = 38;
+  EXPECT_NEAR(c.rakeAt(20), 7.886, 0.001);
+}
+
+TEST(GroundCutter, ThePapersCutterKeepsItsRakeInOneSetUp) {
+  Case c;
+  c.cone = 5;
+  c.width = 3;
+  c.from = -56;
+  c.swivel = 31.769;
+  c.face = 4.552;
+  EXPECT_NEAR(c.rakeAt(1), 7.999, 0.001);
+  EXPECT_NEAR(c.rakeAt(17), 8.019, 0.001);
+  EXPECT_NEAR(c.rakeAt(29), 7.999, 0.001);
+  const GroundCutter ground = c.ground();
+  EXPECT_NEAR(ground.section(0.002).core_radius, 3.72e-3, 5e-6);
+  EXPECT_NEAR(ground.section(0.015).core_radius, 4.86e-3, 5e-6);
+  EXPECT_NEAR(ground.section(0.028).core_radius, 6.01e-3, 5e-6);
+  c.swivel = 36;
+  c.face = faceFor(10, 8);
+  EXPECT_NEAR(c.rakeAt(1), 17.5, 0.05);
+  EXPECT_NEAR(c.rakeAt(29), 10.8, 0.05);
+}
+
+TEST(GroundCutter, AStraightFluteIsAsTheWheelIs) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> diameter(2, 30), part(0.05, 0.6), wheel(40, 200), width(1, 10);
+  for (int i = 0; i < 200; ++i) {
+    Case c;
+    c.diameter = diameter(random);
+    c.spiral = c.swivel = 0;
+    c.depth = part(random) * c.diameter / 2;
+    c.wheel = wheel(random);
+    c.width = width(random);
+    c.face = (part(random) - 0.3) * c.diameter / 2;
+    const double r = c.diameter / 2;
+    // Beyond this height the face does not reach the outer circle within the depth.
+    if (std::abs(c.face) > 0.9 * std::sqrt(r * r - (r - c.depth) * (r - c.depth))) continue;
+    if (std::abs(c.face - c.width) > 0.9 * r) continue;
+    const GroundSection s = c.ground().section(0.02);
+    ASSERT_TRUE(s.teeth[0].rake.has_value()) << i;
+    EXPECT_NEAR(*s.teeth[0].edge, std::asin(c.face / r), 1e-12) << i;
+    EXPECT_NEAR(*s.teeth[0].rake, std::asin(c.face / r), kMicrodegree) << i;
+    EXPECT_NEAR(*s.teeth[0].spiral, 0, 1e-9) << i;
+    // The floor lies at R - depth if the wheel stands over the axis, else at the nearer corner.
+    const double z = c.face < 0 ? c.face : std::max(0.0, c.face - c.width);
+    EXPECT_NEAR(s.core_radius, std::hypot(r - c.depth, z) * kMillimetre, 2e-9) << i;
+  }
+}
+
+TEST(GroundCutter, AtTheStrokesEndTheFloorIsTheWheelsCircle) {
+  Case c;
+  c.spiral = c.swivel = 0;
+  c.face = 1;
+  c.to = 10;
+  const double rw = c.wheel / 2, floor = c.diameter / 2 - c.depth;
+  for (const double beyond : {0.0, 2.0, 5.0, 10.0}) {
+    const double expected = floor + rw - std::sqrt(rw * rw - beyond * beyond);
+    const GroundSection s = c.ground().section((c.to + beyond) * kMillimetre);
+    EXPECT_NEAR(s.core_radius, expected * kMillimetre, 2e-9);
+    EXPECT_EQ(s.teeth[0].complete, beyond == 0) << beyond;
+  }
+}
+
+TEST(GroundCutter, TheEdgeCircleFormsTheWallThatItTouchesLast) {
+  Case c;
+  c.face = faceFor(10, 8);
+  const double r = 5 * kMillimetre, rw = 50 * kMillimetre, half = 3 * kMillimetre;
+  const double sn = std::sin(c.swivel * kDegree), cs = std::cos(c.swivel * kDegree);
+  const double k = std::tan(30 * kDegree) / r;
+  const WheelSetup setup = c.setup();
+  const double centre_y = (5 - 1.6 + 50) * kMillimetre;
+  // Points of the upper edge, each moved along X by the screw to where it crosses the section: the greatest angle wins.
+  double greatest = -10;
+  for (int i = -200000; i <= 200000; ++i) {
+    const double angle = i * 2e-6;
+    const double along = rw * std::sin(angle);
+    const double dx = -half * sn + along * cs;
+    const double y = centre_y - rw * std::cos(angle);
+    const double z = setup.height + half * cs + along * sn;
+    if (y * y + z * z > r * r) continue;
+    // Only where the circle of the section's radius is met is the point on it; linear between neighbours.
+    const double angle_b = angle + 2e-6;
+    const double along_b = rw * std::sin(angle_b);
+    const double y_b = centre_y - rw * std::cos(angle_b), z_b = setup.height + half * cs + along_b * sn;
+    const double ra = std::hypot(y, z), rb = std::hypot(y_b, z_b);
+    if ((ra - r) * (rb - r) > 0) continue;
+    const double f = (r - ra) / (rb - ra);
+    const double phi = std::atan2(z, y) + f * (std::atan2(z_b, y_b) - std::atan2(z, y));
+    const double dx_at = dx + f * (along_b - along) * cs;
+    greatest = std::max(greatest, phi + k * (0.02 - dx_at));
+  }
+  const auto arc = c.sweep().arc(0.02, r);
+  ASSERT_TRUE(arc.has_value());
+  EXPECT_NEAR(arc->high, greatest, 1e-8);
+}
+
+/// Whether a point is in the wheel at a pose.
+class Membership {
+ public:
+  Membership(const Case& c, const WheelProfile& wheel)
+      : c_(c),
+        wheel_(wheel),
+        cutter_(c.cutter()),
+        curve_(cutter_),
+        height_(c.setup().height),
+        sn_(std::sin(c.setup().swivel)),
+        cs_(std::cos(c.setup().swivel)) {}
+
+  bool operator()(double x, double r, double phi, double at) const {
+    if (!(cutter_.radius(at) > 0)) return false;
+    const double angle = phi - curve_.a(at) - c_.a;
+    const double dy =
+        r * std::cos(angle) - (c_.diameter / 2 + c_.wheel / 2 - c_.depth) * kMillimetre - at * cutter_.tanCone();
+    const double dz = r * std::sin(angle) - height_ - at * cutter_.tanCone() * cutter_.sinRake();
+    const double dx = x - at;
+    const double w = -sn_ * dx + cs_ * dz;
+    if (w < wheel_.lowerFace() || w > wheel_.upperFace()) return false;
+    const double squared = dx * dx + dy * dy + dz * dz - w * w;
+    return squared <= wheel_.radius(w) * wheel_.radius(w);
+  }
+
+ private:
+  const Case& c_;
+  const WheelProfile& wheel_;
+  ConicalCutter cutter_;
+  LogCurve curve_;
+  double height_, sn_, cs_;
+};
+
+/// Whether a point is in the wheel at one of many poses.
+bool removed(const Case& c, const WheelProfile& wheel, double x, double r, double phi, int poses) {
+  const Membership in(c, wheel);
+  const double from = std::max(c.from * kMillimetre, x - 0.04), to = std::min(c.to * kMillimetre, x + 0.04);
+  for (int i = 0; i <= poses; ++i) {
+    if (in(x, r, phi, from + (to - from) * i / poses)) return true;
+  }
+  return false;
+}
+
+/// A random cutter, wheel, set-up and section.
+struct RandomCase {
+  Case c;
+  WheelProfile wheel;
+  double x, outer;
+};
+
+/// @return nothing where the cone would close.
+std::optional<RandomCase> randomCase(std::mt19937& random, int i) {
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  Case c;
+  c.diameter = uniform(3, 20);
+  c.cone = uniform(-2, 25);
+  c.spiral = uniform(-55, 55);
+  c.rake = uniform(-5, 15);
+  c.depth = uniform(0.08, 0.3) * c.diameter;
+  c.wheel = uniform(40, 125);
+  c.width = uniform(0.1, 0.6) * c.diameter;
+  c.swivel = c.spiral + uniform(-6, 6);
+  c.face = uniform(-0.1, 0.3) * c.diameter;
+  c.from = uniform(-6, 0);
+  c.to = uniform(20, 35);
+  c.a = uniform(-3, 3);
+  const double x = uniform(3, 18) * kMillimetre;
+  const double radius = c.cutter().radius(std::min(c.to, 40.0) * kMillimetre + 0.04);
+  if (!(c.cutter().radius(-0.006) > 5e-4 && radius > 5e-4)) return std::nullopt;
+  const std::array<double, 2> corners{uniform(0, 0.2) * c.width * kMillimetre, uniform(0, 0.2) * c.width * kMillimetre};
+  const WheelProfile wheel =
+      i % 4 == 0   ? WheelProfile::straight(c.wheel * kMillimetre, c.width * kMillimetre)
+      : i % 4 == 1 ? WheelProfile::straight(c.wheel * kMillimetre, c.width * kMillimetre, corners)
+      : i % 4 == 2
+          ? WheelProfile::angled(c.wheel * kMillimetre, c.width * kMillimetre, uniform(-45, 45) * kDegree, corners)
+          : WheelProfile::fullRadius(c.wheel * kMillimetre, c.width * kMillimetre);
+  return RandomCase{c, wheel, x, c.cutter().radius(x)};
+}
+
+/// The outermost angle at which a point of a circle is in the wheel at a pose, to rounding; -1e9 if none is above
+/// `from`.
+double endAt(const Membership& member, double x, double r, double at, double from, double to, bool high, int angles) {
+  const auto in = [&](double phi) { return member(x, r, phi, at); };
+  const double sign = high ? 1 : -1;
+  const double step = (to - from) / angles;
+  for (int i = 0; i <= angles; ++i) {
+    double inside = from + i * step;
+    if (!in(inside)) continue;
+    if (i == 0) return sign * inside;
+    double outside = inside - step;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = (inside + outside) / 2;
+      (in(middle) ? inside : outside) = middle;
+    }
+    return sign * inside;
+  }
+  return -1e9;
+}
+
+/// The end of a removed arc by brute force, looked for about `near`: over poses and angles, ever closer to the best. It
+/// is never beyond the true one.
+double bruteEnd(const RandomCase& k, double r, double near, bool high, int fineness) {
+  const Case& c = k.c;
+  const Membership member(c, k.wheel);
+  double from = std::max(c.from * kMillimetre, k.x - 0.04), to = std::min(c.to * kMillimetre, k.x + 0.04);
+  const double outward = high ? 1 : -1;
+  double best = near, span = 0.02;
+  for (int level = 0; level < 9; ++level, span /= 6) {
+    const int poses = (level == 0 ? 500 : 40) * fineness;
+    const double step = (to - from) / poses;
+    double best_end = -1e9, best_at = from;
+    for (int i = 0; i <= poses; ++i) {
+      const double at = from + i * step;
+      const double end = endAt(member, k.x, r, at, best + outward * span, best - outward * span, high, 400 * fineness);
+      if (end > best_end) best_end = end, best_at = at;
+    }
+    if (best_end == -1e9) break;
+    best = outward * best_end;
+    from = std::max(from, best_at - step);
+    to = std::min(to, best_at + step);
+  }
+  return best;
+}
+
+/// The same, looked for more finely where the first look has not come as far as `near`.
+double bruteEnd(const RandomCase& k, double r, double near, bool high) {
+  double end = 0;
+  for (const int fineness : {1, 4}) {
+    end = bruteEnd(k, r, near, high, fineness);
+    if (std::abs(end - near) < 5e-9) break;
+  }
+  return end;
+}
+
+TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
+  std::mt19937 random(23);
+  int checked = 0;
+  for (int i = 0; checked < 200 && i < 4000; ++i) {
+    const auto k = randomCase(random, i);
+    if (!k) continue;
+    const GroundCutter ground(k->c.cutter(), CutDirection::kRightHand, {{k->c.sweep(k->wheel)}}, {{0, 0}});
+    const ToothSection tooth = ground.section(k->x).teeth[0];
+    if (!tooth.rake || !(*tooth.flute > 1e-3)) continue;
+    ++checked;
+    const double edge = bruteEnd(*k, k->outer, *tooth.edge, true);
+    const double low = bruteEnd(*k, k->outer, *tooth.edge - *tooth.flute, false);
+    const WheelSweep sweep = k->c.sweep(k->wheel);
+    // Brute force is too coarse for a short step at a sharp corner, and a long one may run over a kink.
+    double rake_off = 1;
+    for (const double part : {1e-4, 1e-3}) {
+      const double h = part * k->outer;
+      const double above = bruteEnd(*k, k->outer + h, sweep.arc(k->x, k->outer + h)->high, true);
+      const double below = bruteEnd(*k, k->outer - h, sweep.arc(k->x, k->outer - h)->high, true);
+      rake_off = std::min(rake_off, std::abs(*tooth.rake - std::atan(k->outer * (below - above) / (2 * h))));
+      if (rake_off < 0.005 * kDegree) break;
+    }
+    EXPECT_LT(rake_off, 0.005 * kDegree) << "case " << i;
+    EXPECT_NEAR(*tooth.edge, edge, 0.001 * kDegree) << "case " << i;
+    EXPECT_NEAR(*tooth.flute, edge - low, 0.001 * kDegree) << "case " << i;
+  }
+  EXPECT_EQ(checked, 200);
+}
+
+TEST(GroundCutter, NothingIsRemovedBelowTheCore) {
+  std::mt19937 random(5);
+  constexpr double kWithin = 0.1e-6;
+  int checked = 0;
+  for (int i = 0; checked < 200 && i < 4000; ++i) {
+    const auto k = randomCase(random, i);
+    if (!k) continue;
+    const WheelSweep sweep = k->c.sweep(k->wheel);
+    const double core = sweep.leastRadius(k->x, k->outer);
+    if (!(core < k->outer - 1e-5)) continue;
+    ++checked;
+    const auto arc = sweep.arc(k->x, core + kWithin);
+    ASSERT_TRUE(arc.has_value()) << "case " << i;
+    EXPECT_TRUE(removed(k->c, k->wheel, k->x, core + kWithin, (arc->low + arc->high) / 2, 1000000)) << "case " << i;
+    for (int n = -20; n <= 20; ++n) {
+      const double phi = (arc->low + arc->high) / 2 + n * 0.5 * kDegree;
+      EXPECT_FALSE(removed(k->c, k->wheel, k->x, core - kWithin, phi, 20000)) << "case " << i;
+    }
+  }
+  EXPECT_EQ(checked, 200);
+}
+
+TEST(GroundCutter, ArcsEndWhereMembershipByBruteForceDoes) {
+  std::mt19937 random(11);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int checked = 0;
+  for (int i = 0; checked < 200 && i < 4000; ++i) {
+    const auto k = randomCase(random, i);
+    if (!k) continue;
+    const auto& [c, wheel, x, outer] = *k;
+    const double r = outer - uniform(0, 0.8) * std::min(c.depth * kMillimetre, 0.9 * outer);
+    const auto arc = c.sweep(wheel).arc(x, r);
+    if (!arc || arc->high - arc->low < 1e-3) continue;
+    ++checked;
+    constexpr double kWithin = 0.001 * kDegree;
+    constexpr int kMany = 1000000, kFew = 50000;
+    EXPECT_TRUE(removed(c, wheel, x, r, arc->high - kWithin, kMany)) << "case " << i;
+    EXPECT_TRUE(removed(c, wheel, x, r, arc->low + kWithin, kMany)) << "case " << i;
+    EXPECT_FALSE(removed(c, wheel, x, r, arc->high + 1e-9, kFew)) << "case " << i;
+    EXPECT_FALSE(removed(c, wheel, x, r, arc->low - 1e-9, kFew)) << "case " << i;
+  }
+  EXPECT_EQ(checked, 200);
+}
+
+TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {
+  std::mt19937 random(31);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int complete = 0, incomplete = 0;
+  for (int i = 0; i < 4000; ++i) {
+    auto k = randomCase(random, i);
+    if (!k) continue;
+    k->c.from = k->x / kMillimetre - uniform(0, 25);
+    k->c.to = k->x / kMillimetre + uniform(0, 25);
+    Case longer = k->c;
+    longer.from -= 100;
+    longer.to += 100;
+    // About its apex a cone turns without end.
+    const double apex = -k->c.diameter / 2 / std::tan(k->c.cone * kDegree);
+    if (apex < 0) longer.from = std::max(longer.from, 0.95 * apex);
+    if (apex > 0) longer.to = std::min(longer.to, 0.95 * apex);
+    if (!(longer.from < k->c.from && longer.to > k->c.to)) continue;
+    const double r = k->outer - uniform(0, 0.8) * std::min(k->c.depth * kMillimetre, 0.9 * k->outer);
+    const auto arc = k->c.sweep(k->wheel).arc(k->x, r), most = longer.sweep(k->wheel).arc(k->x, r);
+    if (!arc) continue;
+    ASSERT_TRUE(most.has_value()) << "case " << i;
+    const double moved = std::max(std::abs(most->high - arc->high), std::abs(most->low - arc->low));
+    if (arc->complete) {
+      ++complete;
+      EXPECT_LT(moved, 1e-7) << "case " << i;
+    } else if (moved > 1e-7) {
+      ++incomplete;
+    }
+  }
+  EXPECT_GT(complete, 300);
+  EXPECT_GT(incomplete, 300);
+}
+
+TEST(WheelSweep, AWallsSlopeIsThatOfItsAngles) {
+  std::mt19937 random(13);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int checked = 0;
+  for (int i = 0; i < 300; ++i) {
+    Case c;
+    c.cone = uniform(-2, 12);
+    c.spiral = uniform(-45, 45);
+    c.swivel = c.spiral + uniform(-4, 4);
+    c.width = uniform(1, 5);
+    c.face = uniform(-1, 4);
+    c.from = -4;
+    c.to = 30;
+    const WheelSweep sweep =
+        c.sweep(WheelProfile::straight(c.wheel * kMillimetre, c.width * kMillimetre, {0, i % 3 * 2e-4}));
+    const double x = uniform(3, 15) * kMillimetre, outer = c.cutter().radius(x);
+    const double r = outer - uniform(0, 0.7) * (outer - sweep.leastRadius(x, outer));
+    const auto arc = sweep.arc(x, r);
+    for (const bool high : {false, true}) {
+      const auto at = sweep.wall(x, r, high), above = sweep.wall(x, 1.0001 * r, high),
+                 below = sweep.wall(x, 0.9999 * r, high);
+      if (!at || !above || !below) continue;
+      EXPECT_EQ(at->angle, high ? arc->high : arc->low);
+      // Between the slopes on both sides, which differ where one place of the wheel takes over from another.
+      const double slope = (above->angle - below->angle) / (2e-4 * r);
+      const double margin = 1e-3 * std::abs(slope) + 1e-2;
+      EXPECT_GE(slope, std::min({at->slope, above->slope, below->slope}) - margin) << i;
+      EXPECT_LE(slope, std::max({at->slope, above->slope, below->slope}) + margin) << i;
+      ++checked;
+    }
+  }
+  EXPECT_GT(checked, 300);
+}
+
+TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
+  for (const double cone : {-1.0, 0.0, 8.0}) {
+    Case c;
+    c.cone = cone;
+    c.width = 3;
+    const double deeper = c.sweep().deeperFor(0.01, 2.9 * kMillimetre);
+    c.depth += deeper / kMillimetre;
+    EXPECT_NEAR(c.sweep().leastRadius(0.01, 0.02), 2.9 * kMillimetre, 1e-9) << cone;
+  }
+}
+
+TEST(GroundCutter, TheVolumeIsThatOfTheMembers) {
+  Case c;
+  c.cone = 5;
+  c.width = 3;
+  c.swivel = 31.769;
+  c.face = 4.552;
+  c.from = -20;
+  c.to = 40;
+  const GroundCutter ground = c.ground(2);
+  const double from = 0.005, to = 0.025;
+  const double volume = ground.volumeRemoved(from, to, 20);
+  std::mt19937 random(3);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const double most = c.cutter().radius(to);
+  const double box = (to - from) * 4 * most * most;
+  int inside = 0;
+  constexpr int kPoints = 3000;
+  for (int i = 0; i < kPoints; ++i) {
+    const double x = uniform(from, to), y = uniform(-most, most), z = uniform(-most, most);
+    const double r = std::hypot(y, z), phi = std::atan2(z, y);
+    if (r > c.cutter().radius(x)) continue;
+    bool in = false;
+    for (int turn = -2; turn < 6 && !in; ++turn) {
+      in = removed(c, c.profile(), x, r, phi + turn * units::kPi, 2000);
+    }
+    inside += in;
+  }
+  const double expected = box * inside / kPoints;
+  const double scatter = box * std::sqrt(inside * (1 - double(inside) / kPoints)) / kPoints;
+  EXPECT_GT(inside, 100);
+  EXPECT_NEAR(volume, expected, 4 * scatter);
+}
+
+TEST(GroundCutter, FluteAndLandShareThePitch) {
+  Case c;
+  c.face = faceFor(10, 8);
+  c.width = 2;
+  c.swivel = 38;
+  const GroundSection s = c.ground(4).section(0.02);
+  ASSERT_EQ(s.teeth.size(), 4u);
+  for (const ToothSection& tooth : s.teeth) {
+    ASSERT_TRUE(tooth.land.has_value());
+    EXPECT_NEAR(*tooth.flute + *tooth.land, units::kPi / 2, 1e-9);
+    EXPECT_TRUE(tooth.complete);
+  }
+  EXPECT_NEAR(*s.teeth[1].edge - *s.teeth[0].edge, units::kPi / 2, 1e-12);
+  // Where the flutes meet no land is left.
+  c.width = 10;
+  EXPECT_FALSE(c.ground(4).section(0.02).teeth[0].land.has_value());
+}
+
+TEST(GroundCutter, ALeftHandCutterIsARightHandOneInTheMirror) {
+  Case c;
+  c.face = faceFor(10, 8);
+  c.swivel = 36;
+  Case mirrored = c;
+  mirrored.spiral = -c.spiral;
+  mirrored.swivel = -c.swivel;
+  mirrored.face = c.width / std::cos(c.swivel * kDegree) - c.face;  // the lower face at -face
+  const ToothSection right = c.ground(3).section(0.02).teeth[0];
+  const ToothSection left = mirrored.ground(3, CutDirection::kLeftHand).section(0.02).teeth[0];
+  EXPECT_NEAR(*left.edge, -*right.edge, 1e-9);
+  EXPECT_NEAR(*left.rake, *right.rake, 1e-6);
+  EXPECT_NEAR(*left.spiral, -*right.spiral, 1e-6);
+  EXPECT_NEAR(*left.land, *right.land, 1e-9);
+}
+
+}  // namespace
+}  // namespace flute_grinder

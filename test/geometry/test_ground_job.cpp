@@ -1,0 +1,298 @@
+// From a job to the cutter that it grinds, and the checks of a plan.
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_job.h"
+
+#include "core/generators.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace flute_grinder {
+namespace {
+
+using core::ReasonKind;
+using units::kDegree;
+using units::kMillimetre;
+
+GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+
+/// A machine on which every shipped job can be planned.
+Machine roomyMachine() {
+  Machine machine = test_support::plainMachine();
+  machine.park << -0.02, 0.08, 0, 0;
+  return machine;
+}
+
+JobPlan checked(const GrindJob& job) {
+  JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
+  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  checkGroundCutter(plan);
+  return plan;
+}
+
+/// The one reason of a kind.
+core::Reason reasonOf(const JobPlan& plan, ReasonKind kind) {
+  core::Reason found;
+  int count = 0;
+  for (const core::Reason& reason : plan.reasons) {
+    if (reason.kind == kind) found = reason, ++count;
+  }
+  EXPECT_EQ(count, 1) << core::text(plan.reasons, UnitSystem::kShop);
+  return found;
+}
+
+/// A cylinder of the design's table: D 10, S 30, rake 8, depth 1.6, straight wheel 100 x 6, its face at R sin r.
+GrindJob cylinder(double swivel_deg) {
+  GrindJob job = jobOf("paper");
+  job.cutter.cone_angle = 0;
+  job.process.wheel_width = 6 * kMillimetre;
+  job.process.setup_swivel = swivel_deg * kDegree;
+  job.process.setup_height =
+      job.cutter.end_diameter / 2 * std::sin(job.cutter.rake_angle) - 3 * kMillimetre / std::cos(swivel_deg * kDegree);
+  job.process.overtravel_end = job.process.overtravel_shank = 8 * kMillimetre;
+  return job;
+}
+
+TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
+  int jobs = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+    SCOPED_TRACE(entry.path());
+    const GrindJob job = readJobFile(entry.path());
+    JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
+    checkGroundCutter(plan);
+    EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+    ASSERT_TRUE(plan.complete.has_value());
+    EXPECT_EQ(plan.complete->from, 0);
+    EXPECT_EQ(plan.complete->to, job.cutter.flute_length);
+    // Between the three checked sections too.
+    const GroundCutter cutter = groundCutterOf(job);
+    for (int i = 0; i <= 20; ++i) {
+      for (const ToothSection& tooth : cutter.section(i / 20.0 * job.cutter.flute_length).teeth) {
+        ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);
+        EXPECT_NEAR(*tooth.rake, job.cutter.rake_angle, job.cutter.rake_tolerance);
+      }
+    }
+    ++jobs;
+  }
+  EXPECT_GE(jobs, 8);
+}
+
+TEST(GroundJob, AWheelSwivelledToTheSpiralAngleIsRefusedForItsRake) {
+  const JobPlan plan = checked(cylinder(30));
+  EXPECT_EQ(plan.fault, PlanFault::kTool);
+  const core::Reason reason = reasonOf(plan, ReasonKind::kRake);
+  EXPECT_NEAR(reason.value / kDegree, 25.420, 0.002);
+  EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
+  EXPECT_EQ(reason.x, 0);
+  EXPECT_TRUE(checked(cylinder(38)).good());  // 7.886 deg
+}
+
+TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
+  GrindJob job = cylinder(38);
+  job.cutter.rake_tolerance = 0.115 * kDegree;
+  EXPECT_TRUE(checked(job).good());
+  job.cutter.rake_tolerance = 0.113 * kDegree;
+  EXPECT_EQ(checked(job).fault, PlanFault::kTool);
+}
+
+TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
+  GrindJob job = jobOf("paper");
+  job.process.overtravel_shank = 1 * kMillimetre;
+  JobPlan plan = checked(job);
+  EXPECT_EQ(plan.fault, PlanFault::kTool);
+  const core::Reason reason = reasonOf(plan, ReasonKind::kIncomplete);
+  EXPECT_EQ(reason.low, 0);
+  EXPECT_EQ(reason.limit, job.cutter.flute_length);
+  ASSERT_TRUE(plan.complete.has_value());
+  EXPECT_EQ(plan.complete->to, reason.value);
+  // A longer stroke changes nothing up to there, and something behind.
+  GrindJob longer = job;
+  longer.process.overtravel_shank = 10 * kMillimetre;
+  const GroundCutter ground = groundCutterOf(job), whole = groundCutterOf(longer);
+  const double inside = plan.complete->to - 0.05 * kMillimetre, behind = plan.complete->to + 0.5 * kMillimetre;
+  EXPECT_NEAR(*ground.section(inside).teeth[0].rake, *whole.section(inside).teeth[0].rake, 1e-6);
+  EXPECT_NEAR(ground.areaRemoved(ground.section(inside)), whole.areaRemoved(whole.section(inside)), 1e-12);
+  EXPECT_LT(ground.areaRemoved(ground.section(behind)), whole.areaRemoved(whole.section(behind)));
+
+  job.process.incomplete_ok = true;
+  plan = checked(job);
+  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  EXPECT_LT(plan.complete->to, job.cutter.flute_length);
+}
+
+TEST(GroundJob, AToothWithoutALandIsRefused) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  job.process.wheel_width = 10 * kMillimetre;
+  job.process.setup_height -= 3.5 * kMillimetre / std::cos(job.process.setup_swivel);  // the same upper face
+  job.process.overtravel_end = job.process.overtravel_shank = 12 * kMillimetre;
+  const core::Reason reason = reasonOf(checked(job), ReasonKind::kLand);
+  EXPECT_GT(reason.value, reason.limit);
+  EXPECT_NEAR(reason.limit, 90 * kDegree, 1e-12);
+}
+
+TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
+  GrindJob job = jobOf("unequal_d12_t4");
+  for (const double narrow : {20.0, 340.0}) {
+    job.tooth_angles = {0, narrow * kDegree};
+    const core::Reason reason = reasonOf(checked(job), ReasonKind::kLand);
+    EXPECT_NEAR(reason.limit, 20 * kDegree, 1e-12);
+  }
+}
+
+TEST(GroundJob, CornersThatDoNotFitAreRefused) {
+  GrindJob job = jobOf("paper");
+  job.process.wheel_profile = WheelShape::kPoints;
+  job.wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
+  job.process.wheel_corner_radius_lower = 1 * kMillimetre;
+  const JobPlan plan = checked(job);
+  EXPECT_EQ(plan.fault, PlanFault::kTool);
+  EXPECT_NE(core::text(plan.reasons, UnitSystem::kShop).find("corner_radius"), std::string::npos);
+}
+
+TEST(GroundJob, EveryProfileIsTheWheelsOfItsFigures) {
+  GrindJob job = jobOf("paper");
+  GrindProcess& p = job.process;
+  p.wheel_corner_radius_lower = 0.2e-3;
+  p.wheel_corner_radius_upper = 0.4e-3;
+  WheelProfile wheel = wheelOf(job);
+  EXPECT_DOUBLE_EQ(wheel.radius(0), 50e-3);
+  EXPECT_NEAR(wheel.radius(-1.5e-3), 49.8e-3, 1e-9);
+  EXPECT_NEAR(wheel.radius(1.5e-3), 49.6e-3, 1e-9);
+  p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
+  for (const WheelShape shape : {WheelShape::kAngled, WheelShape::kCup}) {
+    p.wheel_profile = shape;
+    p.wheel_angle = 30 * kDegree;
+    const double drop = 3e-3 * std::tan(30 * kDegree);
+    p.wheel_side = WheelFace::kUpper;
+    EXPECT_NEAR(wheelOf(job).radius(1.5e-3), 50e-3, 1e-12);
+    EXPECT_NEAR(wheelOf(job).radius(-1.5e-3), 50e-3 - drop, 1e-12);
+    p.wheel_side = WheelFace::kLower;
+    EXPECT_NEAR(wheelOf(job).radius(-1.5e-3), 50e-3, 1e-12);
+  }
+  p.wheel_profile = WheelShape::kFullRadius;
+  EXPECT_NEAR(wheelOf(job).radius(0), 50e-3, 1e-12);
+  EXPECT_NEAR(wheelOf(job).radius(1.5e-3 * std::sin(0.7)), 48.5e-3 + 1.5e-3 * std::cos(0.7), 1e-9);
+  p.wheel_profile = WheelShape::kPoints;
+  job.wheel_points = {{-1.5e-3, 48e-3}, {0, 50e-3}, {1.5e-3, 49e-3}};
+  EXPECT_NEAR(wheelOf(job).radius(-0.75e-3), 49e-3, 1e-12);
+  EXPECT_NEAR(wheelOf(job).radius(0.75e-3), 49.5e-3, 1e-12);
+}
+
+TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  job.process.wheel_wear_per_pass = 0.05 * kMillimetre;
+  job.process.wheel_wear = 1 * kMillimetre;
+  const GroundSection section = groundCutterOf(job).section(0.01);
+  // Depths 0.4, 0.8, 1.2, 1.55, 1.6 and 1.6 mm: the fifth of six passes of a tooth is its deepest.
+  for (std::size_t i = 0; i < 4; ++i) {
+    GrindJob one = job;
+    one.tooth_angles = {0};
+    one.process.wheel_wear_per_pass = 0;
+    one.process.wheel_wear = 1 * kMillimetre + static_cast<double>(6 * i + 4) * 0.05 * kMillimetre;
+    const ToothSection alone = groundCutterOf(one).section(0.01).teeth[0];
+    EXPECT_DOUBLE_EQ(*section.teeth[i].rake, *alone.rake);
+    EXPECT_DOUBLE_EQ(section.teeth[i].depth, alone.depth);
+  }
+  EXPECT_NE(*section.teeth[0].rake, *section.teeth[3].rake);
+}
+
+TEST(GroundJob, EarlierPassesRemoveNothingMore) {
+  for (const char* name : {"paper", "roughing_d10_t4", "taper_d6_t6", "mould_cone_d2_t2", "left_hand_d8_t3"}) {
+    SCOPED_TRACE(name);
+    GrindJob job = jobOf(name);
+    job.process.wheel_wear_per_pass = 0;
+    const GroundCutter whole = groundCutterOf(job);
+    const double deepest = std::max(job.process.depth, job.process.depthEnd());
+    for (const double part : {0.25, 0.5, 0.9}) {
+      GrindJob earlier = job;
+      earlier.process.depth = part * job.process.depth;
+      earlier.process.depth_end = part * job.process.depthEnd();
+      earlier.process.infeed = earlier.process.finish_infeed = part * deepest;
+      const GroundCutter before = groundCutterOf(earlier);
+      for (const double at : {0.0, 0.4, 1.0}) {
+        const double x = at * job.cutter.flute_length;
+        const ToothSection first = before.section(x).teeth[0], last = whole.section(x).teeth[0];
+        if (!first.edge) continue;
+        const double sign = job.cutter.cut == CutDirection::kRightHand ? 1 : -1;
+        EXPECT_LE(sign * *first.edge, sign * *last.edge + 1e-9);
+        EXPECT_LE(*first.flute - sign * *first.edge, *last.flute - sign * *last.edge + 1e-9);
+        EXPECT_LE(first.depth, last.depth + 1e-9);
+      }
+    }
+  }
+}
+
+TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
+  GrindJob job = cylinder(38);
+  job.process.wheel_width = 2 * kMillimetre;
+  job.process.setup_height += 2 * kMillimetre / std::cos(38 * kDegree);
+  job.tooth_angles = {0, 180 * kDegree};
+  job.spiral_angles = {30 * kDegree, 33 * kDegree};
+  ASSERT_TRUE(validate(job).empty());
+  const GroundSection section = groundCutterOf(job).section(0.015);
+  EXPECT_NEAR(*section.teeth[0].spiral, 30 * kDegree, 1e-4);
+  EXPECT_NEAR(*section.teeth[1].spiral, 33 * kDegree, 1e-4);
+}
+
+TEST(GroundJob, AStraightGrooveIsAsDeepAsAskedAtBothEnds) {
+  // Straight flutes on a cylinder, the floor formed by the wheel's lowest point: the core tapers as asked.
+  GrindJob job = cylinder(0);
+  job.cutter.spiral_angle = 0;
+  job.process.wheel_diameter = 20 * kMillimetre;
+  job.process.setup_height = 0;
+  job.process.depth = 1 * kMillimetre;
+  job.process.depth_end = 2 * kMillimetre;
+  job.process.infeed = 2 * kMillimetre;
+  job.cutter.rake_angle = 0;
+  const GroundCutter cutter = groundCutterOf(job);
+  const double slope = 1.0 / 30;  // the wheel touches the floor this far off its lowest point
+  const double deeper = 10 * kMillimetre * (std::sqrt(1 + slope * slope) - 1);
+  for (const double at : {0.0, 0.5, 1.0}) {
+    const GroundSection section = cutter.section(at * job.cutter.flute_length);
+    EXPECT_NEAR(section.radius - section.core_radius, (1 + at) * kMillimetre + deeper, 1e-9);
+  }
+}
+
+TEST(GroundJob, AnEngraverOf30DegIsPossible) {
+  // Half round: the groove's floor runs along the axis, just above it.
+  GrindJob job = jobOf("paper");
+  CutterGeometry& c = job.cutter;
+  c.end_diameter = 0.2 * kMillimetre;
+  c.cone_angle = 30 * kDegree;
+  c.spiral_angle = 0;
+  c.rake_angle = 0;
+  c.flute_length = 4 * kMillimetre;
+  c.shank_diameter = 6 * kMillimetre;
+  GrindProcess& p = job.process;
+  p.depth = 0.095 * kMillimetre;
+  p.depth_end = p.depth + c.flute_length * std::tan(c.cone_angle);
+  p.infeed = 0.5 * kMillimetre;
+  p.overtravel_end = 0;
+  p.overtravel_shank = 0.5 * kMillimetre;
+  p.wheel_width = 10 * kMillimetre;
+  p.setup_swivel = 0;
+  p.setup_height = -p.wheel_width / 2;  // the upper face at the axis
+  const JobPlan plan = checked(job);
+  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  const GroundSection end = groundCutterOf(job).section(c.flute_length);
+  EXPECT_NEAR(end.core_radius, 0.005 * kMillimetre, 1e-9);
+  EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
+}
+
+TEST(GroundJob, ARefusedOrAbandonedPlanIsLeftAsItIs) {
+  GrindJob job = jobOf("paper");
+  job.process.feed = -1;
+  JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
+  checkGroundCutter(plan);
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  EXPECT_EQ(plan.reasons.size(), 1u);
+  EXPECT_FALSE(plan.complete.has_value());
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,192 @@
+// The set-up of a job, rounded as in a file, against the ground cutter.
+
+#include "flute_grinder/geometry/job_setup.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/setup_sheet.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace flute_grinder {
+namespace {
+
+using units::kDegree;
+using units::kMillimetre;
+
+constexpr Range kMachine{-60 * kDegree, 60 * kDegree};
+
+GrindJob shipped(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+
+JobSetup solved(const GrindJob& job, std::optional<SetupFigure> keep = std::nullopt) {
+  const auto result = solveJobSetup(job, kMachine, keep);
+  if (const auto* refusal = std::get_if<std::string>(&result)) {
+    ADD_FAILURE() << *refusal;
+    return {};
+  }
+  return std::get<JobSetup>(result);
+}
+
+std::string refused(const GrindJob& job, const Range& machine = kMachine,
+                    std::optional<SetupFigure> keep = std::nullopt) {
+  const auto result = solveJobSetup(job, machine, keep);
+  const auto* refusal = std::get_if<std::string>(&result);
+  EXPECT_NE(refusal, nullptr);
+  return refusal ? *refusal : "";
+}
+
+void expectContains(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+double rakeAt(const GrindJob& job, double x, std::size_t tooth = 0) {
+  return groundCutterOf(job).section(x).teeth.at(tooth).rake.value() / kDegree;
+}
+
+const JobEdit* editOf(const JobSetup& setup, const std::string& key) {
+  for (const JobEdit& edit : setup.edits) {
+    if (edit.key == key) return &edit;
+  }
+  return nullptr;
+}
+
+// Rounded to what is written, the rake is right at both ends, from the smallest cutter to the largest.
+TEST(JobSetup, EveryShippedJobIsSolvedToAHundredthOfADegree) {
+  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+    const GrindJob job = readJobFile(entry.path());
+    const JobSetup setup = solved(job);
+    const double asked = job.cutter.rake_angle / kDegree, length = job.cutter.flute_length;
+    EXPECT_NEAR(rakeAt(setup.job, 0), asked, 0.01) << entry;
+    EXPECT_NEAR(rakeAt(setup.job, length), asked, 0.01) << entry;
+    EXPECT_LE(setup.least_rake, (asked + 0.01) * kDegree) << entry;
+    EXPECT_GE(setup.largest_rake, (asked - 0.01) * kDegree) << entry;
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    EXPECT_EQ(setup.job.process.depth, job.process.depth) << entry;
+    EXPECT_EQ(editOf(setup, "process.depth_mm"), nullptr) << entry;
+    EXPECT_GE(setup.job.process.overtravel_end, setup.overtravel[0]) << entry;
+    EXPECT_GE(setup.job.process.overtravel_shank, setup.overtravel[1]) << entry;
+    EXPECT_LE(setup.job.process.overtravel_end, std::max(job.process.overtravel_end, setup.overtravel[0] + 1e-5));
+    EXPECT_LE(setup.job.process.overtravel_shank, std::max(job.process.overtravel_shank, setup.overtravel[1] + 1e-5));
+  }
+}
+
+// What a file with the edits would have.
+TEST(JobSetup, TheEditsSayTheJobsFigures) {
+  GrindJob job = shipped("paper");
+  job.cutter.core_diameter = 7 * kMillimetre;
+  job.process.overtravel_shank = 0;
+  const JobSetup setup = solved(job);
+  const GrindProcess& p = setup.job.process;
+  ASSERT_EQ(setup.edits.size(), 4u);
+  const auto number = [&](const char* key) { return std::stod(editOf(setup, key)->value); };
+  EXPECT_EQ(number("process.setup.swivel_deg") * kDegree, p.setup_swivel);
+  EXPECT_EQ(number("process.setup.height_mm") * kMillimetre, p.setup_height);
+  EXPECT_EQ(number("process.depth_mm") * kMillimetre, p.depth);
+  EXPECT_EQ(number("process.overtravel_mm[1]") * kMillimetre, p.overtravel_shank);
+}
+
+TEST(JobSetup, TheCoreIsGroundToAMicrometre) {
+  for (const char* name : {"paper", "left_hand_d8_t3", "roughing_d10_t4", "unequal_d12_t4"}) {
+    GrindJob job = shipped(name);
+    const double core = groundCutterOf(job).section(0).core_radius * 2;
+    job.cutter.core_diameter = core - 0.05 * kMillimetre;
+    const JobSetup setup = solved(job);
+    EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6) << name;
+    EXPECT_NEAR(setup.core_diameter, job.cutter.core_diameter, 1e-6) << name;
+    EXPECT_NEAR(rakeAt(setup.job, 0), job.cutter.rake_angle / kDegree, 0.01) << name;
+    EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), job.cutter.rake_angle / kDegree, 0.01) << name;
+  }
+}
+
+TEST(JobSetup, ADepthThatIsFoundAgreesWithTheTaperToTheFlutesEnd) {
+  GrindJob job = shipped("taper_d6_t6");
+  job.cutter.core_diameter = 3.9 * kMillimetre;
+  const JobSetup setup = solved(job);
+  EXPECT_NE(setup.job.process.depth, job.process.depth);
+  EXPECT_EQ(setup.job.process.depth_end, job.process.depth_end);
+  EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
+  EXPECT_NEAR(rakeAt(setup.job, 0), 12, 0.01);
+  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 12, 0.01);
+}
+
+TEST(JobSetup, AWornWheelIsTakenAsItIs) {
+  GrindJob job = shipped("paper");
+  job.process.wheel_wear = 20 * kMillimetre;
+  const JobSetup setup = solved(job);
+  EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.01);
+  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.01);
+  EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(shipped("paper")).job.process.setup_swivel),
+            0.01 * kDegree);
+}
+
+TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
+  GrindJob job = shipped("roughing_d10_t4");
+  const JobSetup equal = solved(job);
+  job.spiral_angles = {34.9 * kDegree, 35.1 * kDegree, 34.9 * kDegree, 35.1 * kDegree};
+  job.cutter.spiral_angle = job.spiral_angles[0];
+  const JobSetup setup = solved(job);
+  EXPECT_NEAR(setup.job.process.setup_swivel, equal.job.process.setup_swivel, 1e-4 * kDegree);
+  const double low = rakeAt(setup.job, 0.011, 0), high = rakeAt(setup.job, 0.011, 1);
+  EXPECT_NEAR((low + high) / 2, 8, 0.02);
+  EXPECT_NEAR(setup.least_rake / kDegree, std::min(low, high), 0.01);
+  EXPECT_NEAR(setup.largest_rake / kDegree, std::max(low, high), 0.01);
+}
+
+TEST(JobSetup, WhatIsKeptIsNotWritten) {
+  GrindJob job = shipped("roughing_d10_t4");
+  job.process.setup_swivel = 40.123456 * kDegree;
+  JobSetup setup = solved(job, SetupFigure::kSwivel);
+  EXPECT_EQ(setup.job.process.setup_swivel, job.process.setup_swivel);
+  EXPECT_EQ(editOf(setup, "process.setup.swivel_deg"), nullptr);
+  EXPECT_NE(editOf(setup, "process.setup.height_mm"), nullptr);
+  EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.01);
+  job.process.setup_height = -1.2345678 * kMillimetre;
+  setup = solved(job, SetupFigure::kHeight);
+  EXPECT_EQ(setup.job.process.setup_height, job.process.setup_height);
+  EXPECT_EQ(editOf(setup, "process.setup.height_mm"), nullptr);
+  EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.01);
+}
+
+TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
+  GrindJob job = shipped("paper");
+  std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
+  expectContains(text, "a swivel of 31.76");
+  expectContains(text, "-20 to 30 deg; change cutter.spiral_angle_deg");
+  job.process.setup_swivel = 70 * kDegree;
+  expectContains(refused(job, kMachine, SetupFigure::kSwivel), "process.setup.swivel_deg = 70 deg");
+  job.cutter.core_diameter = 7 * kMillimetre;
+  expectContains(refused(job, kMachine, SetupFigure::kHeight), "cutter.core_diameter_mm");
+  job = shipped("paper");
+  job.tooth_angles.clear();
+  for (int i = 0; i < 8; ++i) job.tooth_angles.push_back(i * 45 * kDegree);
+  text = refused(job);
+  expectContains(text, "no land is left");
+  expectContains(text, "change process.wheel.width_mm");
+  job = shipped("paper");
+  job.cutter.core_diameter = 7 * kMillimetre;
+  job.process.finish_infeed = 3 * kMillimetre;
+  expectContains(refused(job), "process.finish_infeed_mm = 3 mm");
+}
+
+TEST(SetupSheet, TellsWhatToTouch) {
+  GrindJob job = shipped("paper");
+  TouchOff touch = touchOffOf(job);
+  EXPECT_EQ(touch.y, 0);
+  EXPECT_NEAR(touch.z_for_y / kMillimetre, -2.788, 1e-9);
+  EXPECT_NEAR(touch.z / kMillimetre, 1.5 - 2.788, 1e-9);
+  job.process.wheel_wear = 0.25 * kMillimetre;
+  // The larger edge of a tapered wheel touches first.
+  job.process.wheel_profile = WheelShape::kAngled;
+  job.process.wheel_angle = 20 * kDegree;
+  touch = touchOffOf(job);
+  EXPECT_NEAR(touch.y / kMillimetre, -0.25, 1e-9);
+  EXPECT_NEAR(touch.z_for_y / kMillimetre, -(2.788 + 1.5 * std::cos(31.769 * kDegree)), 1e-6);
+  EXPECT_NEAR(upperFaceHeight(job) / kMillimetre, 4.552, 1e-3);
+  EXPECT_NEAR(lowerFaceHeight(job) / kMillimetre, 2 * 2.788 - 4.552, 1e-3);
+}
+
+}  // namespace
+}  // namespace flute_grinder

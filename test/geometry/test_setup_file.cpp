@@ -1,0 +1,111 @@
+// A set-up written into its job's file, or nothing.
+
+#include "flute_grinder/geometry/setup_file.h"
+
+#include "flute_grinder/core/units.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace flute_grinder {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Range kMachine{-60 * units::kDegree, 60 * units::kDegree};
+
+class SetupFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = ::testing::TempDir() + "setup_file.XXXXXX";
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    job_ = folder_ / "job.yaml";
+    fs::copy_file(SOURCE_DIR "/jobs/paper.yaml", job_);
+    fs::permissions(job_, fs::perms(0640));
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string textOf(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  void write(const std::string& text) const { std::ofstream(job_, std::ios::binary) << text; }
+
+  JobSetup setup() const {
+    return std::get<JobSetup>(solveJobSetup(readJobFile(job_, unsolvedFields({})), kMachine, std::nullopt));
+  }
+  std::ptrdiff_t filesInFolder() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+  static std::string refusal(const fs::path& path, const JobSetup& setup) {
+    try {
+      writeSetup(path, setup);
+    } catch (const JobFileError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_, job_;
+};
+
+TEST_F(SetupFile, IsReadBackAsSolved) {
+  const JobSetup solved = setup();
+  const std::string before = textOf(job_);
+  writeSetup(job_, solved);
+  const GrindJob read = readJobFile(job_);
+  EXPECT_EQ(read.process.setup_swivel, solved.job.process.setup_swivel);
+  EXPECT_EQ(read.process.setup_height, solved.job.process.setup_height);
+  EXPECT_NE(textOf(job_), before);
+  EXPECT_EQ(textOf(job_).size(), before.size() + 3);  // 31.769 to 31.7675, 2.788 to 2.78785
+  EXPECT_EQ(filesInFolder(), 1);
+  EXPECT_EQ(fs::status(job_).permissions(), fs::perms(0640));
+}
+
+TEST_F(SetupFile, ALinkToItStays) {
+  const fs::path link = folder_ / "link.yaml";
+  fs::create_symlink("job.yaml", link);
+  writeSetup(link, setup());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_NE(textOf(job_).find("31.7675"), std::string::npos);
+}
+
+TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
+  const JobSetup solved = setup();
+  std::string text = textOf(job_);
+  text.replace(text.find("rake_angle_deg: 8"), 17, "rake_angle_deg: 9");
+  write(text);
+  const std::string said = refusal(job_, solved);
+  EXPECT_NE(said.find("has changed"), std::string::npos) << said;
+  EXPECT_NE(said.find("process.setup.swivel_deg: 31.7675"), std::string::npos) << said;
+  EXPECT_EQ(textOf(job_), text);
+}
+
+TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreTold) {
+  std::string text = textOf(job_);
+  text.replace(text.find("swivel_deg: "), 12, "swivel_deg: &x ");
+  write(text);
+  const std::string said = refusal(job_, setup());
+  EXPECT_NE(said.find(":28: has an anchor"), std::string::npos) << said;
+  EXPECT_NE(said.find("process.setup.height_mm: 2.78785"), std::string::npos) << said;
+  EXPECT_EQ(textOf(job_), text);
+  EXPECT_EQ(filesInFolder(), 1);
+}
+
+TEST_F(SetupFile, AFileThatIsGoneIsNotMade) {
+  const JobSetup solved = setup();
+  const std::string said = refusal(folder_ / "missing.yaml", solved);
+  EXPECT_NE(said.find("missing.yaml: cannot be read"), std::string::npos) << said;
+  EXPECT_EQ(filesInFolder(), 1);
+}
+
+}  // namespace
+}  // namespace flute_grinder

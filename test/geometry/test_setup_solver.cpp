@@ -1,0 +1,425 @@
+// Set-ups against documented figures, the ground cutter's sections, and a search by brute force.
+
+#include "brute_force.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/setup_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <stdexcept>
+
+namespace flute_grinder {
+namespace {
+
+using units::kDegree;
+using units::kMillimetre;
+using units::kPi;
+
+std::vector<double> equalTeeth(int n) {
+  std::vector<double> angles;
+  for (int i = 0; i < n; ++i) angles.push_back(2 * kPi * i / n);
+  return angles;
+}
+
+/// A cutter of two teeth and a straight wheel, in the shop's units.
+struct Shop {
+  double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
+};
+
+SetupRequest requestFor(const Shop& s) {
+  SetupRequest r;
+  r.cutter = {s.diameter * kMillimetre, s.cone * kDegree, s.spiral * kDegree, s.rake * kDegree, s.length * kMillimetre};
+  r.rake = s.rake * kDegree;
+  r.tooth_angles = equalTeeth(2);
+  r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
+  r.nominal_radius = s.wheel / 2 * kMillimetre;
+  r.depth = s.depth * kMillimetre;
+  r.least_swivel = -60 * kDegree;
+  r.largest_swivel = 60 * kDegree;
+  return r;
+}
+
+SolvedSetup solved(const SetupRequest& request) {
+  const auto result = solveSetup(request);
+  if (const auto* refusal = std::get_if<SetupRefusal>(&result)) {
+    ADD_FAILURE() << "refused: " << toString(refusal->problem);
+    return {};
+  }
+  return std::get<SolvedSetup>(result);
+}
+
+SetupRefusal refused(const SetupRequest& request) {
+  const auto result = solveSetup(request);
+  if (std::holds_alternative<SolvedSetup>(result)) {
+    ADD_FAILURE() << "solved";
+    return {};
+  }
+  return std::get<SetupRefusal>(result);
+}
+
+/// What a set-up grinds with a stroke between two places.
+GroundCutter ground(const SetupRequest& r, const SolvedSetup& s, double from, double to) {
+  const ConicalCutter cutter(r.cutter);
+  const GrindStroke stroke{from, to, -s.depth, r.y_per_x, 0};
+  std::vector<GroundTooth> teeth;
+  for (const double angle : r.tooth_angles) teeth.push_back({angle, 0});
+  return {cutter, r.direction, {{WheelSweep(cutter, r.wheel, r.nominal_radius, s.setup, stroke)}}, teeth};
+}
+
+GroundCutter ground(const SetupRequest& r, const SolvedSetup& s) {
+  return ground(r, s, -s.overtravel[0], r.cutter.flute_length + s.overtravel[1]);
+}
+
+double rakeAt(const GroundCutter& ground, double x_mm) {
+  return ground.section(x_mm * kMillimetre).teeth.at(0).rake.value() / kDegree;
+}
+
+TEST(SetupSolver, ThePapersCutterIsSetAsDocumented) {
+  const SetupRequest request = requestFor({});
+  const SolvedSetup s = solved(request);
+  EXPECT_NEAR(s.setup.swivel / kDegree, 31.769, 0.002);
+  EXPECT_NEAR(s.setup.height / kMillimetre, 2.788, 0.001);
+  EXPECT_NEAR((s.setup.height + 0.0015 / std::cos(s.setup.swivel)) / kMillimetre, 4.552, 0.001);
+  const GroundCutter g = ground(request, s);
+  for (const double x : {1.0, 9.0, 17.0, 29.0}) {
+    EXPECT_GT(rakeAt(g, x), 7.999) << x;
+    EXPECT_LT(rakeAt(g, x), 8.023) << x;
+  }
+  EXPECT_NEAR(s.least_rake / kDegree, 8.000, 0.0005);
+  EXPECT_NEAR(s.largest_rake / kDegree, 8.022, 0.0005);
+}
+
+/// A cutter's middle, from 7 to 93 % of its flute, as a cutter of its own.
+Shop middleOf(Shop s) {
+  s.diameter += 2 * 0.07 * s.length * std::tan(s.cone * kDegree);
+  s.length *= 0.86;
+  return s;
+}
+
+// Documented, solved by another program for the rake at 7 and 93 % of the flute.
+TEST(SetupSolver, SteeperConesAreSetAsDocumented) {
+  const Shop right{5, 10, 20, 14, 15, 0.7, 75, 1.5};
+  const auto heightOfAll = [](const Shop& s, double height) {
+    return height / kMillimetre - 0.07 * s.length * std::tan(s.cone * kDegree) * std::sin(s.rake * kDegree);
+  };
+  SetupRequest request = requestFor(middleOf(right));
+  SolvedSetup s = solved(request);
+  EXPECT_NEAR(s.setup.swivel / kDegree, 23.28, 0.01);
+  EXPECT_NEAR(heightOfAll(right, s.setup.height), 0.603, 0.001);
+  EXPECT_NEAR(rakeAt(ground(request, s), middleOf(right).length / 2), 14.61, 0.005);
+
+  const Shop left{6, 7, -25, 12, 18, 0.9, 80, 2};
+  request = requestFor(middleOf(left));
+  request.direction = CutDirection::kLeftHand;
+  s = solved(request);
+  EXPECT_NEAR(s.setup.swivel / kDegree, -28.46, 0.005);
+  EXPECT_NEAR(heightOfAll(left, s.setup.height), -0.230, 0.0005);
+  EXPECT_NEAR(rakeAt(ground(request, s), middleOf(left).length / 2), 12.28, 0.005);
+}
+
+TEST(SetupSolver, RakeAndCoreAreSolvedTogether) {
+  for (const double core_mm : {6.6, 7.0814, 7.4}) {
+    SetupRequest request = requestFor({});
+    request.core_diameter = core_mm * kMillimetre;
+    const SolvedSetup s = solved(request);
+    const GroundCutter g = ground(request, s);
+    EXPECT_NEAR(g.section(0).core_radius * 2 / kMillimetre, core_mm, 1e-6);
+    EXPECT_NEAR(s.core_diameter / kMillimetre, core_mm, 1e-6);
+    EXPECT_NEAR(rakeAt(g, 0), 8, 0.001);
+    EXPECT_NEAR(rakeAt(g, 30), 8, 0.001);
+  }
+}
+
+TEST(SetupSolver, WhatIsKeptStaysAndTheRestFollows) {
+  SetupRequest request = requestFor({});
+  const SolvedSetup all = solved(request);
+  request.depth = 0.5 * kMillimetre;
+  request.keep = SetupFigure::kSwivel;
+  request.kept = {all.setup.swivel, 0};
+  SolvedSetup s = solved(request);
+  EXPECT_DOUBLE_EQ(s.setup.swivel, all.setup.swivel);
+  EXPECT_NEAR(s.setup.height, all.setup.height, 1e-6);
+  EXPECT_NEAR(s.depth, all.depth, 1e-6);
+  request.keep = SetupFigure::kHeight;
+  request.kept = {0, all.setup.height};
+  s = solved(request);
+  EXPECT_NEAR(s.setup.swivel, all.setup.swivel, 1e-4);
+  EXPECT_DOUBLE_EQ(s.setup.height, all.setup.height);
+  EXPECT_NEAR(s.depth, all.depth, 1e-6);
+}
+
+TEST(SetupSolver, OnACylinderOneFigureIsFree) {
+  SetupRequest request = requestFor({10, 0, 30, 8, 30, 1.6, 100, 6});
+  SolvedSetup s = solved(request);
+  EXPECT_NEAR(s.setup.height + 0.003 / std::cos(s.setup.swivel), 0.005 * std::sin(8 * kDegree), 1e-9);
+  EXPECT_NEAR(rakeAt(ground(request, s), 11), 8, 1e-3);
+  request.core_diameter = 7 * kMillimetre;
+  request.kept = {30 * kDegree, -3 * kMillimetre};
+  for (const auto& row : kSetupFigures) {
+    request.keep = row.value;
+    s = solved(request);
+    const GroundCutter g = ground(request, s);
+    EXPECT_NEAR(rakeAt(g, 11), 8, 1e-3) << row.name;
+    EXPECT_NEAR(g.section(0.01).core_radius * 2, 7 * kMillimetre, 1e-8) << row.name;
+    if (row.value == SetupFigure::kSwivel) {
+      EXPECT_EQ(s.setup.swivel, request.kept.swivel);
+    }
+    if (row.value == SetupFigure::kHeight) {
+      EXPECT_EQ(s.setup.height, request.kept.height);
+    }
+    if (row.value == SetupFigure::kDepth) {
+      EXPECT_EQ(s.depth, request.depth);
+    }
+  }
+}
+
+TEST(SetupSolver, AStraightFluteOnACylinderIsSetSquare) {
+  const SetupRequest request = requestFor({10, 0, 0, 8, 30, 1.6, 100, 6});
+  const SolvedSetup s = solved(request);
+  EXPECT_NEAR(s.setup.swivel, 0, 1e-9);
+  EXPECT_NEAR(s.setup.height, 0.005 * std::sin(8 * kDegree) - 0.003, 1e-9);
+  EXPECT_NEAR(s.core_diameter, 2 * (0.005 - 0.0016), 1e-9);
+  EXPECT_EQ(s.overtravel[0], 0);
+  EXPECT_EQ(s.overtravel[1], 0);
+}
+
+TEST(SetupSolver, ABackTaperAndEveryProfileAreSet) {
+  SetupRequest request = requestFor({16, -1, 35, 8, 30, 2, 100, 3});
+  EXPECT_NEAR(rakeAt(ground(request, solved(request)), 15), 8, 0.01);
+  request = requestFor({});
+  for (const WheelProfile& wheel :
+       {WheelProfile::straight(0.1, 0.003, {2e-4, 2e-4}), WheelProfile::angled(0.1, 0.006, 30 * kDegree),
+        WheelProfile({{-0.002, 0.048}, {0, 0.0499}, {0.0015, 0.05}})}) {
+    request.wheel = wheel;
+    const GroundCutter g = ground(request, solved(request));
+    EXPECT_NEAR(rakeAt(g, 0), 8, 0.01);
+    EXPECT_NEAR(rakeAt(g, 30), 8, 0.01);
+  }
+}
+
+TEST(SetupSolver, TheMirroredToolHasTheMirroredSetUp) {
+  SetupRequest request = requestFor({});
+  request.wheel = WheelProfile::angled(0.1, 0.004, 20 * kDegree, {1e-4, 2e-4});
+  request.core_diameter = 7.4 * kMillimetre;
+  SetupRequest mirrored = request;
+  mirrored.direction = CutDirection::kLeftHand;
+  mirrored.cutter.spiral_angle = -request.cutter.spiral_angle;
+  mirrored.cutter.rake_angle = -request.cutter.rake_angle;  // Z falls where it rose
+  mirrored.wheel = WheelProfile::angled(0.1, 0.004, -20 * kDegree, {2e-4, 1e-4});
+  const SolvedSetup right = solved(request), left = solved(mirrored);
+  EXPECT_NEAR(left.setup.swivel, -right.setup.swivel, 1e-9);
+  EXPECT_NEAR(left.setup.height, -right.setup.height, 1e-9);
+  EXPECT_NEAR(left.depth, right.depth, 1e-9);
+  EXPECT_NEAR(left.land, right.land, 1e-9);
+  EXPECT_NEAR(rakeAt(ground(mirrored, left), 10), rakeAt(ground(request, right), 10), 1e-6);
+}
+
+TEST(SetupSolver, WithItsOvertravelTheFluteIsCompleteAndWithLessItIsNot) {
+  for (const Shop& shop : {Shop{}, Shop{5, 10, 20, 14, 15, 0.7, 75, 1.5}, Shop{16, -1, 35, 8, 30, 2, 100, 3}}) {
+    const SetupRequest request = requestFor(shop);
+    const SolvedSetup s = solved(request);
+    const double length = request.cutter.flute_length;
+    EXPECT_EQ(s.complete_from, 0);
+    EXPECT_EQ(s.complete_to, length);
+    const GroundCutter g = ground(request, s);
+    for (int i = 0; i <= 10; ++i)
+      EXPECT_TRUE(g.section(length * i / 10).teeth[0].complete) << shop.diameter << ' ' << i;
+  }
+  constexpr double kLess = 0.2 * kMillimetre;
+  SetupRequest request = requestFor({});
+  SolvedSetup s = solved(request);
+  GroundCutter shorter = ground(request, s, 0, request.cutter.flute_length + s.overtravel[1] - kLess);
+  EXPECT_FALSE(shorter.section(request.cutter.flute_length).teeth[0].complete);
+  request = requestFor({16, -1, 35, 8, 30, 2, 100, 3});
+  s = solved(request);
+  shorter = ground(request, s, -s.overtravel[0] + kLess, request.cutter.flute_length);
+  EXPECT_FALSE(shorter.section(0).teeth[0].complete);
+}
+
+TEST(SetupSolver, WhatCannotBeSetIsRefusedWithWhatCanBeHad) {
+  SetupRequest request = requestFor({});
+  request.largest_swivel = 30 * kDegree;
+  SetupRefusal r = refused(request);
+  EXPECT_EQ(r.problem, SetupProblem::kSwivel);
+  EXPECT_NEAR(r.asked / kDegree, 31.769, 0.002);
+  EXPECT_EQ(r.largest, 30 * kDegree);
+
+  request = requestFor({});
+  request.tooth_angles = equalTeeth(8);
+  r = refused(request);
+  EXPECT_EQ(r.problem, SetupProblem::kLand);
+  EXPECT_STREQ(rowOf(r.problem).change, "process.wheel_width");
+  // The flute takes 48.6 deg at the small end, of a pitch of 45.
+  EXPECT_NEAR(r.least / kMillimetre, 5 * (45 - 48.613) * kDegree, 1e-3);
+
+  request = requestFor({});
+  request.core_diameter = 7 * kMillimetre;
+  request.keep = SetupFigure::kSwivel;
+  EXPECT_EQ(refused(request).problem, SetupProblem::kOverdetermined);
+
+  // With the wheel over the axis the core is least.
+  request = requestFor({10, 0, 30, 8, 30, 1.6, 100, 6});
+  request.core_diameter = 6.7 * kMillimetre;
+  request.keep = SetupFigure::kDepth;
+  r = refused(request);
+  EXPECT_EQ(r.problem, SetupProblem::kCore);
+  EXPECT_NEAR(r.least / kMillimetre, 10 - 2 * 1.6, 1e-4);
+  EXPECT_GT(r.largest / kMillimetre, 8);
+
+  request = requestFor({});
+  request.rake = 80 * kDegree;
+  r = refused(request);
+  EXPECT_EQ(r.problem, SetupProblem::kRake);
+  EXPECT_LT(r.largest, request.rake);
+}
+
+TEST(SetupSolver, WhatIsNoRequestIsAnError) {
+  const auto wrong = [](const std::function<void(SetupRequest&)>& change) {
+    SetupRequest request = requestFor({});
+    change(request);
+    EXPECT_THROW(solveSetup(request), std::invalid_argument);
+  };
+  wrong([](SetupRequest& r) { r.depth = 0; });
+  wrong([](SetupRequest& r) { r.rake = std::nan(""); });
+  wrong([](SetupRequest& r) { r.core_diameter = 0.01; });
+  wrong([](SetupRequest& r) { r.least_swivel = r.largest_swivel; });
+  wrong([](SetupRequest& r) { r.tooth_angles.clear(); });
+  wrong([](SetupRequest& r) { r.cutter.end_diameter = -1; });
+}
+
+SetupRequest randomRequest(int i, const std::function<double(double, double)>& uniform) {
+  SetupRequest r;
+  const double diameter = uniform(3, 20) * kMillimetre, cone = i % 4 == 0 ? 0 : uniform(-2, 10) * kDegree;
+  double length = uniform(1, 3) * diameter;
+  if (cone < 0) length = std::min(length, -0.4 * diameter / 2 / std::tan(cone));
+  r.rake = uniform(0, 15) * kDegree;
+  r.direction = uniform(0, 1) < 0.5 ? CutDirection::kRightHand : CutDirection::kLeftHand;
+  const double z_law = r.direction == CutDirection::kRightHand ? r.rake : -r.rake;
+  r.cutter = {diameter, cone, uniform(-45, 45) * kDegree, z_law, length};
+  r.tooth_angles = equalTeeth(1 + static_cast<int>(uniform(0, 4)));
+  const double wheel = uniform(50, 125) * kMillimetre, width = uniform(0.1, 0.5) * diameter;
+  const std::array<double, 2> corners{uniform(0, 0.2) * width, uniform(0, 0.2) * width};
+  r.wheel = i % 5 < 2    ? WheelProfile::straight(wheel, width)
+            : i % 5 == 2 ? WheelProfile::straight(wheel, width, corners)
+            : i % 5 == 3 ? WheelProfile::angled(wheel, width, uniform(-30, 30) * kDegree, corners)
+                         : WheelProfile::fullRadius(wheel, width);
+  r.nominal_radius = wheel / 2;
+  r.depth = uniform(0.15, 0.5) * diameter / 2;
+  if (i % 3 == 0) r.core_diameter = uniform(0.5, 0.85) * diameter;
+  r.largest_swivel = uniform(25, 60) * kDegree;
+  r.least_swivel = -r.largest_swivel;
+  return r;
+}
+
+/// The best set-up that a coarse search by brute force finds: over swivel and face height, on a cylinder over the
+/// swivel.
+class CoarseSearch {
+ public:
+  explicit CoarseSearch(const SetupRequest& request) : request_(request) {}
+
+  struct Found {
+    double error, swivel, face;
+  };
+
+  brute::Bench bench(double swivel, double face) const {
+    const double radius = request_.cutter.end_diameter / 2;
+    const bool right = request_.direction == CutDirection::kRightHand;
+    if (request_.cutter.cone_angle == 0) face = (right ? 1 : -1) * radius * std::sin(request_.rake);
+    const double upper = right ? request_.wheel.upperFace() : request_.wheel.lowerFace();
+    const double height = face - upper / std::cos(swivel);
+    const double depth = request_.core_diameter
+                             ? brute::Bench::depthFor(request_, swivel, height, *request_.core_diameter / 2, 40, 8)
+                             : request_.depth;
+    return {request_, swivel, height, depth};
+  }
+
+  Found best() const {
+    constexpr int kSteps = 16, kStarts = 4;
+    std::vector<Found> grid;
+    const double width = request_.largest_swivel - request_.least_swivel;
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int k = 0; k <= kSteps; ++k) {
+        const double swivel = request_.least_swivel + width * i / kSteps;
+        const double face = highest(swivel) * (2.0 * k / kSteps - 1);
+        grid.push_back({error(swivel, face), swivel, face});
+      }
+    }
+    std::sort(grid.begin(), grid.end(), [](const Found& a, const Found& b) { return a.error < b.error; });
+    Found best = grid[0];
+    for (int i = 0; i < kStarts; ++i) {
+      const Found found = descend(grid[static_cast<std::size_t>(i)], width / kSteps);
+      if (found.error < best.error) best = found;
+    }
+    return best;
+  }
+
+ private:
+  double highest(double swivel) const {
+    return request_.cutter.end_diameter / 2 +
+           std::sqrt(2 * request_.nominal_radius * request_.depth) * std::abs(std::sin(swivel));
+  }
+
+  double error(double swivel, double face) const {
+    const brute::Bench b = bench(swivel, face);
+    return std::isfinite(b.depth) ? b.rakeError() : std::numeric_limits<double>::infinity();
+  }
+
+  Found descend(Found at, double step) const {
+    double rise = highest(at.swivel) / 8;
+    while (step > 1e-5) {
+      bool better = false;
+      for (int i = 0; i < 8 && !better; ++i) {
+        const double swivel = at.swivel + step * std::cos(i * kPi / 4), face = at.face + rise * std::sin(i * kPi / 4);
+        if (swivel < request_.least_swivel || swivel > request_.largest_swivel) continue;
+        const double e = error(swivel, face);
+        if (e < at.error) at = {e, swivel, face}, better = true;
+      }
+      if (!better) step /= 2, rise /= 2;
+    }
+    return at;
+  }
+
+  const SetupRequest& request_;
+};
+
+TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int count = 0;
+  for (int i = 0; i < 200; ++i) {
+    const SetupRequest request = randomRequest(i, uniform);
+    const auto result = solveSetup(request);
+    if (const auto* s = std::get_if<SolvedSetup>(&result)) {
+      ++count;
+      const brute::Bench bench{request, s->setup.swivel, s->setup.height, s->depth, 800, 100};
+      EXPECT_LT(bench.rakeError(), 0.01 * kDegree) << i;
+      EXPECT_GT(bench.land(), 0) << i;
+      EXPECT_GE(s->setup.swivel, request.least_swivel) << i;
+      EXPECT_LE(s->setup.swivel, request.largest_swivel) << i;
+      if (request.core_diameter) {
+        const double depth =
+            brute::Bench::depthFor(request, s->setup.swivel, s->setup.height, *request.core_diameter / 2, 1000, 200);
+        EXPECT_NEAR(depth, s->depth, 2e-6) << i;
+        EXPECT_NEAR(ground(request, *s).section(0).core_radius, *request.core_diameter / 2, 1e-6) << i;
+      }
+      continue;
+    }
+    const CoarseSearch search(request);
+    const auto found = search.best();
+    if (found.error > 0.01 * kDegree) continue;
+    const brute::Bench bench = search.bench(found.swivel, found.face);
+    EXPECT_FALSE(bench.land() > 0 && bench.formedByFace())
+        << i << ": refused (" << toString(std::get<SetupRefusal>(result).problem) << "), yet at swivel "
+        << found.swivel / kDegree << " deg, face " << found.face / kMillimetre << " mm the rake is off by "
+        << found.error / kDegree << " deg";
+  }
+  EXPECT_GT(count, 100);
+  EXPECT_LT(count, 190);
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,109 @@
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/wheel_profile.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace flute_grinder {
+namespace {
+
+using units::kDegree;
+
+TEST(WheelProfile, AStraightWheelHasOneRadius) {
+  const auto wheel = WheelProfile::straight(0.1, 0.006);
+  EXPECT_DOUBLE_EQ(wheel.lowerFace(), -0.003);
+  EXPECT_DOUBLE_EQ(wheel.upperFace(), 0.003);
+  for (const double w : {-0.003, -0.001, 0.0, 0.003}) EXPECT_DOUBLE_EQ(wheel.radius(w), 0.05);
+  EXPECT_DOUBLE_EQ(wheel.largestRadius(), 0.05);
+}
+
+TEST(WheelProfile, ABevelFallsFromItsLargerFace) {
+  const auto wheel = WheelProfile::angled(0.1, 0.006, 30 * kDegree);
+  EXPECT_DOUBLE_EQ(wheel.radius(0.003), 0.05);
+  EXPECT_NEAR(wheel.radius(-0.003), 0.05 - 0.006 * std::tan(30 * kDegree), 1e-15);
+  const auto other = WheelProfile::angled(0.1, 0.006, -30 * kDegree);
+  for (const double w : {-0.003, 0.001}) EXPECT_NEAR(other.radius(w), wheel.radius(-w), 1e-15);
+}
+
+TEST(WheelProfile, AFullRadiusIsASemicircle) {
+  const auto wheel = WheelProfile::fullRadius(0.1, 0.006);
+  for (const double w : {-0.003, -0.002, 0.0, 0.0011, 0.003}) {
+    EXPECT_NEAR(wheel.radius(w), 0.047 + std::sqrt(0.003 * 0.003 - w * w), 1e-12);
+  }
+  EXPECT_NEAR(wheel.largestRadius(), 0.05, 1e-15);
+}
+
+TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
+  for (const double angle : {-40.0, -10.0, 0.0, 25.0}) {
+    const double size = 0.0008;
+    const auto wheel = WheelProfile::angled(0.08, 0.005, angle * kDegree, {size, size});
+    const auto sharp = WheelProfile::angled(0.08, 0.005, angle * kDegree);
+    const double centre_w = wheel.upperFace() - size;
+    const double centre_r = wheel.radius(wheel.upperFace());
+    const double touch = centre_w - size * std::sin(angle * kDegree);
+    for (const double part : {0.01, 0.3, 0.9}) {
+      const double w = touch + part * (wheel.upperFace() - touch);
+      EXPECT_NEAR(std::hypot(w - centre_w, wheel.radius(w) - centre_r), size, 1e-9) << angle;
+      EXPECT_LE(wheel.radius(w), sharp.radius(w)) << angle;
+    }
+    EXPECT_DOUBLE_EQ(wheel.radius(0), sharp.radius(0)) << angle;
+    // Smooth: no step in slope where the circle meets the profile.
+    double last = wheel.radius(0), slope = wheel.radius(1e-6) - last;
+    for (double w = 1e-6; w < centre_w + 0.5 * size; w += 1e-6) {
+      const double next = wheel.radius(w + 1e-6) - wheel.radius(w);
+      EXPECT_LT(std::abs(next - slope), 1e-8) << angle;
+      slope = next;
+    }
+  }
+}
+
+TEST(WheelProfile, TheSlopeIsThatOfTheRadius) {
+  for (const auto& wheel :
+       {WheelProfile::straight(0.1, 0.006), WheelProfile::angled(0.08, 0.005, 25 * kDegree, {8e-4, 3e-4}),
+        WheelProfile::fullRadius(0.1, 0.006)}) {
+    for (const double part : {0.02, 0.11, 0.3, 0.52, 0.77, 0.98}) {
+      const double w = wheel.lowerFace() + part * (wheel.upperFace() - wheel.lowerFace());
+      constexpr double kStep = 1e-8;
+      EXPECT_NEAR(wheel.slope(w), (wheel.radius(w + kStep) - wheel.radius(w - kStep)) / (2 * kStep), 1e-6) << part;
+    }
+  }
+}
+
+TEST(WheelProfile, InTheMirrorItsFacesChangePlaces) {
+  const auto wheel = WheelProfile::angled(0.08, 0.005, 25 * kDegree, {8e-4, 3e-4});
+  const auto mirrored = wheel.mirrored();
+  for (double w = -0.0025; w <= 0.0025; w += 0.0001) EXPECT_NEAR(mirrored.radius(-w), wheel.radius(w), 1e-15) << w;
+}
+
+TEST(WheelProfile, WearTakesTheSameOffEverywhere) {
+  const auto wheel = WheelProfile::angled(0.08, 0.005, 20 * kDegree, {0.0003, 0});
+  const auto worn = wheel.worn(0.002);
+  for (const double w : {-0.0025, -0.0024, 0.0, 0.0025}) EXPECT_NEAR(worn.radius(w), wheel.radius(w) - 0.002, 1e-15);
+}
+
+TEST(WheelProfile, WhatIsNoWheelIsRefusedByName) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](const auto& make, const std::string& name) {
+    try {
+      make();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what()).find(name) != std::string::npos;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused([] { WheelProfile({{0, 0.05}}); }, "points"));
+  EXPECT_TRUE(refused([] { WheelProfile({{0, 0.05}, {0, 0.05}}); }, "w = "));
+  EXPECT_TRUE(refused([&] { WheelProfile({{0, 0.05}, {nan, 0.05}}); }, "w = "));
+  EXPECT_TRUE(refused([&] { WheelProfile({{0, 0.05}, {0.01, nan}}); }, "radius"));
+  EXPECT_TRUE(refused([] { WheelProfile::straight(0, 0.006); }, "radius"));
+  EXPECT_TRUE(refused([] { WheelProfile::straight(0.1, 0.006, {0.004, 0.004}); }, "corner_radius"));
+  EXPECT_TRUE(refused([] { WheelProfile::straight(0.1, 0.006, {-0.001, 0}); }, "corner_radius"));
+  EXPECT_TRUE(refused([&] { WheelProfile::straight(0.1, 0.006, {nan, 0}); }, "corner_radius"));
+  EXPECT_TRUE(refused([] { WheelProfile::angled(0.02, 0.02, 60 * kDegree); }, "radius"));
+}
+
+}  // namespace
+}  // namespace flute_grinder

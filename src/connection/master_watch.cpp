@@ -1,11 +1,12 @@
 #include "flute_grinder/connection/master_watch.h"
 
+#include "flute_grinder/connection/ros_api.h"
+
 #include <ros/connection_manager.h>
 #include <ros/network.h>
 #include <ros/ros.h>
 #include <ros/service_manager.h>
 #include <ros/xmlrpc_manager.h>
-#include <xmlrpcpp/XmlRpc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,16 +19,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 
 constexpr std::chrono::seconds kInterval(1);
-constexpr std::chrono::seconds kTimeout(1);  ///< of one call
-constexpr double kSlice = 0.02;              ///< between checks for the end of a waiting call [s]
-constexpr int kAttempts = 5;                 ///< at a list of publishers that keeps growing
-
-/// The value of a ROS API response [1, text, value]; nothing if it is malformed or reports an error.
-std::optional<XmlRpcValue> valueOf(XmlRpcValue& answer) {
-  const bool complete = answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3;
-  if (!complete || answer[0].getType() != XmlRpcValue::TypeInt || static_cast<int>(answer[0]) != 1) return std::nullopt;
-  return answer[2];
-}
+constexpr int kAttempts = 5;  ///< at a list of publishers that keeps growing
 
 XmlRpcValue listOf(const std::vector<XmlRpcValue>& values) {
   XmlRpcValue list;
@@ -163,29 +155,13 @@ std::map<std::string, MasterWatch::Uris> MasterWatch::connectedPublishers() {
   return found;
 }
 
-std::optional<XmlRpcValue> MasterWatch::call(const std::string& host, unsigned port, const char* method,
-                                             const std::vector<Value>& arguments) {
-  std::vector<Value> all{ros::this_node::getName()};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
-  if (!client.executeNonBlock(method, listOf(all))) return std::nullopt;
-  XmlRpc::XmlRpcDispatch dispatch;
-  dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  const auto due = std::chrono::steady_clock::now() + kTimeout;
-  while (!stopping_ && client.getfd() >= 0 && std::chrono::steady_clock::now() < due) {
-    dispatch.work(kSlice);
-    Value answer;
-    if (client.executeCheckDone(answer)) return valueOf(answer);
-  }
-  return std::nullopt;
-}
-
 std::optional<XmlRpcValue> MasterWatch::callMaster(const char* method, const std::vector<Value>& arguments) {
-  return call(ros::master::getHost(), ros::master::getPort(), method, arguments);
+  return callRosApi(ros::master::getHost(), ros::master::getPort(), method, arguments, stopping_);
 }
 
 std::optional<XmlRpcValue> MasterWatch::callSelf(const char* method, const std::vector<Value>& arguments) {
-  return call(ros::network::getHost(), ros::XMLRPCManager::instance()->getServerPort(), method, arguments);
+  return callRosApi(ros::network::getHost(), ros::XMLRPCManager::instance()->getServerPort(), method, arguments,
+                    stopping_);
 }
 
 }  // namespace flute_grinder

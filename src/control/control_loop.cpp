@@ -1,6 +1,7 @@
 #include "flute_grinder/control/control_loop.h"
 
 #include <algorithm>
+#include <cmath>
 
 // The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
 namespace flute_grinder {
@@ -18,6 +19,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   trackMotion();
   moving_unbuffered_ = moving && record_.drive.commands_waiting == 0;
   if (isPowered(state_)) checkDrive();
+  dead_man_.wait(record_.period);
   executeRequests();
   awaitPower();
   if (state_ == MachineState::kHoming) awaitHoming();
@@ -44,6 +46,15 @@ void ControlLoop::readDrive() {
     history_.clear();
   }
   record_.command_in_effect = history_.empty() ? command_ : history_.inEffect(record_.drive.commands_waiting).command;
+  readSwivel();
+}
+
+void ControlLoop::readSwivel() {
+  if (std::isfinite(record_.drive.swivel)) {
+    record_.swivel = {record_.drive.swivel, true};
+  } else if (record_.swivel.measured) {
+    record_.swivel = {};  // an encoder that fails leaves nothing to rely on
+  }
 }
 
 void ControlLoop::trackMotion() {
@@ -89,7 +100,10 @@ void ControlLoop::publish() {
   next_status_.state = state_;
   next_status_.homed = record_.drive.homed;
   std::copy(command_.data(), command_.data() + kAxisCount, next_status_.command.begin());
+  std::copy(record_.position.data(), record_.position.data() + kAxisCount, next_status_.position.begin());
+  next_status_.position_valid = record_.position.isFinite().all() && record_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = record_.feed_override;
+  next_status_.swivel = record_.swivel;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
   status_.store(next_status_);
@@ -109,7 +123,7 @@ void ControlLoop::awaitHoming() {
 }
 
 void ControlLoop::awaitSpindle() {
-  const Interlock open = openInterlock(record_.drive);
+  const Interlock open = openInterlock();
   if (open == Interlock::kNone) {
     apply(MachineEvent::kDone);
     if (stream_->holding()) apply(MachineEvent::kHold);
@@ -130,7 +144,9 @@ void ControlLoop::awaitSpindle() {
 
 void ControlLoop::advance() {
   slowDownIfLate();
-  if (stream_) {
+  if (jogging_) {
+    advanceJog();
+  } else if (stream_) {
     advanceJob();
   } else if (state_ == MachineState::kLifting) {
     advanceLift();
@@ -143,7 +159,7 @@ void ControlLoop::slowDownIfLate() {
   if (!(periods >= config_.late_slow_down)) return;
   // A delay of several periods: the axes covered only one period's distance in that time.
   if (stream_) stream_->slowDown(1 / periods);
-  lift_.slowDown(1 / periods);
+  axis_move_.slowDown(1 / periods);
   limit_check_.slowDown(1 / periods);
 }
 
@@ -158,24 +174,45 @@ void ControlLoop::advanceJob() {
   if (!moves && beginLiftOff()) moves = stream_->next(setpoint);
   if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
   if (!moves) return restJob();
-  command(setpoint);
+  commandOfJob(setpoint);
+}
+
+void ControlLoop::commandOfJob(const Setpoint& setpoint) {
+  command(setpoint, job_offset_);
   if (stream_) written_.add(setpoint);
 }
 
 void ControlLoop::advanceLift() {
-  Setpoint setpoint;
-  if (lift_.next(setpoint)) {
-    record_.job = 0;
-    return command(setpoint);
-  }
-  if (!allReachedAxes()) return;
-  if (lift_.finished()) wheel_.finishLift();
+  if (!advanceAxisMove()) return;
+  if (axis_move_.finished()) wheel_.finishLift();
   comeToRest();
+}
+
+bool ControlLoop::advanceAxisMove() {
+  Setpoint setpoint;
+  if (!axis_move_.next(setpoint)) return allReachedAxes();
+  if (stream_) {
+    // The axes rest already where the move begins.
+    if (setpoint.cycle == 0 && !axis_move_.next(setpoint)) return allReachedAxes();
+    setpoint.position -= job_offset_;
+    stream_->adopt(setpoint);
+    commandOfJob(setpoint);
+    return false;
+  }
+  command(setpoint);
+  if (record_.has_setpoint) record_.job = 0;
+  return false;
+}
+
+Interlock ControlLoop::openInterlock() const {
+  const Interlock open = flute_grinder::openInterlock(record_.drive);
+  const bool slipped = stream_ && !record_.swivel.isAt(job_swivel_);
+  return open == Interlock::kNone && slipped ? Interlock::kSwivel : open;
 }
 
 void ControlLoop::checkInterlocks() {
   if (state_ == MachineState::kCanceling) return;
-  const Interlock open = openInterlock(record_.drive);
+  const Interlock open = openInterlock();
   if (open != Interlock::kNone && record_.interlock == Interlock::kNone) {
     record_.interlock = open;
     // A wheel that is being lifted is moving to safety; one that was lifted is already safe.
@@ -191,15 +228,16 @@ void ControlLoop::checkInterlocks() {
   }
 }
 
-void ControlLoop::command(const Setpoint& setpoint) {
-  if (const auto violation = limit_check_.check(setpoint)) {
+/// @param offset machine position - position of the setpoint [m], A [rad].
+void ControlLoop::command(const Setpoint& setpoint, const Axes& offset) {
+  if (const auto violation = limit_check_.check(setpoint, offset)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;
     fault.axis = violation->axis;
     fault.violation = *violation;
     return fail(fault);
   }
-  command_ = setpoint.position;
+  command_ = setpoint.position + offset;
   rested_ = 0;
   record_.has_setpoint = true;
   record_.setpoint = setpoint;
@@ -245,7 +283,7 @@ void ControlLoop::endJob(JobEnd end) {
 void ControlLoop::fail(const LoopFault& fault) {
   record_.fault = fault;
   if (stream_) endJob(JobEnd::kFault);
-  drive_command_.enable = power_off_next_ = false;
+  drive_command_.enable = power_off_next_ = jogging_ = false;
   apply(MachineEvent::kFault);
 }
 

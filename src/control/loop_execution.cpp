@@ -1,15 +1,24 @@
 #include "flute_grinder/control/control_loop.h"
 
+#include <algorithm>
+
 // Executes the requests of a cycle; all of it is real-time.
 namespace flute_grinder {
 
 void ControlLoop::executeRequests() {
   // Taken first, executed last: a stop also stops anything requested before it.
   const StopRequests::Taken stops = takeStops();
-  if (const auto job = takeJobStart()) answerJobStart(answerTo(MachineEvent::kStart, beginJob(*job)));
+  if (const auto angle = takeSwivel()) answerSwivel(answerTo(MachineEvent::kStart, setSwivel(*angle)));
+  if (const auto job = takeJobStart()) {
+    Answer answer = answerTo(MachineEvent::kStart, beginJob(*job));
+    answer.job_swivel = job->swivel;
+    answerJobStart(answer);
+  }
   if (const auto event = takeRequest()) executeRequest(*event);
+  if (const auto jog = takeJog()) executeJog(*jog);
   for (const MachineEvent stop : StopRequests::kStops) {
     if (!stops.has(stop)) continue;
+    dead_man_.block();
     const Answer answer = answerTo(stop, execute(stop));
     if (stops.wantsReply(stop)) answerStop(answer);
   }
@@ -22,7 +31,9 @@ void ControlLoop::executeRequest(MachineEvent event) {
 }
 
 Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
-  return {event, state_, refusal, openInterlock(record_.drive), liftTarget(), config_.machine.limits.max_position[kY]};
+  return {
+      event,          state_,     refusal, openInterlock(), kY, liftTarget(), config_.machine.limits.max_position[kY],
+      record_.swivel, job_swivel_};
 }
 
 Refusal ControlLoop::execute(MachineEvent event) {
@@ -41,16 +52,18 @@ Refusal ControlLoop::execute(MachineEvent event) {
 
 Refusal ControlLoop::executeStop(MachineEvent event) {
   const bool off = event == MachineEvent::kDisable;
-  if (stream_) {
+  if (jogging_ || state_ == MachineState::kLifting) {
+    power_off_next_ |= off;
+    axis_move_.setSpeed(0);
+    // The job rests already; this ends it.
+    if (stream_ && event != MachineEvent::kHold) stream_->hold();
+  } else if (stream_) {
     power_off_next_ |= off;
     // A wheel that is being lifted continues to the height at which a canceled job leaves it.
     const bool lifting = state_ == MachineState::kCanceling || state_ == MachineState::kRetracting;
     const bool hold = event == MachineEvent::kHold;
     if (hold || !lifting) stream_->hold();
     if (hold && state_ == MachineState::kCanceling) may_lift_off_ = false;
-  } else if (state_ == MachineState::kLifting) {
-    power_off_next_ |= off;
-    lift_.hold();
   } else if (state_ == MachineState::kFault) {
     return Refusal::kNone;
   } else {
@@ -125,8 +138,12 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
   if (wheel_.wheel().in_work) return Refusal::kInWork;
   if (!record_.drive.homed) return Refusal::kInterlock;
-  if (!(job.stream->program().start() == command_).all()) return Refusal::kMoved;
+  if (!record_.swivel.isAt(job.swivel)) return Refusal::kSwivel;
+  // The same difference as the planner's, and therefore exact although it is rounded.
+  if (!(job.stream->program().start() == command_ - job.offset).all()) return Refusal::kMoved;
   stream_ = job.stream;
+  job_swivel_ = job.swivel;
+  job_offset_ = job.offset;
   wheel_.startJob(job.wheel);
   limit_check_.restart();
   record_.fault = LoopFault{};
@@ -148,7 +165,7 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
 Refusal ControlLoop::resume() {
   // A job that has not begun keeps waiting for its interlocks.
   const bool starting = state_ == MachineState::kStarting;
-  if (!starting && openInterlock(record_.drive) != Interlock::kNone) return Refusal::kInterlock;
+  if (!starting && openInterlock() != Interlock::kNone) return Refusal::kInterlock;
   record_.interlock = Interlock::kNone;
   stream_->resume();
   apply(MachineEvent::kResume);
@@ -163,11 +180,22 @@ Refusal ControlLoop::retract() {
 
 Refusal ControlLoop::lift() {
   if (!wheel_.wheel().in_work) return Refusal::kNotInWork;
-  if (!(liftTarget() <= config_.machine.limits.max_position[kY])) return Refusal::kLiftTooFar;
-  lift_.begin(command_, liftTarget());
+  if (!(liftTarget() <= config_.machine.limits.max_position[kY])) return Refusal::kTooFar;
+  const double to = std::max(command_[kY], liftTarget());
+  axis_move_.begin(MoveKind::kLift, command_, kY, to, config_.machine.limits.max_velocity[kY]);
   limit_check_.restart();
   power_off_next_ = false;
   apply(MachineEvent::kLift);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::setSwivel(double angle) {
+  if (record_.swivel.measured) return Refusal::kSwivelMeasured;
+  const Swivel confirmed{angle, false};
+  if (stream_ && !confirmed.isAt(job_swivel_)) return Refusal::kSwivelInUse;
+  record_.swivel = next_status_.swivel = confirmed;
+  // Before the answer, so that the goal that follows it finds the angle; the cycle may still wait for the drive.
+  status_.store(next_status_);
   return Refusal::kNone;
 }
 

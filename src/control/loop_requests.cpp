@@ -4,10 +4,27 @@
 
 namespace flute_grinder {
 
+namespace {
+
+constexpr int kSwivelDigits = 10;  ///< so that a job's angle appears as entered
+
+/// Of an angle, as operators read it. @param angle [rad].
+std::string degrees(double angle, int digits = 6) {
+  return flute_grinder::text({angle, Unit::kRadian}, UnitSystem::kShop, digits);
+}
+
+}  // namespace
+
 RequestReply Answer::reply() const {
   if (refusal == Refusal::kNone) return {true, "", true};
+  const auto position = [&](double si) { return flute_grinder::text({si, unitOf(axis, 0)}, UnitSystem::kShop); };
+  const auto speed = [&](double si) {
+    const Unit unit = axis == kA ? Unit::kRadianPerSecond : Unit::kFeedMetrePerSecond;
+    return flute_grinder::text({si, unit}, UnitSystem::kShop);
+  };
   std::ostringstream text;
-  text << toString(event) << " refused: ";
+  const bool confirmation = refusal == Refusal::kSwivelMeasured || refusal == Refusal::kSwivelInUse;
+  text << (confirmation ? "confirm-swivel" : toString(event)) << " refused: ";
   switch (refusal) {
     case Refusal::kNone: break;
     case Refusal::kState:
@@ -22,12 +39,37 @@ RequestReply Answer::reply() const {
     case Refusal::kWithdrawn: text << "disable came before the power"; break;
     case Refusal::kInWork: text << "the wheel stands in the work; lift it first"; break;
     case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
-    case Refusal::kLiftTooFar:
-      // In shop units, because only people read it: the answer to a request has no fields for data.
-      text << "it would lead " << axisName(kY, UnitSystem::kShop) << " to "
-           << flute_grinder::text({value, Unit::kMetre}, UnitSystem::kShop) << "; allowed: up to "
-           << flute_grinder::text({limit, Unit::kMetre}, UnitSystem::kShop);
+    // In shop units, because only people read them: the answer to a request has no fields for data.
+    case Refusal::kTooFar:
+      text << "it would lead " << axisName(axis, UnitSystem::kShop) << " to " << position(value)
+           << (value < limit ? "; allowed: down to " : "; allowed: up to ") << position(limit);
       break;
+    case Refusal::kSwivel: text << core::text(reasonOf(swivel, job_swivel), UnitSystem::kShop); break;
+    case Refusal::kSwivelMeasured:
+      text << "the drive measures the swivel, which stands at " << degrees(swivel.angle)
+           << "; nothing is to be confirmed";
+      break;
+    case Refusal::kSwivelInUse:
+      text << "a job is in progress that needs " << degrees(job_swivel, kSwivelDigits)
+           << "; allowed: that angle, or to end the job first";
+      break;
+    case Refusal::kNoAxis:
+      text << "axis = " << axis << "; allowed: 0 to " << kAxisCount - 1 << " for X, Y, Z, A";
+      break;
+    case Refusal::kJogSpeed:
+      text << "speed of " << axisName(axis, UnitSystem::kShop) << " = " << speed(value) << "; allowed: above 0, up to "
+           << speed(limit);
+      break;
+    case Refusal::kAtLimit:
+      text << axisName(axis, UnitSystem::kShop) << " stands at " << position(limit) << ", the end of its way";
+      break;
+    case Refusal::kOutside:
+      text << axisName(axis, UnitSystem::kShop) << " stands at " << position(value) << ", outside its limit "
+           << position(limit);
+      break;
+    case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
+    case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;
+    case Refusal::kStopped: text << "it was stopped or refused before; release the button first"; break;
   }
   return {false, text.str(), true};
 }

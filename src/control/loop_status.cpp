@@ -7,7 +7,11 @@ namespace flute_grinder {
 Wheel wheelOf(const GrindProgram& program) {
   double deepest = program.clearanceHeight();
   for (const Move& move : program.moves()) deepest = std::min(deepest, move.to[kY]);
-  return {false, program.clearanceHeight(), program.clearanceHeight() - deepest};
+  // The same sum as the command's, so that the wheel counts as clear exactly where the program leaves it. At the limit
+  // of the axis the sum may be rounded up, but no lift may lead beyond.
+  const Machine& machine = program.machine();
+  const double clear_y = std::min(program.clearanceHeight() + machine.work_offset[kY], machine.limits.max_position[kY]);
+  return {false, clear_y, program.clearanceHeight() - deepest};
 }
 
 }  // namespace flute_grinder

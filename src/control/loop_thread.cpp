@@ -23,7 +23,8 @@ ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& whe
     : RequestBox(config.enable_timeout),
       hw_(hw),
       config_(config),
-      lift_(config.machine),
+      axis_move_(config.machine),
+      dead_man_(config.jog_timeout),
       limit_check_(config.machine.limits, config.machine.period),
       drive_checks_(config_),
       wheel_(wheel) {

@@ -1,5 +1,7 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "flute_grinder/control/swivel_range.h"
+
 #include <urdf/model.h>
 
 #include <cmath>
@@ -12,6 +14,8 @@ namespace {
 
 constexpr double kSmallest = kSmallestFigure;
 constexpr double kLargest = kLargestFigure;
+/// Twice the period at which the panel repeats its messages [s].
+constexpr double kShortestJogTimeout = 0.05;
 
 /// One kind of limit, with its names in ros_control.
 struct LimitName {
@@ -87,7 +91,20 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
   limits.max_acceleration[axis] = limit(p, name, kAcceleration, 0);
   limits.max_jerk[axis] = limit(p, name, kJerk, 0);
   config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kSmallest, kLargest);
+  config.jog_velocity[axis] = p.number("jog_velocity/" + name, kSmallest, limits.max_velocity[axis]);
   config.machine.park[axis] = p.number("park_position/" + name, limits.min_position[axis], limits.max_position[axis]);
+}
+
+MachineGeometry readGeometry(const ParameterReader& p) {
+  constexpr double largest = 10;
+  const auto place = [&](const char* name) { return p.number(std::string("geometry/") + name, -largest, largest); };
+  MachineGeometry geometry;
+  geometry.work_axis_y = place("work_axis/y");
+  geometry.work_axis_z = place("work_axis/z");
+  geometry.collet_face = place("collet_face/x");
+  geometry.swivel_centre = {place("swivel_centre/x"), place("swivel_centre/y"), place("swivel_centre/z")};
+  geometry.flange = place("flange");
+  return geometry;
 }
 
 }  // namespace
@@ -102,9 +119,13 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.homing_timeout = p.number("homing_timeout", 0, 3600);
   config.spindle_timeout = p.number("spindle_timeout", 0, 600);
   config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
+  config.machine.collision_clearance = p.number("collision_clearance", 0, 1);
+  config.jog_timeout = p.number("jog_timeout", kShortestJogTimeout, 1);
+  config.geometry = readGeometry(p);
   config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
+  config.machine.swivel = readSwivelRange(urdf);
   return config;
 }
 

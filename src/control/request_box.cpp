@@ -1,6 +1,7 @@
 #include "flute_grinder/control/request_box.h"
 
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <thread>
 
@@ -19,13 +20,25 @@ constexpr double kStopTimeout = 0.1;
 /// @param poll returns the answer, or nothing yet.
 /// @param timeout [s].
 template <typename Poll>
-RequestReply await(MachineEvent event, double timeout, const Poll& poll) {
+RequestReply await(const char* request, double timeout, const Poll& poll) {
   const auto deadline = Clock::now() + std::chrono::duration<double>(timeout);
   while (Clock::now() < deadline) {
     if (const std::optional<RequestReply> answer = poll()) return *answer;
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  return {false, std::string(toString(event)) + ": the control loop does not answer", false};
+  return {false, std::string(request) + ": the control loop does not answer", false};
+}
+
+/// Posts a request, and waits for its answer.
+template <typename Post, typename Poll>
+RequestReply ask(const char* request, double timeout, const Post& post, const Poll& poll) {
+  bool posted = false;
+  return await(request, timeout, [&]() -> std::optional<RequestReply> {
+    // The slot may still contain a request that timed out.
+    if (posted) return poll();
+    posted = post();
+    return std::nullopt;
+  });
 }
 
 std::optional<RequestReply> toReply(const std::optional<Answer>& answer) {
@@ -39,23 +52,32 @@ RequestReply RequestBox::request(MachineEvent event) {
   if (!isTrigger(event)) {
     return {false, std::string(toString(event)) + " refused: allowed: " + namesOf<MachineEvent>(isTrigger), true};
   }
-  bool posted = false;
-  return await(event, kAnswerTimeout + enable_timeout_, [&]() -> std::optional<RequestReply> {
-    // The slot may still contain a request that timed out.
-    if (posted) return reply();
-    posted = post(event);
-    return std::nullopt;
-  });
+  return ask(
+      toString(event), kAnswerTimeout + enable_timeout_, [&] { return post(event); }, [&] { return reply(); });
 }
 
 std::optional<RequestReply> RequestBox::reply() { return toReply(requests_.reply()); }
+
+RequestReply RequestBox::confirmSwivel(double angle) {
+  if (!(std::abs(angle) <= kLargestSwivel)) {
+    const auto degrees = [](double value) { return text({value, Unit::kRadian}, UnitSystem::kShop); };
+    return {false,
+            "confirm-swivel refused: " + degrees(angle) + "; allowed: -" + degrees(kLargestSwivel) + " to " +
+                degrees(kLargestSwivel),
+            true};
+  }
+  return ask(
+      "confirm-swivel", kAnswerTimeout, [&] { return postSwivel(angle); }, [&] { return swivelReply(); });
+}
+
+std::optional<RequestReply> RequestBox::swivelReply() { return toReply(swivels_.reply()); }
 
 RequestReply RequestBox::stop(MachineEvent event) {
   if (!isStop(event)) {
     return {false, std::string(toString(event)) + " refused: allowed: hold, cancel, disable", true};
   }
   const std::uint32_t ticket = postStopWithReply(event);
-  return await(event, kStopTimeout, [&] { return stopReply(event, ticket); });
+  return await(toString(event), kStopTimeout, [&] { return stopReply(event, ticket); });
 }
 
 std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint32_t ticket) const {
@@ -63,8 +85,17 @@ std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint3
 }
 
 bool RequestBox::startJob(SetpointStream* stream) noexcept {
-  return job_starts_.post(JobStart{stream, wheelOf(stream->program())});
+  const GrindProgram& program = stream->program();
+  return job_starts_.post(
+      {stream, program.machine().work_offset, wheelOf(program), program.job().process.setup_swivel});
 }
+
+RequestReply RequestBox::jog(const JogRequest& jog) {
+  return ask(
+      toString(MachineEvent::kJog), kAnswerTimeout, [&] { return postJog(jog); }, [&] { return jogReply(); });
+}
+
+std::optional<RequestReply> RequestBox::jogReply() { return toReply(jogs_.reply()); }
 
 std::optional<RequestReply> RequestBox::startJobReply() { return toReply(job_starts_.reply()); }
 

@@ -95,7 +95,7 @@ void* HalComponent::allocate(std::size_t size) const {
   return memory;
 }
 
-void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data,
+bool HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data,
                           bool required) {
   const std::string full = name_ + '.' + name;
   const int made = hal_pin_new(full.c_str(), type, direction, data, id_);
@@ -105,7 +105,7 @@ void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_
   bool written = false;
   if (hal_get_signal_value_by_name(name.c_str(), &signal_type, &value, &written) != 0) {
     if (required) missing_.push_back(name);
-    return;
+    return false;
   }
   if (signal_type != type) {
     throw ParameterError("HAL's signal '" + name + "' is of type " + typeName(signal_type) +
@@ -118,6 +118,7 @@ void HalComponent::addPin(const std::string& name, hal_type_t type, hal_pin_dir_
   if (direction == HAL_IN) std::memcpy(*data, value, sizeof(*value));
   const int linked = hal_link(full.c_str(), name.c_str());
   if (linked < 0) throw ParameterError("HAL does not link pin '" + full + "': " + std::strerror(-linked));
+  return true;
 }
 
 void HalComponent::ready() const {

@@ -65,6 +65,7 @@ void HalHardware::makePins() {
   c.addPin("spindle-at-speed", HAL_IN, pins.spindle_at_speed, true);
   c.addPin("coolant-on", HAL_IN, pins.coolant_on, true);
   c.addPin("probe-free", HAL_IN, pins.probe_free, true);
+  has_swivel_ = c.addPin("swivel", HAL_IN, pins.swivel, false);
   c.addPin("servo-cycles", HAL_IN, pins.servo_cycles, true);
   c.addPin("servo-rate", HAL_IN, pins.servo_rate, true);
   c.addPin("played", HAL_IN, pins.played, true);
@@ -97,6 +98,7 @@ void HalHardware::read(const ros::Time&, const ros::Duration&) {
   status_.spindle_at_speed = *pins_->spindle_at_speed;
   status_.coolant_on = *pins_->coolant_on;
   status_.probe_free = *pins_->probe_free;
+  if (has_swivel_) status_.swivel = *pins_->swivel;
   readJoints();
   readHoming();
   const double servo_cycles = *pins_->servo_cycles;

@@ -1,5 +1,6 @@
 #include "flute_grinder/drive/simulated_drive.h"
 
+#include "flute_grinder/core/units.h"
 #include "flute_grinder/drive/parameters.h"
 
 #include <pluginlib/class_list_macros.hpp>
@@ -12,9 +13,11 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr std::array<const char*, 9> kFaultNames{"none",           "emergency_stop", "stuck_axis",
-                                                 "stale_feedback", "nan_feedback",   "drive_fault",
-                                                 "reference_lost", "spindle_lost",   "coolant_lost"};
+constexpr double kSlip = 0.002;  ///< of the swivel [rad]
+
+constexpr std::array<const char*, 10> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
+                                                  "nan_feedback", "drive_fault",    "reference_lost", "spindle_lost",
+                                                  "coolant_lost", "swivel_slipped"};
 
 template <std::size_t N>
 int indexOf(const std::array<const char*, N>& names, const std::string& name) {
@@ -44,7 +47,9 @@ bool SimulatedDrive::init(ros::NodeHandle&, ros::NodeHandle& robot_hw_nh) {
     model[i].home_position = p.number(joint + "home_position", -1e6, 1e6);
     model[i].homing_velocity = p.number(joint + "homing_velocity", 1e-6, 1e3);
   }
-  init(model, {p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)});
+  Equipment equipment{p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)};
+  if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
+  init(model, equipment);
   inject_service_ = robot_hw_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
   return true;
 }
@@ -98,6 +103,7 @@ void SimulatedDrive::readEquipment(Fault fault, double dt) {
   if (fault == Fault::kSpindleLost) spindle_speed_ = 0;
   status_.spindle_at_speed = spindle_speed_ >= 1;
   status_.coolant_on = drive_command_.coolant && fault != Fault::kCoolantLost;
+  status_.swivel = equipment_.swivel + (fault == Fault::kSwivelSlipped ? kSlip : 0);
 }
 
 void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {

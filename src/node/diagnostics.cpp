@@ -95,7 +95,7 @@ void Diagnostics::add(const CycleRecord& record) {
     }
     addBuffer(record.drive);
   }
-  if (record.has_setpoint) addSetpoint(record.setpoint);
+  if (record.has_setpoint) addSetpoint(record.setpoint, record.command);
   if (was_powered && record.fault.kind == FaultKind::kLimit && record.state == MachineState::kFault) {
     addViolation(record.fault.violation);
   }
@@ -114,7 +114,7 @@ void Diagnostics::addDrive(const CycleRecord& record) {
   }
 }
 
-void Diagnostics::addSetpoint(const Setpoint& setpoint) {
+void Diagnostics::addSetpoint(const Setpoint& setpoint, const Axes& command) {
   if (setpoint.cycle == 0 || setpoint.cycle != next_setpoint_) {
     limit_check_.restart();
     unknown_setpoints_ = setpoint.cycle == 0 ? 0 : kSetpointsOfPast;
@@ -128,7 +128,7 @@ void Diagnostics::addSetpoint(const Setpoint& setpoint) {
   ++limits_.setpoints;
   const AxisLimits& limits = config_.machine.limits;
   for (int i = 0; i < kAxisCount; ++i) {
-    keepLargest(limits_.use[0][i], positionUse(i, setpoint.position[i]));
+    keepLargest(limits_.use[0][i], positionUse(i, command[i]));
     keepLargest(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
     if (setpoint.cycle % 2 != 0) continue;  // within a pair the odd and even steps alternate
     keepLargest(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);

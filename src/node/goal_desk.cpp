@@ -3,16 +3,14 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/reasons.h"
+#include "flute_grinder/node/plain_name.h"
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 namespace flute_grinder {
 
 namespace {
 
-constexpr std::size_t kLongestName = 255;         ///< of a job
 constexpr double kPollPeriod = 0.001;             ///< [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
 const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
@@ -33,12 +31,6 @@ GrindResult result(int code, const std::vector<core::Reason>& reasons, const cor
   return r;
 }
 
-/// Control characters are refused, since names are printed on terminals.
-bool isName(const std::string& name) {
-  const auto controls = [](unsigned char c) { return std::iscntrl(c) != 0; };
-  return name.size() <= kLongestName && std::none_of(name.begin(), name.end(), controls);
-}
-
 /// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
 core::Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
   core::Reason reason;
@@ -56,11 +48,12 @@ core::Reason endReason(const LoopStatus& status, const Place& at, const GrindPro
 }  // namespace
 
 GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
-                   Telemetry& telemetry, JournalWriter& journal)
+                   Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets)
     : loop_(loop),
       gate_(gate),
       planner_(planner),
       telemetry_(telemetry),
+      offsets_(offsets),
       tracker_(journal),
       thread_(kPollPeriod, [this] { poll(); }) {
   ros::NodeHandle nh(private_nh);
@@ -84,16 +77,15 @@ void GoalDesk::onGoal(GoalHandle handle) {
     return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
   }
   const auto goal = handle.getGoal();
-  if (!isName(goal->job_name)) {
-    return reject(handle, GrindResult::INVALID_GOAL,
-                  "job_name has " + std::to_string(goal->job_name.size()) + " characters; allowed: up to " +
-                      std::to_string(kLongestName) + ", and none that controls a terminal");
+  if (!isPlainName(goal->job_name)) {
+    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
   }
   const GrindJob job = jobFromGoal(*goal);
   const std::string digest = jobDigest(job);
   if (!goal->dry_run) {
     const std::string text = refusal(*goal, digest);
     if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
+    if (const auto reason = swivelRefusal(job)) return reject(handle, result(GrindResult::NOT_READY, {*reason}));
   }
   startPlanning(handle, job, digest);
 }
@@ -108,13 +100,36 @@ std::string GoalDesk::refusal(const GrindGoal& goal, const std::string& digest) 
   return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
 }
 
+/// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
+std::optional<core::Reason> GoalDesk::swivelRefusal(const GrindJob& job) const {
+  const Swivel swivel = loop_.status().swivel;
+  // What is wrong with a job that cannot be ground at any swivel, the planner tells.
+  if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
+  return reasonOf(swivel, job.process.setup_swivel);
+}
+
+std::string GoalDesk::offsetRefusal(const GrindGoal& goal, const std::string& digest, const Axes& offset) const {
+  std::string unknown = offsets_.unknown();
+  if (!unknown.empty() || goal.dry_run || goal.discard) return unknown;
+  return tracker_.offsetRefusal(digest, offset);
+}
+
 void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
-    return reject(goal, GrindResult::NOT_READY, "the grinder is being shut down");
+    return reject(goal, GrindResult::NOT_READY,
+                  gate_.isShut() ? "the grinder is being shut down"
+                                 : "a work offset is being set; allowed: wait for the end of that");
   }
+  // From here on to the end of the goal the offsets cannot change.
   Planner::Request request;
+  request.offset = offsets_.offsets().values();
+  const std::string refused = offsetRefusal(*handle.getGoal(), digest, request.offset);
+  if (!refused.empty()) {
+    gate_.close();
+    return reject(goal, GrindResult::NOT_READY, refused);
+  }
   request.job = job;
   request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};

@@ -29,9 +29,9 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The journal's file; if the parameter is a folder, the file in it named after the node.
-std::string journalPath(const std::string& parameter, const std::string& node) {
-  return parameter.back() == '/' ? parameter + node.substr(1) + ".journal" : parameter;
+/// A kept file; if the parameter is a folder, the file in it named after the node.
+std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
+  return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
 }
 
 }  // namespace
@@ -48,20 +48,24 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const LoopConfig config = readMachineConfig(urdf, parameters);
   const DiagnosticThresholds thresholds = readDiagnosticThresholds(parameters);
   const std::string name = private_nh_.getNamespace();
-  journal_ = std::make_unique<JournalWriter>(journalPath(parameters.text("journal"), name), name);
+  journal_ = std::make_unique<JournalWriter>(filePath(parameters.text("journal"), name, ".journal"), name);
+  offsets_ = std::make_unique<OffsetStore>(filePath(parameters.text("offsets"), name, ".offsets"), name);
+  const std::string unknown = offsets_->unknown();
+  if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   loadDrive(parameters);
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
-  planner_ = std::make_unique<Planner>(config.machine);
-  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, thresholds);
+  planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
+  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, thresholds);
   stops_ = std::make_unique<StopDesk>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
   telemetry_->start();
   requests_ = std::make_unique<RequestDesk>(private_nh_, *loop_, gate_);
-  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_);
-  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_);
+  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
+  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
+  offset_desk_ = std::make_unique<OffsetDesk>(private_nh_, *loop_, gate_, *offsets_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }

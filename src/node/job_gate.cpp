@@ -17,7 +17,7 @@ bool isMeantFor(const actionlib_msgs::GoalID& cancel, const actionlib_msgs::Goal
 
 bool JobGate::open(const actionlib_msgs::GoalID& goal, std::function<void()> give_up) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (shut_) return false;
+  if (shut_ || jobs_shut_out_) return false;
   phase_ = Phase::kAhead;
   goal_ = goal;
   give_up_ = std::move(give_up);
@@ -64,6 +64,23 @@ void JobGate::shut() {
   const std::lock_guard<std::mutex> lock(mutex_);
   shut_ = true;
   if (phase_ != Phase::kIdle) giveUp();
+}
+
+bool JobGate::shutOutJobs() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (phase_ != Phase::kIdle) return false;
+  jobs_shut_out_ = true;
+  return true;
+}
+
+void JobGate::letJobsIn() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  jobs_shut_out_ = false;
+}
+
+bool JobGate::isShut() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return shut_;
 }
 
 bool JobGate::canceled() const {

@@ -4,6 +4,7 @@
 #include "flute_grinder/messages/reasons.h"
 
 #include <future>
+#include <limits>
 #include <utility>
 
 namespace flute_grinder {
@@ -14,10 +15,12 @@ constexpr unsigned kThreads = 2;  ///< one waits for its plan, the other answers
 
 }  // namespace
 
-PlanDesk::PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry)
+PlanDesk::PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry,
+                   const OffsetStore& offsets)
     : loop_(loop),
       planner_(planner),
       telemetry_(telemetry),
+      offsets_(offsets),
       control_(std::make_shared<PlanControl>()),
       spinner_(kThreads, &queue_) {
   ros::NodeHandle nh(private_nh);
@@ -32,16 +35,22 @@ PlanDesk::~PlanDesk() {
 }
 
 bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
+  response.valid = 0;
+  const std::string unknown = offsets_.unknown();
+  if (!unknown.empty()) {
+    response.reasons.push_back(unknown);
+    return true;
+  }
   std::promise<std::unique_ptr<Preview>> promise;
   auto answer = promise.get_future();
   Planner::Request plan_request;
   plan_request.job = jobFromGoal(request.goal);
+  plan_request.offset = offsets_.offsets().values();
   plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
   plan_request.control = control_;
   plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
   const bool taken = planner_.submit(std::move(plan_request));
-  response.valid = 0;
   if (!taken) {
     response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
     return true;
@@ -51,6 +60,15 @@ bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);
   response.duration = plan.statistics.duration;
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const Range complete = plan.complete.value_or(Range{nowhere, nowhere});
+  response.complete_from = complete.from;
+  response.complete_to = complete.to;
+  if (plan.closest) {
+    response.closest_bodies = {plan.closest->first, plan.closest->second};
+    response.closest_distance = plan.closest->distance;
+    response.closest_x = plan.closest->axes[kX];
+  }
   response.violations = toMessage(plan.reasons);
   for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
   if (plan.good()) telemetry_.show(preview);

@@ -1,10 +1,14 @@
 #include "flute_grinder/node/planner.h"
 
+#include "flute_grinder/collision/job_collision.h"
+#include "flute_grinder/geometry/ground_job.h"
+
 #include <utility>
 
 namespace flute_grinder {
 
-Planner::Planner(const Machine& machine) : machine_(machine), thread_([this] { run(); }) {}
+Planner::Planner(const Machine& machine, const MachineShapes& shapes)
+    : machine_(machine), shapes_(shapes), thread_([this] { run(); }) {}
 
 void Planner::end() {
   if (!thread_.joinable()) return;
@@ -48,7 +52,7 @@ std::optional<Planner::Request> Planner::next() {
 std::unique_ptr<Preview> Planner::plan(const Request& request) const {
   auto preview = std::make_unique<Preview>();
   preview->first = request.first;
-  if (validate(request.job).empty()) preview->errors.emplace(ConicalCutter(request.job.cutter));
+  if (validate(request.job).empty()) preview->errors.emplace(request.job);
   // Every stroke of a job has the same errors.
   const auto visit = [&](const Setpoint& p) {
     if (p.tooth == request.first.tooth && p.pass == request.first.pass) preview->errors->add(p);
@@ -57,7 +61,10 @@ std::unique_ptr<Preview> Planner::plan(const Request& request) const {
     request.control->done = done;
     return !request.control->give_up;
   };
-  preview->plan = planJob(request.job, machine_, request.start, request.first, visit, watch);
+  Machine machine = machine_;
+  machine.work_offset = request.offset;
+  preview->plan = planGroundJob(request.job, machine, request.start - request.offset, request.first, visit, watch);
+  checkCollision(preview->plan, shapes_);
   if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
   return preview;
 }

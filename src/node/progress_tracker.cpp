@@ -1,8 +1,10 @@
 #include "flute_grinder/node/progress_tracker.h"
 
+#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -10,6 +12,9 @@ namespace flute_grinder {
 
 namespace {
 
+/// Within which work offsets count as the same: what is lost of them on a display [m], A [rad].
+constexpr double kSameOffset = 1e-7, kSameAngle = 1e-6;
+constexpr int kOffsetDigits = 9;            ///< so that offsets that differ look different
 const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
 
 /// For the operator; teeth and passes count from 1.
@@ -33,6 +38,20 @@ std::string ProgressTracker::refusal(const std::string& digest, const ToothPass&
   return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 
+std::string ProgressTracker::offsetRefusal(const std::string& digest, const Axes& offset) const {
+  if (progress_.finished || digest != progress_.job_digest) return "";
+  std::string changes;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    if (std::abs(offset[axis] - progress_.offset[axis]) <= (axis == kA ? kSameAngle : kSameOffset)) continue;
+    const auto shown = [&](double value) { return text({value, unitOf(axis, 0)}, UnitSystem::kShop, kOffsetDigits); };
+    changes += "; that of " + axisName(axis, UnitSystem::kShop) + " was " + shown(progress_.offset[axis]) + " and is " +
+               shown(offset[axis]);
+  }
+  if (changes.empty()) return "";
+  return "the job is not finished, and it began with other work offsets" + changes +
+         "; set them as they were, or discard the job";
+}
+
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
                             const ToothPass& first, std::uint64_t number) {
   before_ = progress_;
@@ -51,6 +70,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   // Assumed until the job has ended: after a crash nothing but the drive's positions could prove the wheel clear.
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
+  progress_.offset = program.machine().work_offset;
   write();
 }
 

@@ -1,6 +1,25 @@
 #include "flute_grinder/node/request_desk.h"
 
+#include <cmath>
+#include <sstream>
+
 namespace flute_grinder {
+
+namespace {
+
+constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jog [s]
+
+/// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
+std::string staleness(const Jog& message, double timeout) {
+  const double age = (ros::Time::now() - message.header.stamp).toSec();
+  if (std::abs(age) <= timeout) return "";
+  std::ostringstream text;
+  text << "jog refused: the message is " << age << " s old; allowed: up to " << timeout
+       << " s, by clocks that agree; header.stamp must be set";
+  return text.str();
+}
+
+}  // namespace
 
 RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
     : loop_(loop), gate_(gate) {
@@ -9,6 +28,10 @@ RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, J
   for (const EventRow& request : kMachineEvents) {
     if (isTrigger(request.value)) serve(nh, request.value);
   }
+  services_.push_back(nh.advertiseService("confirm_swivel", &RequestDesk::onConfirmSwivel, this));
+  services_.push_back(nh.advertiseService("jog_step", &RequestDesk::onJogStep, this));
+  // Of several messages that wait only the last one counts.
+  jogs_ = nh.subscribe("jog", 1, &RequestDesk::onJog, this, ros::TransportHints().tcpNoDelay());
   thread_.start();
 }
 
@@ -28,6 +51,33 @@ RequestReply RequestDesk::execute(MachineEvent event) {
   // A hold from before the job's start is still in the gate.
   if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
   return loop_.request(event);
+}
+
+bool RequestDesk::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response) {
+  const RequestReply reply = loop_.confirmSwivel(request.swivel);
+  response.success = static_cast<std::uint8_t>(reply.accepted);
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+bool RequestDesk::onJogStep(JogStep::Request& request, JogStep::Response& response) {
+  JogRequest jog{request.axis, false, request.distance, request.speed};
+  const bool named = request.speed != 0 || request.axis >= kAxisCount;
+  if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
+  const RequestReply reply = loop_.jog(jog);
+  response.success = static_cast<std::uint8_t>(reply.accepted);
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+void RequestDesk::onJog(const Jog::ConstPtr& message) {
+  std::string refusal;
+  // An axis is stopped however late the message comes.
+  if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
+  if (refusal.empty()) refusal = loop_.jog({message->axis, true, 0, message->velocity}).text;
+  if (!refusal.empty()) ROS_WARN_STREAM_THROTTLE(kWarningInterval, refusal);
 }
 
 }  // namespace flute_grinder

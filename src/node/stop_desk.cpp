@@ -19,6 +19,7 @@ StopDesk::StopDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate
 
 bool StopDesk::onHold(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   if (gate_.hold()) {
+    loop_.postStop(MachineEvent::kHold);  // an axis may be jogged while the job is planned
     response.success = true;
     response.message = "the job will be held before it moves";
     return true;
@@ -54,7 +55,8 @@ void StopDesk::onCancel(const actionlib_msgs::GoalID::ConstPtr& what) {
 void StopDesk::onStop(const Stop::ConstPtr& stop) {
   switch (stop->request) {
     case Stop::HOLD:
-      if (!gate_.hold()) loop_.postStop(MachineEvent::kHold);
+      static_cast<void>(gate_.hold());
+      loop_.postStop(MachineEvent::kHold);  // an axis may be jogged while a job is planned
       break;
     case Stop::CANCEL:
     case Stop::DISABLE:

@@ -47,9 +47,10 @@ JobProgress toMessage(const Progress& progress) {
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-                     const JournalWriter& journal, const DiagnosticThresholds& thresholds)
+                     const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds)
     : loop_(loop),
       journal_(journal),
+      offsets_(offsets),
       diagnostics_(loop.config(), thresholds,
                    [&loop] {
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
@@ -131,7 +132,7 @@ void Telemetry::trackJob(Job& job) {
   auto& buffered = job.buffered;
   while (!buffered.empty() && buffered.front().cycle + record_.drive.commands_waiting <= cycle()) {
     job.last = buffered.front().setpoint;
-    if (job.shown) scene_.add(job.last, record_.position);
+    if (job.shown) scene_.add(job.last, workPosition(job));
     addToBatch(job, buffered.front());
     buffered.pop_front();
   }
@@ -148,9 +149,14 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
     batch_.goal_id = job.goal.id;
     batch_.lost = lost;
   }
-  batch_.setpoints.push_back(toMessage(setpoint, record_.position, written.period));
+  batch_.setpoints.push_back(toMessage(setpoint, workPosition(job), written.period));
   batch_.end_stamp = ros::Time(record_.time);
   job.largest_error = std::max(job.largest_error, std::abs(setpoint.path_error));
+}
+
+/// The position read, in the job's work coordinates.
+Axes Telemetry::workPosition(const Job& job) const {
+  return record_.position - job.preview->plan.program->machine().work_offset;
 }
 
 void Telemetry::endJob(Job& job) {
@@ -174,9 +180,11 @@ void Telemetry::publishJointStates() {
     message.velocity.push_back(record_.velocity[i]);
   }
   // Not driven, but robot_state_publisher takes every joint from this topic.
-  message.name.insert(message.name.end(), {"wheel_swivel", "y_zero"});
-  message.position.insert(message.position.end(), {scene_.setup().wheel_swivel, scene_.setup().y_zero});
-  message.velocity.insert(message.velocity.end(), {0, 0});
+  const MachineSetup& setup = scene_.setup();
+  message.name.insert(message.name.end(), {"wheel_swivel", "y_zero", "z_zero", "x_zero", "a_zero"});
+  message.position.insert(message.position.end(),
+                          {setup.wheel_swivel, setup.y_zero, setup.z_zero, setup.x_zero, setup.a_zero});
+  message.velocity.insert(message.velocity.end(), {0, 0, 0, 0, 0});
   joint_states_.publish(message);
 }
 
@@ -197,7 +205,14 @@ void Telemetry::publishState() {
   message.coolant_on = record_.drive.coolant_on;
   message.emergency_stop = record_.drive.emergency_stop;
   message.wheel_in_work = record_.wheel_in_work;
+  message.swivel = record_.swivel.angle;
+  message.swivel_measured = record_.swivel.measured;
   message.override = record_.feed_override;
+  const Axes offset = offsets_.offsets().values();
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    message.position[static_cast<std::size_t>(axis)] = record_.position[axis];
+    message.work_position[static_cast<std::size_t>(axis)] = record_.position[axis] - offset[axis];
+  }
   if (const Job* job = running()) {
     message.feed = job->last.feed;
     message.tooth = job->last.tooth;

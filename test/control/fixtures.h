@@ -34,8 +34,13 @@ inline LoopConfig machineConfig() {
   config.enable_timeout = 0.0105;
   config.homing_timeout = 0.0505;
   config.spindle_timeout = 0.0205;
+  config.jog_timeout = 0.0505;
+  config.jog_velocity << 0.01, 0.01, 0.01, 0.5;
   return config;
 }
+
+/// The swivel of jobs/paper.yaml [rad].
+constexpr double kPaperSwivel = 31.769 * 3.14159265358979323846 / 180;
 
 inline SimulatedDrive::Model driveModel(const LoopConfig& config = machineConfig()) {
   SimulatedDrive::Model model;

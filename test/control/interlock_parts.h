@@ -25,13 +25,18 @@ inline const std::vector<Part>& parts() {
        "the spindle is not at speed"},
       {"Coolant", Interlock::kCoolant, [](FakeDrive& d) { d.status.coolant_on = false; }, "no coolant flows"},
       {"Probe", Interlock::kProbe, [](FakeDrive& d) { d.status.probe_free = false; },
-       "the measuring probe is in the way"}};
+       "the measuring probe is in the way"},
+      {"Swivel", Interlock::kSwivel, [](FakeDrive& d) { d.status.swivel = kPaperSwivel + 0.001; },
+       "the swivel is not at the job's angle"}};
   return all;
 }
 inline std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
 
 /// Restores every part; spindle and coolant follow their commands by themselves.
-inline void restoreParts(FakeDrive& drive) { drive.status.homed = drive.status.probe_free = true; }
+inline void restoreParts(FakeDrive& drive) {
+  drive.status.homed = drive.status.probe_free = true;
+  drive.status.swivel = kPaperSwivel;
+}
 
 inline std::string partName(const testing::TestParamInfo<Part>& info) { return info.param.name; }
 

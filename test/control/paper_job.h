@@ -11,16 +11,16 @@
 // The paper's job: its dimensions, its planned setpoints, and checks of the path.
 namespace flute_grinder::test_support {
 
-// D1 = 10 mm, C = 5 degrees, S = 30 degrees, rake 8 degrees, 1 mm of overtravel at either end of 30 mm, 0.5 mm deep,
+// D1 = 10 mm, C = 5 degrees, S = 30 degrees, rake 8 degrees, 30 mm with 1 and 7 mm of overtravel, 1.6 mm deep,
 // 5 mm of clearance, 600 mm/min. The helix is A = (k/b) ln(1 + bX), with b = 2 tan C / D1 and k = 2 tan S / D1.
 const double kDegree = std::acos(-1.0) / 180;
 const double kTanCone = std::tan(5 * kDegree);
 const double kB = 2 * kTanCone / 0.010;
 const double kK = 2 * std::tan(30 * kDegree) / 0.010;
-const double kClearanceHeight = 0.031 * kTanCone + 0.005;
+const double kClearanceHeight = 0.037 * kTanCone + 0.005;
 const double kFeed = 0.010;
 const double kEdgePerTravel = std::sqrt(1 + std::pow(kTanCone, 2) + std::pow(std::tan(30 * kDegree), 2));
-const double kStrokeTo = 0.031;
+const double kStrokeTo = 0.037;
 
 inline SetpointStream paperFromPark() {
   const LoopConfig config = machineConfig();
@@ -91,7 +91,7 @@ inline testing::AssertionResult onPath(const Setpoint& p) {
     const double radius = 0.005 + x * kTanCone;
     const double off_a = p.position[kA] - kK / kB * std::log1p(kB * x);
     if (!(std::abs(off_a) * radius * std::cos(30 * kDegree) <= 1.01e-6)) return failure() << " is off the helix";
-    if (!(std::abs(p.position[kY] - (x * kTanCone - 0.0005)) <= 1e-12)) return failure() << " is off in Y";
+    if (!(std::abs(p.position[kY] - (x * kTanCone - 0.0016)) <= 1e-12)) return failure() << " is off in Y";
     if (!(std::abs(p.position[kZ] - x * kTanCone * std::sin(8 * kDegree)) <= 1e-12)) return failure() << " is off in Z";
     return testing::AssertionSuccess();
   }

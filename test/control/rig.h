@@ -13,13 +13,14 @@
 // Runs the control loop cycle by cycle, without its thread and without ROS.
 namespace flute_grinder::test_support {
 
-/// A drive and its loop; every cycle's record is popped into the log.
+/// A drive and its loop; every cycle's record is popped into the log. The swivel is confirmed for the paper's job.
 template <typename Drive>
 class Rig {
  public:
   explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {}) : config_(config) {
     setUp(drive, config);
     loop = std::make_unique<ControlLoop>(drive, config, wheel);
+    loop->postSwivel(kPaperSwivel);
   }
 
   /// With a drive that `prepare` sets up.
@@ -27,6 +28,7 @@ class Rig {
   Rig(const LoopConfig& config, const Prepare& prepare) : config_(config) {
     prepare(drive);
     loop = std::make_unique<ControlLoop>(drive, config);
+    loop->postSwivel(kPaperSwivel);
   }
 
   /// @param periods since the last cycle.
@@ -49,6 +51,7 @@ class Rig {
   /// @param job for kStart.
   RequestReply ask(MachineEvent event, SetpointStream* job = nullptr) {
     if (event == MachineEvent::kStart) return askToStart(*job);
+    if (event == MachineEvent::kJog) return jog({kY, false, 0.02, 0.05});
     if (isStop(event)) {
       const std::uint32_t ticket = loop->postStopWithReply(event);
       return answerOf([&] { return loop->stopReply(event, ticket); });
@@ -61,6 +64,18 @@ class Rig {
   RequestReply askToStart(SetpointStream& job) {
     EXPECT_TRUE(loop->startJob(&job)) << "the start was not taken";
     return answerOf([&] { return loop->startJobReply(); });
+  }
+
+  /// Confirms the swivel and runs cycles until that is answered.
+  RequestReply confirm(double angle) {
+    EXPECT_TRUE(loop->postSwivel(angle)) << "the confirmation was not taken";
+    return answerOf([&] { return loop->swivelReply(); });
+  }
+
+  /// Requests a jog and runs the cycle that answers it.
+  RequestReply jog(const JogRequest& request) {
+    EXPECT_TRUE(loop->postJog(request)) << "the jog was not taken";
+    return answerOf([&] { return loop->jogReply(); });
   }
 
   /// Runs cycles until there is an answer.
@@ -174,6 +189,10 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
   if (state == S::kHoming) {
     rig.enable();
     ASSERT_TRUE(rig.ask(E::kHome).accepted);
+  } else if (state == S::kJogging) {
+    rig.enable();
+    ASSERT_TRUE(rig.ask(E::kJog).accepted);
+    rig.run(30);
   } else if (state == S::kStarting) {
     rig.enable();
     rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
@@ -207,8 +226,11 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
     } else if (state != S::kRunning) {
       ask(E::kHold);
       if (state != S::kHolding) rig.runUntil(S::kHeld);
-      if (state == S::kRetracting || state == S::kRetracted || state == S::kResuming) ask(E::kRetract);
-      if (state == S::kRetracted || state == S::kResuming) rig.runUntil(S::kRetracted);
+      const bool jogs = state == S::kJoggingRetracted;
+      if (state == S::kRetracting || state == S::kRetracted || state == S::kResuming || jogs) ask(E::kRetract);
+      if (state == S::kRetracted || state == S::kResuming || jogs) rig.runUntil(S::kRetracted);
+      if (jogs) ask(E::kJog);
+      if (jogs) rig.run(30);
       if (state == S::kResuming) ask(E::kResume);
     }
   }

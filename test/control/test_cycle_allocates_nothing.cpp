@@ -196,6 +196,13 @@ class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
   static GrindProgram program() {
     GrindJob job = paperJob();
     job.interpolation.even_step = GetParam();
+    job.process.z_law = ZLaw::kConstantRake;
+    ZCorrection bow;
+    bow.from = -job.process.overtravel_end;
+    bow.pieces = ZCorrection::kMostPieces;
+    bow.piece = 3e-3;
+    for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
+    job.z_corrections = {bow};
     const LoopConfig config = machineConfig();
     return GrindProgram(job, config.machine, config.machine.park);
   }
@@ -261,6 +268,7 @@ class CycleAllocatesNothing : public testing::Test {
   CycleAllocatesNothing() {
     drive_.init(driveModel(), equipment());
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
+    used_ += heapUse([&] { loop_->postSwivel(kPaperSwivel); });
     cycle();
   }
 
@@ -302,6 +310,14 @@ class CycleAllocatesNothing : public testing::Test {
     return false;
   }
 
+  /// Posts a jog. The calls of the requesting thread count too.
+  bool jogs(const JogRequest& jog) {
+    used_ += heapUse([&] { loop_->postJog(jog); });
+    cycle();
+    const auto answer = loop_->jogReply();
+    return answer && answer->accepted;
+  }
+
   /// Runs until a state is reached.
   bool reaches(MachineState state) {
     for (int i = 0; i < 100000 && record_.state != state; ++i) cycle();
@@ -316,8 +332,10 @@ class CycleAllocatesNothing : public testing::Test {
     return record_.state == MachineState::kRunning;
   }
 
-  SetpointStream paperStream() const {
-    return SetpointStream(GrindProgram(paperJob(), machineConfig().machine, record_.command));
+  SetpointStream paperStream(const Axes& offset = Axes::Zero()) const {
+    Machine machine = machineConfig().machine;
+    machine.work_offset = offset;
+    return SetpointStream(GrindProgram(paperJob(), machine, record_.command - offset));
   }
 
   SimulatedDrive drive_;
@@ -345,6 +363,19 @@ TEST_F(CycleAllocatesNothing, OverAWholeJob) {
   for (int i = 0; i < 100000 && ended_ == 0; ++i) cycle();
   EXPECT_EQ(ended_, 1);
   EXPECT_EQ(record_.state, MachineState::kReady);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverAJobWithWorkOffsetsAndOneThatLeavesTheLimits) {
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  SetpointStream stream = paperStream({0.1, 0.0375, -0.02, 7});
+  ASSERT_TRUE(accepted(MachineEvent::kStart, &stream));
+  for (int i = 0; i < 100000 && ended_ == 0; ++i) cycle();
+  EXPECT_EQ(status_.end, JobEnd::kDone);
+  SetpointStream too_far = paperStream({0.28, 0, 0, 0});
+  ASSERT_TRUE(accepted(MachineEvent::kStart, &too_far));
+  ASSERT_TRUE(reaches(MachineState::kFault));
+  EXPECT_EQ(record_.fault.kind, FaultKind::kLimit);
   expectNone(used_);
 }
 
@@ -407,6 +438,45 @@ TEST_F(CycleAllocatesNothing, OverHoldRetractAndResume) {
   expectNone(used_);
 }
 
+TEST_F(CycleAllocatesNothing, OverJogs) {
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  ASSERT_TRUE(jogs({kX, false, 0.01, 0.05}));
+  EXPECT_EQ(record_.state, MachineState::kJogging);
+  EXPECT_FALSE(jogs({kX, false, 0.01, 0.05}));
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  EXPECT_FALSE(jogs({kX, false, 1, 0.05}));
+  ASSERT_TRUE(jogs({kZ, true, 0, 0.05}));
+  run(40);
+  ASSERT_TRUE(jogs({kZ, true, 0, 0.01}));
+  ASSERT_TRUE(reaches(MachineState::kReady)) << "without messages";
+  ASSERT_TRUE(jogs({kZ, true, 0, -0.05}));
+  cycle(5);
+  ASSERT_TRUE(accepted(MachineEvent::kHold));
+  EXPECT_FALSE(jogs({kZ, true, 0, -0.05}));
+  ASSERT_TRUE(jogs({kZ, true, 0, 0}));
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverJogsAmidAJob) {
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  ASSERT_TRUE(accepted(MachineEvent::kHold));
+  ASSERT_TRUE(reaches(MachineState::kHeld));
+  ASSERT_TRUE(accepted(MachineEvent::kRetract));
+  ASSERT_TRUE(reaches(MachineState::kRetracted));
+  ASSERT_TRUE(jogs({kY, false, 0.01, 0.05}));
+  EXPECT_EQ(record_.state, MachineState::kJoggingRetracted);
+  ASSERT_TRUE(reaches(MachineState::kRetracted));
+  ASSERT_TRUE(jogs({kX, true, 0, -0.05}));
+  ASSERT_TRUE(reaches(MachineState::kRetracted));
+  ASSERT_TRUE(accepted(MachineEvent::kResume));
+  ASSERT_TRUE(reaches(MachineState::kRunning));
+  ASSERT_TRUE(reaches(MachineState::kReady));
+  EXPECT_EQ(ended_, 1);
+  expectNone(used_);
+}
+
 TEST_F(CycleAllocatesNothing, OverFeedOverrides) {
   SetpointStream stream = paperStream();
   ASSERT_TRUE(grinds(stream));
@@ -441,6 +511,31 @@ TEST_F(CycleAllocatesNothing, OverEveryInterlock) {
     ASSERT_TRUE(reaches(MachineState::kReady));
   }
   EXPECT_EQ(ended_, 3);
+  expectNone(used_);
+}
+
+TEST_F(CycleAllocatesNothing, OverASwivelThatIsConfirmedMeasuredAndSlips) {
+  for (const double angle : {kPaperSwivel, 0.0}) {
+    used_ += heapUse([&] { loop_->postSwivel(angle); });
+    run(2);
+    ASSERT_EQ(status_.swivel.angle, angle);
+  }
+  ASSERT_TRUE(accepted(MachineEvent::kEnable));
+  SetpointStream refused = paperStream();
+  EXPECT_FALSE(accepted(MachineEvent::kStart, &refused));
+  SimulatedDrive::Equipment encoder = equipment();
+  encoder.swivel = kPaperSwivel;
+  drive_.init(driveModel(), encoder);
+  run(2);
+  SetpointStream stream = paperStream();
+  ASSERT_TRUE(grinds(stream));
+  drive_.inject(SimulatedDrive::Fault::kSwivelSlipped);
+  ASSERT_TRUE(reaches(MachineState::kRetracted));
+  EXPECT_EQ(record_.interlock, Interlock::kSwivel);
+  drive_.inject(SimulatedDrive::Fault::kNone);
+  run(10);
+  ASSERT_TRUE(accepted(MachineEvent::kResume));
+  ASSERT_TRUE(reaches(MachineState::kReady));
   expectNone(used_);
 }
 
@@ -510,6 +605,7 @@ TEST_F(CycleAllocatesNothing, OverASetpointThatALimitForbids) {
   LoopConfig weak = machineConfig();
   weak.machine.limits.max_velocity[kX] = 0.05;
   loop_ = std::make_unique<ControlLoop>(drive_, weak);
+  loop_->postSwivel(kPaperSwivel);
   cycle();
   ASSERT_TRUE(accepted(MachineEvent::kEnable));
   SetpointStream stream = paperStream();

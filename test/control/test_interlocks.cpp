@@ -240,6 +240,7 @@ TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
   ControlLoop loop(drive, config);
   loop.startThread();
   ASSERT_TRUE(loop.request(E::kEnable).accepted);
+  ASSERT_TRUE(loop.confirmSwivel(kPaperSwivel).accepted);
   ASSERT_TRUE(loop.startJob(&stream));
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   while (loop.status().jobs_started == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();

@@ -44,7 +44,7 @@ TEST_P(LateWhileMovingIn, ComesAfterTheEmergencyStop) {
 
 INSTANTIATE_TEST_SUITE_P(, LateWhileMovingIn,
                          testing::Values(S::kRunning, S::kHolding, S::kRetracting, S::kResuming, S::kCanceling,
-                                         S::kLifting),
+                                         S::kLifting, S::kJogging, S::kJoggingRetracted),
                          [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
 class LateAtRestIn : public testing::TestWithParam<S> {};
@@ -139,9 +139,11 @@ TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
   }
 }
 
-TEST(LateCycle, ALiftTakesItsSpeedUpAnewToo) {
+class LateWithoutTheJob : public testing::TestWithParam<S> {};
+
+TEST_P(LateWithoutTheJob, TheAxisTakesItsSpeedUpAnewToo) {
   Rig<FakeDrive> rig(patient());
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam()));
   rig.run(20);
   const auto y_step = [&](std::size_t back) {
     const std::size_t i = rig.log.size() - 1 - back;
@@ -152,9 +154,12 @@ TEST(LateCycle, ALiftTakesItsSpeedUpAnewToo) {
   rig.cycle(5);
   rig.cycle();
   EXPECT_LT(y_step(0), before / 5 + 2e-6);
-  rig.runUntil(S::kReady);
+  rig.runUntil(GetParam() == S::kJoggingRetracted ? S::kRetracted : S::kReady);
   EXPECT_FALSE(rig.last().wheel_in_work);
 }
+
+INSTANTIATE_TEST_SUITE_P(, LateWithoutTheJob, testing::Values(S::kLifting, S::kJogging, S::kJoggingRetracted),
+                         [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
 }  // namespace
 }  // namespace flute_grinder::test_support

@@ -10,8 +10,8 @@ namespace flute_grinder::test_support {
 namespace {
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearanceHeight = 0.031 * kTanCone + 0.005;  // of the paper's job
-const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0005;
+const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
+const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0016;
 
 /// Ready, with the wheel in the work after a fault.
 void bringIntoTheWork(Rig<FakeDrive>& rig) {

@@ -164,22 +164,24 @@ std::string requestName(const testing::TestParamInfo<RequestCase>& info) {
 /// Every request in every state that does not allow it.
 std::vector<RequestCase> refusedRequests() {
   const std::vector<std::pair<S, const char*>> allowed{{S::kDisabled, "enable, disable, reset"},
-                                                       {S::kReady, "enable, disable, home, start, lift"},
+                                                       {S::kReady, "enable, disable, home, start, lift, jog"},
                                                        {S::kHoming, "disable, hold, cancel"},
                                                        {S::kStarting, "disable, hold, resume, cancel"},
                                                        {S::kRunning, "disable, hold, cancel"},
                                                        {S::kHolding, "disable, hold, resume, cancel"},
                                                        {S::kHeld, "disable, hold, resume, retract, cancel"},
                                                        {S::kRetracting, "disable, hold, cancel"},
-                                                       {S::kRetracted, "disable, resume, cancel"},
+                                                       {S::kRetracted, "disable, resume, cancel, jog"},
                                                        {S::kResuming, "disable, hold, cancel"},
                                                        {S::kCanceling, "disable, hold, cancel"},
                                                        {S::kFault, "disable, reset"},
-                                                       {S::kLifting, "disable, hold, cancel"}};
+                                                       {S::kLifting, "disable, hold, cancel"},
+                                                       {S::kJogging, "disable, hold, cancel, jog"},
+                                                       {S::kJoggingRetracted, "disable, hold, cancel, jog"}};
   const std::vector<std::pair<E, const char*>> requests{
       {E::kEnable, "enable"}, {E::kDisable, "disable"}, {E::kHome, "home"},       {E::kStart, "start"},
       {E::kHold, "hold"},     {E::kResume, "resume"},   {E::kRetract, "retract"}, {E::kCancel, "cancel"},
-      {E::kReset, "reset"},   {E::kLift, "lift"}};
+      {E::kReset, "reset"},   {E::kLift, "lift"},       {E::kJog, "jog"}};
   std::vector<RequestCase> cases;
   for (const auto& [state, list] : allowed) {
     for (const auto& [event, name] : requests) {
@@ -224,7 +226,10 @@ INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
                                          RequestCase{S::kCanceling, E::kCancel},
                                          RequestCase{S::kCanceling, E::kDisable}, RequestCase{S::kCanceling, E::kHold},
                                          RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
-                                         RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable}),
+                                         RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable},
+                                         RequestCase{S::kJogging, E::kHold}, RequestCase{S::kJogging, E::kCancel},
+                                         RequestCase{S::kJogging, E::kDisable},
+                                         RequestCase{S::kJoggingRetracted, E::kHold}),
                          requestName);
 
 // Events of the loop itself: from outside they would make the state inconsistent with the stream and the power.

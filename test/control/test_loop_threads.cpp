@@ -45,6 +45,7 @@ class LoopThreads : public testing::Test {
     setUp(drive_, machineConfig());
     drive_.on_read = Unreliable{};
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
+    loop_->postSwivel(kPaperSwivel);
   }
 
   template <typename Work>
@@ -112,6 +113,12 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
     if (random() % 300 == 0) loop_->postStop(random() % 4 == 0 ? E::kCancel : E::kHold);
     loop_->setFeedOverride(static_cast<double>(random() % 13) / 10);
     std::this_thread::sleep_for(std::chrono::microseconds(20));
+  });
+  spawn(7, [this](std::mt19937& random) {
+    const double part = static_cast<double>(random() % 200) / 100 - 1;
+    const auto axis = static_cast<int>(random() % 4);
+    EXPECT_TRUE(loop_->jog({axis, random() % 2 == 0, part * 0.01, part * 0.1}).answered);
+    std::this_thread::sleep_for(std::chrono::microseconds(500));
   });
   std::atomic<std::uint64_t> bad{0}, taken{0};
   spawn(6, [&](std::mt19937&) {

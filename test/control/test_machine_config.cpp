@@ -91,16 +91,34 @@ TEST_F(PackageMachine, HasFollowingErrorsFromTheConstraints) {
 
 TEST_F(PackageMachine, RunsAtOneKilohertz) { EXPECT_DOUBLE_EQ(config_.machine.period, 0.001); }
 
+TEST_F(PackageMachine, HasJogVelocities) { expectAxes(config_.jog_velocity, {0.01, 0.01, 0.01, 0.5}); }
+
 TEST_F(PackageMachine, HasAParkPosition) { expectAxes(config_.machine.park, {-0.05, 0.05, 0, 0}); }
+
+TEST_F(PackageMachine, SwivelsSixtyDegreesToEitherSide) {
+  constexpr double kSixtyDegrees = 1.04719755;
+  EXPECT_NEAR(config_.machine.swivel.from, -kSixtyDegrees, 1e-7);
+  EXPECT_NEAR(config_.machine.swivel.to, kSixtyDegrees, 1e-7);
+}
 
 TEST_F(PackageMachine, HasTimeouts) {
   EXPECT_EQ(config_.feedback_timeout, 0.002);
   EXPECT_EQ(config_.enable_timeout, 2);
   EXPECT_EQ(config_.homing_timeout, 60);
   EXPECT_EQ(config_.spindle_timeout, 10);
+  EXPECT_EQ(config_.jog_timeout, 0.2);
   EXPECT_EQ(config_.machine.max_job_duration, 24 * 3600);
+  EXPECT_EQ(config_.machine.collision_clearance, 0.001);
   EXPECT_EQ(config_.late_slow_down, 2);
   EXPECT_EQ(config_.late_fault, 10);
+}
+
+TEST_F(PackageMachine, HasAGeometry) {
+  EXPECT_EQ(config_.geometry.work_axis_y, 0);
+  EXPECT_EQ(config_.geometry.work_axis_z, 0);
+  EXPECT_EQ(config_.geometry.collet_face, 0.062);
+  EXPECT_EQ(config_.geometry.swivel_centre, Eigen::Vector3d(0, 0.055, 0));
+  EXPECT_EQ(config_.geometry.flange, 0.0035);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -120,8 +138,11 @@ struct Description {
   std::string y = joint("axis_y", "prismatic", limitOf("-0.12", "0.32", "0.22"));
   std::string z = joint("axis_z", "prismatic", limitOf("-0.13", "0.33", "0.23"));
   std::string a = joint("axis_a", "revolute", limitOf("-114", "134", "24"));
+  std::string swivel = joint("wheel_swivel", "revolute", limitOf("-0.7", "1.1", "0"));
 
-  std::string urdf() const { return "<robot name=\"grinder\"><link name=\"base\"/>" + x + y + z + a + "</robot>"; }
+  std::string urdf() const {
+    return "<robot name=\"grinder\"><link name=\"base\"/>" + x + y + z + a + swivel + "</robot>";
+  }
 };
 
 XmlRpcValue parameters() {
@@ -131,7 +152,16 @@ XmlRpcValue parameters() {
   p["enable_timeout"] = 3.0;
   p["homing_timeout"] = 45.0;
   p["spindle_timeout"] = 7.5;
+  p["jog_timeout"] = 0.3;
   p["max_job_duration"] = 7200.0;
+  p["collision_clearance"] = 0.002;
+  p["geometry"]["work_axis"]["y"] = 0.1;
+  p["geometry"]["work_axis"]["z"] = -0.2;
+  p["geometry"]["collet_face"]["x"] = 0.3;
+  p["geometry"]["swivel_centre"]["x"] = 0.4;
+  p["geometry"]["swivel_centre"]["y"] = 0.5;
+  p["geometry"]["swivel_centre"]["z"] = 0.6;
+  p["geometry"]["flange"] = -0.7;
   p["late_cycle"]["slow_down"] = 3.0;
   p["late_cycle"]["fault"] = 25.0;
   for (const char* name : kJointNames) {
@@ -143,6 +173,7 @@ XmlRpcValue parameters() {
     limits["max_jerk"] = 20 + 0.1 * axis;
     p["constraints"][name]["trajectory"] = 0.001 * axis;
     p["park_position"][name] = 0.01 * axis;
+    p["jog_velocity"][name] = 0.02 * axis;
   }
   return p;
 }
@@ -189,12 +220,22 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   expectAxes(config.machine.limits.max_jerk, {20 + 0.1 * 1, 20 + 0.1 * 2, 20 + 0.1 * 3, 20 + 0.1 * 4});
   expectAxes(config.following_error, {0.001 * 1, 0.001 * 2, 0.001 * 3, 0.001 * 4});
   expectAxes(config.machine.park, {0.01 * 1, 0.01 * 2, 0.01 * 3, 0.01 * 4});
+  EXPECT_EQ(config.machine.swivel.from, -0.7);
+  EXPECT_EQ(config.machine.swivel.to, 1.1);
+  expectAxes(config.jog_velocity, {0.02 * 1, 0.02 * 2, 0.02 * 3, 0.02 * 4});
   EXPECT_EQ(config.machine.period, 0.002);
   EXPECT_EQ(config.feedback_timeout, 0.01);
   EXPECT_EQ(config.enable_timeout, 3);
   EXPECT_EQ(config.homing_timeout, 45);
   EXPECT_EQ(config.spindle_timeout, 7.5);
+  EXPECT_EQ(config.jog_timeout, 0.3);
   EXPECT_EQ(config.machine.max_job_duration, 7200);
+  EXPECT_EQ(config.machine.collision_clearance, 0.002);
+  EXPECT_EQ(config.geometry.work_axis_y, 0.1);
+  EXPECT_EQ(config.geometry.work_axis_z, -0.2);
+  EXPECT_EQ(config.geometry.collet_face, 0.3);
+  EXPECT_EQ(config.geometry.swivel_centre, Eigen::Vector3d(0.4, 0.5, 0.6));
+  EXPECT_EQ(config.geometry.flange, -0.7);
   EXPECT_EQ(config.late_slow_down, 3);
   EXPECT_EQ(config.late_fault, 25);
 }
@@ -240,16 +281,22 @@ TEST(MachineConfig, TakesTheEndsOfTheRanges) {
   at(p, "enable_timeout") = 60.0;
   at(p, "homing_timeout") = 3600.0;
   at(p, "spindle_timeout") = 600.0;
+  at(p, "jog_timeout") = 1.0;
+  at(p, "jog_velocity/axis_x") = 0.21;
   const LoopConfig longest = read(Description().urdf(), p);
   EXPECT_EQ(longest.feedback_timeout, 0);
   EXPECT_EQ(longest.enable_timeout, 60);
   EXPECT_EQ(longest.homing_timeout, 3600);
   EXPECT_EQ(longest.spindle_timeout, 600);
+  EXPECT_EQ(longest.jog_timeout, 1);
+  EXPECT_EQ(longest.jog_velocity[kX], 0.21);
   at(p, "homing_timeout") = 0;
   at(p, "spindle_timeout") = 0;
+  at(p, "jog_timeout") = 0.05;
   const LoopConfig shortest = read(Description().urdf(), p);
   EXPECT_EQ(shortest.homing_timeout, 0);
   EXPECT_EQ(shortest.spindle_timeout, 0);
+  EXPECT_EQ(shortest.jog_timeout, 0.05);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -270,21 +317,29 @@ struct Number {
   bool negative_allowed;
 };
 
-constexpr std::size_t kMachineNumbers = 8;  ///< that are no axis' own; they come first
+constexpr std::size_t kNumbersPerAxis = 5;
+constexpr std::size_t kMachineNumbers = 17;  ///< that are no axis' own; they come first
 
 std::vector<Number> numbers() {
   std::vector<Number> all{
-      {"control_rate", "10 to 20000", false, false},        {"feedback_timeout", "0 to 1", true, false},
-      {"enable_timeout", "0 to 60", true, false},           {"homing_timeout", "0 to 3600", true, false},
-      {"spindle_timeout", "0 to 600", true, false},         {"max_job_duration", "1 to 1e+09", false, false},
-      {"late_cycle/slow_down", "2 to 1e+09", false, false}, {"late_cycle/fault", "3 to 1e+09", false, false}};
+      {"control_rate", "10 to 20000", false, false},    {"feedback_timeout", "0 to 1", true, false},
+      {"enable_timeout", "0 to 60", true, false},       {"homing_timeout", "0 to 3600", true, false},
+      {"spindle_timeout", "0 to 600", true, false},     {"max_job_duration", "1 to 1e+09", false, false},
+      {"collision_clearance", "0 to 1", true, false},   {"late_cycle/slow_down", "2 to 1e+09", false, false},
+      {"late_cycle/fault", "3 to 1e+09", false, false}, {"jog_timeout", "0.05 to 1", false, false}};
+  for (const char* place : {"work_axis/y", "work_axis/z", "collet_face/x", "swivel_centre/x", "swivel_centre/y",
+                            "swivel_centre/z", "flange"}) {
+    all.push_back({std::string("geometry/") + place, "-10 to 10", true, true});
+  }
   const char* park[]{"-0.11 to 0.31", "-0.12 to 0.32", "-0.13 to 0.33", "-114 to 134"};
+  const char* fastest[]{"0.21", "0.22", "0.23", "24"};
   for (std::size_t i = 0; i < kJointNames.size(); ++i) {
     const std::string name = kJointNames[i];
     all.push_back({"joint_limits/" + name + "/max_acceleration", "1e-09 to 1e+09", false, false});
     all.push_back({"joint_limits/" + name + "/max_jerk", "1e-09 to 1e+09", false, false});
     all.push_back({"constraints/" + name + "/trajectory", "1e-09 to 1e+09", false, false});
     all.push_back({"park_position/" + name, park[i], true, true});
+    all.push_back({"jog_velocity/" + name, std::string("1e-09 to ") + fastest[i], false, false});
   }
   return all;
 }
@@ -323,13 +378,16 @@ std::vector<BadParameter> badParameters() {
   add("too_long", "enable_timeout", XmlRpcValue(61), {"/grinder/enable_timeout = 61", "allowed: 0 to 60"});
   add("too_long", "homing_timeout", XmlRpcValue(3601), {"/grinder/homing_timeout = 3601", "allowed: 0 to 3600"});
   add("too_long", "spindle_timeout", XmlRpcValue(601), {"/grinder/spindle_timeout = 601", "allowed: 0 to 600"});
+  add("too_short", "jog_timeout", XmlRpcValue(0.049), {"/grinder/jog_timeout = 0.049", "allowed: 0.05 to 1"});
+  add("beyond_the_limit", "jog_velocity/axis_a", XmlRpcValue(24.5),
+      {"/grinder/jog_velocity/axis_a = 24.5", "allowed: 1e-09 to 24"});
 
   for (std::size_t i = 0; i < kJointNames.size(); ++i) {
     const std::string name = kJointNames[i];
     const std::string ns = "joint_limits/" + name + "/";
     const std::string full = "/grinder/" + ns;
     const std::string park = "park_position/" + name;
-    const Number& allowed = numbers()[kMachineNumbers + 4 * i + 3];
+    const Number& allowed = numbers()[kMachineNumbers + kNumbersPerAxis * i + 3];
     add("beyond", park, XmlRpcValue(135.0), {"/grinder/" + park + " = 135", "allowed: " + allowed.range});
     add("short_of", park, XmlRpcValue(-115.0), {"/grinder/" + park + " = -115", "allowed: " + allowed.range});
 
@@ -402,6 +460,7 @@ std::vector<BadParameter> badParameters() {
   remove("constraints", {"/grinder/constraints/axis_x/trajectory is missing"});
   add("number", "constraints/axis_x", XmlRpcValue(0.001), {"/grinder/constraints/axis_x/trajectory is missing"});
   remove("park_position", {"/grinder/park_position/axis_x is missing"});
+  remove("jog_velocity", {"/grinder/jog_velocity/axis_x is missing"});
   rows.push_back({"Nothing", [](XmlRpcValue& p) { p = XmlRpcValue(); }, {"/grinder/control_rate is missing"}});
   return rows;
 }
@@ -447,6 +506,16 @@ std::vector<BadDescription> badDescriptions() {
       {"NoY", with(&Description::y, ""), {"robot_description has no joint axis_y"}},
       {"NoZ", with(&Description::z, ""), {"robot_description has no joint axis_z"}},
       {"NoA", with(&Description::a, ""), {"robot_description has no joint axis_a"}},
+      {"NoSwivel", with(&Description::swivel, ""), {"robot_description has no joint wheel_swivel"}},
+      {"ContinuousSwivel",
+       with(&Description::swivel, joint("wheel_swivel", "continuous", "")),
+       {"wheel_swivel", "revolute, with limits"}},
+      {"SwivelReversed",
+       with(&Description::swivel, joint("wheel_swivel", "revolute", limitOf("0.5", "-0.5", "0"))),
+       {"wheel_swivel", "0.5 to -0.5 rad", "the lower below the upper"}},
+      {"SwivelTooFar",
+       with(&Description::swivel, joint("wheel_swivel", "revolute", limitOf("-1.6", "1", "0"))),
+       {"wheel_swivel", "-1.6 to 1 rad", "within -pi/2 to pi/2"}},
       {"RevoluteX", with(&Description::x, joint("axis_x", "revolute", good)), {"axis_x", "prismatic"}},
       {"FixedY", with(&Description::y, joint("axis_y", "fixed", "")), {"axis_y", "prismatic"}},
       {"ContinuousA",

@@ -10,7 +10,7 @@ namespace flute_grinder::test_support {
 namespace {
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearanceHeight = 0.031 * kTanCone + 0.005;  // of the paper's job
+const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Hold before the first setpoint
@@ -281,7 +281,8 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   rig.cycle();
   const auto answer = rig.loop->stopReply(E::kCancel, ticket);
   ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->text, "cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift");
+  EXPECT_EQ(answer->text,
+            "cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog");
 }
 
 TEST(Stops, WhatIsNoneIsNotTaken) {
@@ -322,7 +323,7 @@ TEST(Status, TellsOfAWholeJob) {
   EXPECT_EQ(status.strokes_ended_at, static_cast<std::uint32_t>(stroke - moves.begin()) + 1);
   EXPECT_FALSE(status.wheel.in_work);
   EXPECT_NEAR(status.wheel.clear_y, kClearanceHeight, 1e-15);
-  EXPECT_NEAR(status.wheel.lift, kClearanceHeight - (-0.001 * kTanCone - 0.0005), 1e-15);
+  EXPECT_NEAR(status.wheel.lift, kClearanceHeight - (-0.001 * kTanCone - 0.0016), 1e-15);
   EXPECT_EQ(rig.last().job, 1u);
 }
 

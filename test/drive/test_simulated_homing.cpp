@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-// Spindle, coolant, reference and homing of the simulated drive.
+// Spindle, coolant, swivel, reference and homing of the simulated drive.
 namespace flute_grinder::test_support {
 namespace {
 
@@ -113,6 +113,27 @@ TEST(SimulatedDriveCoolant, ThatIsLostFlowsAgainWhenItIsTakenBack) {
   bench.drive.inject(Fault::kNone);
   bench.run(1);
   EXPECT_TRUE(bench.status().coolant_on);
+}
+
+TEST(SimulatedDriveSwivel, IsNotMeasuredUnlessItHasAnEncoder) {
+  Bench bench(plainModel());
+  bench.run(2);
+  EXPECT_TRUE(std::isnan(bench.status().swivel));
+  bench.drive.inject(Fault::kSwivelSlipped);
+  bench.run(1);
+  EXPECT_TRUE(std::isnan(bench.status().swivel));
+}
+
+TEST(SimulatedDriveSwivel, ThatSlipsReadsMoreUntilItIsTakenBack) {
+  Bench bench(plainModel(), 0.001, {true, 0, -0.4});
+  bench.run(1);
+  EXPECT_EQ(bench.status().swivel, -0.4);
+  bench.drive.inject(Fault::kSwivelSlipped);
+  bench.run(3);
+  EXPECT_DOUBLE_EQ(bench.status().swivel, -0.398);
+  bench.drive.inject(Fault::kNone);
+  bench.run(1);
+  EXPECT_EQ(bench.status().swivel, -0.4);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -117,6 +117,7 @@ class Node:
         # For a test that starts the node as somebody else.
         os.chmod(folder, 0o777)
         machine['journal'] = folder + '/journal'
+        machine['offsets'] = folder + '/offsets'
         rosgraph.Master('/hal_bench').setParam('/' + name, machine)
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen([*prefix, gc.program('grinder'), '__name:=' + name], stdin=subprocess.DEVNULL,

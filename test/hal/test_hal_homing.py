@@ -104,6 +104,7 @@ class TestHoming(unittest.TestCase):
         self.assertEqual((state.state, state.homed), (GrinderState.READY, False))
         first = RECORDER.now()
         job = gc.package_file('jobs/paper.yaml')
+        self.grinder.confirm_swivel(gc.PAPER['process.setup_swivel'])
         refused = gc.grind('run', job)
         self.assertEqual(refused.returncode, 1, refused.stdout)
         self.assertIn('start refused: ' + NOT_HOMED, refused.stderr)

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Shows how the node starts on HAL: not at all, with the reason, where HAL, its FIFO, a signal or a permission is missing; and
-that a start that fails leaves HAL as it was."""
+that a start that fails leaves HAL as it was; and that it takes the swivel's encoder from HAL where there is one."""
 
 import ctypes
+import math
 import os
 import signal
 import subprocess
@@ -131,6 +132,30 @@ class TestTakeover(unittest.TestCase):
         grinder.close()
         self.assertEqual(node.end(), 0, node.output)
         self.assertNotIn('flute-grinder ', hal_bench.halcmd('show', 'comp'))
+
+
+class TestSwivel(unittest.TestCase):
+    def start(self):
+        node = hal_bench.Node('swivelled')
+        self.addCleanup(node.end)
+        grinder = gc.Grinder('swivelled')
+        self.addCleanup(grinder.close)
+        return grinder
+
+    def test_without_a_signal_it_is_not_measured(self):
+        state = self.start().fresh_state()
+        self.assertTrue(math.isnan(state.swivel))
+        self.assertFalse(state.swivel_measured)
+
+    def test_signal_is_its_encoder(self):
+        hal_bench.halcmd('newsig', 'swivel', 'float')
+        self.addCleanup(hal_bench.halcmd, 'delsig', 'swivel')
+        hal_bench.halcmd('sets', 'swivel', '0.25')
+        grinder = self.start()
+        state = grinder.fresh_state()
+        self.assertEqual((state.swivel, state.swivel_measured), (0.25, True))
+        hal_bench.halcmd('sets', 'swivel', '-0.125')
+        gc.poll(lambda: grinder.fresh_state().swivel == -0.125, 'the other angle')
 
 
 if __name__ == '__main__':

@@ -22,7 +22,7 @@ import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import GrindAction, GrindActionResult, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
-from flute_grinder.srv import InjectFault, Plan, SetFeedOverride
+from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, SetFeedOverride
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -48,30 +48,55 @@ PAPER = {
     'cutter.spiral_angle': 30 * DEG,
     'cutter.rake_angle': 8 * DEG,
     'cutter.flute_length': 30 * MM,
+    'cutter.cut': 0,
+    'cutter.rake_tolerance': 0.5 * DEG,
+    'cutter.shank_diameter': 16 * MM,
+    'cutter.neck_length': 0.0,
     'cutter.tooth_angles': [0.0],
     'process.feed': 600 * MM_MIN,
-    'process.depth': 0.5 * MM,
-    'process.infeed': 0.5 * MM,
+    'process.depth': 1.6 * MM,
+    'process.depth_end': 0.0,
+    'process.infeed': 1.6 * MM,
     'process.finish_infeed': 0.0,
     'process.spark_out': 0,
     'process.clearance': 5 * MM,
     'process.overtravel_end': 1 * MM,
-    'process.overtravel_shank': 1 * MM,
+    'process.overtravel_shank': 7 * MM,
+    'process.incomplete_ok': False,
     'process.order': 0,
     'process.direction': 0,
+    'process.wheel_profile': 0,
     'process.wheel_diameter': 100 * MM,
-    'process.wheel_width': 8 * MM,
+    'process.wheel_width': 3 * MM,
+    'process.wheel_angle': 0.0,
+    'process.wheel_side': 0,
+    'process.wheel_corner_radius_lower': 0.0,
+    'process.wheel_corner_radius_upper': 0.0,
     'process.wheel_wear': 0.0,
     'process.wheel_wear_per_pass': 0.0,
+    'process.setup_swivel': 31.769 * DEG,
+    'process.setup_height': 2.788 * MM,
     'interpolation.even_step': 0,
     'interpolation.tolerance': 1 * UM,
     'interpolation.rotary_scale': 1 * MM,
 }
 
 
+# The same for tests of the motion: shallow and with a short stroke, whatever tool comes out will do, and the shank is out of
+# the wheel's way.
+MOTION = dict(PAPER, **{
+    'cutter.shank_diameter': 1 * MM,
+    'cutter.rake_tolerance': 180 * DEG,
+    'process.depth': 0.5 * MM,
+    'process.infeed': 0.5 * MM,
+    'process.overtravel_shank': 1 * MM,
+    'process.incomplete_ok': True,
+})
+
+
 def paper(**changes):
-    """The paper's job with other values: paper(feed=..., flute_length=...)."""
-    job = dict(PAPER)
+    """The paper's job for tests of the motion, with other values: paper(feed=..., flute_length=...)."""
+    job = dict(MOTION)
     for name, value in changes.items():
         path, = [p for p in PAPER if p.endswith('.' + name)]
         job[path] = value
@@ -107,10 +132,24 @@ def grind(*arguments, timeout=PATIENCE):
                           universal_newlines=True, timeout=timeout)
 
 
+def read_job(path):
+    """A job file, with the wheel's own keys in place of the wheel file that it may name."""
+    with open(path) as text:
+        job = yaml.safe_load(text)
+    wheel = job['process']['wheel']
+    if 'file' in wheel:
+        with open(os.path.join(os.path.dirname(path), wheel.pop('file'))) as text:
+            wheel.update(yaml.safe_load(text))
+        wheel.pop('flange_mm', None)
+        measured = wheel.pop('measured', {})
+        wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
+        wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
+    return job
+
+
 def job_from_file(path):
     """What a job file says, with the names and in the units of the goal's fields."""
-    with open(path) as text:
-        file = yaml.safe_load(text)
+    file = read_job(path)
     cutter, process, interpolation = file['cutter'], file['process'], file['interpolation']
     wheel = process['wheel']
     angles = cutter.get('tooth_angles_deg') or [i * 360.0 / cutter['teeth'] for i in range(cutter['teeth'])]
@@ -120,21 +159,32 @@ def job_from_file(path):
         'cutter.spiral_angle': cutter['spiral_angle_deg'] * DEG,
         'cutter.rake_angle': cutter['rake_angle_deg'] * DEG,
         'cutter.flute_length': cutter['flute_length_mm'] * MM,
+        'cutter.cut': ['right_hand', 'left_hand'].index(cutter['cut']),
+        'cutter.rake_tolerance': cutter['rake_tolerance_deg'] * DEG,
+        'cutter.shank_diameter': cutter['shank_diameter_mm'] * MM,
+        'cutter.neck_length': cutter.get('neck_length_mm', 0) * MM,
         'cutter.tooth_angles': [angle * DEG for angle in angles],
         'process.feed': process['feed_mm_min'] * MM_MIN,
         'process.depth': process['depth_mm'] * MM,
+        'process.depth_end': process.get('depth_end_mm', 0) * MM,
         'process.infeed': process['infeed_mm'] * MM,
         'process.finish_infeed': process['finish_infeed_mm'] * MM,
         'process.spark_out': process['spark_out'],
         'process.clearance': process['clearance_mm'] * MM,
         'process.overtravel_end': process['overtravel_mm'][0] * MM,
         'process.overtravel_shank': process['overtravel_mm'][1] * MM,
+        'process.incomplete_ok': process.get('incomplete_ok', False),
         'process.order': ['tooth_major', 'pass_major'].index(process['order']),
         'process.direction': ['from_end', 'to_end'].index(process['direction']),
+        'process.wheel_profile': ['straight', 'angled', 'full_radius', 'cup', 'points'].index(wheel['profile']),
         'process.wheel_diameter': wheel['diameter_mm'] * MM,
         'process.wheel_width': wheel['width_mm'] * MM,
+        'process.wheel_corner_radius_lower': wheel.get('corner_radius_mm', [0, 0])[0] * MM,
+        'process.wheel_corner_radius_upper': wheel.get('corner_radius_mm', [0, 0])[1] * MM,
         'process.wheel_wear': wheel['wear_mm'] * MM,
         'process.wheel_wear_per_pass': wheel.get('wear_per_pass_mm', 0) * MM,
+        'process.setup_swivel': process['setup']['swivel_deg'] * DEG,
+        'process.setup_height': process['setup']['height_mm'] * MM,
         'interpolation.even_step': ['published', 'third_order', 'exact'].index(interpolation['even_step']),
         'interpolation.tolerance': interpolation['tolerance_um'] * UM,
         'interpolation.rotary_scale': interpolation['rotary_scale_mm_per_rad'] * MM,
@@ -142,11 +192,14 @@ def job_from_file(path):
 
 
 def job_file(path, **changes):
-    """Writes jobs/paper.yaml to `path` with other values: feed_mm_min=60."""
+    """Writes jobs/paper.yaml to `path`; with other values, as feed_mm_min=60, for tests of the motion, like MOTION."""
     with open(package_file('jobs/paper.yaml')) as original:
         text = original.read()
+    if changes:
+        changes = dict({'rake_tolerance_deg': 180, 'shank_diameter_mm': 1, 'depth_mm': 0.5, 'infeed_mm': 0.5, 'overtravel_mm': '[1, 1]'}, **changes)
+        text = text.replace('  direction:', '  incomplete_ok: true\n  direction:')
     for key, value in changes.items():
-        text, count = re.subn(r'(?m)^( +%s:) *[^ #\n]+' % key, r'\g<1> %s' % value, text)
+        text, count = re.subn(r'(?m)^( +%s:) *(\[.*?\]|[^ #\n]+)' % key, r'\g<1> %s' % value, text)
         assert count == 1, key
     with open(path, 'w') as changed:
         changed.write(text)
@@ -171,10 +224,14 @@ def axes_of(joint_state):
 
 
 class Run:
-    """One goal, from sending it to its end, with all that came of it."""
+    """One goal, from sending it to its end, with all that came of it. The swivel is confirmed for it first, if it is to move
+    and unless the test confirms it itself."""
 
-    def __init__(self, grinder, goal):
+    def __init__(self, grinder, goal, confirm=True):
         self._grinder = grinder
+        if confirm and not goal.dry_run:
+            # Refused during another job or if the drive measures it: then the goal's answer tells.
+            grinder.confirm_swivel(goal.process.setup_swivel)
         self.feedback = []
         self.sent = time.time()
         self._handle = grinder.client.send_goal(goal, self._on_transition, self._on_feedback)
@@ -328,6 +385,9 @@ class Grinder:
     def set_feed_override(self, fraction):
         return self._call('set_feed_override', SetFeedOverride, fraction)
 
+    def confirm_swivel(self, angle):
+        return self._call('confirm_swivel', ConfirmSwivel, angle)
+
     def plan(self, goal):
         return self._call('plan', Plan, goal)
 
@@ -346,8 +406,8 @@ class Grinder:
             raise unittest.SkipTest('only the simulated drive lets a fault be injected')
         return self._call('hardware/inject_fault', InjectFault, fault, joint)
 
-    def send(self, job, **fields):
-        return Run(self, goal_of(job, **fields))
+    def send(self, job, confirm=True, **fields):
+        return Run(self, goal_of(job, **fields), confirm)
 
     def run(self, job, **fields):
         """Sends a job and waits for its end and all of its setpoints."""
@@ -426,7 +486,7 @@ class Grinder:
         return [axes_of(joint) for joint in self.joints[first:]]
 
     def make_ready(self):
-        """Takes the machine from any state to ready, homed and at rest."""
+        """Takes the machine from any state to ready, homed and at rest, with the swivel set for the paper's job."""
         self.client.cancel_all_goals()
         idle = (GrinderState.DISABLED, GrinderState.READY, GrinderState.HOMING, GrinderState.FAULT)
         poll(lambda: self.fresh_state().state in idle, 'the end of all goals')
@@ -446,6 +506,7 @@ class Grinder:
         if not self.fresh_state().homed:
             assert self.home().success
             self.wait_state(GrinderState.READY)
+        self.confirm_swivel(PAPER['process.setup_swivel'])
         return self.wait_rest()
 
     def make_ready_at_park(self):
@@ -459,11 +520,12 @@ NODE = []
 
 
 def grinder():
-    """The client of the grinder that the launch file has started, one for all tests. Its journal goes with them."""
+    """The client of the grinder that the launch file has started, one for all tests. The files it keeps go with them."""
     if not NODE:
         NODE.append(Grinder())
-        atexit.register(remove_file, rospy.get_param('/grinder/journal'))
-        atexit.register(remove_file, rospy.get_param('/grinder/journal') + '.lock')
+        for kept in ('journal', 'offsets'):
+            atexit.register(remove_file, rospy.get_param('/grinder/' + kept))
+            atexit.register(remove_file, rospy.get_param('/grinder/' + kept) + '.lock')
     return NODE[0]
 
 
@@ -501,7 +563,8 @@ class NodeProcess:
         if rospy.has_param('/' + name):
             rospy.delete_param('/' + name)
         if parameters:
-            parameters = dict({'journal': os.path.join(self.folder, 'journal')}, **parameters)
+            parameters = dict({'journal': os.path.join(self.folder, 'journal'),
+                               'offsets': os.path.join(self.folder, 'offsets')}, **parameters)
             parameters = {key: value for key, value in parameters.items() if value is not None}
             rosgraph.Master(rospy.get_name()).setParam('/' + name, parameters)
         # Not a pipe, which would have to be emptied.

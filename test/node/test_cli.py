@@ -126,7 +126,8 @@ class TestPlan(CommandLine):
         reasons = self.grind(1, 'plan', job, '--csv', self.path('plan.csv')).stderr.rstrip('\n').split('\n')
         with open(self.path('plan.csv')) as lines:
             rows = [line.split(',') for line in lines][1:]
-        self.assertEqual(len(reasons), 3)
+        self.assertEqual(len(reasons), 4)
+        self.assertRegex(reasons[3], r'^collision_clearance = 1 mm: .+ hit each other ')
         for move, reason in zip(('stroke', 'retract', 'return'), reasons):
             beyond = [row for row in rows if row[2] == move and float(row[6]) > 300]
             self.assertAlmostEqual(max(float(row[6]) for row in beyond), 401, delta=1e-5)
@@ -167,7 +168,11 @@ class TestPlan(CommandLine):
             self.assertGreater(told['largest_jerk'][axis + '_s3'], 0)
             ripple = max(abs(a - 2 * b + c) for a, b, c in zip(positions, positions[1:], positions[2:])) / 1e-3 ** 2
             self.assertAlmostEqual(told['odd_even_ripple'][axis + '_s2'], ripple, delta=1e-5 * max(1, ripple))
-        self.assertEqual(len(told), 15)
+        self.assertEqual((told['complete_from_mm'], told['complete_to_mm']), (0, 30))
+        bodies, distance, x = re.search(r'closest +(.+), (\S+) mm at X (\S+) mm', self.grind(0, 'plan', PAPER_JOB).stdout).groups()
+        self.assertEqual(' and '.join(told['closest']['bodies']), bodies)
+        self.assertEqual('%.3f' % told['closest']['distance_mm'], distance)
+        self.assertEqual(len(told), 18)
 
     def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
         job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)
@@ -182,7 +187,7 @@ class TestPlan(CommandLine):
         told, reasons = self.json(1, 'plan', job)
         self.assertFalse(told['valid'])
         self.assertEqual(told['reasons'], reasons.rstrip('\n').split('\n'))
-        self.assertEqual(len(told['reasons']), 3)
+        self.assertEqual(len(told['reasons']), 4)
 
     def test_missing_file(self):
         reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
@@ -262,12 +267,15 @@ class TestUsage(CommandLine):
         grinder().take_faults_back()
         grinder().disable()
         example, = re.findall(r'\nExample:\n  rosrun flute_grinder grind (%s.*)\n' % command, printed)
-        os.symlink(gc.package_file('jobs'), self.path('jobs'))
+        for folder in ('jobs', 'wheels'):
+            os.symlink(gc.package_file(folder), self.path(folder))
         if command == 'report':
             self.grind(0, 'plan', PAPER_JOB, '--csv', self.path('setpoints.csv'))
         done = subprocess.run([gc.program('grind'), *example.split()], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, timeout=gc.PATIENCE, cwd=self.folder)
         self.assertIn(done.returncode, (0, 1), done.stderr)
+        if command in ('offsets', 'touch-off'):
+            self.grind(0, 'offsets', '--set', 'y=0')
 
     def check_wrong(self, *arguments):
         self.grind(2, *arguments)
@@ -277,10 +285,16 @@ class TestUsage(CommandLine):
 COMMANDS = {
     'table': ['JOB', '--step-length', '--even-step', 'published|third_order|exact', '--csv', '--json'],
     'plan': ['JOB', '--csv', '--machine', '--urdf', '--json'],
+    'simulate': ['FILE', '--at', '--sections', '--csv', '--stl', '--svg', '--job', '--run', '--json'],
     'run': ['JOB', '--dry-run', '--continue', '--discard', '--csv', 'Ctrl-Z'],
     'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
+    'wheel': ['show', 'measure', 'dress'],
+    'zeros': ['JOB', '--stickout', '--flange', '--machine', '--urdf', '--json'],
     'override': ['PERCENT', '0 to 120'],
+    'confirm-swivel': ['DEG', '-90 to 90', 'swivel'],
     'status': ['--json'],
+    'offsets': ['--set', 'AXIS=VALUE', '--json'],
+    'touch-off': ['AXIS', 'x|y|z|a', '--at', '--job'],
     'enable': ['power on'],
     'disable': ['power off'],
     'home': ['reference'],
@@ -295,11 +309,28 @@ COMMANDS = {
 
 # Name, arguments that are wrong.
 WRONG = [
+    ('simulate_without_file', ['simulate']),
+    ('wheel_without_command', ['wheel']),
+    ('wheel_without_file', ['wheel', 'show']),
+    ('wheel_with_another_command', ['wheel', 'turn', 'wheel.yaml']),
+    ('zeros_without_stickout', ['zeros', PAPER_JOB, '--flange', '2']),
+    ('zeros_without_flange', ['zeros', PAPER_JOB, '--stickout', '60']),
+    ('zeros_with_a_stickout_that_is_no_number', ['zeros', PAPER_JOB, '--stickout', 'nan', '--flange', '2']),
     ('override_without_percent', ['override']),
     ('override_below_zero', ['override', '-1']),
     ('override_above_the_largest', ['override', '120.5']),
     ('override_nan', ['override', 'nan']),
     ('override_that_is_no_number', ['override', 'full']),
+    ('confirm_swivel_without_angle', ['confirm-swivel']),
+    ('confirm_swivel_beyond_a_quarter', ['confirm-swivel', '90.5']),
+    ('confirm_swivel_below_a_quarter', ['confirm-swivel', '-91']),
+    ('confirm_swivel_nan', ['confirm-swivel', 'nan']),
+    ('confirm_swivel_that_is_no_number', ['confirm-swivel', 'steep']),
+    ('offsets_of_another_axis', ['offsets', '--set', 'b=1']),
+    ('offsets_without_value', ['offsets', '--set', 'x=']),
+    ('touch_off_without_axis', ['touch-off']),
+    ('touch_off_of_another_axis', ['touch-off', 'b']),
+    ('touch_off_nowhere', ['touch-off', 'x', '--at', 'nan']),
     ('home_with_more', ['home', 'axis_x']),
     ('hold_with_more', ['hold', 'now']),
     ('resume_with_more', ['resume', 'now']),

@@ -46,9 +46,14 @@ class TestMachine(CommandLine):
             'end_diameter_mm': progress.cutter.end_diameter / MM, 'cone_angle_deg': progress.cutter.cone_angle / DEG,
             'spiral_angle_deg': progress.cutter.spiral_angle / DEG, 'rake_angle_deg': progress.cutter.rake_angle / DEG,
             'flute_length_mm': progress.cutter.flute_length / MM})
+        self.assertAlmostEqual(told.pop('swivel_deg'), 31.769, delta=1e-12)
+        for coordinates in ('machine', 'work'):  # without offsets the same
+            at = told.pop(coordinates)
+            for (key, unit), position in zip({'x_mm': MM, 'y_mm': MM, 'z_mm': MM, 'a_deg': DEG}.items(), grinder().park()):
+                self.assertAlmostEqual(at[key] * unit, position, delta=2e-6)
         self.assertEqual(told, {
             'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
-            'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'feed_mm_min': 0,
+            'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
             'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})
 
@@ -83,20 +88,22 @@ class TestMachine(CommandLine):
         batches = len(grinder().batches)
         self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
         printed = self.grind(0, 'run', job, '--discard', '--csv', self.path('run.csv'))
-        with open(self.path('plan.csv'), 'rb') as plan, open(self.path('run.csv'), 'rb') as run:
-            planned, streamed = plan.read(), run.read()
-        self.assertTrue(planned == streamed, 'the files differ')
+        with open(self.path('plan.csv')) as plan, open(self.path('run.csv')) as run:
+            planned, streamed = plan.read().splitlines(), run.read().splitlines()
+        # The run's file has four more columns, the positions that the drive read.
+        self.assertEqual(streamed[0], planned[0] + ',actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad')
+        self.assertTrue(planned == [line.rsplit(',', 4)[0] for line in streamed], 'the setpoints differ')
         # From the first setpoint to the last, by the clock of the grinder.
         new = grinder().batches_of_goal(batches)
         duration = (new[-1].end_stamp - new[0].header.stamp).to_sec()
         self.assertRegex(printed.stdout, r'streamed +%d setpoints in %s s, 0 missed\n'
-                         % (planned.count(b'\n') - 1, re.escape('%.3f' % duration)))
+                         % (len(planned) - 1, re.escape('%.3f' % duration)))
         self.assertRegex(printed.stderr, r'100 %')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
 
     def check_refused(self, command):
         self.assertEqual(self.grind(1, command).stderr,
-                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift\n'
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog\n'
                          % command)
 
     def test_hold_without_a_job_is_refused(self):

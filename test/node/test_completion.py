@@ -45,7 +45,7 @@ class TestCompletion(unittest.TestCase):
 
     def commands(self):
         listed = gc.grind('--help').stdout.split('Subcommands:\n')[1].split('\n\n')[0]
-        return set(re.findall(r'(?m)^  (\w+)', listed))
+        return set(re.findall(r'(?m)^  ([\w-]+)', listed))
 
     def test_commands(self):
         self.assertGreater(len(self.commands()), 10)
@@ -62,6 +62,17 @@ class TestCompletion(unittest.TestCase):
             self.assertEqual(self.offered('grind', command, '--'), options)
         self.assertEqual(self.offered('grind', '--'), {'--help', '--node'})
 
+    def test_commands_of_a_command(self):
+        wheel = ['grind', '--node', 'other', 'wheel']
+        self.assertEqual(self.offered(*wheel, ''), {'show', 'measure', 'dress'})
+        self.assertEqual(self.offered('rosrun', 'flute_grinder', *wheel, 'm'), {'measure'})
+        for command in ('show', 'measure', 'dress'):
+            options = set(re.findall(r'(?m)^  (?:-\w,)?(--[\w-]+)', gc.grind('wheel', command, '--help').stdout))
+            self.assertEqual(self.offered(*wheel, command, '--'), options)
+            self.assertEqual(self.offered(*wheel, command, ''), {'a.yaml', 'b job.yaml', 'jobs'})
+        self.assertEqual(self.offered(*wheel, 'measure', 'a.yaml', '--diameter', ''), set())
+        self.assertEqual(self.offered('grind', 'plan', 'wheel', '--'), self.offered('grind', 'plan', '--'))
+
     def test_files(self):
         jobs = {'a.yaml', 'b job.yaml', 'jobs'}
         for words in (['plan'], ['run'], ['run', '--dry-run'], ['table', '--step-length', '0.2'], ['plan', '--machine'],
@@ -72,6 +83,8 @@ class TestCompletion(unittest.TestCase):
         self.assertEqual(self.offered('grind', 'run', 'jobs/'), {'jobs/c.yaml'})
         self.assertEqual(self.offered('grind', 'plan', 'a.yaml', '--urdf', ''), {'grinder.urdf', 'jobs'})
         self.assertEqual(self.offered('grind', 'plan', 'a.yaml', '--csv', 'n'), {'notes.txt'})
+        self.assertEqual(self.offered('grind', 'simulate', 'record.bag', '--job', ''), jobs)
+        self.assertEqual(self.offered('grind', 'simulate', 'n'), {'notes.txt'})
 
     def test_choices_and_numbers(self):
         table = ['grind', 'table', 'a.yaml']
@@ -79,8 +92,12 @@ class TestCompletion(unittest.TestCase):
         self.assertEqual(self.offered(*table, '--even-step', '=', 'th'), {'third_order'})
         self.assertEqual(self.offered(*table, '--even-step', '='), {'published', 'third_order', 'exact'})
         self.assertEqual(self.offered(*table, '--step-length', ''), set())
+        self.assertEqual(self.offered('grind', 'setup', 'a.yaml', '--keep', ''), {'swivel', 'height', 'depth'})
         self.assertEqual(self.offered('grind', 'override', ''), set())
+        self.assertEqual(self.offered('grind', 'confirm-swivel', ''), set())
         self.assertEqual(self.offered('grind', 'hold', ''), set())
+        self.assertEqual(self.offered('grind', 'jog', ''), {'x', 'y', 'z', 'a'})
+        self.assertEqual(self.offered('grind', 'jog', '--feed', ''), set())
         self.assertEqual(self.offered('grind', 'completion', ''), {'bash'})
 
     def test_rest_of_rosrun_stays(self):

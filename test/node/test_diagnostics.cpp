@@ -58,6 +58,7 @@ class DiagnosticsTest : public ::testing::Test {
     record_.has_setpoint = true;
     record_.setpoint.cycle = next_cycle_++;
     record_.setpoint.position = position;
+    record_.command = position;
     watch();
     record_.has_setpoint = false;
   }

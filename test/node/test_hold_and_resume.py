@@ -330,10 +330,10 @@ class TestOverrideBeforeTheJob(unittest.TestCase):
 # What each state allows, in the order in which it is told.
 ALLOWED = {
     'disabled': 'enable, disable, reset',
-    'ready': 'enable, disable, home, start, lift',
+    'ready': 'enable, disable, home, start, lift, jog',
     'running': 'disable, hold, cancel',
     'held': 'disable, hold, resume, retract, cancel',
-    'retracted': 'disable, resume, cancel',
+    'retracted': 'disable, resume, cancel, jog',
     'fault': 'disable, reset',
 }
 

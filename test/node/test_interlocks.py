@@ -197,7 +197,7 @@ class TestReferenceLost(LostMidStroke, unittest.TestCase):
     def test_homing_needs_the_job_to_be_given_up(self):
         self.assertFalse(self.home_in_job.success)
         self.assertEqual(self.home_in_job.message,
-                         'home refused: the machine is in state retracted; allowed: disable, resume, cancel')
+                         'home refused: the machine is in state retracted; allowed: disable, resume, cancel, jog')
 
     def test_cancel_ends_the_job_where_it_is(self):
         self.assertEqual((self.job_run.status, self.job_run.code), ('PREEMPTED', GrindResult.CANCELED))

@@ -130,6 +130,23 @@ TEST_F(JobGateTest, OnceShutItStaysShut) {
   EXPECT_FALSE(start());
 }
 
+TEST_F(JobGateTest, AJobAndAChangeOfTheOffsetsShutEachOtherOut) {
+  ASSERT_TRUE(gate_.shutOutJobs());
+  EXPECT_FALSE(gate_.open(id("job"), [] {}));
+  EXPECT_FALSE(gate_.isShut());
+  EXPECT_FALSE(start());
+  gate_.letJobsIn();
+  open();
+  EXPECT_FALSE(gate_.shutOutJobs()) << "while it is planned";
+  EXPECT_TRUE(start());
+  EXPECT_FALSE(gate_.shutOutJobs()) << "while it runs";
+  gate_.close();
+  EXPECT_TRUE(gate_.shutOutJobs());
+  gate_.letJobsIn();
+  gate_.shut();
+  EXPECT_TRUE(gate_.isShut());
+}
+
 /// Whatever comes first: either the job does not start, or the cancel is for the loop.
 TEST_F(JobGateTest, NoCancelFallsBetweenPlanAndLoop) {
   for (int i = 0; i < 2000; ++i) {

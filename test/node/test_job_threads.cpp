@@ -1,3 +1,4 @@
+#include "collision/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/core/job_file.h"
@@ -46,10 +47,11 @@ bool soon(const Condition& condition) {
 
 class JobThreads : public ::testing::Test {
  protected:
-  JobThreads() : planner_(machineConfig().machine) {
+  JobThreads() : planner_(machineConfig().machine, MachineShapes(shippedUrdf())) {
     test_support::setUp(drive_, machineConfig());
     drive_.on_read = [this](FakeDrive& drive) { drive.status.emergency_stop = emergency_stop_; };
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
+    loop_->postSwivel(job_.process.setup_swivel);
   }
 
   template <typename Work>
@@ -141,7 +143,8 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     for (const E event : {E::kReset, E::kEnable, E::kLift, E::kResume}) loop_->request(event);
   });
   spawn(3, [this](std::mt19937& random) {
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 3000));
+    // About as long as planning takes, with ThreadSanitizer.
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 100000));
     if (random() % 3 == 0) return cancel();
     if (!gate_.hold()) loop_->postStop(E::kHold);
   });

@@ -26,7 +26,7 @@ CUTTER = ['end_diameter', 'cone_angle', 'spiral_angle', 'rake_angle', 'flute_len
 CUTTER_KEYS = ['end_diameter_m', 'cone_angle_rad', 'spiral_angle_rad', 'rake_angle_rad', 'flute_length_m',
                'tooth_angles_rad']
 KEYS = {'job_digest', 'job_name', 'finished', 'tooth', 'pass', 'x_m', 'wheel_in_work', 'clear_y_m', 'lift_m',
-        'checksum', *CUTTER_KEYS}
+        'offset_x_m', 'offset_y_m', 'offset_z_m', 'offset_a_rad', 'checksum', *CUTTER_KEYS}
 JOB_NAME = 'mill "10°".yaml'
 KILLS = 20
 SEED = 20
@@ -110,6 +110,7 @@ class JournalTest(unittest.TestCase):
         self.node = self.start_process(**environment)
         self.client = self.node.client()
         self.addCleanup(self.client.close)
+        self.client.confirm_swivel(gc.PAPER['process.setup_swivel'])
         return self.client
 
     def start_ready(self, **environment):
@@ -238,9 +239,10 @@ class TestKills(JournalTest):
         self.start_ready()
         while kills < KILLS or begin > 0:
             tooth, pass_ = PASSES[begin]
-            run = self.client.send(self.job, first_tooth=tooth, first_pass=pass_)
             if planned is None:
                 planned = self.client.plan(gc.goal_of(self.job)).duration
+                self.assertGreater(planned, 0)
+            run = self.client.send(self.job, first_tooth=tooth, first_pass=pass_)
             self.client.wait_for(lambda: run.done or run.setpoints, 'the first setpoints')
             states = self.client.states
             if kills < KILLS:

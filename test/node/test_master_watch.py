@@ -51,12 +51,15 @@ class TestMasterWatch(unittest.TestCase):
         self.master = None
         self.start_master()
         self.addCleanup(lambda: self.master.poll() is not None or self.kill_master())
-        parameters = dict(gc.machine(), journal=os.path.join(self.folder, 'journal'))
+        parameters = dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
+                          offsets=os.path.join(self.folder, 'offsets'))
         self.api.setParam(NODE, parameters)
         with open(gc.package_file('urdf/grinder.urdf')) as urdf:
             self.api.setParam('/robot_description', urdf.read())
         self.node = self.start(gc.program('grinder'), '__name:=' + NODE[1:])
-        wait_for(lambda: self.api.lookupService(NODE + '/plan') and self.registered()['subscribers'], 'node')
+        # The action's goals are what it registers last.
+        wait_for(lambda: NODE + '/grind/goal' in self.registered()['subscribers'] and self.api.lookupService(NODE + '/plan'),
+                 'node as it is once it has started')
         self.node_api = xmlrpc.client.ServerProxy(self.api.lookupNode(NODE))
 
     def start(self, *command):

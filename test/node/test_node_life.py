@@ -114,6 +114,8 @@ BAD_PARAMETERS = [
     ('control_rate_flag', 'control_rate', True, 'allowed: a number'),
     ('journal_is_a_number', 'journal', 7, 'allowed: a text'),
     ('journal_empty', 'journal', '', 'allowed: a text'),
+    ('offsets_is_a_number', 'offsets', 7, 'allowed: a text'),
+    ('offsets_empty', 'offsets', '', 'allowed: a text'),
     ('feedback_timeout_missing', 'feedback_timeout', None, 'missing; allowed: a number'),
     ('feedback_timeout_nan', 'feedback_timeout', math.nan, 'nan; allowed: 0 to 1'),
     ('enable_timeout_inf', 'enable_timeout', math.inf, 'inf; allowed: 0 to 60'),
@@ -173,6 +175,9 @@ BAD_DESCRIPTIONS = [
     ('continuous_a', 'name="axis_a" type="revolute"', 'name="axis_a" type="continuous"', 'axis_a must be revolute'),
     ('revolute_x', 'name="axis_x" type="prismatic"', 'name="axis_x" type="revolute"', 'axis_x must be prismatic'),
     ('no_z', '"axis_z"', '"axis_zz"', 'no joint axis_z'),
+    ('no_swivel', 'joint name="wheel_swivel"', 'joint name="wheel_other"', 'no joint wheel_swivel'),
+    ('swivel_without_limits', '<limit lower="-1.0471976" upper="1.0471976" velocity="0" effort="0"/>', '',
+     'robot_description is not a URDF'),
     ('velocity_zero', 'upper="0.3" velocity="0.2"', 'upper="0.3" velocity="0"',
      'joint_limits/axis_x/has_velocity_limits is missing, and robot_description has no such limit'),
     ('position_limits_reversed', 'lower="-0.02" upper="0.15"', 'lower="0.15" upper="-0.02"',
@@ -202,6 +207,9 @@ class TestStartFailsClosed(unittest.TestCase):
 
     def test_journal_missing(self):
         self.check(dict(gc.machine(), journal=None), 'parameter /doubtful/journal is missing; allowed: a text')
+
+    def test_offsets_missing(self):
+        self.check(dict(gc.machine(), offsets=None), 'parameter /doubtful/offsets is missing; allowed: a text')
 
     def test_robot_description_missing(self):
         node = gc.NodeProcess('doubtful', gc.machine(), ['robot_description:=/nothing_here'])

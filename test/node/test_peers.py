@@ -176,10 +176,11 @@ class Attacked(unittest.TestCase):
         request = PlanRequest(gc.goal_of(gc.paper()))
         text = io.BytesIO()
         request.serialize(text)
-        # The claim is behind five numbers of the cutter.
+        # The claim is behind nine numbers and a choice of the cutter.
+        at = 9 * 8 + 1
         text = bytearray(text.getvalue())
-        self.assertEqual(struct.unpack_from('<Id', text, 40), (1, 0.0))
-        struct.pack_into('<I', text, 40, teeth)
+        self.assertEqual(struct.unpack_from('<Id', text, at), (1, 0.0))
+        struct.pack_into('<I', text, at, teeth)
         connection = self.service('plan', Plan)
         connection.sendall(struct.pack('<I', len(text)) + text)
         good = connection.recv(1)

@@ -1,6 +1,8 @@
 #include "flute_grinder/core/job_file.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/node/planner.h"
 
+#include "collision/machine.h"
 #include "control/fixtures.h"
 
 #include <gtest/gtest.h>
@@ -18,6 +20,8 @@ Machine machine() {
   m.max_job_duration = 1e7;
   return m;
 }
+
+const MachineShapes kShapes(shippedUrdf());
 
 GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
 
@@ -49,7 +53,7 @@ struct Asked {
 };
 
 TEST(Planner, PlansWhatPlanJobPlans) {
-  Planner planner(machine());
+  Planner planner(machine(), kShapes);
   Asked asked(paper());
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
@@ -63,8 +67,35 @@ TEST(Planner, PlansWhatPlanJobPlans) {
   EXPECT_EQ(streamed, expected.statistics.setpoints);
 }
 
+TEST(Planner, PlansAJobWithItsLawOfZ) {
+  Planner planner(machine(), kShapes);
+  GrindJob job = paper();
+  job.process.z_law = ZLaw::kConstantRake;
+  Asked asked(job);
+  ASSERT_TRUE(planner.submit(asked.request));
+  const auto preview = asked.wait();
+  ASSERT_TRUE(preview->plan.good()) << text(preview->plan.reasons, UnitSystem::kShop);
+  std::vector<Axes> expected;
+  planJob(withZLaw(job), machine(), machine().park, {}, [&](const Setpoint& p) { expected.push_back(p.position); });
+  std::size_t i = 0;
+  for (Setpoint p; preview->stream->next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;
+  EXPECT_EQ(i, expected.size());
+}
+
+TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
+  Planner planner(machine(), kShapes);
+  GrindJob job = endless();
+  job.process.z_law = ZLaw::kConstantRake;
+  Asked asked(job);
+  asked.request.control->give_up = true;
+  ASSERT_TRUE(planner.submit(asked.request));
+  const auto preview = asked.wait();
+  EXPECT_EQ(preview->plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(preview->plan.program, nullptr);
+}
+
 TEST(Planner, TellsWhyAJobCannotBeGround) {
-  Planner planner(machine());
+  Planner planner(machine(), kShapes);
   GrindJob job = paper();
   job.process.feed = -1;
   Asked asked(job);
@@ -77,7 +108,7 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
 }
 
 TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
-  Planner planner(machine());
+  Planner planner(machine(), kShapes);
   Asked first(endless()), second(paper()), third(paper());
   ASSERT_TRUE(planner.submit(first.request));
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
@@ -93,7 +124,7 @@ TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
 }
 
 TEST(Planner, ItsEndGivesUpAndAnswers) {
-  Planner planner(machine());
+  Planner planner(machine(), kShapes);
   Asked asked(endless()), late(paper());
   ASSERT_TRUE(planner.submit(asked.request));
   planner.end();

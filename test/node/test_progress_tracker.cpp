@@ -127,6 +127,34 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
   EXPECT_NE(other.find("discard"), std::string::npos);
 }
 
+TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  job.process.infeed = job.process.depth / 2;
+  Machine machine = test_support::machineConfig().machine;
+  machine.work_offset << 0.1, 0.03, 0, 0.5;
+  const GrindProgram two(job, machine, machine.park - machine.work_offset);
+  begin(two, "job");
+  EXPECT_TRUE((onDisk().offset == machine.work_offset).all());
+  endStroke(two, 0);
+  tracker_.end(status_);
+  EXPECT_EQ(tracker_.offsetRefusal("job", machine.work_offset), "");
+  EXPECT_EQ(tracker_.offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
+  EXPECT_EQ(tracker_.offsetRefusal("job", {0.1, 0.03125, 0, 0}),
+            "the job is not finished, and it began with other work offsets; that of axis Y was 30 mm and is 31.25 mm; "
+            "that of axis A was 28.6478898 deg and is 0 deg; set them as they were, or discard the job");
+  EXPECT_EQ(tracker_.offsetRefusal("job", {0.1 + 0.9e-7, 0.03 - 0.9e-7, 0, 0.5 + 0.9e-6}), "");
+  for (const Axes& other : {Axes(0.1 + 1.1e-7, 0.03, 0, 0.5), Axes(0.1, 0.03, -1.1e-7, 0.5),
+                            Axes(0.1, 0.03, 0, 0.5 - 1.1e-6), Axes(std::nan(""), 0.03, 0, 0.5)}) {
+    EXPECT_NE(tracker_.offsetRefusal("job", other), "") << other.transpose();
+  }
+  begin(two, "job");
+  endStroke(two, 0);
+  endStroke(two, 1);
+  tracker_.end(status_);
+  EXPECT_EQ(tracker_.offsetRefusal("job", Axes::Zero()), "") << "it is finished";
+  EXPECT_TRUE(onDisk().finished);
+}
+
 TEST_F(ProgressTrackerTest, AFinishedOneIsNot) {
   const GrindProgram one = program(1);
   begin(one, "job");

@@ -26,6 +26,15 @@ RANGES = {
     'cutter.spiral_angle': (-60 * DEG, 60 * DEG, 'rad', True),
     'cutter.rake_angle': (-45 * DEG, 45 * DEG, 'rad', True),
     'cutter.flute_length': (0.1 * MM, 500 * MM, 'm', False),
+    'cutter.rake_tolerance': (0.001 * DEG, 180 * DEG, 'rad', False),
+    'cutter.shank_diameter': (0.1 * MM, 100 * MM, 'm', False),
+    'cutter.neck_length': (0, 500 * MM, 'm', True),
+    'process.depth_end': (0, 50 * MM, 'm', True),
+    'process.wheel_angle': (0, 80 * DEG, 'rad', True),
+    'process.wheel_corner_radius_lower': (0, 50 * MM, 'm', True),
+    'process.wheel_corner_radius_upper': (0, 50 * MM, 'm', True),
+    'process.setup_swivel': (-80 * DEG, 80 * DEG, 'rad', True),
+    'process.setup_height': (-100 * MM, 100 * MM, 'm', True),
     'process.feed': (0.1 * MM_MIN, 10000 * MM_MIN, 'm/s', False),
     'process.depth': (0.001 * MM, 50 * MM, 'm', False),
     'process.infeed': (0.0001 * MM, 50 * MM, 'm', False),
@@ -50,7 +59,7 @@ def number_cases():
         if not zero:
             values['zero'] = 0.0
         if low >= 0:
-            values['negative'] = -gc.PAPER[field] if gc.PAPER[field] else -1e-4
+            values['negative'] = -gc.MOTION[field] if gc.MOTION[field] else -1e-4
         for kind, value in values.items():
             yield '%s_%s' % (field.replace('.', '_'), kind), {field: value}, field, value, unit
 
@@ -100,6 +109,23 @@ CASES = [
     ('cone_closes_beyond_the_small_end',
      {'cutter.cone_angle': 30 * DEG, 'cutter.end_diameter': 1 * MM, 'process.depth': 0.01 * MM}, {}, 'INVALID_GOAL',
      [r'process\.overtravel_end = 0\.001 m; allowed: less than 0\.000866\d* m.*cone closes']),
+    ('cut', {'cutter.cut': 2}, {}, 'INVALID_GOAL', [r'cutter\.cut = 2; allowed: 0 to 1']),
+    ('wheel_profile', {'process.wheel_profile': 5}, {}, 'INVALID_GOAL', [r'process\.wheel_profile = 5; allowed: 0 to 4']),
+    ('wheel_point_without_a_radius',
+     {'process.wheel_profile': 4, 'process.wheel_points': [-1.5 * MM, 50 * MM, 1.5 * MM]}, {}, 'INVALID_GOAL',
+     [r'process\.wheel_points = nan m; allowed: 5e-05 to 0\.25 m']),
+    ('spirals_of_too_many_teeth', {'cutter.spiral_angles': [30 * DEG, 31 * DEG]}, {}, 'INVALID_GOAL',
+     [r'cutter\.spiral_angles = 2; allowed: as many as teeth, 1']),
+    ('first_spiral_of_another_angle', {'cutter.spiral_angles': [0.25]}, {}, 'INVALID_GOAL',
+     [r'cutter\.spiral_angles = 0\.25 rad; allowed: first cutter\.spiral_angle, 0\.523598']),
+    # Tools that nobody would want.
+    ('wheel_swivelled_to_the_spiral_angle',
+     {'cutter.rake_tolerance': 0.5 * DEG, 'process.setup_swivel': 30 * DEG}, {}, 'INVALID_GOAL',
+     [r'cutter\.rake_angle = 0\.139626 rad: tooth 1 is ground with -?[\d.]+ rad at X = [\d.]+ m; allowed: within 0\.00872665 rad']),
+    ('no_land_between_32_teeth', {'cutter.tooth_angles': [i * math.pi / 16 for i in range(32)]}, {}, 'INVALID_GOAL',
+     [r'no land is left on tooth \d+ at X = [\d.]+ m: its flute takes [\d.]+ rad, its pitch is 0\.19635 rad']),
+    ('flute_not_complete', {'process.incomplete_ok': False}, {}, 'INVALID_GOAL',
+     [r'overtravel_shank: the flutes are complete from X = [\d.e-]+ m to 0\.02\d+ m; allowed: .*0 to 0\.03 m']),
     ('first_tooth', {}, {'first_tooth': 1}, 'INVALID_GOAL', [r'first_tooth = 1.*allowed: 0 to 0']),
     ('first_pass', {}, {'first_pass': 1}, 'INVALID_GOAL', [r'first_pass = 1.*allowed: .*0 to 0']),
     ('first_pass_far', {}, {'first_pass': 65535}, 'INVALID_GOAL', [r'first_pass = 65535.*allowed: .*0 to 0']),
@@ -135,7 +161,7 @@ class TestBadGoals(unittest.TestCase):
         cls.joints = len(grinder().joints)
 
     def check(self, changes, fields, code, patterns):
-        goal = gc.goal_of(dict(gc.PAPER, **changes), **fields)
+        goal = gc.goal_of(dict(gc.MOTION, **changes), **fields)
         run = gc.Run(grinder(), goal).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', getattr(GrindResult, code)), run.text)
         for pattern in patterns:
@@ -149,7 +175,7 @@ class TestBadGoals(unittest.TestCase):
 
     def test_nothing_moved_of_any_of_them(self):
         for _, changes, fields, _, _ in CASES:
-            gc.Run(grinder(), gc.goal_of(dict(gc.PAPER, **changes), **fields)).wait()
+            gc.Run(grinder(), gc.goal_of(dict(gc.MOTION, **changes), **fields)).wait()
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), self.batches)
         self.assertEqual({gc.axes_of(joint) for joint in grinder().joints[self.joints:]}, {tuple(self.rest)})
@@ -183,7 +209,7 @@ def add_cases():
 
         def check(self, changes=changes, pattern=pattern, low=low, high=high):
             self.check(changes, {}, 'INVALID_GOAL', [pattern])
-            reasons = '; '.join(grinder().plan(gc.goal_of(dict(gc.PAPER, **changes))).reasons)
+            reasons = '; '.join(grinder().plan(gc.goal_of(dict(gc.MOTION, **changes))).reasons)
             told = [float(limit) for limit in re.search(pattern, reasons).groups()]
             self.assertAlmostEqual(told[0], low, delta=1e-9 * abs(low))
             self.assertAlmostEqual(told[1], high, delta=1e-9 * abs(high))
@@ -200,8 +226,9 @@ class TestZeroIsAllowed(unittest.TestCase):
     """Where zero means something: a cylinder, a straight flute, no finishing pass."""
 
     def test_plan_is_valid(self):
+        # Short, so that a wheel without swivel stays clear of the collet.
         for field in sorted(f for f in RANGES if RANGES[f][3]) + ['process.spark_out']:
-            plan = grinder().plan(gc.goal_of(dict(gc.PAPER, **{field: 0})))
+            plan = grinder().plan(gc.goal_of(dict(gc.MOTION, **{'cutter.flute_length': 20 * MM, field: 0})))
             self.assertTrue(plan.valid, '%s: %s' % (field, plan.reasons))
 
 
@@ -214,7 +241,7 @@ class TestState(unittest.TestCase):
     def test_goal_while_disabled(self):
         self.assertTrue(grinder().disable().success)
         rest = grinder().wait_rest()
-        run = grinder().send(gc.PAPER).wait()
+        run = grinder().send(gc.MOTION).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertRegex(run.text, r'state disabled; allowed: .*enable')
         state = grinder().fresh_state()
@@ -237,7 +264,7 @@ class TestState(unittest.TestCase):
 
     def test_bad_goal_and_dry_run_are_busy_too(self):
         first = grinder().send(LONG).wait_in_stroke(0)
-        for job, fields in ((gc.paper(feed=NAN), {}), (gc.PAPER, {'dry_run': True})):
+        for job, fields in ((gc.paper(feed=NAN), {}), (gc.MOTION, {'dry_run': True})):
             other = grinder().send(job, **fields).wait()
             self.assertEqual((other.status, other.code), ('REJECTED', GrindResult.BUSY))
         self.assertFalse(first.done)
@@ -325,7 +352,7 @@ class TestAfterwards(unittest.TestCase):
     def test_next_good_goal_runs(self):
         grinder().make_ready()
         for _, changes, fields, _, _ in CASES:
-            gc.Run(grinder(), gc.goal_of(dict(gc.PAPER, **changes), **fields)).wait()
+            gc.Run(grinder(), gc.goal_of(dict(gc.MOTION, **changes), **fields)).wait()
         run = grinder().run(gc.SHORT)
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
         self.assertTrue(checks.is_gapless(run.setpoints))

@@ -32,6 +32,7 @@ UNITS = [MM, MM, MM, DEG]
 PATH = ['path', 'path-start', 'path-end', 'error']
 MOTION = ['feed', 'speed', 'acceleration']
 MEASURED = ['following', 'timing']
+TOOL = ['tool-sections', 'tool-figures']
 
 FILES = {}  # made once for all tests
 
@@ -264,7 +265,7 @@ class TestPlan(ReportCase):
 
     def test_page(self):
         self.assert_page(self.page, PATH + MOTION)
-        self.assertIn('Following error and loop timing: a CSV file has', self.page.text)
+        self.assertIn('Following error and loop timing: the CSV file of a plan has', self.page.text)
         self.assertIn('Deviation at the cutter\'s surface: it depends', self.page.text)
 
     def test_figures_are_those_that_plan_prints(self):
@@ -359,8 +360,8 @@ class TestBag(ReportCase):
     def test_bag_has_all_topics(self):
         with rosbag.Bag(self.recording.bag) as bag:
             topics = bag.get_type_and_topic_info().topics
-        self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states', 'recorded/grind/result', 'recorded/setpoints',
-                                          'recorded/state'])
+        self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states', 'recorded/grind/goal', 'recorded/grind/result',
+                                          'recorded/setpoints', 'recorded/state'])
         self.assertTrue(all(topic.message_count > 0 for topic in topics.values()))
 
     def test_bag_has_every_setpoint(self):
@@ -370,7 +371,7 @@ class TestBag(ReportCase):
         self.assertEqual(cycles, list(range(len(self.setpoints))))
 
     def test_page(self):
-        self.assert_page(self.page, PATH + MOTION + MEASURED)
+        self.assert_page(self.page, PATH + MOTION + MEASURED + TOOL)
         self.assertRegex(self.page.rows['job'][0], r'^1 of 2 in the bag')
         self.assertEqual(self.page.rows['outcome'], ['done'])
         self.assertNotIn('missing', self.page.rows)
@@ -381,7 +382,7 @@ class TestBag(ReportCase):
         for name in ('points', 'duration', 'strokes', 'largest odd error', 'largest even error', 'largest feed'):
             self.assertEqual(self.page.rows[name], of_csv.rows[name], name)
         for axis in 'XYZA':
-            self.assertEqual(self.page.rows[axis][:4], of_csv.rows[axis])
+            self.assertEqual(self.page.rows[axis], of_csv.rows[axis])
 
     def test_errors_are_the_setpoints(self):
         stroke = [s for s in self.setpoints if s.move == STROKE]
@@ -433,7 +434,7 @@ class TestInterruptedJob(ReportCase):
 
     def test_last_job_is_reported_where_none_is_asked_for(self):
         page = self.report(FILES['recording'].bag)
-        self.assert_page(page, PATH + MOTION + MEASURED)
+        self.assert_page(page, PATH + MOTION + MEASURED + TOOL)
         self.assertRegex(page.rows['job'][0], r'^2 of 2 in the bag')
         received = [s for b in FILES['recording'].jobs[1] for s in b.setpoints]
         # The recorder was ended together with the grinder, and need not have got its last setpoints.

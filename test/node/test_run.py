@@ -179,7 +179,7 @@ class TestEnd(RunTest):
         done = gc.grind('cancel')
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr,
-                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift; '
+                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog; '
                          'a job that was being planned is canceled\n')
 
 

@@ -451,21 +451,19 @@ class TestTheEnd(NodeTest):
         self.assertEqual(told, {run.id})
 
     def test_frozen_loop_is_a_fault(self):
-        """As shipped: ten periods. What the axes were told last is where they stand."""
+        """What the axes were told last is where they stand. A stalled host does not freeze it for 0.3 s."""
         self.node.close()
         parameters = machine()
-        parameters['late_cycle'] = gc.shipped_machine()['late_cycle']
+        parameters['late_cycle'] = {'slow_down': 300.0, 'fault': 300.0}
         self.client = self.start(parameters)
         self.client.make_ready()
-        # A host that stalls may be late enough by itself, ahead of the stroke even.
-        run = self.client.send(SLOW)
-        self.client.wait_for(lambda: run.done or run.last and run.last.move == STROKE, 'the stroke')
+        run = self.send_into_stroke()
         self.node.process.send_signal(signal.SIGSTOP)
         time.sleep(1)  # how late it is to be
         self.node.process.send_signal(signal.SIGCONT)
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
-        self.assertRegex(run.text, r'the control loop came [0-9.]+ s after the cycle before, allowed 0\.01 s')
+        self.assertRegex(run.text, r'the control loop came [0-9.]+ s after the cycle before, allowed 0\.3 s')
         self.assertTrue(self.client.wait_state(GrinderState.FAULT).wheel_in_work)
 
 

@@ -297,7 +297,7 @@ class TestRepetition(unittest.TestCase):
     def test_same_goal_gives_the_same_bits(self):
         first = stream(600).setpoints
         grinder().make_ready_at_park()
-        again = grinder().run(gc.PAPER)
+        again = grinder().run(gc.MOTION)
         self.assertEqual(again.status, 'SUCCEEDED')
         bits = [[[p.hex() for p in s.position] + [s.path_error.hex()] for s in setpoints]
                 for setpoints in (first, again.setpoints)]
@@ -351,7 +351,7 @@ class TestDryRun(unittest.TestCase):
         planned = stream(600).result.statistics
         positions = grinder().make_ready_at_park()
         batches, joints = len(grinder().batches), len(grinder().joints)
-        run = grinder().send(gc.PAPER, dry_run=True).wait()
+        run = grinder().send(gc.MOTION, dry_run=True).wait()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
         self.assertEqual(run.result.statistics, planned)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
@@ -361,14 +361,14 @@ class TestDryRun(unittest.TestCase):
     def test_needs_no_power(self):
         grinder().make_ready()
         self.assertTrue(grinder().disable().success)
-        run = grinder().send(gc.PAPER, dry_run=True).wait()
+        run = grinder().send(gc.MOTION, dry_run=True).wait()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
 
     def test_plan_service_tells_the_same(self):
         planned = stream(600).result.statistics
         grinder().make_ready_at_park()
-        plan = grinder().plan(gc.goal_of(gc.PAPER))
+        plan = grinder().plan(gc.goal_of(gc.MOTION))
         self.assertTrue(plan.valid)
         self.assertEqual(plan.reasons, [])
         self.assertEqual(plan.statistics, planned)
@@ -380,11 +380,11 @@ class TestMarkers(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.helix = checks.Helix(gc.PAPER)
+        cls.helix = checks.Helix(gc.MOTION)
         cls.setpoints = stream(600).setpoints
         grinder().make_ready_at_park()
         # The one shown last may be of another test's job.
-        grinder().send(gc.PAPER, dry_run=True).wait()
+        grinder().send(gc.MOTION, dry_run=True).wait()
         cls.path = rospy.wait_for_message('/grinder/tool_path', MarkerArray, gc.PATIENCE).markers
         cls.error = rospy.wait_for_message('/grinder/path_error', MarkerArray, gc.PATIENCE).markers
 

@@ -50,6 +50,12 @@ def read(path):
         return file.read()
 
 
+def setpoints(path):
+    """The columns that the files of a plan and of a run have in common."""
+    with open(path) as file:
+        return [line.rstrip().split(',')[:12] for line in file]
+
+
 class TestTwoJobsAtOnce(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -95,8 +101,8 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         for name in NAMES:
             plan = gc.grind('plan', self.jobs[name], '--csv', self.csv(name, 'planned'))
             self.assertEqual(plan.returncode, 0, plan.stderr)
-            self.assertTrue(read(self.csv(name)) == read(self.csv(name, 'planned')), name)
-        self.assertNotEqual(read(self.csv('left/grinder')), read(self.csv('right/grinder')))
+            self.assertTrue(setpoints(self.csv(name)) == setpoints(self.csv(name, 'planned')), name)
+        self.assertNotEqual(setpoints(self.csv('left/grinder')), setpoints(self.csv('right/grinder')))
 
     def test_journals_are_apart(self):
         folder = rospy.get_param('/left/grinder/journal')
@@ -133,7 +139,7 @@ class TestTwoJobsAtOnce(unittest.TestCase):
             for transform, at in seen['table']:
                 self.assertEqual(transform.header.frame_id, 'base')
                 self.assertAlmostEqual(transform.transform.translation.x, -at['axis_x'], delta=1e-12)
-            for transform, at in seen['cutter']:
+            for transform, at in seen['chuck']:
                 self.assertEqual(transform.header.frame_id, 'table')
                 turned = transform.transform.rotation
                 angle = 2 * math.atan2(turned.x, turned.w)

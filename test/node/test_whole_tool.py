@@ -6,6 +6,7 @@ the order and direction asked for, with the wheel clear of the work in between. 
 import glob
 import itertools
 import io
+import json
 import math
 import os
 import shutil
@@ -16,7 +17,7 @@ from fractions import Fraction
 import rospy
 import rostest
 import yaml
-from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
+from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult, Process, Reason
 from std_msgs.msg import Header
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -31,7 +32,10 @@ cutter:
   cone_angle_deg: 5
   spiral_angle_deg: 30
   rake_angle_deg: 8
+  rake_tolerance_deg: 180
+  cut: right_hand
   flute_length_mm: 5
+  shank_diameter_mm: 1
   tooth_angles_deg: [0, 170]
 process:
   feed_mm_min: 3000
@@ -41,9 +45,11 @@ process:
   spark_out: 0
   clearance_mm: 1
   overtravel_mm: [1, 1]
+  incomplete_ok: true
   order: tooth_major
   direction: from_end
-  wheel: {diameter_mm: 100, width_mm: 8, wear_mm: 0.01, wear_per_pass_mm: 0.0002}
+  wheel: {profile: straight, diameter_mm: 100, width_mm: 3, corner_radius_mm: [0, 0], wear_mm: 0.01, wear_per_pass_mm: 0.0002}
+  setup: {swivel_deg: 31.8, height_mm: 2.8}
 interpolation:
   even_step: third_order
   tolerance_um: 1
@@ -92,9 +98,16 @@ def exact(number):
     return Fraction(str(number))
 
 
+def depths_at_ends(process):
+    """Of the finished flute, in mm."""
+    return exact(process['depth_mm']), exact(process.get('depth_end_mm', process['depth_mm']))
+
+
 def pass_depths(process):
-    """The depth of every pass in mm: as many infeeds as it takes, the finishing pass, the spark-out passes."""
-    depth, infeed, finish = (exact(process[key]) for key in ('depth_mm', 'infeed_mm', 'finish_infeed_mm'))
+    """The depth of every pass in mm, where the flute is deepest: as many infeeds as it takes, the finishing pass, the spark-out
+    passes."""
+    infeed, finish = (exact(process[key]) for key in ('infeed_mm', 'finish_infeed_mm'))
+    depth = max(depths_at_ends(process))
     rough = depth - finish
     depths = [min(i * infeed, rough) for i in range(1, math.ceil(rough / infeed) + 1)]
     if finish > 0:
@@ -109,8 +122,7 @@ class WholeTool:
 
     @classmethod
     def read(cls):
-        with open(cls.job_path) as text:
-            cls.file = yaml.safe_load(text)
+        cls.file = gc.read_job(cls.job_path)
         cls.job = gc.job_from_file(cls.job_path)
         cls.helix = checks.Helix(cls.job)
         cls.segments = read_setpoints(cls.csv)
@@ -172,8 +184,11 @@ class WholeTool:
         wheel = self.file['process']['wheel']
         for i, stroke in enumerate(self.strokes):
             wear = exact(wheel['wear_mm']) + i * exact(wheel.get('wear_per_pass_mm', 0))
-            depth = float(self.depths[self.order[i][1]] + wear) * MM
-            off = max(abs(p[Y] - (self.helix.y(p[X]) - depth)) for p in stroke.all_points())
+            ends = depths_at_ends(self.file['process'])
+            part = self.depths[self.order[i][1]] / max(ends)  # every pass has the same part of its depth everywhere
+            first, last = (float(part * end + wear) * MM for end in ends)
+            taper = (last - first) / self.job['cutter.flute_length']
+            off = max(abs(p[Y] - (self.helix.y(p[X]) - first - taper * p[X])) for p in stroke.all_points())
             self.assertLess(off, 1e-12, 'stroke %d' % i)
 
     def test_z_keeps_the_rake(self):
@@ -329,6 +344,7 @@ class TestJobsShowEverything(unittest.TestCase):
             with open(path) as text:
                 files.append(yaml.safe_load(text))
         self.assertGreaterEqual(len(files), 8)
+        self.assertEqual({'file' in f['process']['wheel'] for f in files}, {True, False})
         self.assertEqual({f['process']['order'] for f in files}, {'tooth_major', 'pass_major'})
         self.assertEqual({f['process']['direction'] for f in files}, {'from_end', 'to_end'})
         self.assertEqual({f['interpolation']['even_step'] for f in files}, {'published', 'third_order', 'exact'})
@@ -353,9 +369,11 @@ class TestShortTool(WholeTool, unittest.TestCase):
         batches = len(g.batches)
         cls.plan = gc.grind('plan', cls.job_path, '--csv', planned)
         cls.grind_run = gc.grind('run', cls.job_path, '--csv', cls.csv)
-        with open(planned, 'rb') as plan, open(cls.csv, 'rb') as run:
-            cls.planned, cls.streamed = plan.read(), run.read()
-        cls.count = cls.planned.count(b'\n') - 1
+        with open(planned) as plan, open(cls.csv) as run:
+            # The run's file has four more columns, the positions that the drive read.
+            cls.planned = plan.read().splitlines()
+            cls.streamed = [line.rsplit(',', 4)[0] for line in run.read().splitlines()]
+        cls.count = len(cls.planned) - 1
         g.wait_for(lambda: sum(len(batch.setpoints) for batch in g.batches[batches:]) >= cls.count, 'all setpoints')
         cls.state = g.fresh_state()
         cls.setpoints = [s for batch in g.batches[batches:] for s in batch.setpoints]
@@ -406,6 +424,83 @@ class TestShortTool(WholeTool, unittest.TestCase):
         self.assertEqual(self.batches_of_again, 0)
 
 
+# A steep cone, whose rake is half a degree off amid the flute by the published law of Z.
+STEEP_TOOL = """
+cutter: {end_diameter_mm: 5, cone_angle_deg: 10, spiral_angle_deg: 20, rake_angle_deg: 14, rake_tolerance_deg: 0.1, cut: right_hand,
+  flute_length_mm: 15, shank_diameter_mm: 12, teeth: 2}
+process:
+  feed_mm_min: 1200
+  depth_mm: 0.7
+  infeed_mm: 0.7
+  finish_infeed_mm: 0
+  spark_out: 0
+  clearance_mm: 1
+  overtravel_mm: [6, 6]
+  order: tooth_major
+  direction: from_end
+  z_law: constant_rake
+  wheel: {profile: straight, diameter_mm: 75, width_mm: 1.5, wear_mm: 0}
+  setup: {swivel_deg: 23.28, height_mm: 0.603}
+interpolation: {even_step: third_order, tolerance_um: 1, rotary_scale_mm_per_rad: 1}
+"""
+
+
+class TestConstantRake(unittest.TestCase):
+    """A job whose Z is corrected, from its file to the drive and back to the cutter; and as a goal."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.job_path, cls.plan_csv, cls.run_csv = (os.path.join(folder, name) for name in ('job.yaml', 'plan.csv', 'run.csv'))
+        with open(cls.job_path, 'w') as file:
+            file.write(STEEP_TOOL)
+        cls.job = dict(gc.job_from_file(cls.job_path), **{'process.z_law': Process.CONSTANT_RAKE})
+
+    def setUp(self):
+        grinder().make_ready_at_park()
+
+    def test_drive_grinds_the_rake_that_is_planned(self):
+        plan = gc.grind('plan', self.job_path, '--csv', self.plan_csv)
+        self.assertEqual(plan.returncode, 0, plan.stderr)
+        self.assertTrue(grinder().confirm_swivel(self.job['process.setup_swivel']).success)
+        run = gc.grind('run', self.job_path, '--csv', self.run_csv)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with open(self.plan_csv) as planned, open(self.run_csv) as streamed:
+            self.assertEqual(planned.read().splitlines(), [line.rsplit(',', 4)[0] for line in streamed.read().splitlines()])
+        if rospy.get_param('/grinder/hardware/type') != 'flute_grinder/SimulatedDrive':
+            return  # HAL's pins are not all read in the same servo cycle, so that its record shows them apart
+        told = gc.grind('simulate', self.run_csv, '--job', self.job_path, '--sections', '26', '--json')
+        self.assertEqual(told.returncode, 0, told.stderr)
+        rakes = [tooth['rake_deg'] for section in json.loads(told.stdout)['sections'] for tooth in section['teeth']]
+        self.assertEqual(len(rakes), 52)
+        self.assertLess(max(abs(rake - 14) for rake in rakes), 0.1)
+
+    def test_goal_is_planned_with_the_same_law(self):
+        service = grinder().plan(gc.goal_of(self.job))
+        self.assertEqual((service.valid, service.reasons), (True, []))
+        dry_run = grinder().send(self.job, dry_run=True).wait()
+        self.assertEqual((dry_run.status, dry_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
+        self.assertEqual(dry_run.result.statistics, service.statistics)
+        # By the published law the cutter is not as asked.
+        published = grinder().plan(gc.goal_of(dict(self.job, **{'process.z_law': Process.PUBLISHED})))
+        self.assertEqual([reason.kind for reason in published.violations], [Reason.RAKE])
+
+    def test_goal_whose_rake_cannot_be_kept_is_rejected(self):
+        far_off = dict(self.job, **{'process.setup_swivel': 50 * DEG})
+        service = grinder().plan(gc.goal_of(far_off))
+        self.assertFalse(service.valid)
+        reason, = service.violations
+        self.assertEqual((reason.kind, reason.field, reason.unit), (Reason.UNEVEN_RAKE, 'process.z_law', Reason.RADIAN))
+        self.assertAlmostEqual(reason.limit, 14 * DEG, delta=1e-12)
+        self.assertLess(reason.low, reason.value)
+        self.assertRegex(service.reasons[0], r'^process.z_law = constant_rake: tooth 1 is ground with .* rad to .* rad at best')
+        run = grinder().send(far_off).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))
+        unknown = grinder().plan(gc.goal_of(dict(self.job, **{'process.z_law': 2})))
+        self.assertEqual([reason.field for reason in unknown.violations], ['process.z_law'])
+
+
 class TestSizes(unittest.TestCase):
     """Of messages, for tools of many teeth."""
 
@@ -428,11 +523,14 @@ class ToolPath:
     def setUpClass(cls):
         cls.angles = [i * 2 * math.pi / 10 for i in range(10)]
         cls.job = gc.paper(end_diameter=6 * MM, cone_angle=cls.cone * DEG, spiral_angle=cls.spiral * DEG,
-                           flute_length=40 * MM, tooth_angles=cls.angles)
+                           flute_length=30 * MM, tooth_angles=cls.angles, depth=0.2 * MM, infeed=0.2 * MM, wheel_width=0.5 * MM)
         cls.helix = checks.Helix(cls.job)
         grinder().make_ready()
         run = grinder().send(cls.job, dry_run=True).wait()
         assert run.status == 'SUCCEEDED', run.text
+        # The markers follow within a few ticks.
+        grinder().fresh_state()
+        grinder().fresh_state()
         message = rospy.wait_for_message('/grinder/tool_path', MarkerArray, gc.PATIENCE)
         written = io.BytesIO()
         message.serialize(written)
@@ -454,7 +552,7 @@ class ToolPath:
         for points, _ in self.teeth():
             xs = [p.x for p in points]
             self.assertAlmostEqual(xs[0], -1 * MM, delta=1e-12)
-            self.assertAlmostEqual(xs[-1], 41 * MM, delta=1e-12)
+            self.assertAlmostEqual(xs[-1], 31 * MM, delta=1e-12)
             self.assertTrue(all(a < b for a, b in zip(xs, xs[1:])))
 
     def test_points_are_on_the_helix(self):

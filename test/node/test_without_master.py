@@ -56,15 +56,17 @@ class TestWithoutMaster(RunTest):
 
     def start_grinder(self, **parameters):
         with open(gc.package_file('urdf/grinder.urdf')) as urdf:
-            self.start_master(grinder=dict(gc.machine(), journal=os.path.join(self.folder, 'journal')),
+            self.start_master(grinder=dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
+                                           offsets=os.path.join(self.folder, 'offsets')),
                               robot_description=urdf.read(), **parameters)
         node = self.master.start([gc.program('grinder')])
         self.addCleanup(self.master.end, node)
 
     def start_run(self):
         self.start_grinder()
-        done = self.master.grind('enable')
-        self.assertEqual(done.returncode, 0, done.stderr)
+        for words in (['enable'], ['confirm-swivel', '31.769']):
+            done = self.master.grind(*words)
+            self.assertEqual(done.returncode, 0, done.stderr)
         command = self.grind('run', PAPER_JOB, environment=self.master.environment)
         command.wait_text('  running  ')
         self.master.end(self.master.process)
@@ -100,7 +102,7 @@ class TestWithoutMaster(RunTest):
 
     def check_all_say(self, text):
         commands = [self.grind(*words.split(), environment=self.master.environment)
-                    for words in ('status', 'hold', 'cancel', 'disable', 'home', 'lift', 'override 50',
+                    for words in ('status', 'hold', 'cancel', 'disable', 'home', 'lift', 'override 50', 'confirm-swivel 5',
                                   'run ' + PAPER_JOB)]
         for command in commands:
             self.assertEqual(command.end(), 1)

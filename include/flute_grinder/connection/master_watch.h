@@ -48,8 +48,6 @@ class MasterWatch {
   bool registerSubscriptions();
   bool registerSubscription(const std::string& topic, const std::string& type, const Uris& connected);
   std::map<std::string, Uris> connectedPublishers();
-  std::optional<Value> call(const std::string& host, unsigned port, const char* method,
-                            const std::vector<Value>& arguments);
   std::optional<Value> callMaster(const char* method, const std::vector<Value>& arguments = {});
   std::optional<Value> callSelf(const char* method, const std::vector<Value>& arguments = {});
 

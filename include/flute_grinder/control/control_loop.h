@@ -3,12 +3,13 @@
 #include "flute_grinder/control/command_history.h"
 #include "flute_grinder/control/cycle_record.h"
 #include "flute_grinder/control/drive_checks.h"
+#include "flute_grinder/control/jog.h"
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/control/request_box.h"
 #include "flute_grinder/control/seq_lock.h"
 #include "flute_grinder/control/wheel_watch.h"
-#include "flute_grinder/core/lift_move.h"
+#include "flute_grinder/core/axis_move.h"
 #include "flute_grinder/core/limit_check.h"
 #include "flute_grinder/core/setpoint_stream.h"
 #include "flute_grinder/drive/robot_hw.h"
@@ -31,7 +32,7 @@ class ControlLoop : public RequestBox {
   /// @param hw the drive, initialised; must outlive the loop.
   /// @param wheel state of the wheel when the previous run of the program ended.
   /// @throw HardwareInterfaceException if the drive lacks an interface or a joint.
-  /// @throw std::invalid_argument unless the limits of Y are finite and positive.
+  /// @throw std::invalid_argument unless the limits of every axis are finite and positive.
   ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel = {});
   ~ControlLoop();
 
@@ -64,6 +65,7 @@ class ControlLoop : public RequestBox {
   void run();
 
   void readDrive();
+  void readSwivel();
   void trackMotion();
   void checkDrive();
   void writeDrive(const ros::Time& time, const ros::Duration& period);
@@ -85,6 +87,14 @@ class ControlLoop : public RequestBox {
   Refusal retract();
   Refusal lift();
   double liftTarget() const;
+  Refusal setSwivel(double angle);
+  Interlock openInterlock() const;
+  void executeJog(const JogRequest& jog);
+  Refusal jogOn(const JogRequest& jog, Answer& answer);
+  Refusal beginJog(const JogRequest& jog, Answer& answer);
+  Refusal refusalOfSpeed(const JogRequest& jog, Answer& answer) const;
+  Refusal refusalOfPosition(Answer& answer) const;
+  double lowestJog(int axis) const;
 
   void awaitHoming();
   void awaitSpindle();
@@ -92,8 +102,11 @@ class ControlLoop : public RequestBox {
   void slowDownIfLate();
   void advanceJob();
   void advanceLift();
+  void advanceJog();
+  bool advanceAxisMove();
   void checkInterlocks();
-  void command(const Setpoint& setpoint);
+  void commandOfJob(const Setpoint& setpoint);
+  void command(const Setpoint& setpoint, const Axes& offset = Axes::Zero());
   bool allReachedAxes();
   void restJob();
   bool beginLiftOff();
@@ -110,7 +123,12 @@ class ControlLoop : public RequestBox {
   // Used only by the control thread.
   MachineState state_ = MachineState::kDisabled;
   SetpointStream* stream_ = nullptr;
-  LiftMove lift_;
+  double job_swivel_ = 0;           ///< that the stream's job needs [rad]
+  Axes job_offset_ = Axes::Zero();  ///< machine position - position of the stream's setpoints [m], A [rad]
+  AxisMove axis_move_;              ///< of a lift or a jog
+  bool jogging_ = false;            ///< in the middle of a job too, whose stream then takes its setpoints over
+  bool continuous_ = false;         ///< the jog
+  DeadMansSwitch dead_man_;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;

@@ -4,13 +4,15 @@
 #include "flute_grinder/core/loop_fault.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/core/swivel.h"
 #include "flute_grinder/drive/robot_hw.h"
 
 #include <cstdint>
 
 namespace flute_grinder {
 
-/// The data of one cycle, for the other threads.
+/// The data of one cycle, for the other threads. Positions and commands are in machine coordinates, a job's setpoints
+/// in its work coordinates.
 struct CycleRecord {
   double time = 0;    ///< time since the epoch of ROS time, but monotonic [s]
   double period = 0;  ///< since the previous cycle [s]
@@ -24,9 +26,10 @@ struct CycleRecord {
   Axes command_in_effect = Axes::Zero();
   bool has_setpoint = false;
   Setpoint setpoint;       ///< the setpoint written, if there was one
-  std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a lift without a job
+  std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a setpoint without a job
   bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next record if this one is lost
   bool wheel_in_work = false;
+  Swivel swivel;                           ///< where it stands, as far as is known
   LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed
   double feed_override = 1;                ///< fraction

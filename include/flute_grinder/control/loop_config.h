@@ -2,17 +2,21 @@
 
 #include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/axis_limits.h"
+#include "flute_grinder/core/machine_geometry.h"
 
 namespace flute_grinder {
 
 /// The machine, and the control loop's limits and timeouts.
 struct LoopConfig {
   Machine machine;
+  MachineGeometry geometry;
   Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
   double feedback_timeout = 0;          ///< longest allowed time without fresh positions [s]
   double enable_timeout = 0;            ///< longest allowed time from the enable command to power [s]
   double homing_timeout = 0;            ///< longest allowed time for homing [s]
   double spindle_timeout = 0;           ///< longest allowed time until spindle and coolant are ready for a job [s]
+  double jog_timeout = 0;               ///< longest allowed time between the messages of a continuous jog [s]
+  Axes jog_velocity = Axes::Zero();     ///< speed of a jog that names none [m/s], A [rad/s]
   double late_slow_down = 2;  ///< cycle period from which the axes are slowed down, then accelerated again [periods]
   double late_fault = 10;     ///< a cycle this long is late: the axes continue slowly, then accelerate again [periods]
 };

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/loop_fault.h"
 #include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/swivel.h"
 
 #include <cstdint>
 #include <string>
@@ -25,10 +27,20 @@ enum class Refusal : std::uint8_t {
   kNoPower,
   kMoved,
   kFeedback,
-  kWithdrawn,   ///< an enable that was followed by a disable
-  kInWork,      ///< the wheel is in the workpiece
-  kNotInWork,   ///< the wheel is not in the workpiece
-  kLiftTooFar,  ///< the lift would exceed the limit of Y
+  kWithdrawn,       ///< an enable that was followed by a disable
+  kInWork,          ///< the wheel is in the workpiece
+  kNotInWork,       ///< the wheel is not in the workpiece
+  kSwivel,          ///< not at the angle of the job that was to start
+  kSwivelMeasured,  ///< by the drive, so that it cannot be confirmed
+  kSwivelInUse,     ///< by a job in progress, at another angle than the one to confirm
+  kTooFar,          ///< a lift or a jog would exceed a limit of the axis
+  kNoAxis,          ///< a jog of an axis that does not exist
+  kJogSpeed,        ///< a jog at a speed that the axis does not allow
+  kAtLimit,         ///< the axis stands at the end of the range of jogs
+  kOutside,         ///< an axis stands outside its limits
+  kJogging,         ///< another jog is not over
+  kJobOver,         ///< a jog in a job that was held at the very end of its path
+  kStopped,         ///< a continuous jog that was stopped or refused, and not released since
 };
 
 /// The loop's answer to a request: plain data, converted to text by other threads.
@@ -37,8 +49,11 @@ struct Answer {
   MachineState state = MachineState::kDisabled;  ///< the state in which it was refused
   Refusal refusal = Refusal::kNone;
   Interlock interlock = Interlock::kNone;  ///< for kInterlock
-  double value = 0;                        ///< for kLiftTooFar: target Y of the lift [m]
-  double limit = 0;                        ///< for kLiftTooFar: limit of Y [m]
+  int axis = kY;                           ///< that moves; for kOutside, the one outside
+  double value = 0;                        ///< for kTooFar and kOutside: a position; for kJogSpeed: the speed
+  double limit = 0;                        ///< what is allowed
+  Swivel swivel;                           ///< for kSwivel and kSwivelMeasured
+  double job_swivel = 0;                   ///< for kSwivel and kSwivelInUse [rad]
 
   RequestReply reply() const;
 };

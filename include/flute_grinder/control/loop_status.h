@@ -5,6 +5,7 @@
 #include "flute_grinder/core/loop_fault.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/core/swivel.h"
 
 #include <array>
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace flute_grinder {
 
-/// The position of the axes in a job's program.
+/// The position of the axes in a job's program; X in work coordinates.
 struct Place {
   std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the interrupted move
   std::uint16_t tooth = 0;       ///< from 0
@@ -22,7 +23,8 @@ struct Place {
   double move_fraction = 0;  ///< completed fraction of the program's move, 0..1; exactly 1 at its end
 };
 
-/// Whether the wheel is in the workpiece, and how far to lift it off.
+/// Whether the wheel is in the workpiece, and how far to lift it off. In machine coordinates, so that it can be lifted
+/// whatever the work offsets have become.
 struct Wheel {
   bool in_work = false;
   double clear_y = 0;  ///< Y at which the wheel is clear of the last job's workpiece [m]
@@ -46,10 +48,13 @@ struct LoopStatus {
   double time = 0;           ///< stamp of the cycle [s]
   MachineState state = MachineState::kDisabled;
   bool homed = false;
-  std::array<double, kAxisCount> command{};  ///< as last written [m], A [rad]
-  double feed_override = 1;                  ///< fraction
-  std::uint64_t jobs_started = 0;            ///< since the start of the loop
-  std::uint64_t jobs_ended = 0;              ///< since the start of the loop
+  std::array<double, kAxisCount> command{};   ///< machine position as last written [m], A [rad]
+  std::array<double, kAxisCount> position{};  ///< machine position as read in this cycle [m], A [rad]
+  bool position_valid = false;                ///< all of them are finite and fresh
+  double feed_override = 1;                   ///< fraction
+  Swivel swivel;                              ///< where it stands, as far as is known
+  std::uint64_t jobs_started = 0;             ///< since the start of the loop
+  std::uint64_t jobs_ended = 0;               ///< since the start of the loop
   // For the running job, or else the last one:
   std::uint64_t setpoints_written = 0;
   JobEnd end = JobEnd::kNone;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/control/jog.h"
 #include "flute_grinder/control/loop_requests.h"
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/control/request_slot.h"
@@ -14,12 +15,14 @@ namespace flute_grinder {
 /// A job to start.
 struct JobStart {
   SetpointStream* stream = nullptr;
-  Wheel wheel;  ///< for this job
+  Axes offset = Axes::Zero();  ///< for which it was planned, see Machine::work_offset [m], A [rad]
+  Wheel wheel;                 ///< for this job
+  double swivel = 0;           ///< that this job needs [rad]
 };
 
-/// Holds other threads' requests to the control loop, and the answers. Stops, job starts and all other requests have
-/// separate slots, so none waits for another. The public functions are for the requesting threads, the protected ones
-/// for the loop; they never make the loop wait.
+/// Holds other threads' requests to the control loop, and the answers. Stops, job starts, jogs, confirmations of the
+/// swivel and all other requests have separate slots, so none waits for another. The public functions are for the
+/// requesting threads, the protected ones for the loop; they never make the loop wait.
 class RequestBox {
  public:
   /// Requests enable, home, resume, retract, lift or reset, and waits for the answer. For one thread at a time.
@@ -34,12 +37,24 @@ class RequestBox {
   /// The answer to the last post(), once available.
   std::optional<RequestReply> reply();
 
+  /// States where the swivel stands, and waits for the answer. For one thread at a time.
+  ///
+  /// Refused if the drive measures the swivel, and while a job is in progress unless it is the job's angle: the swivel
+  /// must not be turned then. A start is refused unless the swivel is at the job's angle.
+  /// @param angle -kLargestSwivel to kLargestSwivel [rad].
+  RequestReply confirmSwivel(double angle);
+  /// The same without waiting; the angle is not checked.
+  /// @return false while the previous confirmation is unanswered; this one is then not posted.
+  bool postSwivel(double angle) noexcept { return swivels_.post(angle); }
+  /// The answer to the last postSwivel(), once available.
+  std::optional<RequestReply> swivelReply();
+
   /// Requests a stop - hold, cancel or disable - and waits at most 100 ms for the answer. For one thread at a time.
   ///
   /// Hold stops a job on its path, even before its first setpoint. Cancel stops the job on its path, lifts the wheel
   /// off the workpiece and ends the job. Disable does the same and then switches the power off. Each of them also stops
-  /// a lift; a hold stops even the lift of a canceled job, which then ends there. During homing the drive controls the
-  /// motion, so each stop switches the power off.
+  /// a lift or a jog; a hold stops even the lift of a canceled job, which then ends there. During homing the drive
+  /// controls the motion, so each stop switches the power off.
   RequestReply stop(MachineEvent event);
   /// The same without waiting.
   /// @return a ticket for stopReply().
@@ -56,6 +71,18 @@ class RequestBox {
   /// The answer to the last startJob(), once available. For one thread at a time.
   std::optional<RequestReply> startJobReply();
 
+  /// Requests a jog, and waits for the answer, not for the motion. For one thread at a time.
+  ///
+  /// A step moves its axis by its distance, or is refused if that would lead beyond a limit. A continuous jog moves its
+  /// axis toward its limit, and must be requested again and again: without a request for jog_timeout the axis stops.
+  /// In the middle of a job only a retracted wheel is jogged, and never down to the workpiece.
+  RequestReply jog(const JogRequest& jog);
+  /// The same without waiting: the next cycle answers it.
+  /// @return false while the previous jog is unanswered; this one is then not posted.
+  bool postJog(const JogRequest& jog) noexcept { return jogs_.post(jog); }
+  /// The answer to the last postJog(), once available.
+  std::optional<RequestReply> jogReply();
+
  protected:
   /// @param enable_timeout longest allowed time from an enable to its answer [s].
   explicit RequestBox(double enable_timeout) noexcept : enable_timeout_(enable_timeout) {}
@@ -65,15 +92,21 @@ class RequestBox {
   StopRequests::Taken takeStops() noexcept { return stops_.take(); }
   std::optional<JobStart> takeJobStart() noexcept { return job_starts_.take(); }
   std::optional<MachineEvent> takeRequest() noexcept { return requests_.take(); }
+  std::optional<double> takeSwivel() noexcept { return swivels_.take(); }
+  std::optional<JogRequest> takeJog() noexcept { return jogs_.take(); }
   void answerStop(const Answer& answer) noexcept { stops_.answer(answer); }
   void answerJobStart(const Answer& answer) noexcept { job_starts_.answer(answer); }
+  void answerJog(const Answer& answer) noexcept { jogs_.answer(answer); }
   void answerRequest(const Answer& answer) noexcept { requests_.answer(answer); }
+  void answerSwivel(const Answer& answer) noexcept { swivels_.answer(answer); }
 
  private:
   const double enable_timeout_;
   StopRequests stops_;
   RequestSlot<JobStart> job_starts_;
+  RequestSlot<JogRequest> jogs_;
   RequestSlot<MachineEvent> requests_;
+  RequestSlot<double> swivels_;
 };
 
 }  // namespace flute_grinder

@@ -32,10 +32,12 @@ class HalComponent {
   /// @param name name of pin and signal.
   /// @param data where HAL stores the address of the value; from allocate().
   /// @param required whether the signal must exist; ready() reports missing signals.
+  /// @return whether the signal exists.
   /// @throw ParameterError if the signal has another type or another writer.
   template <typename Value>
-  void addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
-    addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)), required);
+  bool addPin(const std::string& name, hal_pin_dir_t direction, Value*& data, bool required) {
+    return addPin(name, typeOf(&data), direction, const_cast<void**>(reinterpret_cast<volatile void**>(&data)),
+                  required);
   }
 
   /// Reports to HAL that all pins have been created.
@@ -49,7 +51,7 @@ class HalComponent {
   static constexpr hal_type_t typeOf(hal_u32_t**) { return HAL_U32; }
 
   HalComponent() = default;
-  void addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data, bool required);
+  bool addPin(const std::string& name, hal_type_t type, hal_pin_dir_t direction, void** data, bool required);
   void removeDead(int reason);
 
   std::string name_;

@@ -5,6 +5,7 @@
 #include <ros/time.h>
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -78,6 +79,8 @@ struct DriveStatus {
   /// For a drive that buffers: number of written commands that had not reached the axes when the positions were read.
   std::uint32_t commands_waiting = 0;
   std::uint64_t underruns = 0;  ///< servo cycles since the start in which the powered axes had no command
+  /// Angle of the wheel's swivel, positive for right-hand flutes; NaN if the drive does not measure it [rad]
+  double swivel = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The largest number of commands that a drive may buffer; the loop keeps as many, for comparison with the positions.

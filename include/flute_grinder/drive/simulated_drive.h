@@ -4,6 +4,7 @@
 #include "flute_grinder/drive/axes_hw.h"
 
 #include <atomic>
+#include <limits>
 
 namespace flute_grinder {
 
@@ -14,7 +15,7 @@ namespace flute_grinder {
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
-/// `absolute_encoders`, `spindle_run_up_time` [s].
+/// `absolute_encoders`, `spindle_run_up_time` [s]; and `swivel` [rad] if the swivel has an encoder.
 class SimulatedDrive : public AxesHW {
  public:
   /// Model of one axis.
@@ -27,10 +28,12 @@ class SimulatedDrive : public AxesHW {
   };
   using Model = std::array<AxisModel, kAxisCount>;
 
-  /// Model of encoders and spindle.
+  /// Model of encoders, spindle and swivel.
   struct Equipment {
     bool absolute_encoders = true;   ///< homed from the start
     double spindle_run_up_time = 0;  ///< [s]
+    /// Angle that the swivel's encoder reads; NaN for none [rad]
+    double swivel = std::numeric_limits<double>::quiet_NaN();
   };
 
   enum class Fault : std::uint8_t {
@@ -42,7 +45,8 @@ class SimulatedDrive : public AxesHW {
     kDriveFault,
     kReferenceLost,
     kSpindleLost,
-    kCoolantLost
+    kCoolantLost,
+    kSwivelSlipped
   };
 
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;

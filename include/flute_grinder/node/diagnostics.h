@@ -90,7 +90,7 @@ class Diagnostics {
   };
 
   void addDrive(const CycleRecord& record);
-  void addSetpoint(const Setpoint& setpoint);
+  void addSetpoint(const Setpoint& setpoint, const Axes& command);
   void addViolation(const LimitViolation& violation);
   void addBuffer(const DriveStatus& drive);
   double positionUse(int axis, double position) const;

@@ -3,6 +3,7 @@
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/job_gate.h"
+#include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/planner.h"
 #include "flute_grinder/node/progress_tracker.h"
 #include "flute_grinder/node/served_queue.h"
@@ -25,7 +26,7 @@ class GoalDesk {
   /// @param private_nh the node's own namespace.
   /// @param the rest must outlive this object.
   GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner, Telemetry& telemetry,
-           JournalWriter& journal);
+           JournalWriter& journal, const OffsetStore& offsets);
   ~GoalDesk() { thread_.stop(); }
 
   /// Whether there is a goal that has not ended. Thread safe.
@@ -52,6 +53,8 @@ class GoalDesk {
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const GrindGoal& goal, const std::string& digest) const;
+  std::optional<core::Reason> swivelRefusal(const GrindJob& job) const;
+  std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const Axes& offset) const;
   void startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
@@ -71,6 +74,7 @@ class GoalDesk {
   JobGate& gate_;
   Planner& planner_;
   Telemetry& telemetry_;
+  const OffsetStore& offsets_;
   ProgressTracker tracker_;
 
   std::uint64_t cycles_ = 0;    ///< of the loop, when last seen

@@ -5,6 +5,8 @@
 #include "flute_grinder/node/goal_desk.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/journal_writer.h"
+#include "flute_grinder/node/offset_desk.h"
+#include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/plan_desk.h"
 #include "flute_grinder/node/planner.h"
 #include "flute_grinder/node/request_desk.h"
@@ -27,7 +29,7 @@ class GrinderNode {
   /// Reads all parameters, loads and initialises the drive, and starts the control loop.
   /// @param nh the node's namespace, for robot_description and joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of the journal.
+  /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of a kept file.
   GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
   ~GrinderNode();
 
@@ -42,6 +44,7 @@ class GrinderNode {
   std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;
   pluginlib::UniquePtr<RobotHW> hw_;
   std::unique_ptr<JournalWriter> journal_;
+  std::unique_ptr<OffsetStore> offsets_;
   std::unique_ptr<ControlLoop> loop_;
   JobGate gate_;
   std::unique_ptr<Planner> planner_;
@@ -50,6 +53,7 @@ class GrinderNode {
   std::unique_ptr<RequestDesk> requests_;
   std::unique_ptr<PlanDesk> plans_;
   std::unique_ptr<GoalDesk> goals_;
+  std::unique_ptr<OffsetDesk> offset_desk_;
 };
 
 }  // namespace flute_grinder

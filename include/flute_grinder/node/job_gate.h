@@ -8,12 +8,13 @@
 namespace flute_grinder {
 
 /// Arbitrates between stops and the start of a job. Before the start, a cancel prevents it and a hold makes the job
-/// begin held; later stops go to the control loop. Thread safe; its lock is held for a few instructions only.
+/// begin held; later stops go to the control loop. Also between a job and a change of what it was planned with. Thread
+/// safe; its lock is held for a few instructions only.
 class JobGate {
  public:
   /// Makes a goal the one that stops apply to.
   /// @param give_up called once if the goal is canceled before its start, in the canceling thread; must not block.
-  /// @return false if the gate is shut.
+  /// @return false if the gate is shut, or while jobs are shut out.
   bool open(const actionlib_msgs::GoalID& goal, std::function<void()> give_up);
 
   /// Starts the goal's job unless it was canceled.
@@ -36,6 +37,13 @@ class JobGate {
   /// Cancels the goal if its job has not started, and prevents every later start.
   void shut();
 
+  /// Lets no goal in until letJobsIn().
+  /// @return false, and nothing is changed, if there is one already.
+  bool shutOutJobs();
+  void letJobsIn();
+
+  bool isShut() const;
+
   bool canceled() const;  ///< whether the goal or its job has been canceled
 
  private:
@@ -50,6 +58,7 @@ class JobGate {
   bool canceled_ = false;
   bool held_ = false;
   bool shut_ = false;
+  bool jobs_shut_out_ = false;
 };
 
 }  // namespace flute_grinder

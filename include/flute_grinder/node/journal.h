@@ -2,26 +2,19 @@
 
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/node/kept_file.h"
 
-#include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace flute_grinder {
 
 /// A journal that cannot be read or written; what() names the file and the reason.
-class JournalError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using JournalError = KeptFileError;
 
 /// A journal in use by another process; what() names its node and process.
-class JournalOwned : public JournalError {
- public:
-  using JournalError::JournalError;
-};
+using JournalOwned = KeptFileOwned;
 
 /// How far a job has come.
 struct Progress {
@@ -33,21 +26,15 @@ struct Progress {
   ToothPass next;                    ///< the first unfinished pass
   double x = 0;                      ///< reached in its stroke, or in the last one [m]
   Wheel wheel;                       ///< as it was left
+  Axes offset = Axes::Zero();        ///< with which the job began, see Machine::work_offset [m], A [rad]
 };
 
-/// Keeps the progress of a job on disk, so that it survives a crash and a power failure. The file is always either the
-/// old or the new version, complete; a damaged or modified file is refused. Only one Journal on the computer can own it
-/// at a time, by a lock on a file beside it with the suffix `.lock`, which is never removed. Not thread safe; blocks on
-/// the disk.
+/// Keeps the progress of a job on disk, see KeptFile. Not thread safe; blocks on the disk.
 class Journal {
  public:
-  /// Owns the file for the lifetime of the object. If the path cannot be used (it is a folder, say), read() and write()
-  /// try again and throw the reason.
-  /// @param path the file; missing folders are created, symbolic links are followed.
-  /// @param owner the resolved name of the node.
+  /// @param path, owner as for KeptFile.
   /// @throw JournalOwned if another process owns it.
   Journal(std::string path, std::string owner);
-  ~Journal();
 
   /// The last entry; nothing if there is no file.
   /// @throw JournalError if the file is not a complete journal.
@@ -58,13 +45,7 @@ class Journal {
   void write(const Progress& progress) const;
 
  private:
-  class File;
-
-  void acquire() const;
-
-  std::string path_, owner_;
-  mutable std::string file_;            ///< the path without symbolic links, once it is owned
-  mutable std::unique_ptr<File> lock_;  ///< held while not null
+  KeptFile file_;
 };
 
 }  // namespace flute_grinder

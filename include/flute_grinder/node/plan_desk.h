@@ -2,6 +2,7 @@
 
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/planner.h"
 #include "flute_grinder/node/telemetry.h"
 
@@ -16,8 +17,9 @@ namespace flute_grinder {
 class PlanDesk {
  public:
   /// @param private_nh the node's own namespace.
-  /// @param loop,planner,telemetry must outlive this object.
-  PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry);
+  /// @param loop,planner,telemetry,offsets must outlive this object.
+  PlanDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner, Telemetry& telemetry,
+           const OffsetStore& offsets);
   ~PlanDesk();
 
  private:
@@ -26,6 +28,7 @@ class PlanDesk {
   const ControlLoop& loop_;
   Planner& planner_;
   Telemetry& telemetry_;
+  const OffsetStore& offsets_;
   std::shared_ptr<PlanControl> control_;
   ros::CallbackQueue queue_;
   ros::ServiceServer service_;

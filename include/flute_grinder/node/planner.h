@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/collision/machine_shapes.h"
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/scene/path_markers.h"
 
@@ -32,13 +33,14 @@ class Planner {
  public:
   struct Request {
     GrindJob job;
-    Axes start = Axes::Zero();  ///< current position of the axes [m], A [rad]
-    ToothPass first;            ///< to grind
+    Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
+    Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
+    ToothPass first;             ///< to grind
     std::shared_ptr<PlanControl> control;
     std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
   };
 
-  explicit Planner(const Machine& machine);
+  Planner(const Machine& machine, const MachineShapes& shapes);
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
   ~Planner() { end(); }
@@ -55,6 +57,7 @@ class Planner {
   std::unique_ptr<Preview> plan(const Request& request) const;
 
   const Machine machine_;
+  const MachineShapes shapes_;
   std::mutex mutex_;  ///< guards the next three
   std::condition_variable changed_;
   std::optional<Request> request_;  ///< until it is done

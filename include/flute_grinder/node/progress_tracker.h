@@ -22,6 +22,10 @@ class ProgressTracker {
   /// Why a job must not overwrite the journal: it holds another, unfinished one. Empty if it may.
   /// @param first pass to grind.
   std::string refusal(const std::string& digest, const ToothPass& first) const;
+  /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
+  /// them (0.1 um, A 1e-6 rad). Empty if it may, or if it is another job.
+  /// @param offset see Machine::work_offset [m], A [rad].
+  std::string offsetRefusal(const std::string& digest, const Axes& offset) const;
 
   /// Enters a job before it starts.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.

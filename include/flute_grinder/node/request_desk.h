@@ -1,5 +1,8 @@
 #pragma once
 
+#include "flute_grinder/ConfirmSwivel.h"
+#include "flute_grinder/Jog.h"
+#include "flute_grinder/JogStep.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/served_queue.h"
@@ -11,8 +14,9 @@
 
 namespace flute_grinder {
 
-/// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents. Runs in its
-/// own thread, which waits for the control loop's reply, one request at a time.
+/// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents, the services
+/// `~confirm_swivel` and `~jog_step`, and the topic `~jog`. Runs in its own thread, which waits for the control loop's
+/// reply, one request at a time.
 class RequestDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -22,11 +26,15 @@ class RequestDesk {
  private:
   void serve(ros::NodeHandle& nh, MachineEvent event);
   RequestReply execute(MachineEvent event);
+  bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response);
+  bool onJogStep(JogStep::Request& request, JogStep::Response& response);
+  void onJog(const Jog::ConstPtr& message);
 
   ControlLoop& loop_;
   JobGate& gate_;
   ServedQueue thread_;
   std::vector<ros::ServiceServer> services_;
+  ros::Subscriber jogs_;
 };
 
 }  // namespace flute_grinder

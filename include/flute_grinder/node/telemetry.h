@@ -4,6 +4,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/diagnostics.h"
 #include "flute_grinder/node/journal_writer.h"
+#include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/planner.h"
 #include "flute_grinder/node/served_queue.h"
 #include "flute_grinder/scene/scene.h"
@@ -27,9 +28,9 @@ class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @param loop,journal must outlive this object.
+  /// @param loop,journal,offsets must outlive this object.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const DiagnosticThresholds& thresholds);
+            const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds);
 
   /// Starts publishing.
   void start() { thread_.start(); }
@@ -69,6 +70,7 @@ class Telemetry {
   void processRecord();
   void trackJob(Job& job);
   void addToBatch(Job& job, const Buffered& written);
+  Axes workPosition(const Job& job) const;
   void endJob(Job& job);
   void publishJointStates();
   void publishBatch();
@@ -79,6 +81,7 @@ class Telemetry {
 
   ControlLoop& loop_;
   const JournalWriter& journal_;
+  const OffsetStore& offsets_;
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
   ros::Publisher joint_states_, state_, setpoints_, feedback_;

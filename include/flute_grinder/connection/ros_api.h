@@ -1,0 +1,20 @@
+#pragma once
+
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <atomic>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Calls a method of a ROS master's or node's XML-RPC API over a connection of its own, for a second at most.
+/// @param arguments after this node's name.
+/// @param stop ends the call within some hundredths of a second.
+/// @return nothing if no answer came, or it is malformed or reports an error.
+std::optional<XmlRpc::XmlRpcValue> callRosApi(const std::string& host, unsigned port, const char* method,
+                                              const std::vector<XmlRpc::XmlRpcValue>& arguments,
+                                              const std::atomic<bool>& stop);
+
+}  // namespace flute_grinder

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "flute_grinder/core/conical_cutter.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// The swivel that a machine allows: the limits of the joint `wheel_swivel` [rad].
+/// @param urdf the robot description in XML.
+/// @throw ParameterError naming what is missing or not allowed.
+Range readSwivelRange(const std::string& urdf);
+
+}  // namespace flute_grinder

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/TouchOff.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/node/job_gate.h"
+#include "flute_grinder/node/offset_store.h"
+#include "flute_grinder/node/served_queue.h"
+
+#include <ros/ros.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Serves `~set_offset` and `~touch_off`, and publishes the work offsets on `~offsets`. Runs in its own thread, which
+/// waits for the disk.
+class OffsetDesk {
+ public:
+  /// @param private_nh the node's own namespace.
+  /// @param loop,gate,store must outlive this object.
+  OffsetDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store);
+
+ private:
+  /// The offset of an axis whose position is as given [m or rad].
+  using OffsetAt = std::function<double(double position)>;
+
+  bool onSet(SetOffset::Request& request, SetOffset::Response& response);
+  bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response);
+  std::string set(const std::string& axis, const std::string& set_by, const OffsetAt& offset_at);
+  std::string setWithoutJob(int axis, const std::string& set_by, const OffsetAt& offset_at);
+  void publish();
+
+  const ControlLoop& loop_;
+  JobGate& gate_;
+  OffsetStore& store_;
+  ServedQueue thread_;
+  ros::Publisher offsets_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace flute_grinder

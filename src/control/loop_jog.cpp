@@ -1,0 +1,98 @@
+#include "flute_grinder/control/control_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+// Jogs: their requests and their motion; all of it is real-time.
+namespace flute_grinder {
+
+void ControlLoop::executeJog(const JogRequest& jog) {
+  Answer answer = answerTo(MachineEvent::kJog, Refusal::kNone);
+  answer.axis = jog.axis;
+  answer.refusal = jog.continuous ? jogOn(jog, answer) : beginJog(jog, answer);
+  if (jog.continuous && answer.refusal != Refusal::kNone && answer.refusal != Refusal::kJogging) {
+    dead_man_.block();
+    if (jogging_ && continuous_) axis_move_.setSpeed(0);
+  }
+  answerJog(answer);
+}
+
+Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {
+  if (jog.velocity == 0) {
+    dead_man_.release();
+    if (jogging_ && continuous_) axis_move_.setSpeed(0);
+    return Refusal::kNone;
+  }
+  if (!dead_man_.press()) return Refusal::kStopped;
+  if (!jogging_) return beginJog(jog, answer);
+  if (!continuous_ || jog.axis != axis_move_.axis()) return Refusal::kJogging;
+  if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
+  // For the other direction the axis stops first; the messages that follow then begin a new jog.
+  const bool onward = jog.velocity * axis_move_.direction() > 0;
+  axis_move_.setSpeed(onward ? std::abs(jog.velocity) : 0);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
+  if (!(jog.axis >= 0 && jog.axis < kAxisCount)) return Refusal::kNoAxis;
+  if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
+  if (jogging_) return Refusal::kJogging;
+  if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
+  if (!record_.drive.homed) return Refusal::kInterlock;
+  if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
+  if (const Refusal refusal = refusalOfPosition(answer); refusal != Refusal::kNone) return refusal;
+  const double way = jog.continuous ? jog.velocity : jog.distance;
+  const bool raises = jog.axis == kY && way > 0;
+  if (wheel_.wheel().in_work && !raises) return Refusal::kInWork;
+
+  const double from = command_[jog.axis];
+  answer.limit = way < 0 ? lowestJog(jog.axis) : config_.machine.limits.max_position[jog.axis];
+  answer.value = jog.continuous ? answer.limit : from + jog.distance;
+  if (jog.continuous && (way < 0 ? from <= answer.limit : from >= answer.limit)) return Refusal::kAtLimit;
+  const bool within = way < 0 ? answer.value >= answer.limit : answer.value <= answer.limit;
+  if (!within) return Refusal::kTooFar;
+
+  axis_move_.begin(MoveKind::kPosition, command_, jog.axis, answer.value, std::abs(jog.velocity));
+  if (!stream_) limit_check_.restart();
+  jogging_ = true;
+  continuous_ = jog.continuous;
+  power_off_next_ = false;
+  apply(MachineEvent::kJog);
+  return Refusal::kNone;
+}
+
+Refusal ControlLoop::refusalOfSpeed(const JogRequest& jog, Answer& answer) const {
+  answer.value = jog.continuous ? std::abs(jog.velocity) : jog.velocity;
+  answer.limit = config_.machine.limits.max_velocity[jog.axis];
+  return answer.value > 0 && answer.value <= answer.limit ? Refusal::kNone : Refusal::kJogSpeed;
+}
+
+Refusal ControlLoop::refusalOfPosition(Answer& answer) const {
+  const AxisLimits& limits = config_.machine.limits;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const double at = command_[axis];
+    if (at >= limits.min_position[axis] && at <= limits.max_position[axis]) continue;
+    answer.axis = axis;
+    answer.value = at;
+    answer.limit = at < limits.min_position[axis] ? limits.min_position[axis] : limits.max_position[axis];
+    return Refusal::kOutside;
+  }
+  return Refusal::kNone;
+}
+
+double ControlLoop::lowestJog(int axis) const {
+  const double lowest = config_.machine.limits.min_position[axis];
+  // In the middle of a job the wheel stays off the workpiece.
+  return axis == kY && stream_ ? std::max(lowest, wheel_.wheel().clear_y) : lowest;
+}
+
+void ControlLoop::advanceJog() {
+  // Without the reference the limits mean nothing.
+  if ((continuous_ && dead_man_.released()) || !record_.drive.homed) axis_move_.setSpeed(0);
+  if (!advanceAxisMove()) return;
+  jogging_ = false;
+  // A job that was canceled meanwhile ends by itself.
+  if (state_ != MachineState::kCanceling) comeToRest();
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,92 @@
+#include "flute_grinder/node/offset_store.h"
+
+#include "flute_grinder/node/yaml_fields.h"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kLatest = 4e9;  ///< time that a ROS message can hold [s]
+
+/// Calls visit(key, value) for every field of the file.
+template <typename AnyOffsets, typename Visit>
+void visitFields(AnyOffsets& offsets, const Visit& visit) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    auto& offset = offsets.axes[static_cast<std::size_t>(axis)];
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    visit(joint + "_" + axisUnit(axis), offset.value);
+    visit(joint + "_set_by", offset.set_by);
+    visit(joint + "_set_at", offset.set_at);
+  }
+}
+
+bool isKnown(const core::WorkOffset& offset) { return !std::isnan(offset.value); }
+
+void requireSound(const core::WorkOffsets& offsets) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const core::WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    requireAllowed(!isKnown(offset) || std::abs(offset.value) <= kLargestOffset, joint + "_" + axisUnit(axis),
+                   offset.value, "-1000 to 1000");
+    requireAllowed(offset.set_at >= 0 && offset.set_at <= kLatest, joint + "_set_at", offset.set_at, "0 to 4e9");
+  }
+}
+
+std::string toText(const core::WorkOffsets& offsets) {
+  requireSound(offsets);
+  return toYaml("The grinder's work offsets: machine position - work position; .nan is unknown.",
+                [&](const auto& visit) { visitFields(offsets, visit); });
+}
+
+core::WorkOffsets fromText(const std::string& text) {
+  core::WorkOffsets offsets;
+  fromYaml(text, [&](const auto& visit) { visitFields(offsets, visit); });
+  requireSound(offsets);
+  return offsets;
+}
+
+}  // namespace
+
+OffsetStore::OffsetStore(std::string path, std::string owner)
+    : file_("file of work offsets", std::move(path), std::move(owner)) {
+  try {
+    const std::optional<std::string> text = file_.read();
+    if (text) offsets_ = file_.named([&] { return fromText(*text); });
+  } catch (const KeptFileOwned&) {
+    throw;
+  } catch (const KeptFileError& error) {
+    error_ = error.what();
+    for (core::WorkOffset& offset : offsets_.axes) offset.value = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+core::WorkOffsets OffsetStore::offsets() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return offsets_;
+}
+
+std::string OffsetStore::unknown() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string names;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    if (!isKnown(offsets_.axes[i])) names += (names.empty() ? "" : ", ") + std::string(kJointNames[i]);
+  }
+  if (names.empty()) return "";
+  return "unknown work offsets of " + names + (error_.empty() ? "" : ": " + error_) +
+         "; set each of them, or touch off";
+}
+
+void OffsetStore::set(int axis, const core::WorkOffset& offset) {
+  core::WorkOffsets changed = offsets();
+  changed.axes[static_cast<std::size_t>(axis)] = offset;
+  file_.named([&] { file_.write(toText(changed)); });
+  const std::lock_guard<std::mutex> lock(mutex_);
+  offsets_ = changed;
+}
+
+}  // namespace flute_grinder

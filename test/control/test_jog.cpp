@@ -1,0 +1,486 @@
+#include "control/checks.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+// Jogs: steps and continuous ones, what is refused, and how they end.
+namespace flute_grinder::test_support {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kTimeoutCycles = 50;  // of 50.5 ms
+
+JogRequest step(int axis, double distance, double speed = 0.02) { return {axis, false, distance, speed}; }
+JogRequest on(int axis, double velocity) { return {axis, true, 0, velocity}; }
+
+/// Distance in which the machine of the tests stops an axis: half the speed times the time of a stop, v/a + a/j where
+/// the full deceleration is reached, else 2 sqrt(v/j).
+double brakingDistance(int axis, double v) {
+  const AxisLimits limits = machineConfig().machine.limits;
+  const double a = limits.max_acceleration[axis], j = limits.max_jerk[axis];
+  return v / 2 * (v >= a * a / j ? v / a + a / j : 2 * std::sqrt(v / j));
+}
+
+class JogFrom : public testing::TestWithParam<S> {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
+    rig_.run(5);
+    before_ = rig_.log.size() - 1;
+    at_ = rig_.last().command;
+  }
+  S jogging() const { return GetParam() == S::kReady ? S::kJogging : S::kJoggingRetracted; }
+  /// Refreshes a continuous jog for some cycles, every 20th.
+  void jogFor(const JogRequest& request, int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      if (i % 20 == 0) {
+        ASSERT_TRUE(rig_.jog(request).accepted);
+      } else {
+        rig_.cycle();
+      }
+    }
+  }
+  Rig<FakeDrive> rig_;
+  std::size_t before_ = 0;
+  Axes at_ = Axes::Zero();
+};
+
+TEST_P(JogFrom, AStepMovesItsAxisExactlyByItsDistanceAndComesBackToTheState) {
+  for (const auto& [axis, distance] : std::vector<std::pair<int, double>>{
+           {kX, 0.01}, {kX, -0.012}, {kY, 0.005}, {kY, -0.004}, {kZ, 1e-6}, {kZ, -0.01}, {kA, 2}, {kA, -0.01}}) {
+    const Axes from = rig_.last().command;
+    const std::uint64_t written = rig_.loop->status().setpoints_written;
+    const RequestReply answer = rig_.jog(step(axis, distance));
+    ASSERT_TRUE(answer.accepted) << answer.text;
+    EXPECT_EQ(rig_.last().state, jogging());
+    while (rig_.last().state == jogging()) {
+      Axes expected = from;
+      expected[axis] = rig_.last().command[axis];
+      ASSERT_TRUE(sameBits(rig_.last().command, expected));
+      ASSERT_EQ(rig_.last().job,
+                rig_.last().has_setpoint && GetParam() == S::kReady ? 0u : rig_.loop->status().jobs_started);
+      rig_.cycle();
+    }
+    EXPECT_EQ(rig_.last().state, GetParam());
+    EXPECT_EQ(rig_.last().command[axis], from[axis] + distance);
+    const std::uint64_t by_now = rig_.loop->status().setpoints_written;
+    EXPECT_TRUE(GetParam() == S::kReady ? by_now == written : by_now > written) << "a job records its jogs";
+  }
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, AStepBeyondALimitIsRefusedWithTheLimit) {
+  const struct {
+    JogRequest jog;
+    const char* text;
+  } cases[]{
+      {step(kX, 0.4), "; allowed: up to 300 mm"},      {step(kX, -0.2), "; allowed: down to -100 mm"},
+      {step(kY, 0.2), "; allowed: up to 150 mm"},      {step(kZ, 0.2), "; allowed: up to 100 mm"},
+      {step(kA, 1000), "; allowed: up to 7200 deg"},   {step(kX, kNan), "; allowed: up to 300 mm"},
+      {step(kX, HUGE_VAL), "; allowed: up to 300 mm"},
+  };
+  for (const auto& c : cases) {
+    const RequestReply answer = rig_.jog(c.jog);
+    EXPECT_FALSE(answer.accepted);
+    EXPECT_CONTAINS(answer.text, "jog refused: it would lead axis ");
+    EXPECT_CONTAINS(answer.text, c.text);
+  }
+  const double way = 0.3 - rig_.last().command[kX];
+  EXPECT_FALSE(rig_.jog(step(kX, std::nextafter(way, 1) + 1e-16)).accepted);
+  rig_.run(10);
+  EXPECT_TRUE(atRestFrom(rig_.log, before_));
+  EXPECT_EQ(rig_.last().state, GetParam());
+}
+
+TEST_P(JogFrom, SpeedAndAxisAreChecked) {
+  EXPECT_EQ(rig_.jog(step(kX, 0.01, 0.21)).text,
+            "jog refused: speed of axis X = 12600 mm/min; allowed: above 0, up to 12000 mm/min");
+  EXPECT_CONTAINS(rig_.jog(step(kA, 0.01, 13)).text, "speed of axis A = 744.845 deg/s; allowed: above 0, up to ");
+  for (const double speed : {0.0, -0.01, kNan}) {
+    EXPECT_CONTAINS(rig_.jog(step(kX, 0.01, speed)).text, "speed of axis X = ");
+  }
+  EXPECT_CONTAINS(rig_.jog(on(kX, -0.21)).text, "speed of axis X = 12600 mm/min");
+  for (const int axis : {-1, 4, 255}) {
+    EXPECT_EQ(rig_.jog(step(axis, 0.01)).text,
+              "jog refused: axis = " + std::to_string(axis) + "; allowed: 0 to 3 for X, Y, Z, A");
+  }
+  EXPECT_TRUE(atRestFrom(rig_.log, before_));
+}
+
+TEST_P(JogFrom, WithoutTheReferenceItIsRefused) {
+  rig_.drive.status.homed = false;
+  rig_.cycle();
+  EXPECT_EQ(rig_.jog(step(kX, 0.001)).text, "jog refused: the axes are not homed");
+  EXPECT_EQ(rig_.last().state, GetParam());
+}
+
+TEST_P(JogFrom, LosingTheReferenceStopsIt) {
+  ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
+  rig_.run(300);
+  const double when = rig_.last().command[kX];
+  rig_.drive.status.homed = false;
+  rig_.runUntil(GetParam());
+  EXPECT_LT(rig_.last().command[kX], when + brakingDistance(kX, 0.1) + 0.1 * 0.003);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, WithoutMessagesTheAxisRestsWithinTheBrakingDistance) {
+  for (const auto& [axis, velocity] :
+       std::vector<std::pair<int, double>>{{kX, 0.2}, {kX, -0.1}, {kY, 0.05}, {kZ, -0.003}, {kA, 10}}) {
+    jogFor(on(axis, velocity), 600);
+    ASSERT_TRUE(rig_.jog(on(axis, velocity)).accepted);
+    const double last = rig_.last().command[axis];
+    const S during = rig_.last().state;
+    EXPECT_EQ(during, jogging());
+    const std::size_t message = rig_.log.size() - 1;
+    rig_.runUntil(GetParam());
+    // The time-out, the cycle in which it is seen, and the pair that was begun.
+    const double speed = std::abs(velocity);
+    const double farthest = speed * 0.001 * (kTimeoutCycles + 3) + brakingDistance(axis, speed);
+    const double way = std::abs(rig_.last().command[axis] - last);
+    EXPECT_LE(way, farthest * (1 + 1e-6));
+    EXPECT_GE(way, speed * 0.001 * kTimeoutCycles);
+    for (int i = 0; i < kTimeoutCycles; ++i) {
+      const double moved = rig_.log[message + i + 1].command[axis] - rig_.log[message + i].command[axis];
+      ASSERT_NEAR(moved, velocity * 0.001, 1e-9) << "it stopped before the time-out, in cycle " << i;
+    }
+  }
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, VelocityZeroStopsIt) {
+  jogFor(on(kX, 0.1), 400);
+  const double last = rig_.last().command[kX];
+  EXPECT_TRUE(rig_.jog(on(kX, 0)).accepted);
+  rig_.runUntil(GetParam());
+  EXPECT_LE(rig_.last().command[kX] - last, brakingDistance(kX, 0.1) + 0.1 * 0.003);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, AContinuousJogRestsAtTheLimitAndIsThenRefused) {
+  for (int i = 0; i < 2500 && (i < 100 || rig_.last().state == jogging()); ++i) {
+    ASSERT_TRUE(i % 20 != 0 || rig_.jog(on(kX, 0.2)).accepted);
+    rig_.cycle();
+  }
+  EXPECT_EQ(rig_.last().command[kX], 0.3);
+  EXPECT_EQ(rig_.last().state, GetParam());
+  EXPECT_TRUE(smooth(rig_.log));
+  EXPECT_EQ(rig_.jog(on(kX, 0.2)).text, "jog refused: axis X stands at 300 mm, the end of its way");
+}
+
+TEST_P(JogFrom, TheLastMessageCounts) {
+  jogFor(on(kX, 0.1), 400);
+  jogFor(on(kX, 0.02), 400);
+  const std::size_t slow = rig_.log.size() - 1;
+  EXPECT_NEAR(rig_.log[slow].command[kX] - rig_.log[slow - 1].command[kX], 0.02e-3, 1e-10);
+  jogFor(on(kX, -0.05), 600);
+  EXPECT_EQ(rig_.last().state, jogging());
+  const std::size_t back = rig_.log.size() - 1;
+  EXPECT_NEAR(rig_.log[back].command[kX] - rig_.log[back - 1].command[kX], -0.05e-3, 1e-10);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, AnotherAxisOrStepIsRefusedUntilTheOneRests) {
+  jogFor(on(kX, 0.1), 100);
+  for (const JogRequest& other : {on(kZ, 0.01), step(kX, 0.001), step(kZ, 0.001)}) {
+    EXPECT_EQ(rig_.jog(other).text, "jog refused: an axis is being jogged; wait until it rests");
+  }
+  ASSERT_TRUE(rig_.jog(on(kX, 0)).accepted);
+  rig_.runUntil(GetParam());
+  ASSERT_TRUE(rig_.jog(step(kX, 0.01)).accepted);
+  EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, "jog refused: an axis is being jogged; wait until it rests");
+  rig_.runUntil(GetParam());
+  EXPECT_EQ(rig_.last().command[kZ], at_[kZ]);
+  jogFor(on(kZ, 0.01), 10);
+  EXPECT_EQ(rig_.last().state, jogging());
+}
+
+TEST_P(JogFrom, AMessageOfANumberThatIsNoneStopsIt) {
+  jogFor(on(kX, 0.1), 400);
+  EXPECT_FALSE(rig_.jog(on(kX, kNan)).accepted);
+  const double when = rig_.last().command[kX];
+  rig_.runUntil(GetParam());
+  EXPECT_LE(rig_.last().command[kX] - when, brakingDistance(kX, 0.1) + 0.1 * 0.003);
+}
+
+TEST_P(JogFrom, AfterAHoldAButtonThatStaysPressedMovesNothing) {
+  jogFor(on(kX, 0.1), 400);
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  const double held = rig_.last().command[kX];
+  std::size_t rest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 20 == 0) {
+      EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, "jog refused: it was stopped or refused before; release the button first");
+    }
+    rig_.cycle();
+    if (rest == 0 && rig_.last().state == GetParam()) rest = rig_.log.size() - 1;
+  }
+  ASSERT_NE(rest, 0u);
+  EXPECT_TRUE(atRestFrom(rig_.log, rest));
+  EXPECT_LE(rig_.last().command[kX] - held, brakingDistance(kX, 0.1) + 0.1 * 0.003);
+  // Released by a pause, or by a message.
+  rig_.run(kTimeoutCycles + 1);
+  jogFor(on(kX, 0.1), 10);
+  EXPECT_EQ(rig_.last().state, jogging());
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  EXPECT_FALSE(rig_.jog(on(kX, 0.1)).accepted);
+  EXPECT_TRUE(rig_.jog(on(kX, 0)).accepted);
+  rig_.runUntil(GetParam());
+  jogFor(on(kX, 0.1), 10);
+  EXPECT_EQ(rig_.last().state, jogging());
+}
+
+TEST_P(JogFrom, HoldStopsAStep) {
+  ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
+  rig_.run(400);
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  EXPECT_EQ(rig_.last().state, jogging()) << "an axis does not stop at once";
+  const double held = rig_.last().command[kX];
+  rig_.runUntil(GetParam());
+  EXPECT_LE(rig_.last().command[kX] - held, brakingDistance(kX, 0.1) + 0.1 * 0.003);
+  EXPECT_LT(rig_.last().command[kX], at_[kX] + 0.09);
+  EXPECT_TRUE(rig_.drive.written_drive.enable);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(JogFrom, CancelAndDisableStopItAndEndAJob) {
+  for (const E stop : {E::kCancel, E::kDisable}) {
+    Rig<FakeDrive> rig;
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig, jogging()));
+    const std::size_t before = rig.log.size() - 1;
+    ASSERT_TRUE(rig.ask(stop).accepted);
+    EXPECT_EQ(rig.last().state, GetParam() == S::kReady ? S::kJogging : S::kCanceling);
+    rig.runUntil(stop == E::kDisable ? S::kDisabled : S::kReady);
+    EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
+    EXPECT_TRUE(smooth(rig.log));
+    const std::size_t rest = rig.log.size() - 1;
+    EXPECT_LE(std::abs(rig.log[rest].command[kY] - rig.log[before].command[kY]),
+              brakingDistance(kY, 0.05) + 0.05 * 0.02);
+    rig.run(100);
+    EXPECT_TRUE(atRestFrom(rig.log, rest));
+    const bool job = GetParam() != S::kReady;
+    EXPECT_EQ(rig.jobsEnded(), job ? 1 : 0);
+    EXPECT_TRUE(!job || rig.loop->status().end == JobEnd::kCanceled);
+    EXPECT_FALSE(rig.last().wheel_in_work);
+  }
+}
+
+TEST_P(JogFrom, AStopInTheSameCycleComesAfterIt) {
+  ASSERT_TRUE(rig_.loop->postJog(step(kX, 0.01)));
+  rig_.loop->postStop(E::kHold);
+  rig_.run(20);
+  EXPECT_EQ(rig_.last().state, GetParam());
+  EXPECT_TRUE(sameBits(rig_.last().command, at_));
+}
+
+TEST_P(JogFrom, AFaultEndsItAndAJob) {
+  ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
+  rig_.run(100);
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig_.cycle();
+  EXPECT_EQ(rig_.last().state, S::kFault);
+  EXPECT_FALSE(rig_.drive.written_drive.enable);
+  EXPECT_EQ(rig_.jobsEnded(), GetParam() == S::kReady ? 0 : 1);
+  const std::size_t stopped = rig_.log.size() - 1;
+  rig_.drive.on_read = nullptr;
+  rig_.drive.status.emergency_stop = false;
+  rig_.run(10);
+  EXPECT_TRUE(atRestFrom(rig_.log, stopped));
+  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  rig_.run(100);
+  EXPECT_EQ(rig_.last().state, S::kReady);
+  ASSERT_TRUE(rig_.jog(step(kX, 0.001)).accepted);
+}
+
+TEST_P(JogFrom, AtRandomMomentsItKeepsTheLimitsAndRestsInTheEnd) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<> chance(0, 1);
+    for (int i = 0; i < 3000; ++i) {
+      const int axis = static_cast<int>(random() % 4);
+      const double largest = machineConfig().machine.limits.max_velocity[axis];
+      const double velocity = largest * (2 * chance(random) - 1);
+      if (chance(random) < 0.02) {
+        rig_.loop->postJog(step(axis, (axis == kA ? 3 : 0.05) * (2 * chance(random) - 1), std::abs(velocity)));
+      } else if (chance(random) < 0.05) {
+        rig_.loop->postJog(on(static_cast<int>(random() % 2), chance(random) < 0.2 ? 0 : velocity / 20));
+      }
+      if (chance(random) < 0.005) rig_.loop->postStop(E::kHold);
+      rig_.cycle(chance(random) < 0.01 ? 1 + 0.9 * chance(random) : 1);
+      const S state = rig_.last().state;
+      ASSERT_TRUE(state == GetParam() || state == jogging()) << toString(state) << rig_.last().fault.text();
+      ASSERT_TRUE(GetParam() == S::kReady || rig_.last().command[kY] >= kClearanceHeight - 1e-15);
+      static_cast<void>(rig_.loop->jogReply());
+    }
+    rig_.loop->postStop(E::kHold);
+    rig_.run(2000);
+    ASSERT_EQ(rig_.last().state, GetParam());
+  }
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), stateName);
+
+TEST(Jog, FromOutsideTheLimitsIsRefused) {
+  Rig<FakeDrive> rig;
+  rig.drive.position[kZ] = -0.051;
+  rig.cycle();
+  rig.enable();
+  EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z stands at -51 mm, outside its limit -50 mm");
+}
+
+TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  rig.drive.status.commands_waiting = 4;
+  const double from = rig.last().command[kX];
+  ASSERT_TRUE(rig.jog(step(kX, 1e-5)).accepted);
+  std::size_t reached = 0;
+  while (rig.last().state == S::kJogging) {
+    rig.cycle();
+    if (reached == 0 && rig.last().command[kX] == from + 1e-5) reached = rig.log.size() - 1;
+  }
+  EXPECT_GE(rig.log.size() - 1 - reached, 4u);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// With the wheel in the work
+
+TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  ASSERT_NO_FATAL_FAILURE(rig.enable());
+  rig.drive.on_read = nullptr;
+  ASSERT_TRUE(rig.last().wheel_in_work);
+  for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),
+                                on(kX, 0.01), on(kY, -0.01)}) {
+    EXPECT_EQ(rig.jog(jog).text, "jog refused: the wheel stands in the work; lift it first");
+    rig.run(kTimeoutCycles + 1);
+  }
+  ASSERT_TRUE(rig.jog(step(kY, 0.001)).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  ASSERT_TRUE(rig.jog(step(kY, 0.02)).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_FALSE(rig.last().wheel_in_work) << "it is clear by now";
+  EXPECT_TRUE(rig.jog(step(kX, 0.001)).accepted);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// In the middle of a job
+
+TEST(JogRetracted, NeverGoesDownToTheWork) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRetracted));
+  const double clear = rig.loop->status().wheel.clear_y;
+  EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
+  EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y stands at 8.23708 mm, the end of its way");
+  EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to 8.23608 mm");
+  rig.run(kTimeoutCycles + 1);
+  ASSERT_TRUE(rig.jog(step(kY, 0.01)).accepted);
+  rig.runUntil(S::kRetracted);
+  EXPECT_CONTAINS(rig.jog(step(kY, -0.0101)).text, "; allowed: down to 8.23708 mm");
+  for (int i = 0; i < 3000; ++i) {
+    if (i % 20 == 0) rig.loop->postJog(on(kY, -0.02));
+    rig.cycle();
+    static_cast<void>(rig.loop->jogReply());
+  }
+  EXPECT_EQ(rig.last().command[kY], clear);
+  EXPECT_TRUE(rig.drive.written_drive.spindle) << "the wheel keeps turning";
+}
+
+class JogRetractedAt : public testing::TestWithParam<Moment> {};
+
+TEST_P(JogRetractedAt, TheJobIsCompletedOnTheSamePath) {
+  Rig<SimulatedDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  ASSERT_NO_FATAL_FAILURE(rig.runToCycle(GetParam().cycle() - 1));
+  ASSERT_TRUE(rig.ask(E::kHold).accepted);
+  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
+  ASSERT_TRUE(rig.ask(E::kRetract).accepted);
+  if (rig.last().state != S::kRetracted) rig.runUntil(S::kRetracted);
+  const std::size_t retracted = rig.log.size() - 1;
+  std::mt19937 random(static_cast<unsigned>(GetParam().cycle()));
+  std::uniform_real_distribution<> chance(-1, 1);
+  for (const auto& [axis, far] : std::vector<std::pair<int, double>>{{kX, 0.03}, {kY, 0.04}, {kA, 3}, {kZ, 0.03}}) {
+    double distance = far * chance(random);
+    if (axis == kY) distance = std::abs(distance);
+    const RequestReply answer = rig.jog(step(axis, distance, axis == kA ? 10 : 0.1));
+    if (rig.stream->finished()) {  // it came to rest at the end of the return
+      EXPECT_EQ(answer.text, "jog refused: the job has reached the end of its path; resume it first");
+      return;
+    }
+    ASSERT_TRUE(answer.accepted) << answer.text;
+    rig.runUntil(S::kRetracted);
+  }
+  const Axes lifted = rig.log[retracted].command;
+  const double height = rig.last().command[kY];
+  ASSERT_FALSE(sameBits(rig.last().command, lifted));
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  // Across at the height to which it was jogged, then down to where the retract ended.
+  const auto isThere = [&] { return sameBits(rig.last().command, lifted); };
+  for (int i = 0; i < 20000 && !isThere(); ++i) {
+    ASSERT_EQ(rig.last().state, S::kResuming);
+    const Axes& at = rig.last().command;
+    const bool above = at[kX] == lifted[kX] && at[kZ] == lifted[kZ] && at[kA] == lifted[kA];
+    ASSERT_TRUE(at[kY] == height || (above && at[kY] >= lifted[kY])) << at.transpose();
+    rig.cycle();
+  }
+  ASSERT_TRUE(isThere());
+  rig.runToEnd();
+  expectCompleted(rig);
+  std::uint64_t next = 0;
+  for (const CycleRecord& record : rig.log) {
+    if (!record.has_setpoint) continue;
+    ASSERT_EQ(record.setpoint.cycle, next++);
+    ASSERT_TRUE(record.setpoint.move != MoveKind::kStroke || onPath(record.setpoint));
+  }
+  EXPECT_EQ(rig.loop->status().setpoints_written, next);
+}
+
+INSTANTIATE_TEST_SUITE_P(, JogRetractedAt, testing::ValuesIn(moments({30, 500})), momentName);
+
+TEST(JogRetracted, AfterwardsEverySetpointIsThatOfTheJobThatWasNotJogged) {
+  Rig<FakeDrive> jogged, plain;
+  for (Rig<FakeDrive>* rig : {&jogged, &plain}) ASSERT_NO_FATAL_FAILURE(bringTo(*rig, S::kRetracted));
+  ASSERT_TRUE(jogged.jog(step(kX, 0.02)).accepted);
+  jogged.runUntil(S::kRetracted);
+  std::vector<Axes> paths[2];
+  for (Rig<FakeDrive>* rig : {&jogged, &plain}) {
+    ASSERT_TRUE(rig->ask(E::kResume).accepted);
+    const std::size_t from = rig->log.size() - 1;
+    rig->runToEnd();
+    for (std::size_t i = from; i < rig->log.size(); ++i) {
+      if (rig->log[i].has_setpoint) paths[rig == &plain].push_back(rig->log[i].setpoint.position);
+    }
+  }
+  ASSERT_GT(paths[0].size(), paths[1].size());
+  const std::size_t way = paths[0].size() - paths[1].size();
+  for (std::size_t i = 0; i < paths[1].size(); ++i) ASSERT_TRUE(sameBits(paths[0][way + i], paths[1][i])) << i;
+}
+
+TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kJoggingRetracted));
+  rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
+  rig.runUntil(S::kRetracted);
+  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the spindle is not at speed");
+  rig.drive.on_read = nullptr;
+  rig.run(2);
+  EXPECT_TRUE(rig.ask(E::kResume).accepted);
+  rig.runToEnd();
+  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

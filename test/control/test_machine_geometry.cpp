@@ -1,0 +1,167 @@
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/machine_geometry.h"
+
+#include <gtest/gtest.h>
+#include <urdf/model.h>
+#include <yaml-cpp/yaml.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <random>
+#include <sstream>
+#include <string>
+
+/// @file
+/// The zeros of a job, against figures by hand and against the URDF's chain of joints.
+
+namespace flute_grinder {
+namespace {
+
+const double kDegree = std::acos(-1.0) / 180;
+
+urdf::Model urdfModel() {
+  std::ifstream file(SOURCE_DIR "/urdf/grinder.urdf");
+  std::ostringstream text;
+  text << file.rdbuf();
+  urdf::Model model;
+  EXPECT_TRUE(model.initString(text.str()));
+  return model;
+}
+
+/// Of config/grinder.yaml.
+MachineGeometry shippedGeometry() {
+  const YAML::Node node = YAML::LoadFile(SOURCE_DIR "/config/grinder.yaml")["geometry"];
+  MachineGeometry geometry;
+  geometry.work_axis_y = node["work_axis"]["y"].as<double>();
+  geometry.work_axis_z = node["work_axis"]["z"].as<double>();
+  geometry.collet_face = node["collet_face"]["x"].as<double>();
+  const char* names[]{"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) geometry.swivel_centre[i] = node["swivel_centre"][names[i]].as<double>();
+  geometry.flange = node["flange"].as<double>();
+  return geometry;
+}
+
+GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+
+/// Where a link stands in the root's frame.
+Eigen::Isometry3d poseOf(const urdf::Model& model, const std::string& name,
+                         const std::map<std::string, double>& joints) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (auto link = model.getLink(name); link->parent_joint; link = link->getParent()) {
+    const urdf::Joint& joint = *link->parent_joint;
+    const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
+    const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
+    const auto found = joints.find(joint.name);
+    const double position = found == joints.end() ? 0 : found->second;
+    Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+    if (joint.type == urdf::Joint::PRISMATIC) {
+      motion.translate(position * axis);
+    } else {
+      motion.rotate(Eigen::AngleAxisd(position, axis));
+    }
+    const urdf::Rotation& r = origin.rotation;
+    pose = Eigen::Translation3d(origin.position.x, origin.position.y, origin.position.z) *
+           Eigen::Quaterniond(r.w, r.x, r.y, r.z) * motion * pose;
+  }
+  return pose;
+}
+
+TEST(WorkZero, OfAnUprightWheelByHand) {
+  MachineGeometry machine;
+  machine.work_axis_y = 0.010;
+  machine.work_axis_z = -0.020;
+  machine.collet_face = 0.100;
+  machine.swivel_centre = {0.001, 0.200, 0.300};
+  machine.flange = 0.040;
+  GrindJob job;
+  job.cutter.end_diameter = 0.012;
+  job.process.wheel_diameter = 0.100;
+  job.process.wheel_wear = 0.001;
+  job.process.wheel_width = 0.006;
+  job.process.setup_height = 0.0025;
+  // The wheel's middle is 40 - 5 - 3 = 32 mm above the swivel's centre: at (1, 200, 332). It shall stand at
+  // (100 - 60, 10 + 6 + 50, -20 + 2.5).
+  const Eigen::Vector3d zero = workZero(machine, job, {0.005, 0.060});
+  EXPECT_NEAR(zero.x(), 0.040 - 0.001, 1e-15);
+  EXPECT_NEAR(zero.y(), 0.066 - 0.200, 1e-15);
+  EXPECT_NEAR(zero.z(), -0.0175 - 0.332, 1e-15);
+  // Swivelled by 90 deg the spindle points toward -X.
+  job.process.setup_swivel = 90 * kDegree;
+  const Eigen::Vector3d swivelled = workZero(machine, job, {0.005, 0.060});
+  EXPECT_NEAR(swivelled.x(), 0.040 - 0.001 + 0.032, 1e-15);
+  EXPECT_NEAR(swivelled.y(), zero.y(), 1e-15);
+  EXPECT_NEAR(swivelled.z(), -0.0175 - 0.300, 1e-15);
+}
+
+TEST(WorkZero, OfANarrowerWheelMovesByHalfOfWhatWasDressed) {
+  const MachineGeometry machine = shippedGeometry();
+  GrindJob job = jobOf("unequal_d12_t4");
+  const Eigen::Vector3d before = workZero(machine, job, {0.002, 0.062});
+  job.process.wheel_width -= 0.0002;
+  const Eigen::Vector3d after = workZero(machine, job, {0.002, 0.062});
+  // Its middle has come up by 0.1 mm along the spindle, so the axes stand as much lower.
+  const double swivel = 38.734 * kDegree;
+  EXPECT_NEAR((after - before).x(), 0.0001 * std::sin(swivel), 1e-15);
+  EXPECT_NEAR((after - before).y(), 0, 1e-15);
+  EXPECT_NEAR((after - before).z(), -0.0001 * std::cos(swivel), 1e-15);
+}
+
+TEST(WorkZero, KnowsTheShippedMachineAsItsUrdfShowsIt) {
+  const urdf::Model model = urdfModel();
+  const MachineGeometry machine = shippedGeometry();
+  const auto shapeOf = [&](const char* link, const char* name) {
+    for (const auto& shape : model.getLink(link)->visual_array) {
+      if (shape->name == name) return shape;
+    }
+    throw std::runtime_error(name);
+  };
+  const auto lengthOf = [](const urdf::VisualSharedPtr& shape) {
+    return dynamic_cast<const urdf::Cylinder&>(*shape->geometry).length;
+  };
+  const auto mouth = shapeOf("chuck", "collet_mouth");
+  EXPECT_NEAR(machine.collet_face, mouth->origin.position.x - lengthOf(mouth) / 2, 1e-12);
+  const auto flange = shapeOf("wheel", "flange");
+  EXPECT_NEAR(machine.flange, flange->origin.position.z - lengthOf(flange) / 2, 1e-12);
+  const Eigen::Vector3d axis = poseOf(model, "cutter", {}).translation();
+  EXPECT_NEAR(machine.work_axis_y, axis.y(), 1e-12);
+  EXPECT_NEAR(machine.work_axis_z, axis.z(), 1e-12);
+}
+
+TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
+  const urdf::Model model = urdfModel();
+  const MachineGeometry machine = shippedGeometry();
+  std::mt19937 engine(12);
+  const auto within = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); };
+  for (int i = 0; i < 200; ++i) {
+    GrindJob job;
+    job.cutter.end_diameter = within(0.0005, 0.03);
+    job.process.wheel_diameter = within(0.05, 0.2);
+    job.process.wheel_wear = within(0, 0.005);
+    job.process.wheel_width = within(0.0005, 0.02);
+    job.process.setup_height = within(-0.01, 0.01);
+    job.process.setup_swivel = within(-60, 60) * kDegree;
+    const Mounting mounting{within(-0.02, 0.02), within(0.03, 0.1)};
+    const Eigen::Vector3d zero = workZero(machine, job, mounting);
+    const std::map<std::string, double> joints{{"axis_x", zero.x()},
+                                               {"axis_y", zero.y()},
+                                               {"axis_z", zero.z()},
+                                               {"y_zero", machine.swivel_centre.y()},
+                                               {"z_zero", machine.swivel_centre.z()},
+                                               {"wheel_swivel", job.process.setup_swivel}};
+    // In the URDF's wheel frame the flange's face looks down at the wheel's upper face.
+    const double upper_face = machine.flange - mounting.flange_to_wheel;
+    const Eigen::Vector3d wheel =
+        poseOf(model, "wheel", joints) * Eigen::Vector3d(0, 0, upper_face - job.process.wheel_width / 2);
+    const Eigen::Vector3d end =
+        poseOf(model, "cutter", joints) * Eigen::Vector3d(machine.collet_face - mounting.stickout, 0, 0);
+    const Eigen::Vector3d from_end = wheel - end;
+    EXPECT_NEAR(from_end.x(), 0, 1e-12);
+    EXPECT_NEAR(from_end.y(), (job.cutter.end_diameter + job.process.wheel_diameter) / 2, 1e-12);
+    EXPECT_NEAR(from_end.z(), job.process.setup_height, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder

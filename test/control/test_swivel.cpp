@@ -1,0 +1,205 @@
+#include "control/checks.h"
+#include "control/interlock_parts.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <cmath>
+#include <limits>
+
+// Where the swivel stands: confirmed by an operator or measured by the drive, and what a job makes of it.
+namespace flute_grinder::test_support {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// With a loop to which nothing has been confirmed.
+struct Unconfirmed : Rig<FakeDrive> {
+  Unconfirmed() {
+    loop = std::make_unique<ControlLoop>(drive, machineConfig());
+    cycle();
+    enable();
+  }
+
+  RequestReply startPaperJob() {
+    stream.emplace(paperStream());
+    return askToStart(*stream);
+  }
+};
+
+/// Sets what the drive measures from the next cycle on.
+void measure(Rig<FakeDrive>& rig, double angle) {
+  rig.drive.on_read = [angle](FakeDrive& d) { d.status.swivel = angle; };
+}
+
+TEST(Swivel, IsUnknownAtFirstAndAJobDoesNotStart) {
+  Unconfirmed rig;
+  EXPECT_TRUE(std::isnan(rig.loop->status().swivel.angle));
+  EXPECT_TRUE(std::isnan(rig.last().swivel.angle));
+  const RequestReply answer = rig.startPaperJob();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text,
+            "start refused: process.setup.swivel_deg = 31.769 deg: the swivel is not confirmed; set it to 31.769 deg "
+            "and confirm it: grind confirm-swivel 31.769");
+  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_TRUE(rig.setpoints().empty());
+  EXPECT_FALSE(rig.drive.written_drive.spindle);
+}
+
+struct Offset {
+  const char* name;
+  double degrees;
+  bool starts;
+};
+std::ostream& operator<<(std::ostream& out, const Offset& offset) { return out << offset.name; }
+
+class SwivelOff : public testing::TestWithParam<Offset> {};
+
+TEST_P(SwivelOff, AsConfirmedLetsAJobStartWithinTheTolerance) {
+  Unconfirmed rig;
+  const double angle = kPaperSwivel + GetParam().degrees * kDegree;
+  ASSERT_TRUE(rig.confirm(angle).accepted);
+  EXPECT_EQ(rig.loop->status().swivel.angle, angle);
+  EXPECT_EQ(rig.last().swivel.angle, angle);
+  EXPECT_FALSE(rig.last().swivel.measured);
+  EXPECT_EQ(rig.startPaperJob().accepted, GetParam().starts);
+}
+
+TEST_P(SwivelOff, AsMeasuredLetsAJobStartWithinTheTolerance) {
+  Unconfirmed rig;
+  const double angle = kPaperSwivel + GetParam().degrees * kDegree;
+  measure(rig, angle);
+  rig.cycle();
+  EXPECT_EQ(rig.loop->status().swivel.angle, angle);
+  EXPECT_TRUE(rig.loop->status().swivel.measured);
+  EXPECT_EQ(rig.startPaperJob().accepted, GetParam().starts);
+}
+
+TEST_P(SwivelOff, AmidAJobStopsItBeyondTheTolerance) {
+  Rig<FakeDrive> rig;
+  measure(rig, kPaperSwivel);
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  measure(rig, kPaperSwivel + GetParam().degrees * kDegree);
+  rig.run(20);
+  EXPECT_EQ(rig.last().state, GetParam().starts ? S::kRunning : S::kHolding);
+  EXPECT_EQ(rig.last().interlock, GetParam().starts ? Interlock::kNone : Interlock::kSwivel);
+}
+
+INSTANTIATE_TEST_SUITE_P(By, SwivelOff,
+                         testing::Values(Offset{"FarBelow", -63.538, false}, Offset{"MuchBelow", -0.06, false},
+                                         Offset{"JustBelow", -0.04, true}, Offset{"Nothing", 0, true},
+                                         Offset{"JustAbove", 0.04, true}, Offset{"MuchAbove", 0.06, false}),
+                         [](const testing::TestParamInfo<Offset>& info) { return std::string(info.param.name); });
+
+TEST(Swivel, ThatIsConfirmedAtAnotherAngleIsToldToBeSet) {
+  Unconfirmed rig;
+  ASSERT_TRUE(rig.confirm(-20.5 * kDegree).accepted);
+  EXPECT_EQ(rig.startPaperJob().text,
+            "start refused: process.setup.swivel_deg = 31.769 deg: the swivel is confirmed at -20.5 deg; allowed: "
+            "within 0.05 deg of that; set it to 31.769 deg and confirm it: grind confirm-swivel 31.769");
+}
+
+TEST(Swivel, IsConfirmedAnewWithThePowerOnOrOff) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  ASSERT_TRUE(rig.confirm(0.1).accepted);
+  EXPECT_EQ(rig.last().swivel.angle, 0.1);
+  rig.enable();
+  ASSERT_TRUE(rig.confirm(-0.2).accepted);
+  EXPECT_EQ(rig.last().swivel.angle, -0.2);
+}
+
+TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
+  FakeDrive drive;
+  setUp(drive, machineConfig());
+  ControlLoop loop(drive, machineConfig());
+  for (const double angle : {kNan, HUGE_VAL, -HUGE_VAL, 90.001 * kDegree, -90.001 * kDegree}) {
+    const RequestReply answer = loop.confirmSwivel(angle);
+    EXPECT_FALSE(answer.accepted);
+    EXPECT_TRUE(answer.answered);
+    EXPECT_CONTAINS(answer.text, "confirm-swivel refused: ");
+    EXPECT_CONTAINS(answer.text, " deg; allowed: -90 deg to 90 deg");
+  }
+  loop.cycle(ros::Time(1000), ros::Duration(0.001));
+  EXPECT_TRUE(std::isnan(loop.status().swivel.angle)) << "the refused request came back to life";
+}
+
+class SwivelInState : public testing::TestWithParam<S> {};
+
+TEST_P(SwivelInState, IsNotTurnedDuringAJob) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam()));
+  const RequestReply refused = rig.confirm(31.7 * kDegree);
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(refused.text,
+            "confirm-swivel refused: a job is in progress that needs 31.769 deg; allowed: that angle, or to end the "
+            "job first");
+  EXPECT_EQ(rig.last().swivel.angle, kPaperSwivel);
+  EXPECT_TRUE(rig.confirm(kPaperSwivel).accepted);
+  EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+}
+
+INSTANTIATE_TEST_SUITE_P(, SwivelInState,
+                         testing::Values(S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
+                                         S::kRetracted, S::kResuming, S::kCanceling),
+                         stateName);
+
+TEST(Swivel, MayBeTurnedOnceTheJobHasEnded) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
+  rig.runUntil(S::kReady);
+  EXPECT_TRUE(rig.confirm(0.1).accepted);
+  rig.stream.emplace(rig.paperStream());
+  EXPECT_FALSE(rig.askToStart(*rig.stream).accepted);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// With an encoder
+
+TEST(MeasuredSwivel, IsNotConfirmed) {
+  Rig<FakeDrive> rig;
+  measure(rig, 0.25);
+  rig.cycle();
+  const RequestReply answer = rig.confirm(0.25);
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text,
+            "confirm-swivel refused: the drive measures the swivel, which stands at 14.3239 deg; nothing is to be "
+            "confirmed");
+}
+
+TEST(MeasuredSwivel, AtAnotherAngleIsToldToBeSetAndNotToBeConfirmed) {
+  Unconfirmed rig;
+  measure(rig, 32 * kDegree);
+  EXPECT_EQ(rig.startPaperJob().text,
+            "start refused: process.setup.swivel_deg = 31.769 deg: the swivel stands at 32 deg; allowed: within 0.05 "
+            "deg of that; set it to 31.769 deg");
+}
+
+TEST(MeasuredSwivel, ThatIsLostIsUnknownEvenIfItWasConfirmedBefore) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  ASSERT_EQ(rig.last().swivel.angle, kPaperSwivel) << "confirmed";
+  for (const double lost : {kNan, HUGE_VAL}) {
+    measure(rig, kPaperSwivel);
+    EXPECT_TRUE(rig.cycle().swivel.measured);
+    measure(rig, lost);
+    EXPECT_TRUE(std::isnan(rig.cycle().swivel.angle));
+    EXPECT_FALSE(rig.last().swivel.measured);
+  }
+}
+
+TEST(MeasuredSwivel, ThatIsLostAmidAJobLiftsTheWheelUntilAnOperatorConfirmsIt) {
+  Rig<FakeDrive> rig;
+  measure(rig, kPaperSwivel);
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  measure(rig, kNan);
+  rig.runUntil(S::kRetracted);
+  EXPECT_EQ(rig.last().interlock, Interlock::kSwivel);
+  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the swivel is not at the job's angle");
+  ASSERT_TRUE(rig.confirm(kPaperSwivel).accepted);
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  rig.runToEnd();
+  expectCompleted(rig);
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

@@ -1,0 +1,321 @@
+#include "control/checks.h"
+#include "control/rig.h"
+#include "flute_grinder/core/job_plan.h"
+
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+// Jobs with work offsets: setpoints are the work's, commands, limits and heights the machine's.
+namespace flute_grinder::test_support {
+namespace {
+
+const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
+const double kClearance = 0.037 * kTanCone + 0.005;           // of the paper's job, in work coordinates
+const double kLift = kClearance + 0.001 * kTanCone + 0.0016;  // from its deepest point
+constexpr double kStrokeEnd = 0.037;                          // X, in work coordinates
+constexpr double kUlp = std::numeric_limits<double>::epsilon();
+
+GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
+
+Machine machineAt(const Axes& offset, const LoopConfig& config = machineConfig()) {
+  Machine machine = config.machine;
+  machine.work_offset = offset;
+  return machine;
+}
+
+/// The paper's job from where the axes stand.
+SetpointStream streamAt(const Axes& offset, const Axes& command, const LoopConfig& config = machineConfig()) {
+  return SetpointStream(GrindProgram(paper(), machineAt(offset, config), command - offset));
+}
+
+double between(double low, double high) {
+  return low + (high - low) * static_cast<double>(*rc::gen::inRange(0, 1000000001)) * 1e-9;
+}
+
+/// One for which the job stays within the machine's limits, and below the park position.
+Axes anyOffset() { return {between(-0.09, 0.26), between(-0.018, 0.041), between(-0.049, 0.09), between(-120, 120)}; }
+
+/// Whether c is p + o, rounded once.
+bool isSum(double c, double p, double o) {
+  const long double sum = static_cast<long double>(p) + static_cast<long double>(o);
+  return std::abs(static_cast<long double>(c) - sum) <= 0.5L * kUlp * std::abs(sum) + 1e-300L;
+}
+
+bool commandsAreShifted(const std::vector<CycleRecord>& log, const Axes& offset) {
+  for (const CycleRecord& record : log) {
+    if (!record.has_setpoint || record.job == 0) continue;
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      if (!isSum(record.command[axis], record.setpoint.position[axis], offset[axis])) return false;
+    }
+  }
+  return true;
+}
+
+/// The log of a job in its own coordinates.
+std::vector<CycleRecord> inWork(const std::vector<CycleRecord>& log, const Axes& offset) {
+  std::vector<CycleRecord> work = log;
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    work[i].command -= offset;
+    if (log[i].has_setpoint) {
+      work[i].command = log[i].setpoint.position;
+    } else if (i > 0 && sameBits(log[i].command, log[i - 1].command)) {
+      work[i].command = work[i - 1].command;
+    }
+  }
+  return work;
+}
+
+RC_GTEST_PROP(WorkOffsets, SetpointsAreThePlansAndCommandsTheMachines, ()) {
+  const Axes offset = anyOffset();
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  SetpointStream stream = streamAt(offset, rig.last().command);
+  const std::vector<Setpoint> planned = allSetpoints(stream);
+  rig.start(stream);
+  rig.runToEnd();
+  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
+  RC_ASSERT(sameSetpoints(rig.setpoints(), planned));
+  RC_ASSERT(commandsAreShifted(rig.log, offset));
+  RC_ASSERT(!rig.last().wheel_in_work);
+  RC_ASSERT(((rig.last().command - machineConfig().machine.park).abs() <= 2 * kUlp * (offset.abs() + 0.15)).all());
+}
+
+/// With a part of the job's motion at a limit of the machine: axes that stand there, and a park position there.
+RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
+  const Axes offset = anyOffset();
+  LoopConfig config = machineConfig();
+  AxisLimits& limits = config.machine.limits;
+  config.machine.park << limits.min_position[kX], limits.max_position[kY], limits.min_position[kZ],
+      limits.max_position[kA];
+  // Where the stroke ends, by a sum that is rounded as badly as any.
+  limits.max_position[kX] = kStrokeEnd + offset[kX];
+  Rig<FakeDrive> rig(config);
+  rig.cycle();
+  rig.enable();
+  const JobPlan plan = planJob(paper(), machineAt(offset, config), rig.last().command - offset);
+  RC_ASSERT(plan.good());
+  SetpointStream stream(plan.program);
+  rig.start(stream);
+  rig.runToEnd();
+  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
+  RC_ASSERT(!rig.last().wheel_in_work);
+  for (const CycleRecord& record : rig.log) {
+    const Axes rounding = 2 * kUlp * (offset.abs() + limits.max_position.abs());
+    RC_ASSERT((record.command <= limits.max_position + rounding).all());
+    RC_ASSERT((record.command >= limits.min_position - rounding).all());
+  }
+}
+
+RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures, ()) {
+  // Up to which only the stroke leaves it, and not the move to its start.
+  const double beyond = between(1e-9, 0.037);
+  Axes offset = anyOffset();
+  offset[kX] = 0.3 - kStrokeEnd + beyond;
+  const Machine machine = machineAt(offset);
+  const JobPlan plan = planJob(paper(), machine, machine.park - offset);
+  RC_ASSERT(plan.fault == PlanFault::kLimit);
+  const core::Reason& reason = plan.reasons.at(0);
+  RC_ASSERT(reason.kind == core::ReasonKind::kPosition);
+  RC_ASSERT(reason.axis == kX);
+  RC_ASSERT(std::abs(reason.value - (0.3 + beyond)) < 1e-12);
+  RC_ASSERT(reason.limit == 0.3);
+  RC_ASSERT(std::abs(reason.x - kStrokeEnd) < 1e-12);
+
+  offset[kX] -= 2 * beyond;
+  RC_ASSERT(planJob(paper(), machineAt(offset), machine.park - offset).good());
+}
+
+TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  const Axes offset(0.28, 0, 0, 0);
+  SetpointStream stream = streamAt(offset, rig.last().command);
+  rig.start(stream);
+  rig.runUntil(S::kFault);
+  EXPECT_EQ(rig.last().fault.kind, FaultKind::kLimit);
+  EXPECT_EQ(rig.last().fault.axis, kX);
+  EXPECT_EQ(rig.last().fault.violation.limit, 0.3);
+  EXPECT_GT(rig.last().fault.violation.value, 0.3);
+  EXPECT_LT(rig.last().fault.violation.x, kStrokeEnd);
+  for (const CycleRecord& record : rig.log) ASSERT_LE(record.command[kX], 0.3);
+}
+
+TEST(WorkOffsets, TheParkPositionIsTheMachines) {
+  const Axes offset(0, 0.045, 0, 0);
+  const Machine machine = machineAt(offset);
+  const JobPlan plan = planJob(paper(), machine, machine.park - offset);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_EQ(plan.reasons[0].kind, core::ReasonKind::kParkInWork);
+  EXPECT_EQ(plan.reasons[0].value, 0.05);
+  EXPECT_NEAR(plan.reasons[0].limit, kClearance + 0.045, 1e-12);
+}
+
+TEST(WorkOffsets, UnknownOnesAreNoJobs) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1001.0}) {
+    const Axes offset(0, 0, value, 0);
+    EXPECT_FALSE(planJob(paper(), machineAt(offset), machineConfig().machine.park).good()) << value;
+  }
+}
+
+/// From any place, whose work coordinates are rounded.
+RC_GTEST_PROP(WorkOffsets, AJobStartsWhereItWasPlannedFromAndNowhereElse, ()) {
+  const Axes offset = anyOffset();
+  const Axes at(between(-0.1, 0.3), between(0, 0.15), between(-0.05, 0.1), between(-120, 120));
+  Rig<FakeDrive> rig;
+  rig.drive.place(at);
+  rig.cycle();
+  rig.enable();
+  Axes elsewhere = at;
+  elsewhere[*rc::gen::inRange(0, 4)] += 1e-9;
+  SetpointStream wrong = streamAt(offset, elsewhere);
+  RC_ASSERT(rig.askToStart(wrong).text ==
+            "start refused: the axes do not stand where the job was planned to start; plan it again");
+  SetpointStream stream = streamAt(offset, at);
+  const RequestReply reply = rig.askToStart(stream);
+  RC_ASSERT(reply.accepted);
+  rig.runUntil(S::kRunning);
+  rig.cycle();
+  RC_ASSERT(rig.last().has_setpoint);
+  RC_ASSERT(((rig.last().command - at).abs() <= kUlp * (offset.abs() + at.abs())).all());
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Heights
+
+const Axes kOffset(0.1, 0.0375, -0.02, 7);
+
+/// In the middle of the paper's stroke.
+class InAShiftedStroke : public testing::Test {
+ protected:
+  void SetUp() override {
+    rig_.cycle();
+    rig_.enable();
+    rig_.stream.emplace(streamAt(kOffset, rig_.last().command));
+    ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
+    ASSERT_NO_FATAL_FAILURE(rig_.runTo(MoveKind::kStroke));
+    rig_.run(1000);
+    ASSERT_EQ(rig_.last().state, S::kRunning);
+    ASSERT_TRUE(rig_.last().wheel_in_work);
+  }
+
+  void breakDown() {
+    rig_.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
+    rig_.cycle();
+    rig_.drive.on_read = nullptr;
+    rig_.drive.status.fault = false;
+    rig_.cycle();
+    ASSERT_EQ(rig_.last().state, S::kFault);
+  }
+
+  Rig<FakeDrive> rig_;
+};
+
+TEST_F(InAShiftedStroke, RetractAndResume) {
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  rig_.runUntil(S::kHeld);
+  const double x = rig_.last().setpoint.position[kX];
+  EXPECT_EQ(rig_.loop->status().place.x, x) << "the job's";
+  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
+  rig_.runUntil(S::kRetracted);
+  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+  rig_.runToEnd();
+  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
+  EXPECT_TRUE(commandsAreShifted(rig_.log, kOffset));
+  EXPECT_TRUE(smooth(inWork(rig_.log, kOffset)));
+}
+
+TEST_F(InAShiftedStroke, AJogWhileRetracted) {
+  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+  rig_.runUntil(S::kHeld);
+  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
+  rig_.runUntil(S::kRetracted);
+  Axes at = rig_.last().command;
+  for (const auto& [axis, distance] : {std::pair(kX, -0.02), std::pair(kY, 0.005), std::pair(kA, -2.0)}) {
+    ASSERT_TRUE(rig_.jog({axis, false, distance, axis == kA ? 0.5 : 0.01}).accepted);
+    rig_.runUntil(S::kRetracted);
+    at[axis] += distance;
+    EXPECT_LT((rig_.last().command - at).abs().maxCoeff(), 1e-14) << axis;
+  }
+  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+  rig_.runToEnd();
+  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
+  EXPECT_TRUE(commandsAreShifted(rig_.log, kOffset));
+  EXPECT_TRUE(smooth(inWork(rig_.log, kOffset)));
+}
+
+TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
+  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
+  rig_.runToEnd();
+  EXPECT_EQ(rig_.loop->status().end, JobEnd::kCanceled);
+  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+}
+
+TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
+  ASSERT_NO_FATAL_FAILURE(breakDown());
+  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+  rig_.enable();
+  const Axes from = rig_.last().command;
+  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
+  rig_.runUntil(S::kReady);
+  EXPECT_TRUE(sameBits(rig_.last().command, Axes(from[kX], rig_.loop->status().wheel.clear_y, from[kZ], from[kA])));
+  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_FALSE(rig_.last().wheel_in_work);
+}
+
+TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
+  ASSERT_NO_FATAL_FAILURE(breakDown());
+  const Wheel wheel = rig_.loop->status().wheel;
+  EXPECT_NEAR(wheel.lift, kLift, 1e-15);
+  Rig<FakeDrive> next(machineConfig(), wheel);
+  next.drive.place(rig_.last().position);
+  next.cycle();
+  EXPECT_TRUE(next.last().wheel_in_work);
+  next.enable();
+  ASSERT_TRUE(next.ask(E::kLift).accepted);
+  next.runUntil(S::kReady);
+  EXPECT_NEAR(next.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_FALSE(next.last().wheel_in_work);
+}
+
+TEST(WorkOffsets, TheNextJobMayHaveOthers) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  for (const Axes& offset : {kOffset, Axes(Axes::Zero()), Axes(-0.05, -0.01, 0.03, -70)}) {
+    const std::size_t before = rig.log.size();
+    SetpointStream stream = streamAt(offset, rig.last().command);
+    ASSERT_NO_FATAL_FAILURE(rig.start(stream));
+    rig.runToEnd();
+    ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
+    EXPECT_TRUE(commandsAreShifted({rig.log.begin() + static_cast<std::ptrdiff_t>(before), rig.log.end()}, offset));
+  }
+}
+
+TEST(WorkOffsets, TheStatusHasThePositionsAsRead) {
+  Rig<FakeDrive> rig;
+  rig.drive.place({0.01, 0.02, 0.03, 4});
+  rig.cycle();
+  EXPECT_TRUE(sameBits(toAxes(rig.loop->status().position), Axes(0.01, 0.02, 0.03, 4)));
+  EXPECT_TRUE(rig.loop->status().position_valid);
+  rig.drive.position[kZ] = std::numeric_limits<double>::quiet_NaN();
+  rig.cycle();
+  EXPECT_FALSE(rig.loop->status().position_valid);
+  rig.drive.position[kZ] = 0;
+  rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
+  rig.cycle();
+  EXPECT_TRUE(rig.loop->status().position_valid) << "as yet";
+  rig.run(3);
+  EXPECT_FALSE(rig.loop->status().position_valid) << "not fresh for 3 periods; 2.5 are allowed";
+}
+
+}  // namespace
+}  // namespace flute_grinder::test_support

@@ -1,0 +1,193 @@
+#include "flute_grinder/messages/sha256.h"
+#include "flute_grinder/node/offset_store.h"
+
+#include "journal_fixture.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+// The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal_file.cpp.
+namespace flute_grinder {
+namespace {
+
+using namespace test_support;
+
+const core::WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3};
+const core::WorkOffset kOther{-1000, "", 0};
+
+class OffsetStoreTest : public JournalTest {
+ protected:
+  /// The file with two of the offsets set.
+  std::string written() {
+    OffsetStore store(path_, "/grinder");
+    store.set(kY, kSome);
+    store.set(kA, kOther);
+    return contentOf(path_);
+  }
+
+  /// Why the content leaves offsets unknown; empty if it does not.
+  std::string unknownWith(const std::string& content) {
+    fill(path_, content);
+    const OffsetStore store(path_, "/grinder");
+    const bool zero = (store.offsets().values() == 0).any();
+    EXPECT_FALSE(zero && !store.unknown().empty()) << "unknown, but 0";
+    return store.unknown();
+  }
+
+  static std::string sealed(const std::string& body) {
+    return body + "checksum: " + sha256Hex(body.data(), body.size()) + "\n";
+  }
+
+  /// The body with the line of a key replaced.
+  static std::string with(const std::string& body, const std::string& key, const std::string& line) {
+    const std::size_t begin = body.find("\n" + key + ": ") + 1;
+    EXPECT_NE(begin, 0U) << key;
+    return body.substr(0, begin) + line + body.substr(body.find('\n', begin) + 1);
+  }
+};
+
+TEST_F(OffsetStoreTest, WithoutAFileTheyWereNeverSet) {
+  const OffsetStore store(path_, "/grinder");
+  EXPECT_EQ(store.unknown(), "");
+  for (const core::WorkOffset& offset : store.offsets().axes) {
+    EXPECT_EQ(offset.value, 0);
+    EXPECT_EQ(offset.set_by, "");
+    EXPECT_EQ(offset.set_at, 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
+  written();
+  const OffsetStore next(path_, "/grinder");
+  EXPECT_EQ(next.unknown(), "");
+  const core::WorkOffsets offsets = next.offsets();
+  EXPECT_EQ(offsets.axes[kY].value, kSome.value);
+  EXPECT_EQ(offsets.axes[kY].set_by, kSome.set_by);
+  EXPECT_EQ(offsets.axes[kY].set_at, kSome.set_at);
+  EXPECT_EQ(offsets.axes[kA].value, -1000);
+  EXPECT_EQ(offsets.axes[kX].value, 0);
+  EXPECT_EQ(offsets.axes[kX].set_by, "");
+  EXPECT_TRUE((offsets.values() == Axes(0, 0.1 + 0.2, 0, -1000)).all());
+}
+
+TEST_F(OffsetStoreTest, IsOnTheDiskWhenSetReturns) {
+  OffsetStore store(path_, "/grinder");
+  store.set(kX, kSome);
+  const std::string first = contentOf(path_);
+  store.set(kX, kOther);
+  EXPECT_NE(contentOf(path_), first);
+  EXPECT_NE(contentOf(path_).find("axis_x_m: -1000\n"), std::string::npos) << contentOf(path_);
+}
+
+TEST_F(OffsetStoreTest, EveryFlippedBitMakesThemUnknown) {
+  const std::string good = written();
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    std::string bad = good;
+    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    const std::string unknown = unknownWith(bad);
+    ASSERT_EQ(unknown.rfind("unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets " + path_ +
+                                ": its checksum is ",
+                            0),
+              0U)
+        << "bit " << bit << ": " << unknown;
+  }
+}
+
+TEST_F(OffsetStoreTest, EveryShorterAndEveryLongerFileMakesThemUnknown) {
+  const std::string good = written();
+  for (std::size_t size = 0; size < good.size(); ++size) ASSERT_NE(unknownWith(good.substr(0, size)), "") << size;
+  EXPECT_EQ(unknownWith(good), "");
+  EXPECT_NE(unknownWith(good + "x"), "");
+  EXPECT_NE(unknownWith(good + good), "");
+}
+
+TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumToo) {
+  const std::string good = written();
+  const std::string body = good.substr(0, good.rfind("checksum: "));
+  ASSERT_EQ(unknownWith(sealed(body)), "");
+  struct Wrong {
+    std::string key, line, says;
+  };
+  const std::vector<Wrong> lines{
+      {"axis_y_m", "", "axis_y_m is missing"},
+      {"axis_y_m", "axis_y_m: high\n", "bad conversion"},
+      {"axis_y_m", "axis_y_m: 1000.1\n", "axis_y_m = 1000.1; allowed: -1000 to 1000"},
+      {"axis_a_rad", "axis_a_rad: -.inf\n", "axis_a_rad = -inf; allowed: -1000 to 1000"},
+      {"axis_x_set_at", "axis_x_set_at: -1\n", "axis_x_set_at = -1; allowed: 0 to 4e9"},
+      {"axis_x_set_at", "axis_x_set_at: .nan\n", "axis_x_set_at = nan; allowed: 0 to 4e9"},
+      {"axis_x_m", "axis_x_m: 0\naxis_x_m: 0\n", "key axis_x_m is unknown or duplicate"},
+      {"axis_x_m", "axis_x_m: 0\naxis_b_m: 0\n", "key axis_b_m is unknown or duplicate"},
+  };
+  for (const Wrong& wrong : lines) {
+    const std::string unknown = unknownWith(sealed(with(body, wrong.key, wrong.line)));
+    EXPECT_NE(unknown.find(wrong.says), std::string::npos) << wrong.line << ": " << unknown;
+  }
+}
+
+TEST_F(OffsetStoreTest, AfterDamageEachIsUnknownUntilItIsSet) {
+  fill(path_, "damaged");
+  {
+    OffsetStore store(path_, "/grinder");
+    EXPECT_TRUE(store.offsets().values().isNaN().all());
+    store.set(kX, kSome);
+    store.set(kZ, kOther);
+    EXPECT_EQ(store.unknown().rfind("unknown work offsets of axis_y, axis_a: ", 0), 0U) << store.unknown();
+  }
+  OffsetStore next(path_, "/grinder");
+  EXPECT_EQ(next.unknown(), "unknown work offsets of axis_y, axis_a; set each of them, or touch off");
+  EXPECT_EQ(next.offsets().axes[kX].value, kSome.value);
+  EXPECT_TRUE(std::isnan(next.offsets().axes[kY].value));
+  next.set(kY, kSome);
+  next.set(kA, {});
+  EXPECT_EQ(next.unknown(), "");
+}
+
+TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsTold) {
+  std::filesystem::create_directory(path_);
+  OffsetStore store(path_, "/grinder");
+  EXPECT_NE(store.unknown(), "");
+  EXPECT_THROW(store.set(kX, kSome), KeptFileError);
+  EXPECT_TRUE(store.offsets().values().isNaN().all());
+  std::filesystem::remove(path_);
+  store.set(kX, kSome);
+  EXPECT_EQ(store.offsets().axes[kX].value, kSome.value);
+}
+
+TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
+  const std::string good = written();
+  OffsetStore store(path_, "/grinder");
+  EXPECT_THROW(store.set(kY, {1000.1, "", 0}), KeptFileError);
+  EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), KeptFileError);
+  // A disk that is full after some bytes.
+  signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  rlimit full = before;
+  full.rlim_cur = 100;
+  setrlimit(RLIMIT_FSIZE, &full);
+  EXPECT_THROW(store.set(kY, kOther), KeptFileError);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
+  EXPECT_EQ(contentOf(path_), good);
+}
+
+TEST_F(OffsetStoreTest, BelongsToOneNode) {
+  const OffsetStore first(path_, "/left/grinder");
+  try {
+    const OffsetStore second(path_, "/right/grinder");
+    ADD_FAILURE() << "it has two owners";
+  } catch (const KeptFileOwned& error) {
+    EXPECT_EQ(std::string(error.what()), "file of work offsets " + path_ +
+                                             " is in use by node /left/grinder, process " + std::to_string(getpid()) +
+                                             "; allowed: a file of work offsets of its own for every node");
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder

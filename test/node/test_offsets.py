@@ -1,0 +1,391 @@
+#!/usr/bin/env python3
+"""Shows that a job is ground where its work offsets say: setpoints are the work's, joint states and limits the machine's; that
+the offsets outlive the process, or are told to be unknown; and that nothing changes them while a job depends on them."""
+
+import json
+import math
+import os
+import shutil
+import signal
+import tempfile
+import threading
+import time
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState, GrindResult, WorkOffsets
+from flute_grinder.srv import SetOffset, TouchOff
+
+import grinder_client as gc
+import path_checks as checks
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z
+
+# The job then stays within the machine's limits, and the cutter stands out of the collet, not in.
+OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
+# Time enough to do something in a stroke.
+SLOW = gc.paper(feed=300 * MM_MIN, clearance=1 * MM)
+# An encoder's count, and what is lost by rounding.
+COUNT = 2e-6
+
+
+class OffsetsTest(unittest.TestCase):
+    """With a folder for what is kept, and nodes that are started on it one after another."""
+
+    started = 0
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.file = os.path.join(self.folder, 'offsets')
+
+    def start(self, environment=(), **changes):
+        """Every node has a name of its own, since the master remembers those that were killed."""
+        OffsetsTest.started += 1
+        parameters = gc.machine()
+        parameters.update(journal=os.path.join(self.folder, 'journal'), offsets=self.file)
+        parameters['hardware']['spindle_run_up_time'] = 0.0
+        parameters['hardware'].update(changes)
+        self.node = gc.NodeProcess('offset_%d' % OffsetsTest.started, parameters, environment=environment)
+        self.addCleanup(self.node.close)
+        self.client = self.node.client()
+        self.addCleanup(self.client.close)
+        return self.client
+
+    def start_ready(self):
+        self.start()
+        self.client.make_ready()
+
+    def set_offset(self, axis, value, by='anna@grinder'):
+        return self.client._call('set_offset', SetOffset, gc.JOINTS[axis], value, by)
+
+    def touch_off(self, axis, position, by='anna@grinder'):
+        return self.client._call('touch_off', TouchOff, gc.JOINTS[axis], position, by)
+
+    def set_offsets(self, values):
+        for axis, value in enumerate(values):
+            answer = self.set_offset(axis, value)
+            self.assertTrue(answer.success, answer.message)
+
+    def offsets(self):
+        return rospy.wait_for_message('/%s/offsets' % self.client.name, WorkOffsets, gc.PATIENCE)
+
+    def grind(self, *arguments):
+        return gc.grind('--node', self.client.name, *arguments)
+
+    def check_refused(self, answer, text):
+        self.assertFalse(answer.success)
+        self.assertIn(text, answer.message)
+
+
+class TestJob(OffsetsTest):
+    def strokes(self, run):
+        return [tuple(s.position) for s in run.setpoints if s.move == STROKE]
+
+    def test_job_is_ground_where_the_offsets_say(self):
+        self.start_ready()
+        self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
+        without = self.client.run(gc.SHORT)
+        self.assertEqual(without.status, 'SUCCEEDED')
+        self.client.wait_rest()
+        self.set_offsets(OFFSETS)
+        first = len(self.client.joints)
+        run = self.client.run(gc.SHORT)
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertEqual(self.strokes(run), self.strokes(without), 'the same, bit for bit')
+
+        # What is told of a setpoint is all in work coordinates.
+        tolerance = [rospy.get_param('/%s/constraints/%s/trajectory' % (self.client.name, joint)) for joint in gc.JOINTS]
+        for s in run.setpoints:
+            for axis in range(4):
+                self.assertLessEqual(abs(s.position[axis] - s.actual[axis]), tolerance[axis])
+        self.assertLessEqual(max(f.x for f in run.feedback), 6 * MM + 1e-9)
+
+        # The axes were where the setpoints say, and the offsets beside it.
+        rest = self.client.wait_rest()
+        joints = [gc.axes_of(j) for j in list(self.client.joints)[first:]]
+        stroke = self.strokes(run)
+        self.assertAlmostEqual(max(j[X] for j in joints), stroke[-1][X] + OFFSETS[X], delta=20e-6)
+        self.assertAlmostEqual(min(j[Y] for j in joints), min(p[Y] for p in stroke) + OFFSETS[Y], delta=100e-6)
+        self.assertAlmostEqual(max(j[Z] for j in joints), 0, delta=COUNT, msg='parked at the machine\'s Z = 0')
+        self.assertAlmostEqual(max(j[A] for j in joints), stroke[-1][A] + OFFSETS[A], delta=1e-3)
+        for axis, park in enumerate(self.client.park()):
+            self.assertAlmostEqual(rest[axis], park, delta=COUNT)
+        state = self.client.fresh_state()
+        for axis in range(4):
+            self.assertAlmostEqual(state.position[axis], rest[axis], delta=COUNT)
+            self.assertAlmostEqual(state.work_position[axis], rest[axis] - OFFSETS[axis], delta=COUNT)
+
+    def test_limits_are_the_machines(self):
+        self.start_ready()
+        deepest = checks.Helix(gc.SHORT).y(-1 * MM) - 0.5 * MM
+        self.set_offsets([0, -0.0206, 0, 0])
+        plan = self.client.plan(gc.goal_of(gc.SHORT))
+        self.assertFalse(plan.valid)
+        self.assertRegex(plan.reasons[0], r'^axis_y position %.6g m is %.6g m beyond its limit -0\.02 m '
+                                          r'\(infeed, cycle \d+, X = -0\.001 m\)' % (deepest - 0.0206, 0.0006 - deepest))
+        run = self.client.send(gc.SHORT).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.LIMIT_VIOLATED))
+        self.set_offsets([0, -0.0194, 0, 0])
+        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).valid)
+        run = self.client.run(gc.SHORT)
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        limits = self.client.limits()
+        for name in ('min_position', 'max_position'):
+            limits[name][Y] += 0.0194
+        self.assertEqual(checks.excesses(run.setpoints, limits, self.client.period()), [])
+
+    def test_cancel_and_lift_after_a_kill_go_to_the_height_of_the_job(self):
+        self.start_ready()
+        self.set_offsets(OFFSETS)
+        helix = checks.Helix(SLOW)
+        clear = helix.y(SLOW['cutter.flute_length'] + SLOW['process.overtravel_shank']) + 1 * MM + OFFSETS[Y]
+        run = self.client.send(SLOW).wait_in_stroke(3 * MM)
+        run.cancel()
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
+        self.assertAlmostEqual(self.client.wait_rest()[Y], clear, delta=COUNT)
+        self.assertRegex(run.text, r'X = 0\.00[3-9]')
+
+        self.client.send(SLOW).wait_in_stroke(3 * MM)
+        self.node.end(signal.SIGKILL)
+        at = self.client.positions()
+        hardware = gc.machine()['hardware']
+        start = {joint: dict(hardware[joint], start_position=at[i]) for i, joint in enumerate(gc.JOINTS)}
+        self.start(**start)
+        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        self.set_offsets([0, 0, 0, 0])
+        self.assertTrue(self.client.enable().success)
+        self.client.wait_state(GrinderState.READY)
+        self.assertTrue(self.client.lift().success)
+        gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
+        self.assertAlmostEqual(self.client.wait_rest()[Y], clear, delta=COUNT)
+
+
+class TestSetting(OffsetsTest):
+    def test_touch_off_where_the_axes_stand(self):
+        self.start_ready()
+        rest = self.client.wait_rest()
+        before = time.time()
+        answer = self.touch_off(Y, 0.0125)
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual(answer.value, rest[Y] - 0.0125, delta=1e-12)
+        offsets = self.offsets()
+        self.assertEqual(tuple(offsets.values), (0, answer.value, 0, 0))
+        self.assertEqual(offsets.set_by, ['', 'anna@grinder', '', ''])
+        self.assertTrue(before - 1 <= offsets.set_at[Y].to_sec() <= time.time() + 1)
+        self.assertTrue(offsets.set_at[X].is_zero())
+        self.assertAlmostEqual(self.client.fresh_state().work_position[Y], 0.0125, delta=1e-12)
+
+    def test_wrong_ones_are_refused(self):
+        self.start_ready()
+        self.check_refused(self.client._call('set_offset', SetOffset, 'axis_b', 0, ''),
+                           'axis = axis_b; allowed: axis_x, axis_y, axis_z, axis_a')
+        self.check_refused(self.client._call('touch_off', TouchOff, '\x1b[2J', 0, ''), 'allowed: axis_x')
+        self.check_refused(self.set_offset(X, 1000.1), 'work offset of axis_x = 1000.1 m; allowed: -1000 to 1000 m')
+        for value in (math.nan, math.inf, -math.inf):
+            self.check_refused(self.set_offset(A, value), 'allowed: -1000 to 1000 rad')
+            self.check_refused(self.touch_off(A, value), 'allowed: -1000 to 1000 rad')
+        self.check_refused(self.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
+        self.check_refused(self.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
+        self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
+        self.assertFalse(os.path.exists(self.file))
+
+    def check_both_refused(self, text):
+        self.check_refused(self.set_offset(Y, 0.01), text)
+        self.check_refused(self.touch_off(Y, 0.01), text)
+        self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
+
+    def test_refused_while_a_job_needs_them(self):
+        self.start_ready()
+        run = self.client.send(SLOW).wait_in_stroke(1 * MM)
+        self.check_both_refused('the machine is in state running; allowed: ready, disabled')
+        self.assertTrue(self.client.hold().success)
+        self.client.wait_state(GrinderState.HELD)
+        self.check_both_refused('the machine is in state held; allowed: ready, disabled')
+        self.assertTrue(self.client.retract().success)
+        self.client.wait_state(GrinderState.RETRACTED)
+        self.check_both_refused('the machine is in state retracted; allowed: ready, disabled')
+        run.cancel()
+        run.wait()
+        # A plan of some seconds.
+        run = self.client.send(gc.paper(feed=1 * MM_MIN, infeed=0.02 * MM))
+        self.client.wait_for(lambda: run.feedback, 'feedback')
+        self.check_both_refused('a job is being planned')
+        run.cancel()
+        run.wait()
+        self.assertTrue(self.set_offset(Y, 0.01).success)
+
+    def test_refused_without_the_reference_and_while_homing(self):
+        # Y homes first, and needs a second.
+        self.start(absolute_encoders=False, axis_y=dict(gc.machine()['hardware']['axis_y'], start_position=0.03))
+        self.check_both_refused('the axes are not homed')
+        self.assertTrue(self.client.enable().success)
+        self.client.wait_state(GrinderState.READY)
+        self.check_both_refused('the axes are not homed')
+        self.assertTrue(self.client.home().success)
+        self.check_both_refused('the machine is in state homing')
+
+    def test_what_cannot_be_kept_is_not_set(self):
+        self.start_ready()
+        os.mkfifo(self.file + '.new')
+        self.check_refused(self.set_offset(X, 0.01), 'file of work offsets ' + self.file)
+        self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
+        os.remove(self.file + '.new')
+        self.assertTrue(self.set_offset(X, 0.01).success)
+
+
+    def test_nothing_waits_for_the_disk(self):
+        delay = os.path.join(self.folder, 'delay')
+        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libslow_fsync.so')
+        self.start(environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': delay})
+        self.client.make_ready()
+        with open(delay, 'w') as file:
+            file.write('1e6')
+        answers = []
+        setting = threading.Thread(target=lambda: answers.append(self.set_offset(X, 0.01)))
+        setting.start()
+        try:
+            gc.poll(lambda: os.path.exists(self.file + '.new'), 'the new file')
+            run = self.client.send(gc.SHORT).wait()
+            self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+            self.assertIn('a work offset is being set', run.text)
+            self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
+            self.assertTrue(self.client.disable().success)
+            self.client.wait_state(GrinderState.DISABLED)
+            self.assertEqual(answers, [], 'not before it is on the disk')
+        finally:
+            os.remove(delay)
+            setting.join()
+        self.assertTrue(answers[0].success, answers[0].message)
+        self.assertEqual(tuple(self.offsets().values), (0.01, 0, 0, 0))
+
+
+class TestRestart(OffsetsTest):
+    def restart(self):
+        self.node.end(signal.SIGTERM)
+        self.client.wait_end_of_connections()
+        self.start_ready()
+
+    def test_offsets_outlive_the_process(self):
+        self.start_ready()
+        self.set_offsets(OFFSETS)
+        before = self.offsets()
+        self.node.end(signal.SIGKILL)
+        self.start_ready()
+        after = self.offsets()
+        self.assertEqual((after.values, after.set_by, after.set_at, after.error),
+                         (tuple(OFFSETS), before.set_by, before.set_at, ''))
+
+    def test_damaged_ones_are_told_and_no_job_starts_until_all_are_set(self):
+        self.start_ready()
+        self.set_offsets(OFFSETS)
+        self.node.end(signal.SIGTERM)
+        with open(self.file) as file:
+            text = file.read()
+        with open(self.file, 'w') as file:
+            file.write(text.replace('axis_x_m: -', 'axis_x_m: '))
+        self.start_ready()
+        told = 'unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets %s: its checksum is wrong' % self.file
+        self.assertIn(told, self.node.output)
+        offsets = self.offsets()
+        self.assertTrue(all(math.isnan(v) for v in offsets.values))
+        self.assertIn(told, offsets.error)
+        self.assertTrue(all(math.isnan(v) for v in self.client.fresh_state().work_position))
+        self.assertIn(told, self.client.plan(gc.goal_of(gc.SHORT)).reasons[0])
+        for fields in ({}, {'dry_run': True}):
+            run = self.client.send(gc.SHORT, **fields).wait()
+            self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+            self.assertIn(told, run.text)
+        self.set_offsets(OFFSETS[:3])
+        self.restart()
+        self.assertIn('unknown work offsets of axis_a; set each of them', self.client.send(gc.SHORT).wait().text)
+        self.assertTrue(self.touch_off(A, 0).success)
+        self.assertEqual(self.offsets().error, '')
+        self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
+
+    def test_a_job_is_continued_with_its_own_offsets_only(self):
+        self.start_ready()
+        self.set_offsets(OFFSETS)
+        job = gc.paper(flute_length=5 * MM, feed=600 * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 1.0])
+        run = self.client.send(job).wait_past(lambda s: s.tooth == 1 and s.move == STROKE, 'the second tooth')
+        run.cancel()
+        run.wait()
+        self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 0.0001).success)
+        self.restart()
+        for _ in range(2):
+            run = self.client.send(job, first_tooth=1, discard=False).wait()
+            self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+            self.assertRegex(run.text, r'^the job is not finished, and it began with other work offsets; that of axis Y '
+                                       r'was 23\.7 mm and is 23\.8 mm; set them as they were, or discard the job$')
+        # As somebody sets it who has read its four decimals of a millimetre.
+        self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 5e-8).success)
+        self.assertEqual(self.client.send(job, first_tooth=1, discard=False).wait().status, 'SUCCEEDED')
+
+
+class TestCommandLine(OffsetsTest):
+    def setUp(self):
+        super().setUp()
+        self.start_ready()
+        self.rest = self.client.wait_rest()
+
+    def check_fails(self, arguments, status, text):
+        done = self.grind(*arguments)
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertIn(text, done.stderr)
+
+    def test_offsets(self):
+        done = self.grind('offsets', '--set', 'x=12.5', '--set', 'a=-90')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertRegex(done.stdout, r'(?m)^X +12\.5000 +-50\.0000 +-62\.5000 mm +set by \S+@\S+, \d{4}-\d\d-\d\d ')
+        self.assertRegex(done.stdout, r'(?m)^Y +0\.0000 +50\.0000 +50\.0000 mm +never set$')
+        self.assertRegex(done.stdout, r'(?m)^A +-90\.0000 +-?0\.0000 +90\.0000 deg +set by ')
+        values = self.offsets().values
+        self.assertAlmostEqual(values[X], 12.5 * MM, delta=1e-15)
+        self.assertAlmostEqual(values[A], -90 * DEG, delta=1e-15)
+        told = json.loads(self.grind('offsets', '--json').stdout)
+        self.assertEqual((told['homed'], told['error']), (True, ''))
+        self.assertAlmostEqual(told['axes']['x']['work_mm'], -62.5, delta=0.001)
+        self.assertAlmostEqual(told['axes']['x']['offset_mm'], 12.5, delta=1e-9)
+        self.assertAlmostEqual(told['axes']['a']['offset_deg'], -90, delta=1e-9)
+        self.assertEqual((told['axes']['y']['set_by'], told['axes']['y']['set_at']), (None, None))
+        self.assertRegex(told['axes']['x']['set_at'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$')
+        status = json.loads(self.grind('status', '--json').stdout)
+        self.assertAlmostEqual(status['machine']['x_mm'], -50, delta=0.001)
+        self.assertAlmostEqual(status['work']['x_mm'], -62.5, delta=0.001)
+        self.assertRegex(self.grind('status').stdout, r'(?m)^work position +X -62\.500, Y 50\.000')
+
+    def test_touch_off(self):
+        done = self.grind('touch-off', 'x', '--at', '1.5')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertEqual(done.stdout, 'axis X: work offset -51.5 mm; it stands at 1.5 mm of the work\n')
+        self.assertEqual(self.grind('touch-off', 'a', '--at', '30').returncode, 0)
+        self.assertEqual(self.grind('touch-off', 'z').returncode, 0)
+        values = self.offsets().values
+        self.assertAlmostEqual(values[X], self.rest[X] - 1.5 * MM, delta=1e-12)
+        self.assertAlmostEqual(values[A], self.rest[A] - 30 * DEG, delta=1e-12)
+        self.assertAlmostEqual(values[Z], self.rest[Z], delta=1e-12)
+
+    def test_touch_off_y_on_a_blank(self):
+        """The wheel's centre is then at (blank + worn wheel) / 2 from the axis, and Y = 0 is at (D1 + new wheel) / 2."""
+        job = gc.job_file(os.path.join(self.folder, 'job.yaml'), end_diameter_mm=10, wear_mm=0.025)
+        self.check_fails(['touch-off', 'y', '--at', '12.02', '--job', job], 1,
+                         "the wheel's centre stands 2.788 mm above the cutter's axis")
+        self.assertEqual(self.grind('touch-off', 'z', '--at', '-2.788').returncode, 0)
+        done = self.grind('touch-off', 'y', '--at', '12.02', '--job', job)
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        centre = (12.02 * MM + 2 * (50 - 0.025) * MM) / 2
+        self.assertAlmostEqual(self.offsets().values[Y], self.rest[Y] - (centre - (5 + 50) * MM), delta=1e-12)
+
+    def test_wrong_usage(self):
+        self.check_fails(['touch-off', 'y', '--at', '12'], 2, 'touch-off y needs --at DIAMETER')
+        self.check_fails(['touch-off', 'x', '--job', 'jobs/paper.yaml'], 2, '--job; allowed: for y alone')
+        self.check_fails(['touch-off', 'b'], 2, 'AXIS')
+        self.check_fails(['touch-off', 'x', '--at', 'nan'], 2, 'nan; allowed: a finite number')
+        for wrong in ('x', 'x=', 'b=1', 'x=1mm', 'x=nan', '=1'):
+            self.check_fails(['offsets', '--set', wrong], 2, wrong + '; allowed: AXIS=VALUE')
+        self.check_fails(['offsets', '--set', 'x=2e6'], 1, 'work offset of axis_x = 2000 m; allowed: -1000 to 1000 m')
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_offsets')
+    rostest.rosrun('flute_grinder', 'offsets', '__main__')

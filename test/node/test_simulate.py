@@ -1,0 +1,458 @@
+#!/usr/bin/env python3
+"""Shows that `grind simulate` tells the figures of the cutter that a job grinds, and those of a recorded run with the
+errors of its axes."""
+
+import math
+import os
+import re
+import subprocess
+import xml.etree.ElementTree as xml
+
+import rosbag
+import rostest
+import yaml
+from flute_grinder.msg import GrindActionGoal, SetpointBatch, WrittenSetpoint
+
+import grinder_client as gc
+from grind_command import PAPER_JOB, CommandLine
+from grinder_client import DEG, MM
+
+# D 10, S 30, of the design's table.
+CYLINDER = {'cutter': {'cone_angle_deg': 0, 'rake_tolerance_deg': 0.5}, 'process': {'overtravel_mm': [60, 60]},
+            'wheel': {'width_mm': 6}}
+# The paper's with a stroke so long that its ends do not matter.
+LONG_PAPER = {'cutter': {}, 'process': {'overtravel_mm': [56, 60]}, 'wheel': {'width_mm': 3}}
+NULLABLE = {'edge_deg', 'rake_deg', 'normal_rake_deg', 'flute_deg', 'land_deg', 'land_mm', 'spiral_deg'}
+
+
+def face_at(face, width, swivel):
+    """The set-up with the upper face at a height above the cutter's axis [mm, deg]."""
+    return {'swivel_deg': swivel, 'height_mm': face - width / 2 / math.cos(swivel * DEG)}
+
+
+def paper_goal():
+    """The goal of jobs/paper.yaml."""
+    goal = gc.goal_of(gc.job_from_file(PAPER_JOB))
+    with open(PAPER_JOB) as file:
+        job = yaml.safe_load(file)
+    setup = job['process']['setup']
+    goal.process.setup_swivel, goal.process.setup_height = setup['swivel_deg'] * DEG, setup['height_mm'] * MM
+    goal.cutter.rake_tolerance = job['cutter']['rake_tolerance_deg'] * DEG
+    goal.cutter.shank_diameter = job['cutter']['shank_diameter_mm'] * MM
+    return goal
+
+
+class TestSimulate(CommandLine):
+    def job(self, name, case=None, **setup):
+        """Writes the paper's job with the changes of a case and of the set-up."""
+        with open(PAPER_JOB) as file:
+            job = yaml.safe_load(file)
+        case = case or {}
+        job['cutter'].update(case.get('cutter', {}))
+        job['process'].update(case.get('process', {}))
+        job['process']['wheel'].update(case.get('wheel', {}))
+        job['process']['setup'].update(setup)
+        return self.write(name, yaml.safe_dump(job))
+
+    def teeth(self, status, *arguments):
+        """The first tooth of every section."""
+        return [section['teeth'][0] for section in self.json(status, 'simulate', *arguments)[0]['sections']]
+
+
+class TestFigures(TestSimulate):
+    def test_cylinder_swivelled_to_its_spiral_angle(self):
+        face = 5 * math.sin(8 * DEG)
+        job = self.job('cylinder.yaml', CYLINDER, **face_at(face, 6, 30))
+        tooth, = self.teeth(1, job, '--at', '20')
+        self.assertAlmostEqual(tooth['rake_deg'], 25.420, delta=0.001)
+        tooth, = self.teeth(0, self.job('cylinder.yaml', CYLINDER, **face_at(face, 6, 38)), '--at', '20')
+        self.assertAlmostEqual(tooth['rake_deg'], 7.886, delta=0.001)
+        self.assertAlmostEqual(tooth['asked_rake_deg'], 8, delta=1e-12)
+
+    def test_straight_flute(self):
+        case = dict(CYLINDER, cutter=dict(CYLINDER['cutter'], spiral_angle_deg=0))
+        job = self.job('straight.yaml', case, **face_at(5 * math.sin(8 * DEG), 6, 0))
+        tooth, = self.teeth(0, job, '--at', '20')
+        self.assertAlmostEqual(tooth['rake_deg'], 8, delta=1e-6)
+        self.assertAlmostEqual(tooth['normal_rake_deg'], 8, delta=1e-6)
+        self.assertAlmostEqual(tooth['edge_deg'], 8, delta=1e-9)
+        self.assertAlmostEqual(tooth['spiral_deg'], 0, delta=1e-6)
+
+    def test_papers_cutter_with_an_unlimited_stroke(self):
+        job = self.job('paper.yaml', LONG_PAPER, **face_at(4.552, 3, 31.769))
+        told, _ = self.json(0, 'simulate', job, '--at', '1,17,29,2,15,28')
+        for section, rake in zip(told['sections'], (7.999, 8.019, 7.999)):
+            self.assertAlmostEqual(section['teeth'][0]['rake_deg'], rake, delta=0.001)
+        for section, core in zip(told['sections'][3:], (3.72, 4.86, 6.01)):
+            self.assertAlmostEqual(section['core_diameter_mm'], 2 * core, delta=0.01)
+
+    def test_left_hand_cutter_is_the_mirror_image(self):
+        # Mirrored, the wheel's lower face is where its upper one was.
+        setup = face_at(4.552, 3, 31.769)
+        right = self.job('right.yaml', LONG_PAPER, **setup)
+        mirrored = dict(LONG_PAPER, cutter={'spiral_angle_deg': -30, 'cut': 'left_hand', 'rake_angle_deg': -8,
+                                            'rake_tolerance_deg': 20})
+        left = self.job('left.yaml', mirrored, swivel_deg=-setup['swivel_deg'], height_mm=-setup['height_mm'])
+        for one, other in zip(self.teeth(0, right, '--at', '5,25'), self.teeth(0, left, '--at', '5,25')):
+            for key, value in one.items():
+                sign = -1 if key in ('edge_deg', 'spiral_deg', 'asked_spiral_deg') else 1
+                if not key.startswith('asked_') or 'depth' in key:
+                    self.assertAlmostEqual(other[key], sign * value, delta=1e-5, msg=key)
+
+    def test_core_depth_flute_and_land_agree(self):
+        told, _ = self.json(0, 'simulate', gc.package_file('jobs/unequal_d12_t4.yaml'))
+        pitches = [88, 92, 88, 92]
+        for section in told['sections']:
+            radius = section['diameter_mm'] / 2
+            self.assertAlmostEqual(radius, 6 + section['x_mm'] * math.tan(5 * DEG), delta=1e-9)
+            self.assertAlmostEqual(section['core_diameter_mm'] / 2,
+                                   radius - max(tooth['depth_mm'] for tooth in section['teeth']), delta=1e-9)
+            for tooth, pitch in zip(section['teeth'], pitches):
+                self.assertAlmostEqual(tooth['flute_deg'] + tooth['land_deg'], pitch, delta=0.01)
+                for name in ('flute', 'land'):
+                    self.assertAlmostEqual(tooth[name + '_mm'], tooth[name + '_deg'] * DEG * radius, delta=1e-9)
+                self.assertAlmostEqual(math.tan(tooth['normal_rake_deg'] * DEG),
+                                       math.tan(tooth['rake_deg'] * DEG) * math.cos(tooth['spiral_deg'] * DEG), delta=1e-9)
+
+    def test_outline_encloses_the_rest_of_the_blank(self):
+        section, = self.json(0, 'simulate', PAPER_JOB, '--at', '12')[0]['sections']
+        points = section['outline_mm']
+        area = sum(a[0] * b[1] - a[1] * b[0] for a, b in zip(points, points[1:] + points[:1])) / 2
+        blank = math.pi * section['diameter_mm'] ** 2 / 4
+        self.assertAlmostEqual(area / (blank - section['area_removed_mm2']), 1, delta=3e-3)
+
+    def test_volume_is_the_area_over_x(self):
+        told, _ = self.json(0, 'simulate', PAPER_JOB, '--sections', '11')
+        areas = [section['area_removed_mm2'] for section in told['sections']]
+        simpson = (areas[0] + areas[-1] + 4 * sum(areas[1:-1:2]) + 2 * sum(areas[2:-1:2])) * 3 / 3
+        self.assertAlmostEqual(told['volume_mm3'] / simpson, 1, delta=1e-4)
+        for i, section in enumerate(told['sections']):
+            self.assertAlmostEqual(section['x_mm'], 3 * i, delta=1e-9)
+
+
+# Steep cones of both hands in the design's set-ups, with the rake that is asked.
+STEEP = ({'cutter': {'end_diameter_mm': 5, 'cone_angle_deg': 10, 'spiral_angle_deg': 20, 'rake_angle_deg': 14,
+                     'flute_length_mm': 15, 'shank_diameter_mm': 12, 'rake_tolerance_deg': 1},
+          'process': {'depth_mm': 0.7, 'infeed_mm': 0.7, 'overtravel_mm': [8, 8]}, 'wheel': {'diameter_mm': 75, 'width_mm': 1.5}},
+         {'swivel_deg': 23.28, 'height_mm': 0.603}, 14)
+STEEP_LEFT = ({'cutter': {'end_diameter_mm': 6, 'cone_angle_deg': 7, 'spiral_angle_deg': -25, 'rake_angle_deg': 12, 'cut': 'left_hand',
+                          'flute_length_mm': 18, 'shank_diameter_mm': 12, 'rake_tolerance_deg': 1},
+               'process': {'depth_mm': 0.9, 'infeed_mm': 0.9, 'overtravel_mm': [8, 8]}, 'wheel': {'diameter_mm': 80, 'width_mm': 2}},
+              {'swivel_deg': -28.46, 'height_mm': -0.230}, 12)
+
+
+class TestConstantRake(TestSimulate):
+    def steep(self, law, case, setup, **more):
+        process = dict(case['process'], z_law=law)
+        return self.job(law + '.yaml', dict(case, process=process), **dict(setup, **more))
+
+    def largest_error(self, asked, *arguments):
+        return max(abs(tooth['rake_deg'] - asked) for tooth in self.teeth(0, *arguments))
+
+    def test_rake_is_kept_where_the_published_law_loses_it(self):
+        for case, setup, asked in (STEEP, STEEP_LEFT):
+            self.assertGreater(self.largest_error(asked, self.steep('published', case, setup), '--sections', '26'), 0.25)
+            self.assertLess(self.largest_error(asked, self.steep('constant_rake', case, setup), '--sections', '26'), 0.005)
+
+    def test_plan_bends_z_by_hundredths_of_a_millimetre(self):
+        for case, setup, _ in (STEEP, STEEP_LEFT):
+            rows = {}
+            for law in ('published', 'constant_rake'):
+                told, _ = self.json(0, 'plan', self.steep(law, case, setup), '--csv', self.path(law + '.csv'))
+                self.assertTrue(told['valid'])
+                rows[law] = self.csv(self.path(law + '.csv'))
+            self.assertEqual((told['complete_from_mm'], told['complete_to_mm']), (0, case['cutter']['flute_length_mm']))
+            cone, rake = case['cutter']['cone_angle_deg'] * DEG, case['cutter']['rake_angle_deg'] * DEG
+            off = {law: [(float(row['x_mm']), float(row['z_mm']) - float(row['x_mm']) * math.tan(cone) * math.sin(rake))
+                         for row in rows[law] if row['step'] != 'none'] for law in rows}
+            self.assertLess(max(abs(z) for _, z in off['published']), 1e-14)
+            bend = [z for _, z in off['constant_rake']]
+            self.assertGreater(max(bend) - min(bend), 0.002)
+            self.assertLess(max(map(abs, bend)), 0.5)
+
+    def test_record_is_measured_about_the_bent_path(self):
+        case, setup, asked = STEEP
+        job = self.steep('constant_rake', case, setup)
+        self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
+        record = self.path('run.csv')
+        rows = self.csv(self.path('plan.csv'))
+        with open(record, 'w') as file:
+            file.write(','.join(COLUMNS + ACTUAL) + '\n')
+            for before, row in zip(rows[:1] + rows, rows):
+                file.write(','.join([row[key] for key in COLUMNS] + [before[key] for key in COLUMNS[6:10]]) + '\n')
+        self.assertLess(self.largest_error(asked, record, '--job', job, '--sections', '9'), 0.007)
+
+    def test_set_up_that_is_too_far_off_is_refused(self):
+        job = self.steep('constant_rake', *STEEP[:2], swivel_deg=50)
+        reason = (r'^process.z_law = constant_rake: tooth 1 is ground with .* deg to .* deg at best, asked 14 deg; '
+                  r'allowed: within 0.005 deg of it; change process.setup.swivel_deg or process.setup.height_mm')
+        self.assertRegex(self.grind(1, 'simulate', job).stderr, reason)
+        told, reasons = self.json(1, 'plan', job)
+        self.assertRegex(reasons, reason)
+        self.assertFalse(told['valid'])
+        self.assertRegex(self.grind(2, 'plan', self.steep('constant', *STEEP[:2])).stderr, 'published, constant_rake')
+
+
+class TestOutput(TestSimulate):
+    def test_json_has_its_keys(self):
+        told, reasons = self.json(0, 'simulate', PAPER_JOB, '--at', '1,17.25')
+        self.assertEqual(reasons, '')
+        self.assertEqual((told['teeth'], told['complete_from_mm'], told['complete_to_mm']), (1, 0, 30))
+        self.assertEqual((told['valid'], told['strokes']), (True, None))
+        self.assertEqual([section['x_mm'] for section in told['sections']], [1, 17.25])
+        for section in told['sections']:
+            for key in ('core_diameter_mm', 'area_removed_mm2'):
+                self.assertGreater(section[key], 0)
+            tooth, = section['teeth']
+            self.assertEqual(tooth['tooth'], 0)
+            for key in NULLABLE | {'depth_mm'}:
+                self.assertIsInstance(tooth[key], float, key)
+
+    def test_csv_has_every_bit_of_the_json(self):
+        told, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'), '--sections', '3', '--csv',
+                            self.path('tool.csv'))
+        rows = iter(self.csv(self.path('tool.csv')))
+        for section in told['sections']:
+            for tooth in section['teeth']:
+                row = next(rows)
+                for key, text in row.items():
+                    self.assertEqual(float(text), {**section, **tooth}[key], key)
+        self.assertIsNone(next(rows, None))
+
+    def test_text_has_the_extremes_and_where_they_are(self):
+        told, _ = self.json(0, 'simulate', PAPER_JOB)
+        printed = self.grind(0, 'simulate', PAPER_JOB).stdout
+        rakes = [(section['teeth'][0]['rake_deg'], section['x_mm']) for section in told['sections']]
+        least, largest = min(rakes), max(rakes)
+        line = 'radial rake, deg %.3f %.3f 1 %.3f %.3f 1 8.000 %+.3f to %+.3f' % (
+            *least, *largest, least[0] - 8, largest[0] - 8)
+        self.assertIn(line, re.sub(' +', ' ', printed).split('\n'))
+        self.assertEqual(len(told['sections']), 9)
+        for section in told['sections']:
+            self.assertRegex(printed, r'(?m)^ +%.3f +1 +%.3f ' % (section['x_mm'], section['teeth'][0]['rake_deg']))
+        self.assertRegex(printed, r'(?m)^volume removed +%.3f mm\^3' % told['volume_mm3'])
+
+    def test_stl_is_closed(self):
+        self.grind(0, 'simulate', PAPER_JOB, '--stl', self.path('tool.stl'))
+        told = subprocess.run(['admesh', self.path('tool.stl')], stdout=subprocess.PIPE, check=True,
+                              universal_newlines=True).stdout
+        self.assertRegex(told, r'Number of parts +: +1 ')
+        for fault in ('Total disconnected facets +: +0 +0', 'Degenerate facets +: +0', 'Edges fixed +: +0'):
+            self.assertRegex(told, fault)
+
+    def test_svg_tells_ground_and_asked(self):
+        self.grind(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'), '--svg', self.path('tool.svg'))
+        self.assertEqual(xml.parse(self.path('tool.svg')).getroot().tag, '{http://www.w3.org/2000/svg}svg')
+        told, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'))
+        with open(self.path('tool.svg')) as file:
+            text = file.read()
+        # matplotlib writes each text as a comment beside its outlines.
+        for section in (told['sections'][0], told['sections'][4], told['sections'][-1]):
+            tooth = section['teeth'][0]
+            for line in ('X = %.3f mm' % section['x_mm'], 'rake %.3f deg, asked 6.000' % tooth['rake_deg'],
+                         'land %.3f mm' % tooth['land_mm'],
+                         'core Ø %.3f mm, asked %.3f' % (section['core_diameter_mm'], section['asked_core_diameter_mm'])):
+                self.assertIn(line, text)
+
+    def test_svg_of_what_is_hardly_a_tool(self):
+        self.grind(1, 'simulate', self.job('dense.yaml', {'cutter': {'teeth': 12}}), '--svg', self.path('tool.svg'))
+        self.assertGreater(os.path.getsize(self.path('tool.svg')), 1000)
+        self.assertRegex(self.grind(2, 'simulate', PAPER_JOB, '--svg', self.path('no/tool.svg')).stderr,
+                         'no/tool.svg: cannot be written')
+
+    def test_lands_that_are_gone_and_flutes_that_are_not_complete_are_null(self):
+        case = {'cutter': {'teeth': 12}}
+        told, reasons = self.json(1, 'simulate', self.job('dense.yaml', case), '--at', '10')
+        self.assertRegex(reasons, 'land')
+        self.assertEqual({tooth['land_deg'] for tooth in told['sections'][0]['teeth']}, {None})
+        self.assertEqual({tooth['land_mm'] for tooth in told['sections'][0]['teeth']}, {None})
+        short = self.job('short.yaml', {'process': {'overtravel_mm': [1, 0]}})
+        told, reasons = self.json(1, 'simulate', short, '--at', '10,30', '--csv', self.path('tool.csv'))
+        self.assertRegex(reasons, 'complete')
+        self.assertEqual(told['reasons'], reasons.rstrip('\n').split('\n'))
+        self.assertLess(told['complete_to_mm'], 30)
+        whole, short = (section['teeth'][0] for section in told['sections'])
+        self.assertIsNotNone(whole['rake_deg'])
+        self.assertEqual((short['complete'], short['rake_deg'], short['normal_rake_deg']), (False, None, None))
+        self.assertEqual(self.csv(self.path('tool.csv'))[1]['rake_deg'], '')
+
+    def test_sections_that_are_not_on_the_cutter(self):
+        for at in ('-1', '1,1000', 'nan'):
+            self.assertRegex(self.grind(2, 'simulate', PAPER_JOB, '--at', at).stderr,
+                             r'^--at %s mm is not on the cutter; allowed: 0 to 87 mm' % at.split(',')[-1])
+        for arguments in (['--at', '1,x'], ['--sections', '1'], ['--sections', '2000'], ['--at', '1', '--sections', '3']):
+            self.grind(2, 'simulate', PAPER_JOB, *arguments)
+
+    def test_numbers_that_are_refused_and_files_that_cannot_be_read(self):
+        self.grind(2, 'simulate', self.job('corner.yaml', {'wheel': {'corner_radius_mm': [2, 2]}}))
+        self.grind(2, 'simulate', gc.job_file(self.path('bad.yaml'), cone_angle_deg=50))
+        self.grind(2, 'simulate', self.path('nothing.yaml'))
+        self.grind(2, 'simulate', self.folder)
+
+
+COLUMNS = ['cycle', 'time_s', 'move', 'tooth', 'pass', 'step', 'x_mm', 'y_mm', 'z_mm', 'a_rad', 'error_rad', 'feed_mm_min']
+ACTUAL = ['actual_x_mm', 'actual_y_mm', 'actual_z_mm', 'actual_a_rad']
+
+
+class TestRecord(TestSimulate):
+    """Records are made of a plan's setpoints: what the drive reads is what was commanded one cycle before, with an error."""
+
+    def plan(self, job):
+        self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
+        return self.csv(self.path('plan.csv'))
+
+    def record(self, rows, error=(0, 0, 0, 0)):
+        """@param error of the axes against the command [mm, rad]."""
+        lines = [','.join(COLUMNS + ACTUAL)]
+        before = rows[0]
+        for row in rows:
+            actual = [float(before[key]) + e for key, e in zip(COLUMNS[6:10], error)]
+            lines.append(','.join([row[key] for key in COLUMNS] + ['%.17g' % value for value in actual]))
+            before = row
+        return self.write('run.csv', '\n'.join(lines) + '\n')
+
+    def sections(self, status, path, job=PAPER_JOB):
+        return self.json(status, 'simulate', path, '--job', job, '--at', '3,15,27')[0]['sections']
+
+    def planned(self, job=PAPER_JOB):
+        return self.json(0, 'simulate', job, '--at', '3,15,27')[0]['sections']
+
+    def check_same(self, sections, planned, core=0.0, edge=0.0):
+        for one, other in zip(sections, planned):
+            self.assertAlmostEqual(one['core_diameter_mm'], other['core_diameter_mm'] + core, delta=2e-5)
+            for tooth, planned_tooth in zip(one['teeth'], other['teeth']):
+                self.assertAlmostEqual(tooth['edge_deg'], planned_tooth['edge_deg'] + edge, delta=2e-4 if not core else 1)
+                self.assertAlmostEqual(tooth['rake_deg'], planned_tooth['rake_deg'], delta=2e-3 if not core else 1)
+
+    def test_exact_record_is_the_plan(self):
+        self.check_same(self.sections(0, self.record(self.plan(PAPER_JOB))), self.planned())
+
+    def test_exact_record_of_many_passes_is_the_plan(self):
+        job = gc.package_file('jobs/left_hand_d8_t3.yaml')
+        record = self.record(self.plan(job))
+        self.check_same(self.sections(0, record, job), self.planned(job))
+        told, _ = self.json(0, 'simulate', record, '--job', job, '--at', '5')
+        # The first pass at full depth covers those before and after it.
+        self.assertEqual(len({stroke['pass'] for stroke in told['strokes']}), 1)
+        self.assertEqual([stroke['tooth'] for stroke in told['strokes']], [0, 1, 2])
+
+    def test_error_of_y_is_in_the_core(self):
+        # Of a straight flute under the middle of the wheel, the floor follows Y exactly.
+        case = {'cutter': {'spiral_angle_deg': 0}, 'wheel': {'width_mm': 3}}
+        job = self.job('straight.yaml', case, swivel_deg=0, height_mm=0)
+        rows = self.plan_of_useless(job)
+        planned = self.json(1, 'simulate', job, '--at', '3,15,27')[0]['sections']
+        record = self.record(rows, (0, 0.010, 0, 0))
+        for one, other in zip(self.sections(1, record, job), planned):
+            self.assertAlmostEqual(one['core_diameter_mm'] - other['core_diameter_mm'], 0.020, delta=2e-5)
+
+    def plan_of_useless(self, job):
+        self.grind(1, 'plan', job, '--csv', self.path('plan.csv'))
+        return self.csv(self.path('plan.csv'))
+
+    def test_error_of_a_shifts_the_edge(self):
+        record = self.record(self.plan(PAPER_JOB), (0, 0, 0, 0.001))
+        self.check_same(self.sections(0, record), self.planned(), edge=0.001 / DEG)
+
+    def test_hold_with_a_lift_in_the_stroke_changes_nothing(self):
+        rows = self.plan(PAPER_JOB)
+        stroke = [i for i, row in enumerate(rows) if row['move'] == 'stroke']
+        at = stroke[len(stroke) // 2]
+        held, lifted = rows[at], dict(rows[at], move='lift', step='none', y_mm=str(float(rows[at]['y_mm']) + 10))
+        rows = rows[:at] + [held] * 500 + [lifted] * 50 + [held] * 20 + rows[at:]
+        for cycle, row in enumerate(rows):
+            rows[cycle] = dict(row, cycle=str(cycle))
+        self.check_same(self.sections(0, self.record(rows)), self.planned())
+
+    def test_interrupted_stroke_grinds_no_further(self):
+        rows = self.plan(PAPER_JOB)
+        rows = [row for row in rows if row['move'] != 'stroke' or float(row['x_mm']) < 10]
+        end = max(i for i, row in enumerate(rows) if row['move'] == 'stroke')
+        told, reasons = self.json(1, 'simulate', self.record(rows[:end + 1]), '--job', PAPER_JOB, '--at', '2,29')
+        self.assertRegex(reasons, 'complete')
+        stroke, = told['strokes']
+        self.assertAlmostEqual(stroke['to_x_mm'], 10, delta=0.02)
+        near, far = told['sections']
+        planned = self.json(0, 'simulate', PAPER_JOB, '--at', '2')[0]['sections'][0]
+        self.assertAlmostEqual(near['core_diameter_mm'], planned['core_diameter_mm'], delta=1e-4)
+        self.assertEqual((far['area_removed_mm2'], far['core_diameter_mm']), (0, far['diameter_mm']))
+        self.assertIsNone(far['teeth'][0]['edge_deg'])
+
+    def test_teeth_that_are_not_in_the_record_are_not_ground(self):
+        job = gc.package_file('jobs/left_hand_d8_t3.yaml')
+        rows = [row for row in self.plan(job) if row['tooth'] != '1']
+        told, _ = self.json(1, 'simulate', self.record(rows), '--job', job, '--at', '5')
+        self.assertEqual({stroke['tooth'] for stroke in told['strokes']}, {0, 2})
+        teeth = told['sections'][0]['teeth']
+        self.assertEqual([tooth['edge_deg'] is None for tooth in teeth], [False, True, False])
+        self.assertEqual(teeth[1]['depth_mm'], 0)
+        self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job, '--svg', self.path('tool.svg')).stdout,
+                         r'(?m)^tooth 2 +not in the record$')
+
+    def bag(self, rows, goal=True):
+        """Two jobs, of which the second is the record."""
+        with rosbag.Bag(self.path('run.bag'), 'w') as bag:
+            for name in ('first', 'second'):
+                message = GrindActionGoal(goal=paper_goal())
+                message.goal_id.id = name
+                if goal:
+                    bag.write('/grinder/grind/goal', message)
+                count = len(rows) if name == 'second' else 500
+                for start in range(0, count, 500):
+                    batch = SetpointBatch(goal_id=name, period=1e-3)
+                    batch.setpoints = [self.setpoint(rows, i) for i in range(start, min(start + 500, count))]
+                    bag.write('/grinder/setpoints', batch)
+        return self.path('run.bag')
+
+    def setpoint(self, rows, i):
+        row, before = rows[i], rows[max(i - 1, 0)]
+        units = (MM, MM, MM, 1)
+        position, actual = ([float(r[key]) * unit for key, unit in zip(COLUMNS[6:10], units)] for r in (row, before))
+        setpoint = WrittenSetpoint(cycle=int(row['cycle']), position=position, actual=actual)
+        setpoint.move, setpoint.step = gc.MOVES.index(row['move']), gc.STEPS.index(row['step'])
+        setpoint.tooth, setpoint.pass_ = int(row['tooth']), int(row['pass'])
+        return setpoint
+
+    def test_bag_has_its_job(self):
+        bag = self.bag(self.plan(PAPER_JOB))
+        told, _ = self.json(0, 'simulate', bag, '--at', '3,15,27')
+        self.check_same(told['sections'], self.planned())
+        self.assertEqual(told['source'], 'run.bag, job 2 of 2')
+        self.json(1, 'simulate', bag, '--run', '1')
+        self.assertRegex(self.grind(2, 'simulate', bag, '--run', '3').stderr, r'--run 3; the bag has 2 job\(s\)')
+
+    def test_report_of_a_bag_shows_the_tool(self):
+        bag = self.bag(self.plan(PAPER_JOB))
+        self.grind(0, 'report', bag, '-o', self.path('report.html'))
+        with open(self.path('report.html'), encoding='utf-8') as file:
+            page = file.read()
+        for name in ('tool-sections', 'tool-figures'):
+            self.assertIn('<figure id="%s">' % name, page)
+        self.grind(0, 'report', self.bag(self.plan(PAPER_JOB), goal=False), '-o', self.path('report.html'))
+        with open(self.path('report.html'), encoding='utf-8') as file:
+            page = file.read()
+        self.assertNotIn('tool-sections', page)
+        self.assertIn('<li>The ground tool: ', page)
+
+    def test_bag_without_its_goal_needs_the_job(self):
+        bag = self.bag(self.plan(PAPER_JOB), goal=False)
+        self.assertRegex(self.grind(2, 'simulate', bag).stderr, 'does not have the goal of job 2 of 2; .* --job')
+        self.check_same(self.sections(0, bag), self.planned())
+
+    def test_records_that_cannot_be_used(self):
+        rows = self.plan(PAPER_JOB)
+        record = self.record(rows)
+        self.assertRegex(self.grind(2, 'simulate', record).stderr, '--job')
+        self.assertRegex(self.grind(2, 'simulate', self.path('plan.csv'), '--job', PAPER_JOB).stderr, 'its first line')
+        self.record([dict(rows[0], tooth='7')])
+        self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, ':2: .*tooth 8.*1 teeth')
+        self.record([dict(rows[0], x_mm='nan')])
+        self.grind(2, 'simulate', record, '--job', PAPER_JOB)
+        self.record([dict(rows[0], move='dance')])
+        self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, ':2: "dance" is not known')
+        self.write('cut.bag', '#ROSBAG V2.0\n')
+        self.grind(2, 'simulate', self.path('cut.bag'))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'simulate', '__main__')

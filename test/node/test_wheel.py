@@ -1,0 +1,297 @@
+#!/usr/bin/env python3
+"""Shows that `grind wheel` prints a wheel file, and changes in it what was measured or dressed and nothing else; and that
+`grind zeros` computes with it."""
+
+import datetime
+import math
+import os
+import pwd
+import random
+import re
+import socket
+import stat
+
+import rostest
+import yaml
+
+import grinder_client as gc
+from grind_command import CommandLine
+
+WORN = gc.package_file('wheels/straight_d125_w2.yaml')
+NEW = gc.package_file('wheels/straight_d100_w3.yaml')
+ANGLED = gc.package_file('wheels/angled_d100_w10.yaml')
+
+
+def text_of(path):
+    with open(path, newline='') as file:
+        return file.read()
+
+
+class WheelTest(CommandLine):
+    def copy(self, path, name='wheel.yaml'):
+        return self.write(name, text_of(path))
+
+    def wheel(self, path):
+        with open(path) as file:
+            return yaml.safe_load(file)
+
+    def check_stamp(self, measured):
+        """Date and name of who wrote."""
+        date = measured['date']
+        if isinstance(date, datetime.datetime):
+            date = date.replace(tzinfo=datetime.timezone.utc)
+        else:
+            date = datetime.datetime.strptime(date, '%Y-%m-%dT%H:%M:%S%z')
+        age = datetime.datetime.now(datetime.timezone.utc) - date
+        self.assertLess(abs(age.total_seconds()), gc.PATIENCE)
+        self.assertEqual(measured['by'], '%s@%s' % (pwd.getpwuid(os.geteuid()).pw_name, socket.gethostname()))
+
+
+class TestShow(WheelTest):
+    def test_worn_wheel(self):
+        printed = self.grind(0, 'wheel', 'show', WORN).stdout
+        self.assertIn('diameter         124.76 mm, Y = 0 is set to 125 mm: wear 0.12 mm\n', printed)
+        self.assertIn('measured         2026-11-20 by tool room\n', printed)
+
+    def test_json(self):
+        told, _ = self.json(0, 'wheel', 'show', WORN)
+        self.assertEqual(told, {'profile': 'straight', 'diameter_mm': 124.76, 'set_diameter_mm': 125, 'wear_mm': 0.12,
+                                'width_mm': 2, 'new_width_mm': 2, 'angle_deg': None, 'side': None,
+                                'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5,
+                                'measured': {'date': '2026-11-20', 'by': 'tool room'}})
+        told, _ = self.json(0, 'wheel', 'show', ANGLED)
+        self.assertAlmostEqual(told.pop('angle_deg'), 20, delta=1e-12)
+        self.assertEqual((told['profile'], told['side'], told['wear_mm'], told['measured']), ('angled', 'upper', 0, None))
+
+    def test_wrong_file(self):
+        path = self.write('bad.yaml', 'profile: straight\ndiameter_mm: 100\nwidth_mm: wide\n')
+        self.assertEqual(self.grind(2, 'wheel', 'show', path).stderr,
+                         path + ':3: width_mm = wide; allowed: 0.1 to 100 mm\n')
+        self.assertIn('cannot be read', self.grind(2, 'wheel', 'show', self.path('none.yaml')).stderr)
+
+
+class TestMeasure(WheelTest):
+    def test_figures_are_written(self):
+        path = self.copy(WORN)
+        printed = self.grind(0, 'wheel', 'measure', path, '--diameter', '124.7', '--width', '1.95').stdout
+        self.assertIn('wear 0.15 mm\n', printed)
+        self.assertIn('set X and Z anew', printed)
+        measured = self.wheel(path)['measured']
+        self.assertEqual((measured['diameter_mm'], measured['width_mm']), (124.7, 1.95))
+        self.check_stamp(measured)
+
+    def test_all_else_stays(self):
+        path = self.copy(WORN)
+        self.grind(0, 'wheel', 'measure', path, '--diameter', '124.7')
+        new = text_of(path).split('\n')
+        old = text_of(WORN).split('\n')
+        self.assertEqual(len(new), len(old))
+        differing = [(a, b) for a, b in zip(old, new) if a != b]
+        self.assertEqual([a.split(':')[0].strip() for a, _ in differing], ['date', 'diameter_mm', 'by'])
+        self.assertEqual(differing[1][1], '  diameter_mm: 124.7           # half of what is lost is the wear')
+
+    def test_first_measurement(self):
+        path = self.copy(NEW)
+        self.grind(0, 'wheel', 'measure', path, '--diameter', '99.9', '--width', '2.98')
+        self.assertTrue(text_of(path).startswith(text_of(NEW)))
+        measured = self.wheel(path)['measured']
+        self.assertEqual((measured['diameter_mm'], measured['width_mm']), (99.9, 2.98))
+        self.check_stamp(measured)
+
+    def test_larger_wheel_is_refused_unless_forced(self):
+        path = self.copy(WORN)
+        said = self.grind(1, 'wheel', 'measure', path, '--diameter', '124.8').stderr
+        self.assertRegex(said, r'^--diameter = 124\.8 mm; allowed: up to 124\.76 mm, .* a new wheel is a new file\n$')
+        said = self.grind(1, 'wheel', 'measure', path, '--diameter', '124.7', '--width', '2.1').stderr
+        self.assertRegex(said, r'^--width = 2\.1 mm; allowed: up to 2 mm, ')
+        self.assertEqual(text_of(path), text_of(WORN))
+        self.grind(0, 'wheel', 'measure', path, '--diameter', '124.8', '--width', '2.1', '--force')
+        self.assertEqual(self.wheel(path)['measured']['diameter_mm'], 124.8)
+
+    def test_diameter_beyond_the_one_that_is_set_is_refused(self):
+        path = self.copy(WORN)
+        said = self.grind(1, 'wheel', 'measure', path, '--diameter', '125.1', '--force').stderr
+        self.assertEqual(said, path + ':9: measured.diameter_mm = 125.1 mm; allowed: 1 to 125 mm, the diameter to which '
+                         'Y = 0 is set\n')
+        self.assertEqual(text_of(path), text_of(WORN))
+
+    def test_width_without_room_for_the_corners_is_refused(self):
+        path = self.copy(ANGLED)
+        said = self.grind(1, 'wheel', 'measure', path, '--diameter', '99', '--width', '0.15').stderr
+        self.assertIn('corner_radius_mm[0] = 0.2 mm; allowed: up to the wheel\'s width for both corners together, 0.15 mm', said)
+        self.assertEqual(text_of(path), text_of(ANGLED))
+
+    def test_wrong_figures(self):
+        path = self.copy(WORN)
+        for wrong in (['--diameter', 'nan'], ['--diameter', '-1'], ['--diameter', '0'], ['--diameter', 'inf'],
+                      ['--diameter', 'small'], ['--diameter', '124', '--width', '-1'], ['--width', '2'], []):
+            self.grind(2, 'wheel', 'measure', path, *wrong)
+        self.assertEqual(text_of(path), text_of(WORN))
+
+
+class TestDress(WheelTest):
+    def test_figures_are_written(self):
+        path = self.copy(WORN)
+        self.grind(0, 'wheel', 'dress', path, '--radial', '0.02', '--face', '0.1')
+        measured = self.wheel(path)['measured']
+        self.assertEqual((measured['diameter_mm'], measured['width_mm']), (124.72, 1.9))
+        self.check_stamp(measured)
+        self.grind(0, 'wheel', 'dress', path, '--radial', '0.02')
+        measured = self.wheel(path)['measured']
+        self.assertEqual((measured['diameter_mm'], measured['width_mm']), (124.68, 1.9))
+
+    def test_new_wheel_is_dressed_from_its_own_figures(self):
+        path = self.copy(NEW)
+        self.grind(0, 'wheel', 'dress', path, '--face', '0.25')
+        measured = self.wheel(path)['measured']
+        self.assertEqual((measured['diameter_mm'], measured['width_mm']), (100, 2.75))
+
+    def test_nothing_left(self):
+        for path, arguments, reason in ((self.copy(WORN, 'a.yaml'), ['--face', '2'], 'measured.width_mm = 0 mm; allowed: 0.1 to 100 mm'),
+                                        (self.copy(WORN, 'b.yaml'), ['--face', '3'], 'measured.width_mm = -1 mm'),
+                                        (self.copy(WORN, 'c.yaml'), ['--radial', '62.38'], 'measured.diameter_mm = 0 mm'),
+                                        (self.copy(WORN, 'd.yaml'), ['--radial', '100'], 'measured.diameter_mm = -75.24 mm')):
+            before = text_of(path)
+            self.assertIn(reason, self.grind(1, 'wheel', 'dress', path, *arguments).stderr)
+            self.assertEqual(text_of(path), before)
+
+    def test_wrong_figures(self):
+        path = self.copy(WORN)
+        for wrong in ([], ['--radial', '0'], ['--radial', '0', '--face', '0'], ['--radial', '-0.1'], ['--radial', 'nan'],
+                      ['--face', 'inf'], ['--radial', '0.1', '--face', '-1']):
+            self.grind(2, 'wheel', 'dress', path, *wrong)
+        self.assertEqual(text_of(path), text_of(WORN))
+
+
+class TestFile(WheelTest):
+    def test_mode_stays_and_nothing_is_left_beside_the_file(self):
+        path = self.copy(WORN)
+        os.chmod(path, 0o640)
+        self.grind(0, 'wheel', 'dress', path, '--radial', '0.01')
+        self.assertEqual(stat.S_IMODE(os.stat(path).st_mode), 0o640)
+        self.assertEqual(os.listdir(self.folder), ['wheel.yaml'])
+
+    def test_reader_of_the_old_file_keeps_it(self):
+        path = self.copy(WORN)
+        with open(path) as old:
+            self.grind(0, 'wheel', 'dress', path, '--radial', '0.01')
+            self.assertEqual(old.read(), text_of(WORN))
+
+    def test_symbolic_link_stays_one(self):
+        path = self.copy(WORN)
+        os.symlink('wheel.yaml', self.path('link.yaml'))
+        self.grind(0, 'wheel', 'dress', self.path('link.yaml'), '--radial', '0.01')
+        self.assertTrue(os.path.islink(self.path('link.yaml')))
+        self.assertEqual(self.wheel(path)['measured']['diameter_mm'], 124.74)
+
+    def test_folder_that_cannot_be_written(self):
+        path = '/proc/self/wheel.yaml'
+        self.assertIn('cannot be read', self.grind(2, 'wheel', 'dress', path, '--radial', '0.01').stderr)
+
+    def test_job_sees_what_was_dressed(self):
+        job = text_of(gc.package_file('jobs/unequal_d12_t4.yaml')).replace('../wheels/straight_d100_w3.yaml', 'wheel.yaml')
+        job = self.write('job.yaml', job)
+        path = self.copy(NEW)
+        deepest = []
+        for radial in (None, '0.25'):
+            if radial:
+                self.grind(0, 'wheel', 'dress', path, '--radial', radial)
+            self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
+            deepest.append(min(float(row['y_mm']) for row in self.csv(self.path('plan.csv'))))
+        self.assertAlmostEqual(deepest[0] - deepest[1], 0.25, delta=1e-9)
+
+    def test_random_files_change_in_their_figures_only(self):
+        dice = random.Random(12)
+        for _ in range(40):
+            diameter, width = round(dice.uniform(50, 400), 3), round(dice.uniform(1, 20), 3)
+            lines = ['profile: straight', 'diameter_mm: %s' % diameter, 'width_mm: %s' % width]
+            if dice.random() < 0.5:
+                lines.append('corner_radius_mm: [0.1, 0.2]')
+            before = diameter
+            if dice.random() < 0.7:
+                before = round(diameter - dice.uniform(0, 20), 3)
+                entries = ['date: 2026-01-02', 'diameter_mm: %s' % before, 'by: "A. B. C"']
+                dice.shuffle(entries)
+                lines.append('measured: {%s}' % ', '.join(entries) if dice.random() < 0.5 else
+                             'measured:\n' + '\n'.join('    ' + entry for entry in entries))
+            dice.shuffle(lines)
+            lines = [dice.choice(['', '# \u00d8 of the wheel: 99 \u00b5m\n', '\n']) + line + dice.choice(['', '   # a: comment'])
+                     for line in lines]
+            text = dice.choice(['\n', '\r\n']).join('\n'.join(lines).split('\n')) + dice.choice(['', '\n'])
+            path = self.path('random.yaml')
+            with open(path, 'w', newline='') as file:
+                file.write(text)
+            with self.subTest(text=text):
+                radial = round(dice.uniform(0.001, 5), 3)
+                self.grind(0, 'wheel', 'dress', path, '--radial', str(radial))
+                after = self.wheel(path)
+                self.assertAlmostEqual(after['measured']['diameter_mm'], before - 2 * radial, delta=1e-9)
+                self.check_stamp(after['measured'])
+                # With the old figures in place of the new ones it is the old text.
+                measured = after.pop('measured')
+                old = yaml.safe_load(text)
+                old_measured = old.pop('measured', {})
+                self.assertEqual(after, old)
+                self.assertEqual(set(measured), {'date', 'diameter_mm', 'by'})
+                back = text_of(path)
+                if old_measured:
+                    for key, value in (('date', '2026-01-02'), ('diameter_mm', str(before)), ('by', '"A. B. C"')):
+                        back = re.sub(r'(?s)(measured:.*?%s: )("?)[^\s,}"]+("?)' % key, lambda m: m.group(1) + value, back)
+                    self.assertEqual(back, text)
+                else:
+                    self.assertEqual(re.sub(r'(\r?\n)?measured: \{[^}]*\}(\r?\n)?$', '', back), re.sub(r'\r?\n$', '', text))
+
+
+class TestZeros(WheelTest):
+    """`grind zeros` against the formulas of the documentation, in mm."""
+
+    def machine(self, **geometry):
+        machine = gc.shipped_machine()
+        machine['geometry'] = geometry
+        return self.write('machine.yaml', yaml.safe_dump(machine))
+
+    def test_of_a_machine_in_which_everything_counts(self):
+        machine = self.machine(work_axis={'y': 0.011, 'z': -0.022}, collet_face={'x': 0.133},
+                               swivel_centre={'x': 0.0044, 'y': 0.0555, 'z': 0.0066}, flange=0.077)
+        job = gc.package_file('jobs/finishing_d20_t8.yaml')
+        swivel, height = math.radians(46.588), 0.281
+        for flange, arguments in ((2.5, []), (-4, ['--flange', '-4'])):
+            told, _ = self.json(0, 'zeros', job, '--stickout', '71.5', '--machine', machine, *arguments)
+            # The wheel is 2 mm wide, and Y is set to 125 mm, whatever it has worn.
+            along = 77 - flange - 2 / 2
+            self.assertEqual(set(told), {'x_mm', 'y_mm', 'z_mm'})
+            self.assertAlmostEqual(told['x_mm'], 133 - 71.5 - 4.4 + along * math.sin(swivel), delta=1e-9)
+            self.assertAlmostEqual(told['y_mm'], 11 + 20 / 2 + 125 / 2 - 55.5, delta=1e-9)
+            self.assertAlmostEqual(told['z_mm'], -22 + height - 6.6 - along * math.cos(swivel), delta=1e-9)
+            printed = self.grind(0, 'zeros', job, '--stickout', '71.5', '--machine', machine, *arguments).stdout
+            self.assertEqual(printed.split(), ['work', 'zero', 'X', '%.4f' % told['x_mm'], 'Y', '%.4f' % told['y_mm'], 'Z',
+                                               '%.4f' % told['z_mm'], 'mm'])
+
+    def test_width_that_was_dressed_counts(self):
+        job = text_of(gc.package_file('jobs/unequal_d12_t4.yaml')).replace('../wheels/straight_d100_w3.yaml', 'wheel.yaml')
+        job, path = self.write('job.yaml', job), self.copy(NEW)
+        before, _ = self.json(0, 'zeros', job, '--stickout', '62')
+        self.grind(0, 'wheel', 'dress', path, '--face', '0.2', '--radial', '0.3')
+        after, _ = self.json(0, 'zeros', job, '--stickout', '62')
+        swivel = math.radians(38.734)
+        for axis, moved in (('x_mm', 0.1 * math.sin(swivel)), ('y_mm', 0), ('z_mm', -0.1 * math.cos(swivel))):
+            self.assertAlmostEqual(after[axis] - before[axis], moved, delta=1e-9)
+
+    def test_refusals(self):
+        job = gc.package_file('jobs/paper.yaml')
+        said = self.grind(2, 'zeros', job, '--stickout', '62').stderr
+        self.assertEqual(said, '--flange is missing, and %s names no wheel file\n' % job)
+        said = self.grind(1, 'zeros', job, '--stickout', '29', '--flange', '2').stderr
+        self.assertEqual(said, "--stickout = 29 mm; allowed: the flutes' length or more, 30 mm\n")
+        for wrong in (['--stickout', '0'], ['--stickout', 'nan'], ['--stickout', '62', '--flange', '100.1'],
+                      ['--stickout', '62', '--flange', 'nan']):
+            self.grind(2, 'zeros', job, *wrong)
+        wheel = self.write('wheel.yaml', re.sub('flange_mm.*', '', text_of(NEW)))
+        job = self.write('job.yaml', text_of(gc.package_file('jobs/unequal_d12_t4.yaml')).replace(
+            '../wheels/straight_d100_w3.yaml', 'wheel.yaml'))
+        self.assertEqual(self.grind(2, 'zeros', job, '--stickout', '62').stderr,
+                         '--flange is missing, and %s has no flange_mm\n' % wheel)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'wheel', '__main__')

@@ -27,7 +27,13 @@ _grind_from() {
   elif [ "$prev" = = ]; then
     prev=${COMP_WORDS[COMP_CWORD-2]}
   fi
-  for ((i = $1 + 1; i < COMP_CWORD && ${#command} == 0; i++)); do
+  for ((i = $1 + 1; i < COMP_CWORD; i++)); do
+    # Commands that have commands of their own.
+    case ":$command" in
+)";
+
+constexpr const char* kWord = R"(      *) break ;;
+    esac
     case ${COMP_WORDS[i-1]}:${COMP_WORDS[i]} in
 )";
 
@@ -93,33 +99,44 @@ void writeValues(const CLI::App& app, const std::string& command, std::ostream& 
 /// What completes a word of a command that is no option's argument.
 void writeWords(const CLI::App& app, const std::string& command, std::ostream& script) {
   std::string options, words;
-  std::string positional = "COMPREPLY=()";
+  std::string positional;  // the first one
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : namesOf(*option)) options += (options.empty() ? "" : " ") + name;
-    if (option->get_positional()) positional = completer(*option);
+    if (option->get_positional() && positional.empty()) positional = completer(*option);
   }
+  if (positional.empty()) positional = "COMPREPLY=()";
   for (const CLI::App* sub : subcommands(app)) words += (words.empty() ? "" : " ") + sub->get_name();
   if (!words.empty()) positional = "_grind_words '" + words + "' \"$cur\"";
   script << "    '" << command << " '*' -'*) _grind_words '" << options << "' \"$cur\" ;;\n"
          << "    '" << command << " '*) " << positional << " ;;\n";
 }
 
+void writeCommand(const CLI::App& app, const std::string& command, std::ostream& script) {
+  writeValues(app, command, script);
+  writeWords(app, command, script);
+}
+
 }  // namespace
 
 std::string bashCompletion(const CLI::App& app) {
   std::ostringstream script;
-  script << kHead;
+  script << kHead << "      :";
+  for (const CLI::App* sub : subcommands(app)) {
+    if (!subcommands(*sub).empty()) script << " | :" << sub->get_name();
+  }
+  script << ") ;;\n" << kWord;
   // Skip the argument of an option before the sub-command.
   for (const CLI::Option* option : app.get_options()) {
     if (!takesValue(*option)) continue;
     for (const std::string& name : namesOf(*option)) script << "      " << name << ":*) ;;\n";
   }
-  script << "      *:-* | *:= | =:*) ;;\n      *) command=${COMP_WORDS[i]} ;;\n    esac\n  done\n"
+  script << "      *:-* | *:= | =:*) ;;\n      *) command=${command:+$command }${COMP_WORDS[i]} ;;\n    esac\n  done\n"
          << "  case \"$command $prev $cur\" in\n";
   writeValues(app, "", script);
   for (const CLI::App* sub : subcommands(app)) {
-    writeValues(*sub, sub->get_name(), script);
-    writeWords(*sub, sub->get_name(), script);
+    for (const CLI::App* inner : subcommands(*sub))
+      writeCommand(*inner, sub->get_name() + " " + inner->get_name(), script);
+    writeCommand(*sub, sub->get_name(), script);
   }
   writeWords(app, "", script);
   script << kTail;

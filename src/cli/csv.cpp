@@ -14,7 +14,7 @@ namespace flute_grinder {
 using units::kMillimetre;
 using units::kMillimetrePerMinute;
 
-CsvFile::CsvFile(std::string path, const char* header) : path_(std::move(path)), header_(header) {
+CsvFile::CsvFile(std::string path, std::string header) : path_(std::move(path)), header_(std::move(header)) {
   constexpr int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
   constexpr mode_t mode = 0666;
   int descriptor = ::open(path_.c_str(), flags | O_EXCL, mode);
@@ -33,7 +33,7 @@ void CsvFile::begin() {
   begun_ = true;
   // EINVAL: a pipe or a device cannot be truncated.
   if (::ftruncate(::fileno(file_.get()), 0) != 0 && errno != EINVAL) error_ = errno;
-  print("%s\n", header_);
+  print("%s\n", header_.c_str());
 }
 
 void CsvFile::print(const char* format, ...) {
@@ -54,11 +54,28 @@ void TableCsv::write(int number, const CurvePoint& point, double theory) {
   print("%d,%.17g,%.17g,%.17g,%.17g\n", number, point.x / kMillimetre, point.a, theory, theory - point.a);
 }
 
-void SetpointCsv::write(const Setpoint& s, double period) {
+void SetpointCsv::writeFields(const Setpoint& s, double period) {
   const Axes& p = s.position;
-  print("%llu,%.17g,%s,%d,%d,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g\n", static_cast<unsigned long long>(s.cycle),
+  print("%llu,%.17g,%s,%d,%d,%s,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g", static_cast<unsigned long long>(s.cycle),
         static_cast<double>(s.cycle) * period, toString(s.move), s.tooth, s.pass, toString(s.step), p[kX] / kMillimetre,
         p[kY] / kMillimetre, p[kZ] / kMillimetre, p[kA], s.path_error, s.feed / kMillimetrePerMinute);
+}
+
+void SetpointCsv::write(const Setpoint& setpoint, double period) {
+  writeFields(setpoint, period);
+  print("\n");
+}
+
+const std::string& RunCsv::columns() {
+  static const std::string columns =
+      std::string(SetpointCsv::kColumns) + ",actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad";
+  return columns;
+}
+
+void RunCsv::write(const Setpoint& setpoint, const Axes& actual, double period) {
+  writeFields(setpoint, period);
+  print(",%.17g,%.17g,%.17g,%.17g\n", actual[kX] / kMillimetre, actual[kY] / kMillimetre, actual[kZ] / kMillimetre,
+        actual[kA]);
 }
 
 }  // namespace flute_grinder

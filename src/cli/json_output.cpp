@@ -55,6 +55,12 @@ Json lastJob(const JobProgress& progress) {
           {"x_mm", progress.x / kMillimetre}};
 }
 
+Json toJson(const ClosestPlace& place) {
+  return {{"bodies", {place.first, place.second}},
+          {"distance_mm", place.distance / kMillimetre},
+          {"x_mm", place.axes[kX] / kMillimetre}};
+}
+
 }  // namespace
 
 Json toJson(const JobPlan& plan) {
@@ -63,6 +69,9 @@ Json toJson(const JobPlan& plan) {
   for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
   return {{"valid", plan.good()},
           {"reasons", reasons},
+          {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
+          {"complete_to_mm", plan.complete ? Json(plan.complete->to / kMillimetre) : Json(nullptr)},
+          {"closest", plan.closest ? toJson(*plan.closest) : Json(nullptr)},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},
@@ -87,6 +96,10 @@ Json toJson(const GrinderState& state) {
           {"coolant_on", state.coolant_on != 0},
           {"emergency_stop", state.emergency_stop != 0},
           {"wheel_in_work", state.wheel_in_work != 0},
+          {"swivel_deg", state.swivel / kDegree},
+          {"swivel_measured", state.swivel_measured != 0},
+          {"machine", axes(Axes(state.position.data()), "")},
+          {"work", axes(Axes(state.work_position.data()), "")},
           {"feed_mm_min", state.feed / kMillimetrePerMinute},
           {"override_percent", state.override * 100},
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
@@ -96,9 +109,11 @@ Json toJson(const GrinderState& state) {
           {"last_job", lastJob(state.progress)}};
 }
 
-void print(const Json& json) {
+std::string text(const Json& json) {
   // A file's name may be any bytes.
-  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
+
+void print(const Json& json) { std::printf("%s\n", text(json).c_str()); }
 
 }  // namespace flute_grinder

@@ -33,7 +33,9 @@ XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
   return XmlRpc::XmlRpcValue(node.Scalar());
 }
 
-std::string readAll(const std::string& path) {
+}  // namespace
+
+std::string readText(const std::string& path) {
   std::ifstream stream(path);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
@@ -41,16 +43,14 @@ std::string readAll(const std::string& path) {
   return text.str();
 }
 
-}  // namespace
-
 LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf) {
   YAML::Node root;
   try {
-    root = YAML::Load(readAll(parameters));
+    root = YAML::Load(readText(parameters));
   } catch (const YAML::Exception& error) {
     throw FileError(parameters + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
-  return readMachineConfig(readAll(urdf), ParameterReader(toXmlRpc(root), parameters));
+  return readMachineConfig(readText(urdf), ParameterReader(toXmlRpc(root), parameters));
 }
 
 }  // namespace flute_grinder

@@ -3,9 +3,11 @@
 #include "flute_grinder/cli/csv.h"
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/step_table.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_job.h"
 
 #include <cstdio>
 #include <vector>
@@ -112,12 +114,22 @@ int runPlan(const PlanOptions& options) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  const JobPlan plan = planJob(job, machine, machine.park, {}, visit);
+  JobPlan plan = planGroundJob(job, machine, machine.park, {}, visit);
+  checkCollision(plan, MachineShapes(readText(options.urdf)));
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
+    if (plan.complete) {
+      std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", plan.complete->from / kMillimetre,
+                  plan.complete->to / kMillimetre);
+    }
+    if (plan.closest) {
+      std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", plan.closest->first.c_str(),
+                  plan.closest->second.c_str(), plan.closest->distance / kMillimetre,
+                  plan.closest->axes[kX] / kMillimetre);
+    }
   }
   for (const core::Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());

@@ -1,26 +1,37 @@
 #include "flute_grinder/cli/online.h"
 
+#include "flute_grinder/ConfirmSwivel.h"
+#include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/cli/call.h"
 #include "flute_grinder/cli/interrupt.h"
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/last_job.h"
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/cli/stop_keys.h"
-#include "flute_grinder/connection/service_call.h"
+#include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <actionlib_msgs/GoalID.h>
+#include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
+#include <mutex>
 #include <optional>
 
 namespace flute_grinder {
 
 namespace {
+
+const ros::WallDuration kSettling(1);    ///< longest time for an axis to stand still after a jog
+constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
 
 /// Whether there is something to cancel.
 bool takesCancel(const GrinderState& state) {
@@ -29,22 +40,15 @@ bool takesCancel(const GrinderState& state) {
 
 int noMaster() { return fail("no ROS master answers at " + ros::master::getURI()); }
 
-/// Calls a service of the grinder, and prints why if it is refused or not answered. @return the exit status.
-template <typename Service>
-int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request) {
-  ros::ServiceClient there = nh.serviceClient<Service>(service);
-  if (!await(kPatience, [&] { return there.exists(); })) return noGrinder(nh);
-  std::optional<typename Service::Response> response;
-  ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
-                      ros::serialization::serializeMessage(request), kPatience,
-                      [&](ros::SerializedMessage* answer) { response = responseFrom<Service>(answer); });
-  await(kPatience, [&] { return running.finished(); });
-  running.end();
-  if (!response) {
-    return fail(service + ": no answer from the grinder " + nh.getNamespace() +
-                "; the request may or may not have been carried out");
-  }
-  return response->success ? 0 : fail(response->message);
+void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
+  std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
+              axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
+}
+
+std::string swivelText(const GrinderState& state) {
+  if (std::isnan(state.swivel)) return "not confirmed";
+  return text({state.swivel, Unit::kRadian}, UnitSystem::kShop) +
+         (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
 void printState(const GrinderState& state) {
@@ -55,6 +59,9 @@ void printState(const GrinderState& state) {
   std::printf("coolant         %s\n", state.coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state.emergency_stop ? "pressed" : "released");
   std::printf("wheel in work   %s\n", state.wheel_in_work ? "yes" : "no");
+  std::printf("swivel          %s\n", swivelText(state).c_str());
+  printPosition("work position", state.work_position);
+  printPosition("of the machine", state.position);
   std::printf("feed            %.1f mm/min, override %.0f %%\n", state.feed / units::kMillimetrePerMinute,
               state.override * 100);
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
@@ -63,14 +70,16 @@ void printState(const GrinderState& state) {
   if (!state.progress.job_digest.empty()) std::printf("last job        %s\n", lastJob(state.progress).c_str());
 }
 
-/// Starts a motion by a service, and waits until the machine leaves the motion's state.
+/// Waits until the machine leaves the state of a motion that was started.
+/// @param status exit status of the start; if it failed, nothing is awaited.
+/// @param moves whether the motion lasts in a state.
 /// @param wait_more called meanwhile; returns false to stop waiting.
 /// @return the exit status of the start, or of a lost connection.
-int runMotion(ros::NodeHandle& nh, const StateWatch& watch, const std::string& service, std::uint8_t state,
-              const std::function<bool()>& wait_more) {
-  if (const int status = call<std_srvs::Trigger>(nh, service, {})) return status;
+int awaitMotion(int status, const StateWatch& watch, const std::function<bool(std::uint8_t)>& moves,
+                const std::function<bool()>& wait_more) {
+  if (status != 0) return status;
   bool connected = watch.awaitNext();
-  while (connected && watch.newest().state == state && wait_more()) {
+  while (connected && moves(watch.newest().state) && wait_more()) {
     ros::WallDuration(0.02).sleep();
     connected = !watch.lost();
   }
@@ -120,8 +129,9 @@ int home(const std::string& node) {
   const StateWatch watch(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   catchInterrupts();
-  const int status =
-      runMotion(nh, watch, serviceOf(MachineEvent::kHome), GrinderState::HOMING, [] { return interrupts() == 0; });
+  const int status = awaitMotion(
+      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kHome), {}), watch,
+      [](std::uint8_t state) { return state == GrinderState::HOMING; }, [] { return interrupts() == 0; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::HOMING) {
@@ -144,7 +154,9 @@ int lift(const std::string& node) {
   catchInterrupts();
   catchHolds();
   keys.start([&] { keys.hold(); });
-  const int status = runMotion(nh, watch, serviceOf(MachineEvent::kLift), GrinderState::LIFTING, [] { return true; });
+  const int status = awaitMotion(
+      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kLift), {}), watch,
+      [](std::uint8_t state) { return state == GrinderState::LIFTING; }, [] { return true; });
   if (status != 0) return status;
   const GrinderState state = watch.newest();
   if (state.state == GrinderState::FAULT) return fail(state.fault);
@@ -173,7 +185,78 @@ int cancelJob(const std::string& node) {
   return state.fault.empty() ? 0 : fail(state.fault);
 }
 
+/// Receives the position of an axis, 100 times a second; a spinner must be running.
+class PositionWatch {
+ public:
+  /// @param nh the grinder's namespace.
+  PositionWatch(const ros::NodeHandle& nh, int axis) : joint_(kJointNames[static_cast<std::size_t>(axis)]) {
+    ros::NodeHandle around(ros::names::parentNamespace(nh.getNamespace()));
+    subscriber_ = around.subscribe("joint_states", 10, &PositionWatch::onJointState, this);
+  }
+
+  /// As read by the drive [m], A [rad]; nothing before the first message.
+  std::optional<double> newest() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return position_;
+  }
+  /// Whether the axis stands still.
+  bool settled() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return still_ >= kSettled;
+  }
+
+ private:
+  static constexpr int kSettled = 5;          ///< messages
+  static constexpr double kEncoder = 0.5e-6;  ///< by which the position of an axis at rest may change [m], A [rad]
+
+  void onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
+    const auto found = std::find(joints->name.begin(), joints->name.end(), joint_);
+    const auto at = static_cast<std::size_t>(found - joints->name.begin());
+    if (at >= joints->position.size()) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const bool still = position_ && std::abs(*position_ - joints->position[at]) <= kEncoder;
+    still_ = still ? still_ + 1 : 0;
+    position_ = joints->position[at];
+  }
+
+  const std::string joint_;
+  mutable std::mutex mutex_;
+  std::optional<double> position_;
+  int still_ = 0;  ///< messages
+  ros::Subscriber subscriber_;
+};
+
 }  // namespace
+
+int jog(const std::string& node, int axis, double distance, double feed) {
+  const bool rotary = axis == kA;
+  const double unit = rotary ? units::kDegree : units::kMillimetre;
+  ros::NodeHandle nh(node);
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  const StateWatch watch(nh);
+  const PositionWatch position(nh, axis);
+  StopKeys keys(nh, watch);
+  if (!await(kPatience, [&] { return watch.begun() && position.newest() && keys.connected(); })) return noGrinder(nh);
+  catchInterrupts();
+  catchHolds();
+  keys.start([&] { keys.hold(); });
+  const double end = *position.newest() + distance * unit;
+  JogStep::Request request;
+  request.axis = static_cast<std::uint8_t>(axis);
+  request.distance = distance * unit;
+  request.speed = feed * unit / 60;
+  const auto moves = [](std::uint8_t state) {
+    return state == GrinderState::JOGGING || state == GrinderState::JOGGING_RETRACTED;
+  };
+  const int status = awaitMotion(call<JogStep>(nh, "jog_step", request), watch, moves, [] { return true; });
+  if (status != 0) return status;
+  if (watch.newest().state == GrinderState::FAULT) return fail(watch.newest().fault);
+  await(kSettling, [&] { return position.settled(); });
+  const double there = *position.newest();
+  std::printf("%c %.4f %s\n", "XYZA"[axis], there / unit, rotary ? "deg" : "mm");
+  return std::abs(there - end) <= kJogTolerance ? 0 : fail("the jog was stopped before its end");
+}
 
 int request(const std::string& node, MachineEvent event) {
   switch (event) {
@@ -184,6 +267,13 @@ int request(const std::string& node, MachineEvent event) {
   }
   ros::NodeHandle nh(node);
   return call<std_srvs::Trigger>(nh, serviceOf(event), {});
+}
+
+int confirmSwivel(const std::string& node, double degrees) {
+  ros::NodeHandle nh(node);
+  ConfirmSwivel::Request request;
+  request.swivel = degrees * units::kDegree;
+  return call<ConfirmSwivel>(nh, "confirm_swivel", request);
 }
 
 int setFeedOverride(const std::string& node, double percent) {

@@ -32,7 +32,7 @@ void Recorder::onBatch(const SetpointBatch::ConstPtr& batch) {
   for (const WrittenSetpoint& setpoint : batch->setpoints) {
     ++received_;
     end_cycle_ = std::max(end_cycle_, setpoint.cycle + 1);
-    if (csv_) csv_->write(fromMessage(setpoint), batch->period);
+    if (csv_) csv_->write(fromMessage(setpoint), Axes(setpoint.actual.data()), batch->period);
   }
 }
 

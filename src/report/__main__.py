@@ -2,12 +2,16 @@
 read or written."""
 
 import argparse
+import json
 import os
 import signal
+import subprocess
 import sys
 from collections import namedtuple
 
 from record import SourceError
+
+SECTIONS = 17  # of the tool
 
 Limits = namedtuple('Limits', 'speed acceleration following')
 
@@ -17,19 +21,33 @@ def arguments():
     parser.add_argument('file')
     parser.add_argument('--output', required=True)
     parser.add_argument('--job', type=int, required=True)
+    parser.add_argument('--grind', required=True, help='the program itself, which simulates the tool')
     for limit in ('velocity', 'acceleration', 'following-error'):
         parser.add_argument('--max-' + limit, type=float, nargs=4, required=True)
     return parser.parse_args()
 
 
-def read(path, job):
+def simulate(record, path, job, grind):
+    """Gives a record its tool, if its job is known."""
+    which = ['--run', str(job)] if job else []
+    done = subprocess.run([grind, 'simulate', path, '--json', '--sections', str(SECTIONS), *which], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, universal_newlines=True)
+    if done.stdout:
+        record.tool = json.loads(done.stdout)
+    else:
+        record.no_tool = done.stderr.strip()
+
+
+def read(path, job, grind):
     """The record of a file, whose type is recognised by its first bytes."""
     with open(path, 'rb') as file:
         is_bag = file.read(8) == b'#ROSBAG '
     # ROS and matplotlib are slow to load.
     if is_bag:
         from read_bag import read_bag
-        return read_bag(path, job)
+        record = read_bag(path, job)
+        simulate(record, path, job, grind)
+        return record
     from read_csv import read_csv
     return read_csv(path)
 
@@ -38,7 +56,7 @@ def main():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     given = arguments()
     try:
-        record = read(given.file, given.job)
+        record = read(given.file, given.job, given.grind)
     except SourceError as error:
         return '%s: %s' % (given.file, error)
     except OSError as error:
@@ -46,9 +64,11 @@ def main():
     from figures import draw
     from motion import KeyFigures
     from page import page
+    from tool import tool_pictures
     limits = Limits(given.max_velocity, given.max_acceleration, given.max_following_error)
     key = KeyFigures(record)
-    text = page(os.path.basename(given.file), record, key, limits, draw(record, key, limits))
+    pictures = draw(record, key, limits) + (tool_pictures(record.tool) if record.tool else [])
+    text = page(os.path.basename(given.file), record, key, limits, pictures)
     try:
         with open(given.output, 'w', encoding='utf-8') as file:
             file.write(text)

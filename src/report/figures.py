@@ -160,7 +160,7 @@ def motion_pictures(record, key, limits):
         ('acceleration', 'Axis accelerations', 'largest acceleration', '/s²', limits.acceleration, key.acceleration,
          'Second differences of the commanded positions between the ends of odd-even pairs, as the plan checks them, in mm/s², '
          'A in deg/s², over time in s; dashed: the limits.')]
-    if record.kind == 'bag':
+    if record.has_actual:
         wanted.append(('following', 'Following error', 'largest following error', '', limits.following, key.following,
                        'Commanded position of the previous cycle minus measured position, in mm, A in deg, over time in s; '
                        'dashed: the limit at which the machine stops.'))

@@ -41,7 +41,7 @@ def motions(record):
         lead = np.zeros(0, ROW)
     for block in record.blocks():
         rows = np.concatenate([lead, block])
-        yield Motion(rows, record.period, record.kind == 'bag')
+        yield Motion(rows, record.period, record.has_actual)
         lead = rows[-4:]
 
 

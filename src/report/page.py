@@ -29,8 +29,8 @@ figure img {{ width: 100%; }} figcaption {{ color: #444; font-size: .93em; }} fi
 </html>
 '''
 
-KINDS = {'table': 'points of a curve, from "grind table"', 'setpoints': 'setpoints, from "grind plan" or "grind run"',
-         'bag': 'record of the grinder (bag)'}
+KINDS = {'table': 'points of a curve, from "grind table"', 'setpoints': 'setpoints, from "grind plan"',
+         'run': 'setpoints, from "grind run"', 'bag': 'record of the grinder (bag)'}
 LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
 MOST_STATES = 100
 
@@ -68,7 +68,7 @@ def key_figures(record, key):
 
 def axis_table(record, key, limits):
     columns = [('speed', '/s', key.speed, limits.speed), ('acceleration', '/s²', key.acceleration, limits.acceleration)]
-    if record.kind == 'bag':
+    if record.has_actual:
         columns.append(('following error', '', key.following, limits.following))
     rows = []
     for axis, name in enumerate(AXES):
@@ -103,10 +103,14 @@ def left_out(record, key):
     if record.kind == 'table':
         reasons.append('Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.')
     if record.kind == 'setpoints':
-        reasons.append('Following error and loop timing: a CSV file has only commanded values; a bag has more.')
+        reasons.append('Following error and loop timing: the CSV file of a plan has only commanded values; a bag has more.')
+    if record.kind == 'run':
+        reasons.append('Loop timing: a CSV file does not have it; a bag does.')
     if record.max_deviation is None:
         reasons.append('Deviation at the cutter\'s surface: it depends on the cutter\'s radius, which %s.' % (
             'is in the job result, which is not in the bag' if record.kind == 'bag' else 'a CSV file does not have'))
+    if record.no_tool:
+        reasons.append('The ground tool: %s' % record.no_tool)
     return '<ul>\n%s\n</ul>' % '\n'.join('<li>%s</li>' % html.escape(reason) for reason in reasons) if reasons else ''
 
 

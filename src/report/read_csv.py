@@ -9,6 +9,7 @@ from record import EVEN, MM, MM_MIN, MOVES, ODD, ROW, STEPS, BLOCK, Record, Sour
 TABLE = [('point', 'i8'), ('x_mm', 'f8'), ('a_rad', 'f8'), ('a_theory_rad', 'f8'), ('error_rad', 'f8')]
 SETPOINTS = [('cycle', 'i8'), ('time_s', 'f8'), ('move', 'S8'), ('tooth', 'i4'), ('pass', 'i4'), ('step', 'S8'),
              ('x_mm', 'f8'), ('y_mm', 'f8'), ('z_mm', 'f8'), ('a_rad', 'f8'), ('error_rad', 'f8'), ('feed_mm_min', 'f8')]
+ACTUAL = [('actual_x_mm', 'f8'), ('actual_y_mm', 'f8'), ('actual_z_mm', 'f8'), ('actual_a_rad', 'f8')]
 
 
 def header(columns):
@@ -23,6 +24,8 @@ def read_csv(path):
             return read_rows(file, Record('table'), TABLE, from_table)
         if first == header(SETPOINTS):
             return read_rows(file, Record('setpoints'), SETPOINTS, from_setpoints)
+        if first == header(SETPOINTS + ACTUAL):
+            return read_rows(file, Record('run'), SETPOINTS + ACTUAL, from_run)
     if not first:
         raise SourceError('is empty')
     raise SourceError('its first line is %s; allowed: "%s", "%s", or a bag'
@@ -88,6 +91,13 @@ def from_setpoints(table, record):
     # The times are whole cycles.
     if table['cycle'][-1] > 0:
         record.period = float(table['time_s'][-1] / table['cycle'][-1])
+    return rows
+
+
+def from_run(table, record):
+    rows = from_setpoints(table, record)
+    for axis, (name, _) in enumerate(ACTUAL):
+        rows['actual'][:, axis] = table[name] * (MM if name.endswith('_mm') else 1)
     return rows
 
 

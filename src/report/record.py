@@ -43,20 +43,28 @@ class SourceError(Exception):
 class Record:
     """The rows of a file, with what else the file contains.
 
-    kind: 'table', 'setpoints' (CSV) or 'bag'; only a bag has `actual` and `cycle_period`. period: of the control
+    kind: 'table', 'setpoints' (CSV of a plan), 'run' (CSV) or 'bag'; `actual` is in the latter two, `cycle_period` in a bag
+    alone. period: of the control
     cycle [s], 0 for a table. facts: (name, text) pairs for the reader. max_deviation: [m], or None if unknown.
-    states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
+    tool: of `grind simulate`, or None; no_tool: the
+    reason why not. states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
 
     def __init__(self, kind):
         self.kind = kind
         self.period = 0.0
         self.facts = []
         self.max_deviation = None
+        self.tool = None
+        self.no_tool = ''
         self.states = []
         self.diagnostics = []
         self._file = tempfile.TemporaryFile()
         self._last_cycle = None
         self.missing = 0
+
+    @property
+    def has_actual(self):
+        return self.kind in ('run', 'bag')
 
     def restart(self):
         """Deletes the rows."""

@@ -24,7 +24,7 @@ class CsvFile {
   /// @param path the file.
   /// @param header its first line.
   /// @throw FileError if it cannot be opened for writing.
-  CsvFile(std::string path, const char* header);
+  CsvFile(std::string path, std::string header);
   CsvFile(const CsvFile&) = delete;
   CsvFile& operator=(const CsvFile&) = delete;
   ~CsvFile();
@@ -43,7 +43,7 @@ class CsvFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   const std::string path_;
-  const char* const header_;
+  const std::string header_;
   bool created_ = false, begun_ = false;
   int error_ = 0;  ///< errno of the first line that could not be written
   std::unique_ptr<std::FILE, Closer> file_;
@@ -56,13 +56,30 @@ class TableCsv : public CsvFile {
   void write(int number, const CurvePoint& point, double theory);
 };
 
-/// `cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min`, a line for each setpoint.
+/// A line for each setpoint.
 class SetpointCsv : public CsvFile {
  public:
-  explicit SetpointCsv(const std::string& path)
-      : CsvFile(path, "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min") {}
+  static constexpr const char* kColumns =
+      "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min";
+
+  explicit SetpointCsv(const std::string& path) : CsvFile(path, kColumns) {}
   /// @param period control cycle [s].
   void write(const Setpoint& setpoint, double period);
+
+ protected:
+  SetpointCsv(const std::string& path, const std::string& columns) : CsvFile(path, columns) {}
+  /// Without the end of the line.
+  void writeFields(const Setpoint& setpoint, double period);
+};
+
+/// The same with the position that the drive read one cycle before.
+class RunCsv : public SetpointCsv {
+ public:
+  static const std::string& columns();
+
+  explicit RunCsv(const std::string& path) : SetpointCsv(path, columns()) {}
+  /// @param actual [m], A [rad]. @param period control cycle [s].
+  void write(const Setpoint& setpoint, const Axes& actual, double period);
 };
 
 }  // namespace flute_grinder

@@ -16,6 +16,9 @@ Json toJson(const JobPlan& plan);
 /// For `grind status`. Teeth and passes count from 1, as on the operator's screens.
 Json toJson(const GrinderState& state);
 
+/// As it is printed; bytes that are not UTF-8 are replaced.
+std::string text(const Json& json);
+
 /// Prints it to stdout.
 void print(const Json& json);
 

@@ -37,6 +37,16 @@ int printStatus(const std::string& node, bool json);
 /// @return the exit status.
 int request(const std::string& node, MachineEvent event);
 
+/// Tells the grinder where the swivel stands. @param degrees -90 to 90. @return the exit status.
+int confirmSwivel(const std::string& node, double degrees);
+
+/// Moves an axis by hand, waits until it rests, and prints where it stands; Ctrl-C and Ctrl-Z stop it.
+/// @param axis kX ... kA.
+/// @param distance signed [mm], A [deg].
+/// @param feed [mm/min], A [deg/min]; 0 for the machine's.
+/// @return the exit status.
+int jog(const std::string& node, int axis, double distance, double feed);
+
 /// Sets the feed override. @param percent 0 to 120. @return the exit status.
 int setFeedOverride(const std::string& node, double percent);
 

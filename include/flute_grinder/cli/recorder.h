@@ -44,7 +44,7 @@ class Recorder {
   std::uint64_t accountedFor() const;
 
   const std::string own_goals_;  ///< prefix of the ids of this program's goals
-  std::optional<SetpointCsv> csv_;
+  std::optional<RunCsv> csv_;
   mutable std::mutex mutex_;  ///< guards the next five, and the file
   std::uint64_t received_ = 0, lost_ = 0;
   std::uint64_t end_cycle_ = 0;  ///< one past the last received

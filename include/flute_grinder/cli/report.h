@@ -17,4 +17,8 @@ struct ReportOptions {
 /// @throw FileError or ParameterError if the machine cannot be read, FileError if the program is missing.
 [[noreturn]] void writeReport(const ReportOptions& options);
 
+/// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return whether that succeeded; the
+/// reason is on stderr. @throw FileError if the program is missing.
+bool drawTool(const std::string& json, const std::string& svg);
+
 }  // namespace flute_grinder

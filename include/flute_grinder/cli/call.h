@@ -1,0 +1,36 @@
+#pragma once
+
+#include "flute_grinder/cli/online.h"
+#include "flute_grinder/cli/state_watch.h"
+#include "flute_grinder/connection/service_call.h"
+
+#include <ros/ros.h>
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Calls a service of the grinder, and prints why if it is refused or not answered.
+/// @param answer if given, gets the response of a call that succeeded. @return the exit status.
+template <typename Service>
+int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
+         typename Service::Response* answer = nullptr) {
+  ros::ServiceClient there = nh.serviceClient<Service>(service);
+  if (!await(kPatience, [&] { return there.exists(); })) return noGrinder(nh);
+  std::optional<typename Service::Response> response;
+  ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
+                      ros::serialization::serializeMessage(request), kPatience,
+                      [&](ros::SerializedMessage* message) { response = responseFrom<Service>(message); });
+  await(kPatience, [&] { return running.finished(); });
+  running.end();
+  if (!response) {
+    return fail(service + ": no answer from the grinder " + nh.getNamespace() +
+                "; the request may or may not have been carried out");
+  }
+  if (!response->success) return fail(response->message);
+  if (answer) *answer = *response;
+  return 0;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "flute_grinder/core/axes.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// On the command line.
+constexpr const char* kAxisLetters = "xyza";
+
+/// Arguments of `grind offsets`.
+struct OffsetsOptions {
+  std::vector<std::string> set;  ///< AXIS=VALUE, in mm or deg
+  bool json = false;
+};
+
+/// Arguments of `grind touch-off`.
+struct TouchOffOptions {
+  std::string axis;          ///< a letter of kAxisLetters
+  std::optional<double> at;  ///< of Y, diameter of the blank that the wheel touches; else the work position [mm or deg]
+  std::string job;           ///< job file, for Y
+};
+
+/// Why `grind offsets --set` cannot take an argument; empty if it can.
+std::string offsetRefusal(const std::string& argument);
+
+/// Sets work offsets as told, and prints all. @param node the grinder's. @return the exit status.
+int runOffsets(const std::string& node, const OffsetsOptions& options);
+
+/// Sets the work offset of an axis from where it stands. @param node the grinder's. @return the exit status.
+/// @throw std::invalid_argument for arguments that do not fit each other. @throw JobError if the job file is refused.
+int runTouchOff(const std::string& node, const TouchOffOptions& options);
+
+}  // namespace flute_grinder

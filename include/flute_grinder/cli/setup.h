@@ -1,0 +1,24 @@
+#pragma once
+
+#include "flute_grinder/geometry/setup_solver.h"
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind setup`.
+struct SetupOptions {
+  std::string job;
+  std::optional<SetupFigure> keep;
+  bool write = false;      ///< into the job's file
+  std::string parameters;  ///< YAML of the machine
+  std::string urdf;
+  bool json = false;
+};
+
+/// Solves the set-up of a job, prints the sheet, and writes it into the job's file. @return the exit status.
+/// @throw FileError, JobFileError, ParameterError if a file cannot be read or written.
+int runSetup(const SetupOptions& options);
+
+}  // namespace flute_grinder

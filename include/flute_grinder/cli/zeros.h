@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind zeros`.
+struct ZerosOptions {
+  std::string job;
+  double stickout_mm = 0;
+  std::optional<double> flange_mm;  ///< instead of the wheel file's
+  std::string parameters;           ///< YAML of the machine
+  std::string urdf;
+  bool json = false;
+};
+
+/// Prints where a job's X, Y and Z are zero in machine coordinates, by the machine's geometry. @return the exit status.
+int printZeros(const ZerosOptions& options);
+
+}  // namespace flute_grinder

@@ -1,0 +1,333 @@
+#include "flute_grinder/cli/ground_tool.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/section_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+constexpr int kVolumeSections = 12;
+constexpr std::size_t kOutlineRings = 32;
+constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth together
+
+/// A tooth in a section.
+struct Place {
+  const GrindJob& job;
+  const MeasuredSection& section;
+  std::size_t number;
+
+  const ToothSection& tooth() const { return section.ground.teeth[number]; }
+  CutterGeometry cutter() const { return cutterOf(job, static_cast<int>(number)); }
+  double askedDepth() const {
+    const GrindProcess& p = job.process;
+    return p.depth + (p.depthEnd() - p.depth) * section.ground.x / job.cutter.flute_length;
+  }
+};
+
+using Value = std::optional<double>;
+
+Value onOuterCircle(const Place& p, Value angle) {
+  if (angle) *angle *= p.section.ground.radius;
+  return angle;
+}
+
+/// The rake face of a flute that is not complete is not the one that a longer stroke would leave.
+Value ifComplete(const Place& p, Value value) { return p.tooth().complete ? value : std::nullopt; }
+
+/// A figure of a tooth in a section.
+struct Figure {
+  const char* key;    ///< in files, ends in the unit
+  const char* title;  ///< in the table of extremes
+  const char* head;   ///< in the table of sections; empty for a figure that is not in either table
+  double unit;
+  bool of_section;  ///< the same for all teeth
+  Value (*value)(const Place&);
+  Value (*asked)(const Place&);
+};
+
+Value notAsked(const Place&) { return std::nullopt; }
+
+constexpr Figure kFigures[]{
+    {"edge_deg", "", "", kDegree, false, [](const Place& p) { return p.tooth().edge; }, notAsked},
+    {"rake_deg", "radial rake, deg", "rake deg", kDegree, false,
+     [](const Place& p) { return ifComplete(p, p.tooth().rake); },
+     [](const Place& p) { return Value(p.job.cutter.rake_angle); }},
+    {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
+     [](const Place& p) { return ifComplete(p, p.tooth().normal_rake); },
+     [](const Place& p) {
+       return Value(std::atan(std::tan(p.job.cutter.rake_angle) * std::cos(p.cutter().spiral_angle)));
+     }},
+    {"core_diameter_mm", "core diameter, mm", "core mm", kMillimetre, true,
+     [](const Place& p) { return Value(2 * p.section.ground.core_radius); },
+     [](const Place& p) { return Value(2 * std::max(0.0, p.section.ground.radius - p.askedDepth())); }},
+    {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, false,
+     [](const Place& p) { return Value(p.tooth().depth); }, [](const Place& p) { return Value(p.askedDepth()); }},
+    {"flute_deg", "flute, deg", "flute deg", kDegree, false, [](const Place& p) { return p.tooth().flute; }, notAsked},
+    {"flute_mm", "flute, mm", "flute mm", kMillimetre, false,
+     [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }, notAsked},
+    {"land_deg", "land, deg", "land deg", kDegree, false, [](const Place& p) { return p.tooth().land; }, notAsked},
+    {"land_mm", "land, mm", "land mm", kMillimetre, false,
+     [](const Place& p) { return onOuterCircle(p, p.tooth().land); }, notAsked},
+    {"spiral_deg", "spiral angle, deg", "spiral deg", kDegree, false, [](const Place& p) { return p.tooth().spiral; },
+     [](const Place& p) { return Value(p.cutter().spiral_angle); }},
+    {"area_removed_mm2", "area removed, mm^2", "area mm^2", kMillimetre* kMillimetre, true,
+     [](const Place& p) { return Value(p.section.area_removed); }, notAsked},
+};
+
+bool isShown(const Figure& figure) { return *figure.head != '\0'; }
+bool isAsked(const Figure& figure) { return figure.asked != notAsked; }
+
+/// In the figure's unit.
+Value shown(const Figure& figure, Value value) {
+  if (value) *value /= figure.unit;
+  return value;
+}
+
+template <typename Visit>
+void forEachTooth(const GroundTool& tool, const Visit& visit) {
+  for (const MeasuredSection& section : tool.sections) {
+    for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) visit(Place{tool.job, section, i});
+  }
+}
+
+std::string format(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string format(const char* format, ...) {
+  char text[64];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+std::string cell(int width, Value value, const char* plus = "") {
+  return value ? format(*plus ? "  %+*.3f" : "  %*.3f", width, *value) : format("  %*s", width, "-");
+}
+
+std::string rowOf(const Place& place) {
+  std::string row;
+  for (const Figure& figure : kFigures) {
+    if (!isShown(figure)) continue;
+    row += cell(static_cast<int>(std::string(figure.head).size()), shown(figure, figure.value(place)));
+  }
+  return row;
+}
+
+/// Neighbouring teeth with the same figures share a line.
+void printSection(const GrindJob& job, const MeasuredSection& section) {
+  const std::size_t teeth = section.ground.teeth.size();
+  std::string row;
+  for (std::size_t first = 0, next; first < teeth; first = next) {
+    row = rowOf({job, section, first});
+    for (next = first + 1; next < teeth && rowOf({job, section, next}) == row;) ++next;
+    const std::string which = format(next > first + 1 ? "%zu-%zu" : "%zu", first + 1, next);
+    std::printf("%8.3f  %5s%s\n", section.ground.x / kMillimetre, which.c_str(), row.c_str());
+  }
+}
+
+/// The least and the largest of a figure and where they are, with the range of what is asked and of the difference.
+struct Extremes {
+  struct At {
+    double value, x;
+    std::size_t tooth;
+  };
+  std::optional<At> least, largest;
+  std::optional<std::pair<double, double>> asked, difference;
+
+  Extremes(const GroundTool& tool, const Figure& figure) {
+    forEachTooth(tool, [&](const Place& p) {
+      const Value asks = shown(figure, figure.asked(p)), value = shown(figure, figure.value(p));
+      if (asks) widen(asked, *asks);
+      if (!value) return;
+      if (asks) widen(difference, *value - *asks);
+      const At at{*value, p.section.ground.x / kMillimetre, p.number + 1};
+      if (!least || *value < least->value) least = at;
+      if (!largest || *value > largest->value) largest = at;
+    });
+  }
+
+ private:
+  static void widen(std::optional<std::pair<double, double>>& range, double value) {
+    if (!range) range.emplace(value, value);
+    range->first = std::min(range->first, value);
+    range->second = std::max(range->second, value);
+  }
+};
+
+std::string text(const std::optional<Extremes::At>& at) {
+  if (!at) return format("  %9s  %8s  %5s", "-", "-", "-");
+  return format("  %9.3f  %8.3f  %5zu", at->value, at->x, at->tooth);
+}
+
+std::string text(const std::optional<std::pair<double, double>>& range, const char* plus = "") {
+  if (!range) return format("  %20s", "-");
+  const std::string from = cell(0, range->first, plus).substr(2), to = cell(0, range->second, plus).substr(2);
+  return format("  %20s", (from == to ? from : from + " to " + to).c_str());
+}
+
+void printExtremes(const GroundTool& tool) {
+  std::printf("\n%-18s  %9s  %8s  %5s  %9s  %8s  %5s  %20s  %20s\n", "", "least", "at X mm", "tooth", "largest",
+              "at X mm", "tooth", "asked", "difference");
+  for (const Figure& figure : kFigures) {
+    if (!isShown(figure)) continue;
+    const Extremes e(tool, figure);
+    std::printf("%-18s%s%s%s%s\n", figure.title, text(e.least).c_str(), text(e.largest).c_str(), text(e.asked).c_str(),
+                text(e.difference, "+").c_str());
+  }
+}
+
+/// Of a record, which strokes formed each tooth; those that are missing are told as well.
+void printStrokes(const GroundTool& tool) {
+  for (std::size_t i = 0; i < tool.job.tooth_angles.size(); ++i) {
+    std::string passes;
+    for (const RecordedStroke& stroke : tool.strokes) {
+      if (stroke.place.tooth != static_cast<int>(i)) continue;
+      passes += format("%spass %d, X %.3f to %.3f mm", passes.empty() ? "" : "; ", stroke.place.pass + 1,
+                       stroke.range.from / kMillimetre, stroke.range.to / kMillimetre);
+    }
+    std::printf("%-18s  %s\n", format("tooth %zu", i + 1).c_str(),
+                passes.empty() ? "not in the record" : passes.c_str());
+  }
+}
+
+Json strokes(const GroundTool& tool) {
+  Json strokes = Json::array();
+  for (const RecordedStroke& stroke : tool.strokes) {
+    strokes.push_back({{"tooth", stroke.place.tooth},
+                       {"pass", stroke.place.pass},
+                       {"from_x_mm", stroke.range.from / kMillimetre},
+                       {"to_x_mm", stroke.range.to / kMillimetre}});
+  }
+  return strokes;
+}
+
+Json number(Value value) { return value ? Json(*value) : Json(nullptr); }
+
+/// The figures of the section, or of the tooth.
+void append(Json& json, const Place& place, bool of_section) {
+  for (const Figure& figure : kFigures) {
+    if (figure.of_section != of_section) continue;
+    json[figure.key] = number(shown(figure, figure.value(place)));
+    if (isAsked(figure)) json[std::string("asked_") + figure.key] = number(shown(figure, figure.asked(place)));
+  }
+}
+
+/// Null where the core is cut through.
+Json outline(const GroundTool& tool, double x) {
+  const std::size_t teeth = tool.cutter.teeth().size();
+  const OutlineGrid grid{teeth, kOutlineRings, kOutlineColumns / teeth + 1};
+  Json points = Json::array();
+  try {
+    for (const PolarPoint& p : sectionOutline(tool.cutter, x, tool.cutter.cutter().radius(x), grid)) {
+      const double r = p.radius / kMillimetre;
+      points.push_back({r * std::cos(p.angle()), r * std::sin(p.angle())});
+    }
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+  return points;
+}
+
+Json toJson(const GroundTool& tool, const MeasuredSection& section) {
+  Json json{{"x_mm", section.ground.x / kMillimetre}, {"diameter_mm", 2 * section.ground.radius / kMillimetre}};
+  append(json, {tool.job, section, 0}, true);
+  json["outline_mm"] = outline(tool, section.ground.x);
+  json["teeth"] = Json::array();
+  for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
+    Json tooth{{"tooth", i}, {"complete", section.ground.teeth[i].complete}};
+    append(tooth, {tool.job, section, i}, false);
+    json["teeth"].push_back(std::move(tooth));
+  }
+  return json;
+}
+
+}  // namespace
+
+GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
+  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}};
+  tool.check = checkGroundCutter(job, tool.cutter);
+  for (const double x : at) {
+    const GroundSection section = tool.cutter.section(x);
+    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
+  }
+  tool.volume_removed = tool.cutter.volumeRemoved(0, job.cutter.flute_length, kVolumeSections);
+  return tool;
+}
+
+void printText(const GroundTool& tool) {
+  std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),
+              toolText(tool.job.cutter, tool.job.tooth_angles.size()).c_str(), "X mm", "tooth");
+  for (const Figure& figure : kFigures) {
+    if (isShown(figure)) std::printf("  %s", figure.head);
+  }
+  std::printf("\n");
+  for (const MeasuredSection& section : tool.sections) printSection(tool.job, section);
+  printExtremes(tool);
+  if (tool.check.complete) {
+    std::printf("\n%-18s  X %.3f to %.3f mm\n", "flutes complete", tool.check.complete->from / kMillimetre,
+                tool.check.complete->to / kMillimetre);
+  } else {
+    std::printf("\n%-18s  not in the middle of the flute\n", "flutes complete");
+  }
+  std::printf("%-18s  %.3f mm^3, X 0 to %.3f mm\n", "volume removed",
+              tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre),
+              tool.job.cutter.flute_length / kMillimetre);
+  if (tool.recorded) printStrokes(tool);
+}
+
+Json toJson(const GroundTool& tool) {
+  Json reasons = Json::array();
+  for (const core::Reason& reason : tool.check.reasons) reasons.push_back(core::text(reason, UnitSystem::kShop));
+  Json sections = Json::array();
+  for (const MeasuredSection& section : tool.sections) sections.push_back(toJson(tool, section));
+  const auto& complete = tool.check.complete;
+  return {{"source", tool.source},
+          {"tool", toolText(tool.job.cutter, tool.job.tooth_angles.size())},
+          {"cut", toString(tool.job.cutter.cut)},
+          {"valid", tool.check.reasons.empty()},
+          {"reasons", reasons},
+          {"teeth", tool.job.tooth_angles.size()},
+          {"volume_mm3", tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre)},
+          {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
+          {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
+          {"rake_tolerance_deg", tool.job.cutter.rake_tolerance / kDegree},
+          {"strokes", tool.recorded ? strokes(tool) : Json(nullptr)},
+          {"sections", sections}};
+}
+
+namespace {
+
+std::string csvHeader() {
+  std::string header = "x_mm,tooth";
+  for (const Figure& figure : kFigures) {
+    header += std::string(",") + figure.key;
+    if (isAsked(figure)) header += std::string(",asked_") + figure.key;
+  }
+  return header;
+}
+
+}  // namespace
+
+GroundToolCsv::GroundToolCsv(const std::string& path) : CsvFile(path, csvHeader()) {}
+
+void GroundToolCsv::write(const GroundTool& tool) {
+  const auto field = [&](Value value) { value ? print(",%.17g", *value) : print(","); };
+  forEachTooth(tool, [&](const Place& place) {
+    print("%.17g,%zu", place.section.ground.x / kMillimetre, place.number);
+    for (const Figure& figure : kFigures) {
+      field(shown(figure, figure.value(place)));
+      if (isAsked(figure)) field(shown(figure, figure.asked(place)));
+    }
+    print("\n");
+  });
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,200 @@
+#include "flute_grinder/cli/offsets.h"
+
+#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/TouchOff.h"
+#include "flute_grinder/WorkOffsets.h"
+#include "flute_grinder/cli/call.h"
+#include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/core/work_offsets.h"
+#include "flute_grinder/geometry/ground_job.h"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <mutex>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kTouchTolerance = 1e-6;  ///< of the wheel's radius where it touches [m]
+
+/// The axis whose letter is first in a text; kAxisCount if there is none.
+int axisOf(const std::string& text) {
+  const std::size_t at = text.empty() ? std::string::npos : std::string(kAxisLetters).find(text[0]);
+  return at == std::string::npos ? kAxisCount : static_cast<int>(at);
+}
+
+double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
+
+/// Who runs this command.
+std::string userAtHost() {
+  const passwd* user = getpwuid(geteuid());
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  return std::string(user ? user->pw_name : std::to_string(geteuid())) + "@" + host.data();
+}
+
+std::string timeText(const ros::Time& time, bool utc) {
+  const auto seconds = static_cast<std::time_t>(time.sec);
+  std::tm parts{};
+  utc ? gmtime_r(&seconds, &parts) : localtime_r(&seconds, &parts);
+  std::array<char, 40> text{};
+  std::strftime(text.data(), text.size(), utc ? "%Y-%m-%dT%H:%M:%SZ" : "%Y-%m-%d %H:%M:%S", &parts);
+  return text.data();
+}
+
+/// Receives the work offsets; a spinner must be running.
+class OffsetWatch {
+ public:
+  explicit OffsetWatch(ros::NodeHandle& nh) {
+    const boost::function<void(const WorkOffsets::ConstPtr&)> on_offsets =
+        [this](const WorkOffsets::ConstPtr& offsets) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          newest_ = offsets;
+        };
+    subscriber_ = nh.subscribe<WorkOffsets>("offsets", 10, on_offsets);
+  }
+  /// Null before the first.
+  WorkOffsets::ConstPtr newest() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return newest_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  WorkOffsets::ConstPtr newest_;
+  ros::Subscriber subscriber_;
+};
+
+Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
+  Json axes = Json::object();
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    const std::string unit = axis == kA ? "_deg" : "_mm";
+    const bool set = !offsets.set_at[i].isZero();
+    axes[std::string(1, kAxisLetters[i])] = {{"offset" + unit, toShop(axis, offsets.values[i])},
+                                             {"machine" + unit, toShop(axis, state.position[i])},
+                                             {"work" + unit, toShop(axis, state.work_position[i])},
+                                             {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
+                                             {"set_at", set ? Json(timeText(offsets.set_at[i], true)) : Json(nullptr)}};
+  }
+  return {{"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
+}
+
+void printTable(const WorkOffsets& offsets, const GrinderState& state) {
+  std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    std::printf("%c     %12.4f  %12.4f  %12.4f %-4s", "XYZA"[i], toShop(axis, offsets.values[i]),
+                toShop(axis, state.position[i]), toShop(axis, state.work_position[i]), axis == kA ? "deg" : "mm");
+    if (offsets.set_at[i].isZero()) {
+      std::printf("  never set\n");
+    } else {
+      std::printf("  set by %s, %s\n", offsets.set_by[i].c_str(), timeText(offsets.set_at[i], false).c_str());
+    }
+  }
+  if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");
+  if (!offsets.error.empty()) std::printf("%s\n", offsets.error.c_str());
+}
+
+int show(ros::NodeHandle& nh, bool json) {
+  ros::AsyncSpinner spinner(1);
+  spinner.start();
+  const StateWatch watch(nh);
+  const OffsetWatch offsets(nh);
+  if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
+  // A state from before the last change would contradict the offsets.
+  if (!watch.awaitNext()) return fail(kLinkLost);
+  if (json) {
+    print(toJson(*offsets.newest(), watch.newest()));
+  } else {
+    printTable(*offsets.newest(), watch.newest());
+  }
+  return 0;
+}
+
+/// The work Y at which the job's wheel touches a blank: where its centre is by (D - D1) / 2 above that of Y = 0, less
+/// what the wheel has lost since it was as large as the job says.
+double touchY(const GrindJob& job, double diameter) {
+  return (diameter - job.cutter.end_diameter) / 2 - job.process.wheel_wear;
+}
+
+/// Why the wheel would not touch a blank on its highest line, with what is largest on the wheel; empty if it would.
+/// @param z work position [m].
+std::string heightRefusal(const GrindJob& job, double z) {
+  const WheelProfile wheel = wheelOf(job);
+  const double height = job.process.setup_height + z;
+  const double w = -height / std::cos(job.process.setup_swivel);
+  const bool meets =
+      w >= wheel.lowerFace() && w <= wheel.upperFace() && wheel.radius(w) >= wheel.largestRadius() - kTouchTolerance;
+  if (meets) return "";
+  const auto shown = [](double si) { return text({si, Unit::kMetre}, UnitSystem::kShop); };
+  return "the wheel's centre stands " + shown(height) +
+         " above the cutter's axis: there the wheel does not touch a blank with its largest diameter; move Z, to " +
+         shown(-job.process.setup_height) + " for the middle of the wheel, and touch again";
+}
+
+}  // namespace
+
+std::string offsetRefusal(const std::string& argument) {
+  const std::string allowed = "; allowed: AXIS=VALUE, as y=45.2, the axis x, y, z or a, the value in mm or deg";
+  if (axisOf(argument) == kAxisCount || argument.size() < 3 || argument[1] != '=') return argument + allowed;
+  char* end = nullptr;
+  const double value = std::strtod(argument.c_str() + 2, &end);
+  return *end == '\0' && std::isfinite(value) ? "" : argument + allowed;
+}
+
+int runOffsets(const std::string& node, const OffsetsOptions& options) {
+  ros::NodeHandle nh(node);
+  for (const std::string& argument : options.set) {
+    const int axis = axisOf(argument);
+    SetOffset::Request request;
+    request.axis = kJointNames[static_cast<std::size_t>(axis)];
+    request.value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
+    request.set_by = userAtHost();
+    if (const int status = call<SetOffset>(nh, "set_offset", request)) return status;
+  }
+  return show(nh, options.json);
+}
+
+int runTouchOff(const std::string& node, const TouchOffOptions& options) {
+  const int axis = axisOf(options.axis);
+  if (axis == kY && !(options.at && !options.job.empty())) {
+    throw std::invalid_argument(
+        "touch-off y needs --at DIAMETER, of the blank that the wheel touches, and --job JOB, for which Y = 0 is where "
+        "the wheel touches the small end");
+  }
+  if (axis != kY && !options.job.empty()) throw std::invalid_argument("--job; allowed: for y alone");
+  TouchOff::Request request;
+  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
+  request.set_by = userAtHost();
+  ros::NodeHandle nh(node);
+  if (axis == kY) {
+    const GrindJob job = readJobFile(options.job);
+    ros::AsyncSpinner spinner(1);
+    spinner.start();
+    const StateWatch watch(nh);
+    if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
+    const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);
+    if (!refused.empty()) return fail(refused);
+    request.position = touchY(job, request.position);
+  }
+  TouchOff::Response response;
+  if (const int status = call<TouchOff>(nh, "touch_off", request, &response)) return status;
+  const auto shown = [&](double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop, 9); };
+  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis, UnitSystem::kShop).c_str(),
+              shown(response.value).c_str(), shown(request.position).c_str());
+  return 0;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,64 @@
+#include "flute_grinder/cli/setup.h"
+
+#include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/setup_file.h"
+#include "flute_grinder/geometry/setup_sheet.h"
+
+#include <cstdio>
+
+namespace flute_grinder {
+
+namespace {
+
+using units::kDegree;
+using units::kMillimetre;
+
+Json toJson(const JobSetup& setup) {
+  const GrindProcess& p = setup.job.process;
+  const auto& complete = setup.check.complete;
+  const TouchOff touch = touchOffOf(setup.job);
+  return {{"swivel_deg", p.setup_swivel / kDegree},
+          {"height_mm", p.setup_height / kMillimetre},
+          {"depth_mm", p.depth / kMillimetre},
+          {"rake_min_deg", setup.least_rake / kDegree},
+          {"rake_max_deg", setup.largest_rake / kDegree},
+          {"core_diameter_mm", setup.core_diameter / kMillimetre},
+          {"overtravel_mm", {setup.overtravel[0] / kMillimetre, setup.overtravel[1] / kMillimetre}},
+          {"upper_face_mm", upperFaceHeight(setup.job) / kMillimetre},
+          {"lower_face_mm", lowerFaceHeight(setup.job) / kMillimetre},
+          {"touch_y_mm", touch.y / kMillimetre},
+          {"touch_y_at_z_mm", touch.z_for_y / kMillimetre},
+          {"touch_z_mm", touch.z / kMillimetre},
+          {"land_mm", setup.land / kMillimetre},
+          {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
+          {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
+          {"limit", toString(setup.limit)},
+          {"margin", setup.margin}};
+}
+
+}  // namespace
+
+int runSetup(const SetupOptions& options) {
+  const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep));
+  const Range swivel = readMachineFiles(options.parameters, options.urdf).machine.swivel;
+  const auto result = solveJobSetup(job, swivel, options.keep);
+  if (const auto* refusal = std::get_if<std::string>(&result)) {
+    std::fprintf(stderr, "%s\n", refusal->c_str());
+    return 1;
+  }
+  const auto& setup = std::get<JobSetup>(result);
+  if (options.json) {
+    print(toJson(setup));
+  } else {
+    std::fputs(setupSheet(setup, swivel).c_str(), stdout);
+  }
+  for (const core::Reason& reason : setup.check.reasons) {
+    std::fprintf(stderr, "a plan will refuse this tool: %s\n", core::text(reason, UnitSystem::kShop).c_str());
+  }
+  if (options.write) writeSetup(options.job, setup);
+  return 0;
+}
+
+}  // namespace flute_grinder

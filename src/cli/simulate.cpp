@@ -1,0 +1,157 @@
+#include "flute_grinder/cli/simulate.h"
+
+#include "flute_grinder/cli/ground_tool.h"
+#include "flute_grinder/cli/report.h"
+#include "flute_grinder/cli/run_record.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/cutter_solid.h"
+#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/stl.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+using units::kMillimetre;
+
+constexpr int kUnusable = 2;  ///< exit status for a file that cannot be written
+
+/// Where the wheel can have been on the cutter.
+Range reach(const GrindJob& job) {
+  const GrindProcess& p = job.process;
+  double to = job.cutter.flute_length + p.overtravel_shank + p.wheel_diameter / 2;
+  const double rise = std::tan(job.cutter.cone_angle);
+  if (rise < 0) to = std::min(to, job.cutter.end_diameter / 2 / -rise);
+  return {0, to};
+}
+
+/// X of the sections that are asked for. @throw std::out_of_range for one that is not on the cutter.
+std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& job) {
+  std::vector<double> at;
+  const Range range = reach(job);
+  for (const double x_mm : options.at_mm) {
+    const double x = x_mm * kMillimetre;
+    if (!(x >= range.from && x <= range.to && ConicalCutter(job.cutter).radius(x) > 0)) {
+      std::ostringstream text;
+      text << "--at " << x_mm << " mm is not on the cutter; allowed: 0 to " << range.to / kMillimetre << " mm";
+      throw std::out_of_range(text.str());
+    }
+    at.push_back(x);
+  }
+  if (!at.empty()) return at;
+  for (int i = 0; i < options.sections; ++i) at.push_back(job.cutter.flute_length * i / (options.sections - 1));
+  return at;
+}
+
+/// The cutter as a solid, with as much of the shank as the flutes run out into and a diameter more.
+void writeStlFile(const GroundTool& tool, const std::string& path) {
+  const GrindJob& job = tool.job;
+  const GrindProcess& p = job.process;
+  const double length = job.cutter.flute_length;
+  const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
+  const SolidExtent extent{0, length, job.cutter.shank_diameter, length + run_out + job.cutter.shank_diameter};
+  const CutterSolid solid = cutterSolid(tool.cutter, extent);
+  std::ofstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be written: " + std::strerror(errno));
+  writeStl(file, solid);
+  file.close();
+  if (!file) throw FileError(path + ": write failed: " + std::strerror(errno));
+}
+
+/// What is simulated: the job alone, or a record of it.
+struct Source {
+  GrindJob job;
+  std::string name;  ///< for the reader
+  bool recorded = false;
+  std::function<void(const RecordVisitor&)> visit;  ///< the record
+};
+
+std::string fileName(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+/// @throw FileError, JobFileError
+Source sourceOf(const SimulateOptions& options) {
+  switch (kindOf(options.file)) {
+    case FileKind::kJob: break;
+    case FileKind::kRunCsv: {
+      if (options.job.empty()) {
+        throw FileError(options.file + ": a CSV file does not have the job; give its file with --job");
+      }
+      const auto visit = [&](const RecordVisitor& visitor) { visitRunCsv(options.file, visitor); };
+      return {readJobFile(options.job), fileName(options.file), true, visit};
+    }
+    case FileKind::kBag: {
+      const BagRecord bag(options.file, options.run);
+      if (!bag.job() && options.job.empty()) {
+        throw FileError(options.file + ": the bag does not have the goal of " + bag.name() +
+                        "; give its job file with --job");
+      }
+      const GrindJob job = options.job.empty() ? *bag.job() : readJobFile(options.job);
+      const auto visit = [bag](const RecordVisitor& visitor) { bag.visit(visitor); };
+      return {job, fileName(options.file) + ", " + bag.name(), true, visit};
+    }
+  }
+  return {readJobFile(options.file), fileName(options.file), false, {}};
+}
+
+/// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
+GroundTool simulate(const Source& source, const std::vector<double>& at) {
+  const GrindJob job = withZLaw(source.job);
+  if (!source.recorded) return measure(job, source.name, groundCutterOf(job), at);
+  RecordedStrokes strokes(job);
+  source.visit([&](const Setpoint& setpoint, const Axes& actual) { strokes.add(setpoint, actual); });
+  strokes.finish();
+  GroundTool tool = measure(job, source.name, strokes.cutter(), at);
+  tool.recorded = true;
+  tool.strokes = strokes.strokes();
+  return tool;
+}
+
+/// @return the exit status.
+int show(const GroundTool& tool, bool json) {
+  if (json) {
+    print(toJson(tool));
+  } else {
+    printText(tool);
+  }
+  for (const core::Reason& reason : tool.check.reasons) {
+    std::fprintf(stderr, "%s\n", core::text(reason, UnitSystem::kShop).c_str());
+  }
+  return tool.check.reasons.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int runSimulate(const SimulateOptions& options) {
+  const Source source = sourceOf(options);
+  const std::vector<double> at = sectionsOf(options, source.job);
+  std::optional<GroundToolCsv> csv;
+  if (!options.csv.empty()) csv.emplace(options.csv);
+  try {
+    const GroundTool tool = simulate(source, at);
+    if (csv) csv->write(tool);
+    if (csv) csv->close();
+    const int status = show(tool, options.json);
+    if (!options.stl.empty()) writeStlFile(tool, options.stl);
+    if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
+    return status;
+  } catch (const core::ReasonError& error) {
+    std::fprintf(stderr, "%s\n", core::text(error.reason(), UnitSystem::kShop).c_str());
+    return 1;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,171 @@
+#include "flute_grinder/cli/wheel.h"
+
+#include "flute_grinder/cli/csv.h"
+#include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/core/job_edit.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/core/wheel_file.h"
+#include "flute_grinder/geometry/replace_file.h"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <system_error>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+/// The largest difference that is no change of a size [m].
+constexpr double kRounding = 1e-9;
+
+std::string format(const char* pattern, double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), pattern, value);
+  return text.data();
+}
+
+/// To a picometre, so that rounding does not show.
+std::string millimetres(double metres) {
+  constexpr double per_millimetre = 1e9;
+  return format("%.10g", std::round(metres / kMillimetre * per_millimetre) / per_millimetre + 0.0);
+}
+
+std::string now() {
+  const std::time_t time = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&time, &utc);
+  std::array<char, 40> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+/// user@host, without what YAML might take for something else.
+std::string whoami() {
+  const passwd* user = ::getpwuid(::geteuid());
+  std::array<char, 256> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = 0;
+  std::string name = (user ? std::string(user->pw_name) : std::to_string(::geteuid())) + "@" + host.data();
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) {
+        return c >= 0x80 ||
+               (std::isalnum(c) == 0 && std::string("@.-_").find(static_cast<char>(c)) == std::string::npos);
+      },
+      '_');
+  return name;
+}
+
+void print(const WheelFile& wheel) {
+  const GrindProcess& p = wheel.process;
+  const auto line = [](const char* name, const std::string& text) { std::printf("%-16s %s\n", name, text.c_str()); };
+  line("profile", toString(p.wheel_profile));
+  line("diameter", millimetres(wheel.diameter()) + " mm, Y = 0 is set to " + millimetres(p.wheel_diameter) +
+                       " mm: wear " + millimetres(p.wheel_wear) + " mm");
+  line("width", millimetres(p.wheel_width) + " mm, " + millimetres(wheel.new_width) + " mm when new");
+  if (isTapered(p.wheel_profile)) {
+    line("angle", format("%.10g deg", p.wheel_angle / kDegree) + ", larger face " + toString(p.wheel_side));
+  }
+  line("corner radii", millimetres(p.wheel_corner_radius_lower) + " mm lower, " +
+                           millimetres(p.wheel_corner_radius_upper) + " mm upper");
+  if (wheel.flange) line("flange", millimetres(*wheel.flange) + " mm from its face to the upper face");
+  line("measured", !wheel.measured ? "never" : wheel.date + (wheel.by.empty() ? "" : " by " + wheel.by));
+}
+
+Json toJson(const WheelFile& wheel) {
+  const GrindProcess& p = wheel.process;
+  const auto mm = [](double metres) { return std::stod(millimetres(metres)); };
+  Json points = Json::array();
+  for (const ProfilePoint& point : wheel.points) points.push_back({mm(point.w), mm(point.radius)});
+  const bool tapered = isTapered(p.wheel_profile);
+  return {{"profile", toString(p.wheel_profile)},
+          {"diameter_mm", mm(wheel.diameter())},
+          {"set_diameter_mm", mm(p.wheel_diameter)},
+          {"wear_mm", mm(p.wheel_wear)},
+          {"width_mm", mm(p.wheel_width)},
+          {"new_width_mm", mm(wheel.new_width)},
+          {"angle_deg", tapered ? Json(p.wheel_angle / kDegree) : Json(nullptr)},
+          {"side", tapered ? Json(toString(p.wheel_side)) : Json(nullptr)},
+          {"corner_radius_mm", {mm(p.wheel_corner_radius_lower), mm(p.wheel_corner_radius_upper)}},
+          {"points_mm", points.empty() ? Json(nullptr) : points},
+          {"flange_mm", wheel.flange ? Json(mm(*wheel.flange)) : Json(nullptr)},
+          {"measured", wheel.measured ? Json{{"date", wheel.date}, {"by", wheel.by}} : Json(nullptr)}};
+}
+
+/// Whether a size may be what was measured. Says why not.
+bool isPlausible(const char* option, double measured, double before, bool force) {
+  if (force || measured <= before + kRounding) return true;
+  std::fprintf(stderr,
+               "%s = %s mm; allowed: up to %s mm, as last known, unless --force says that this was wrong; a new wheel "
+               "is a new file\n",
+               option, millimetres(measured).c_str(), millimetres(before).c_str());
+  return false;
+}
+
+/// Writes what a wheel has become into its file, if the file may say so.
+/// @param old the file's text, from which `before` was read.
+int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width) {
+  std::vector<JobEdit> edits{{"measured.date", now()}, {"measured.diameter_mm", millimetres(diameter)}};
+  const bool same_width = std::abs(width - before.process.wheel_width) <= kRounding;
+  if (!same_width) edits.push_back({"measured.width_mm", millimetres(width)});
+  edits.push_back({"measured.by", whoami()});
+  const std::string text = editJob(old, path, edits);
+  try {
+    const WheelFile after = parseWheel(text, path);
+    replaceFile(path, text);
+    print(after);
+  } catch (const JobFileError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  } catch (const std::system_error& error) {
+    throw FileError(path + ": cannot be written: " + error.code().message());
+  }
+  if (!same_width) std::printf("The middle of the width has moved: set X and Z anew.\n");
+  return 0;
+}
+
+}  // namespace
+
+int showWheel(const WheelOptions& options) {
+  const WheelFile wheel = readWheelFile(options.file);
+  if (options.json) {
+    print(toJson(wheel));
+  } else {
+    print(wheel);
+  }
+  return 0;
+}
+
+int measureWheel(const WheelOptions& options) {
+  const std::string text = readText(options.file);
+  const WheelFile wheel = parseWheel(text, options.file);
+  const double diameter = options.diameter_mm * kMillimetre;
+  const double width = options.width_mm ? *options.width_mm * kMillimetre : wheel.process.wheel_width;
+  if (!isPlausible("--diameter", diameter, wheel.diameter(), options.force)) return 1;
+  if (!isPlausible("--width", width, wheel.process.wheel_width, options.force)) return 1;
+  return update(options.file, text, wheel, diameter, width);
+}
+
+int dressWheel(const WheelOptions& options) {
+  const std::string text = readText(options.file);
+  const WheelFile wheel = parseWheel(text, options.file);
+  const double radial = options.radial_mm.value_or(0) * kMillimetre;
+  const double face = options.face_mm.value_or(0) * kMillimetre;
+  if (!(radial > 0 || face > 0)) {
+    std::fprintf(stderr, "nothing is dressed; allowed: --radial or --face more than 0 mm, or both\n");
+    return 2;
+  }
+  return update(options.file, text, wheel, wheel.diameter() - 2 * radial, wheel.process.wheel_width - face);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,159 @@
+"""The pictures of a ground cutter, from what `grind simulate --json` tells. As a program, draws them into one SVG file:
+tool.py FILE.svg < JSON; exit status 2 if it cannot be written."""
+
+import json
+import math
+import signal
+import sys
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from figures import CURVE, LIMIT, THEORY, picture
+
+METAL = '#dfe5ec'
+TEETH = [CURVE, '#d96c00', '#2b8a3e', '#8e3b8e', '#00808a', '#8a6d00', '#555555', '#c2185b']
+
+# Key, asked key, title; of the section or of each tooth.
+CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
+          ('core_diameter_mm', 'asked_core_diameter_mm', 'core diameter [mm]'),
+          ('land_mm', None, 'land [mm]'),
+          ('spiral_deg', 'asked_spiral_deg', 'spiral angle [deg]')]
+
+
+def number(value):
+    return math.nan if value is None else value
+
+
+def text(value, unit, asked=None):
+    ground = 'none' if value is None else '%.3f %s' % (value, unit)
+    return ground if asked is None else '%s, asked %.3f' % (ground, asked)
+
+
+def point(radius, degrees):
+    return radius * math.cos(math.radians(degrees)), radius * math.sin(math.radians(degrees))
+
+
+def draw_section(axes, tool, section):
+    """A section, Y to the right and Z up, but turned until the first tooth's edge is on top."""
+    tooth = section['teeth'][0]
+    radius, core = section['diameter_mm'] / 2, section['core_diameter_mm'] / 2
+    turn = 90 - number(tooth['edge_deg'])
+    if math.isnan(turn):
+        turn = 0
+    if section['outline_mm'] is not None:
+        y, z = np.array(section['outline_mm']).T
+        angle, r = np.arctan2(z, y) + math.radians(turn), np.hypot(y, z)
+        axes.fill(r * np.cos(angle), r * np.sin(angle), facecolor=METAL, edgecolor=CURVE)
+    circle = np.linspace(0, 2 * np.pi, 181)
+    for size, style in ((radius, {'color': THEORY, 'linestyle': ':'}), (core, {'color': CURVE, 'linestyle': ':'}),
+                        (section['asked_core_diameter_mm'] / 2, {'color': LIMIT, 'linestyle': '--'})):
+        axes.plot(size * np.cos(circle), size * np.sin(circle), **style)
+    axes.annotate('', point(core, 225), point(core, 45), arrowprops={'arrowstyle': '<->', 'color': CURVE, 'lw': 0.8})
+    axes.text(0, 0, 'Ø %.3f' % (2 * core), rotation=45, ha='center', va='bottom', rotation_mode='anchor')
+    sign = 1 if tool['cut'] == 'right_hand' else -1
+    if tooth['edge_deg'] is not None:
+        draw_rake(axes, radius, tooth, sign)
+        draw_land(axes, radius, tooth, sign)
+    axes.set_title('X = %.3f mm\nrake %s\ncore Ø %s\nland %s' % (
+        section['x_mm'], text(tooth['rake_deg'], 'deg', tooth['asked_rake_deg']),
+        text(section['core_diameter_mm'], 'mm', section['asked_core_diameter_mm']), text(tooth['land_mm'], 'mm')), loc='left')
+    axes.set(aspect='equal', anchor='S', xlim=(-1.32 * radius, 1.32 * radius), ylim=(-1.15 * radius, 1.32 * radius))
+    axes.set_axis_off()
+
+
+def draw_rake(axes, radius, tooth, sign):
+    """The radius to the edge on top, and against it the rake asked and the one ground."""
+    axes.plot([0, 0], [0, 1.25 * radius], color=THEORY, linewidth=0.6)
+    for rake, style in ((tooth['asked_rake_deg'], {'color': LIMIT, 'linestyle': '--'}), (tooth['rake_deg'], {'color': 'black'})):
+        if rake is not None:
+            # With a positive rake, the face falls back behind the radius on its way to the core.
+            x, y = point(1, 90 - sign * rake)
+            for part in (-0.55 * radius, 0.22 * radius):
+                axes.plot([0, part * x], [radius, radius + part * y], **style)
+    if tooth['rake_deg'] is not None:
+        axes.text(sign * 0.1 * radius, 1.2 * radius, '%.2f°' % tooth['rake_deg'], ha='left' if sign > 0 else 'right')
+
+
+def draw_land(axes, radius, tooth, sign):
+    if tooth['land_deg'] is None:
+        return
+    # Behind the edge; an arc with its length.
+    angles = np.radians(90 + sign * np.linspace(0, tooth['land_deg'], 60))
+    axes.plot(1.08 * radius * np.cos(angles), 1.08 * radius * np.sin(angles), color='black')
+    for end in (90, 90 + sign * tooth['land_deg']):
+        axes.plot(*np.transpose([point(1.02 * radius, end), point(1.12 * radius, end)]), color='black')
+    middle = 90 + sign * min(tooth['land_deg'] / 2, 60)
+    axes.text(*point(1.15 * radius, middle), '%.2f' % tooth['land_mm'], ha='right' if sign > 0 else 'left')
+
+
+def draw_sections(figure, tool):
+    sections = tool['sections']
+    shown = sorted({0, len(sections) // 2, len(sections) - 1})
+    for axes, i in zip(np.ravel(figure.subplots(1, len(shown))), shown):
+        draw_section(axes, tool, sections[i])
+
+
+def draw_curves(figure, tool):
+    sections = tool['sections']
+    x = [section['x_mm'] for section in sections]
+    panels = figure.subplots(len(CURVES), sharex=True)
+    for axes, (key, asked, title) in zip(panels, CURVES):
+        of_section = key in sections[0]
+        for i in range(1 if of_section else tool['teeth']):
+            rows = sections if of_section else [section['teeth'][i] for section in sections]
+            style = {'color': TEETH[i % len(TEETH)], 'marker': '.', 'markersize': 4}
+            axes.plot(x, [number(row[key]) for row in rows], label=None if of_section else 'tooth %d' % (i + 1), **style)
+            if asked:
+                axes.plot(x, [row[asked] for row in rows], color=LIMIT, linestyle='--')
+        if key == 'rake_deg':
+            rake, tolerance = sections[0]['teeth'][0][asked], tool['rake_tolerance_deg']
+            axes.axhspan(rake - tolerance, rake + tolerance, color=LIMIT, alpha=0.08)
+        axes.set_title(title, loc='left')
+        axes.ticklabel_format(useOffset=False)
+    if tool['teeth'] > 1:
+        panels[0].legend(ncols=min(tool['teeth'], 8), fontsize=7)
+    panels[-1].set_xlabel('X [mm]')
+
+
+def tool_pictures(tool):
+    """For a report."""
+    sections = Figure((9, 3.9), layout='constrained')
+    draw_sections(sections, tool)
+    curves = Figure((9, 7.5), layout='constrained')
+    draw_curves(curves, tool)
+    return [
+        picture('tool-sections', 'The ground tool in sections',
+                'At both ends and in the middle, the first tooth on top, in mm; dotted: blank and core; dashed: the core and '
+                'the rake asked. Core, rake and land are dimensioned, the land along the outer circle.', sections),
+        picture('tool-figures', 'The ground tool over X',
+                'Rake, core diameter, land and spiral angle of the ground edge, over X in mm; dashed: as asked; shaded: the '
+                'tolerance of the rake.', curves)]
+
+
+def draw_file(tool):
+    """All in one picture."""
+    figure = Figure((9, 11.7), layout='constrained')
+    above, below = figure.subfigures(2, height_ratios=(4.1, 7.5))
+    above.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
+    draw_sections(above, tool)
+    draw_curves(below, tool)
+    return picture('tool', '', '', figure).svg
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    svg = draw_file(json.load(sys.stdin))
+    try:
+        with open(sys.argv[1], 'wb') as file:
+            file.write(svg)
+    except OSError as error:
+        return '%s: cannot be written: %s' % (sys.argv[1], error.strerror or error)
+    return None
+
+
+if __name__ == '__main__':
+    reason = main()
+    if reason:
+        print(reason, file=sys.stderr)
+        sys.exit(2)

@@ -38,6 +38,9 @@ GrindPanel::GrindPanel(QWidget* parent)
       master_watch_(masterWatch()),
       state_(new StateBox),
       job_(new JobBox),
+      section_(new SectionView),
+      jog_(new JogBox),
+      tabs_(new QTabWidget),
       override_(new OverrideBox),
       progress_(new ProgressBox),
       position_(new PositionBox),
@@ -51,8 +54,14 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
+  connect(job_, &JobBox::swivelConfirmed, this, &GrindPanel::confirmSwivel);
+  connect(job_, &JobBox::startDelayed, this, [this] { tabs_->setCurrentWidget(job_); });
   connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
   connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
+  connect(jog_, &JogBox::stepWanted, this, &GrindPanel::jogStep);
+  connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
+    if (link_) link_->jog(axis, velocity);
+  });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
     setNode(node_edit_->text());
@@ -64,10 +73,17 @@ GrindPanel::GrindPanel(QWidget* parent)
 }
 
 void GrindPanel::layOut() {
+  tabs_->setObjectName("tabs");
+  tabs_->addTab(job_, "Job");
+  tabs_->addTab(section_, "Section");
+  tabs_->addTab(jog_, "Jog");
+  // Beyond its minimum it gets what the tabs leave.
+  messages_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
+
   auto* buttons = new QGridLayout;
   int place = 0;
   for (const EventRow& request : kMachineEvents) {
-    if (!isRequest(request.value)) continue;
+    if (!isRequest(request.value) || request.value == MachineEvent::kJog) continue;
     // What the hand finds in a hurry.
     const bool large = request.value == MachineEvent::kStart || request.value == MachineEvent::kHold;
     const int columns = large ? 2 : 1;
@@ -81,7 +97,7 @@ void GrindPanel::layOut() {
 
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(state_);
-  layout->addWidget(job_, 2);
+  layout->addWidget(tabs_, 5);
   layout->addLayout(buttons);
   layout->addWidget(override_);
   layout->addWidget(progress_);
@@ -133,6 +149,7 @@ void GrindPanel::setNode(const QString& node) {
   try {
     if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
     name_ = ros::names::resolve(node.toStdString());
+    job_->setDescription(ros::names::append(ros::names::parentNamespace(name_), "robot_description"));
   } catch (const ros::InvalidNameException& error) {
     showMessage(std::string("grinder's node: ") + error.what());
   }
@@ -165,10 +182,12 @@ void GrindPanel::refresh() {
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
   job_->refresh(view.state, idle && master == Master::kAnswers);
   for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
+  jog_->refresh(view.state, master == Master::kAnswers);
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
   progress_->show(view, job_runs);
   position_->show(view);
+  section_->refresh(view, job_->job());
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
@@ -219,6 +238,13 @@ void GrindPanel::send(const GrindGoal& goal) {
   if (!id) showMessage("the job was not sent: no answer from the grinder " + name_);
 }
 
+void GrindPanel::confirmSwivel(double angle) {
+  link_->confirmSwivel(angle, [this](const std::string& refusal) {
+    if (!refusal.empty()) return showMessage(refusal);
+    job_->startConfirmed();
+  });
+}
+
 void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
   const bool good = result.error_code == GrindResult::SUCCESSFUL;
   if (sent_ && id == sent_->id) {
@@ -243,6 +269,12 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
 void GrindPanel::setFeedOverride(double fraction) {
   link_->setFeedOverride(fraction, [this](const std::string& refusal) {
     override_->answered();
+    if (!refusal.empty()) showMessage(refusal);
+  });
+}
+
+void GrindPanel::jogStep(int axis, double distance, double speed) {
+  link_->jogStep(axis, distance, speed, [this](const std::string& refusal) {
     if (!refusal.empty()) showMessage(refusal);
   });
 }

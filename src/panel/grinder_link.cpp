@@ -1,6 +1,9 @@
 #include "flute_grinder/panel/grinder_link.h"
 
+#include "flute_grinder/ConfirmSwivel.h"
 #include "flute_grinder/GrindActionGoal.h"
+#include "flute_grinder/Jog.h"
+#include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
 
@@ -51,6 +54,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
   subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
   goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
   stops_ = nh_.advertise<Stop>("stop", 10);
+  jogs_ = nh_.advertise<Jog>("jog", 1);
   spinner_.start();
 }
 
@@ -61,6 +65,10 @@ GrinderView GrinderLink::view() const {
   GrinderView view;
   if (isFresh(state_)) view.state = state_->message;
   if (isFresh(position_)) view.position = position_->message;
+  if (view.position && view.state) {
+    const Axes offset = Axes(view.state->position.data()) - Axes(view.state->work_position.data());
+    view.work_position = *view.position - offset;
+  }
   if (feedback_) view.feedback = feedback_->message.feedback;
   if (isFresh(feedback_) && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
   return view;
@@ -144,6 +152,35 @@ void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
                           if (!response) return on_answer("feed override: " + silence);
                           on_answer(response->success ? "" : response->message);
                         });
+}
+
+void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
+  ConfirmSwivel::Request request;
+  request.swivel = angle;
+  call<ConfirmSwivel>("confirm_swivel", request, kRequestTimeout,
+                      [on_answer, silence = noAnswer()](const auto& response) {
+                        if (!response) return on_answer("confirm-swivel: " + silence);
+                        on_answer(response->success ? "" : response->message);
+                      });
+}
+
+void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswer& on_answer) {
+  JogStep::Request request;
+  request.axis = static_cast<std::uint8_t>(axis);
+  request.distance = distance;
+  request.speed = speed;
+  call<JogStep>("jog_step", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
+    if (!response) return on_answer("jog: " + silence);
+    on_answer(response->success ? "" : response->message);
+  });
+}
+
+void GrinderLink::jog(int axis, double velocity) {
+  Jog message;
+  message.header.stamp = ros::Time::now();
+  message.axis = static_cast<std::uint8_t>(axis);
+  message.velocity = velocity;
+  jogs_.publish(message);
 }
 
 void GrinderLink::plan(const GrindGoal& goal, const OnPlan& on_plan) {

@@ -4,6 +4,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/panel/plain_words.h"
+#include "flute_grinder/panel/setup_dialog.h"
 #include "flute_grinder/panel/text_view.h"
 
 #include <ros/package.h>
@@ -31,15 +32,17 @@ QPushButton* button(const char* name, const QString& text, const QString& hint) 
 }  // namespace
 
 JobBox::JobBox(QWidget* parent)
-    : QGroupBox("Job", parent),
+    : QWidget(parent),
       name_(new QLabel),
       choose_(button("choose", "Open...", "Choose a job file")),
+      setup_(button("setup", "Set up...", "Find out how to set the wheel for the job's rake and core")),
       continue_(new QCheckBox(kContinue)),
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
       verdict_(textView("verdict", 5)),
       question_(new DiscardQuestion),
+      swivel_question_(new SwivelQuestion),
       answer_(new QStackedWidget) {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -47,18 +50,22 @@ JobBox::JobBox(QWidget* parent)
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);
+  file->addWidget(setup_);
   auto* plan = new QHBoxLayout;
   plan->addWidget(plan_, 1);
   plan->addWidget(dry_run_, 1);
   auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(6, 6, 6, 6);
   layout->addLayout(file);
   layout->addWidget(continue_);
   layout->addLayout(plan);
   answer_->addWidget(verdict_);
   answer_->addWidget(question_);
+  answer_->addWidget(swivel_question_);
   layout->addWidget(answer_);
 
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
+  connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::discardPlan);
   connect(plan_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
@@ -66,8 +73,13 @@ JobBox::JobBox(QWidget* parent)
   connect(dry_run_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
   });
-  connect(question_, &DiscardQuestion::discarded, this, [this] { startPlanned(true); });
+  connect(question_, &DiscardQuestion::discarded, this, [this] { askForSwivel(true); });
   connect(question_, &DiscardQuestion::kept, this, &JobBox::keepUnfinished);
+  connect(swivel_question_, &SwivelQuestion::confirmed, this, [this](double angle) {
+    answer_->setCurrentWidget(verdict_);
+    Q_EMIT swivelConfirmed(angle);
+  });
+  connect(swivel_question_, &SwivelQuestion::declined, this, [this] { answer_->setCurrentWidget(verdict_); });
   setFile("");
 }
 
@@ -84,8 +96,19 @@ void JobBox::choose() {
   dialog->open();
 }
 
+void JobBox::openSetup() {
+  auto* dialog = new SetupDialog(file_, description_, this);
+  connect(dialog, &SetupDialog::written, this, [this, file = file_] {
+    if (file != file_) return;
+    discardPlan();
+    read();
+  });
+  dialog->show();
+}
+
 void JobBox::setFile(const QString& file) {
   file_ = file;
+  job_.reset();
   where_left_.reset();
   continue_->setChecked(false);
   const QString name = file.isEmpty() ? "no job file" : QFileInfo(file).fileName();
@@ -97,12 +120,13 @@ void JobBox::setFile(const QString& file) {
 
 void JobBox::read() {
   try {
-    job_ = readJobFile(file_.toStdString());
+    job_ = std::make_shared<const GrindJob>(readJobFile(file_.toStdString()));
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
     // Without the folder, which is too long for a panel.
-    showVerdict(QString(error.what()).replace(file_, QFileInfo(file_).fileName()), false);
+    const QString folder = file_.chopped(QFileInfo(file_).fileName().size());
+    showVerdict(folder.isEmpty() ? error.what() : QString(error.what()).remove(folder), false);
   }
 }
 
@@ -140,16 +164,28 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
 
 void JobBox::start() {
   if (!planned_) return;
-  if (!discardsUnfinished(*planned_, progress_)) return startPlanned(false);
+  if (!discardsUnfinished(*planned_, progress_)) return askForSwivel(false);
   question_->ask(progress_, where_left_.has_value());
   answer_->setCurrentWidget(question_);
+  Q_EMIT startDelayed();
 }
 
-void JobBox::startPlanned(bool discard) {
+void JobBox::askForSwivel(bool discard) {
+  discard_ = discard;
+  if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
+  swivel_question_->ask(planned_->process.setup_swivel);
+  answer_->setCurrentWidget(swivel_question_);
+  Q_EMIT startDelayed();
+}
+
+void JobBox::startConfirmed() {
   answer_->setCurrentWidget(verdict_);
   auto goal = takePlanned();
-  if (!goal) return;
-  goal->discard = static_cast<std::uint8_t>(discard);
+  if (!goal) {
+    Q_EMIT startDelayed();
+    return;
+  }
+  goal->discard = static_cast<std::uint8_t>(discard_);
   Q_EMIT startWanted(*goal);
 }
 
@@ -165,17 +201,26 @@ std::optional<GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
   if (goal && goal == goalNow()) return goal;
-  if (job_) showVerdict("The job file has changed since it was planned. Plan it again.", false);
+  if (job_) showVerdict("The job file or its wheel file has changed since it was planned. Plan it again.", false);
   return std::nullopt;
 }
 
 void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
+  if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
-  if (!idle || !planned_ || !discardsUnfinished(*planned_, progress_)) answer_->setCurrentWidget(verdict_);
+  if (!idle || !asksWithReason()) answer_->setCurrentWidget(verdict_);
   choose_->setEnabled(idle);
+  setup_->setEnabled(!file_.isEmpty());
   continue_->setEnabled(idle && where_left_);
   plan_->setEnabled(idle && !file_.isEmpty());
   dry_run_->setEnabled(idle && !file_.isEmpty());
+}
+
+/// Whether the question shown, if there is one, still has to be answered.
+bool JobBox::asksWithReason() const {
+  if (!planned_) return false;
+  if (answer_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
+  return discardsUnfinished(*planned_, progress_);
 }
 
 void JobBox::refreshContinue(const std::optional<GrinderState>& state) {

@@ -36,6 +36,8 @@ const char* sentence(MachineState state) {
     case MachineState::kCanceling: return "The axes stop on the path, the wheel is lifted, then the job ends.";
     case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
     case MachineState::kLifting: return "The wheel is being lifted off the work, without a job.";
+    case MachineState::kJogging: return "An axis is being jogged.";
+    case MachineState::kJoggingRetracted: return "An axis is being jogged; the job waits. Resume returns to the path.";
   }
   return "This panel does not know the grinder's state.";
 }
@@ -73,7 +75,8 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
-  if (state.wheel_in_work && !isInJob(machine) && machine != MachineState::kLifting) return text + wheelInWork(machine);
+  const bool moves = machine == MachineState::kLifting || machine == MachineState::kJogging;
+  if (state.wheel_in_work && !isInJob(machine) && !moves) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)

@@ -8,6 +8,8 @@
 #include <QVBoxLayout>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace flute_grinder {
 
@@ -26,6 +28,8 @@ const char* colourOf(const GrinderState& grinder) {
   switch (static_cast<MachineState>(grinder.state)) {
     case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
     case MachineState::kLifting:
+    case MachineState::kJogging:
+    case MachineState::kJoggingRetracted:
     case MachineState::kHoming:
     case MachineState::kStarting:
     case MachineState::kRunning:
@@ -42,6 +46,7 @@ const char* colourOf(const GrinderState& grinder) {
 }
 
 constexpr const char* kJobDone = "Job %p %";
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 QProgressBar* bar(const char* name, const QString& format) {
   auto* made = new QProgressBar;
@@ -102,6 +107,7 @@ void StateBox::show(const GrinderView& view, const QString& node, Master master)
   }
   QString name = QString::fromStdString(view.state->state_name);
   if (!name.isEmpty()) name[0] = name[0].toUpper();
+  name.replace('_', ' ');
   setName(name, colourOf(*view.state));
   const QString alone = "No ROS master answers; Hold, Cancel and Disable work without. ";
   meaning_->setText((master == Master::kMissing ? alone : "") + QString::fromStdString(describe(*view.state)));
@@ -174,10 +180,16 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent) {
 
 void PositionBox::show(const GrinderView& view) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const double unit = axis == kA ? kDegree : kMillimetre;
-    const QString value = view.position ? QString::number((*view.position)[axis] / unit, 'f', 3) : "-";
-    values_[static_cast<std::size_t>(axis)]->setText(
-        QString("%1 %2 %3").arg("XYZA"[axis]).arg(value, 9).arg(axis == kA ? "deg" : "mm"));
+    const char* unit = axis == kA ? "deg" : "mm";
+    const auto shown = [&](double si) {
+      return std::isfinite(si) ? QString::number(si / (axis == kA ? kDegree : kMillimetre), 'f', 3) : QString("-");
+    };
+    QLabel& label = *values_[static_cast<std::size_t>(axis)];
+    const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
+    const double machine = view.position ? (*view.position)[axis] : kUnknown;
+    label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), 9).arg(unit));
+    label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
+                         .arg(shown(machine), shown(machine - work), unit));
   }
 }
 

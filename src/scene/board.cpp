@@ -15,7 +15,7 @@ constexpr double kYaw = 4.85, kPitch = 0.6;  ///< of the camera as seen from the
 constexpr double kCentreX = 0.0158, kCentreY = -0.022, kCentreZ = -0.0245;  ///< [m]
 constexpr double kHalfWidth = 0.0475, kHalfHeight = 0.0095;                 ///< [m]
 constexpr double kTextHeight = 2.1e-3, kFigureHeight = 1.8e-3;              ///< [m]
-constexpr double kScaleLength = 0.034, kScaleWidth = 1.5e-3;                ///< [m]
+constexpr double kScaleLength = 0.024, kScaleWidth = 1.5e-3;                ///< [m]
 constexpr int kScaleSteps = 32;
 
 /// A place on the board: to the right, up, and toward the camera [m].
@@ -34,6 +34,11 @@ void appendText(MarkerArray& array, double right, double up, double height, cons
   m.text = text;
 }
 
+double centreOf(Side side) {
+  constexpr double third = 2 * kHalfWidth / 3;
+  return side == Side::kLeft ? -third : side == Side::kRight ? third : 0;
+}
+
 }  // namespace
 
 void appendBoard(MarkerArray& array) {
@@ -46,20 +51,24 @@ void appendBoard(MarkerArray& array) {
 
 void appendLine(MarkerArray& array, const std::string& text) { appendText(array, 0, 6.5e-3, kTextHeight, text); }
 
-void appendScale(MarkerArray& array, Side side, const std::string& title, double largest) {
-  const double centre = side == Side::kLeft ? -kHalfWidth / 2 : kHalfWidth / 2;
+void appendTitle(MarkerArray& array, Side side, const std::string& title) {
+  appendText(array, centreOf(side), 1e-3, kFigureHeight, title);
+}
+
+void appendScale(MarkerArray& array, Side side, const std::string& title, const std::string& end) {
+  const double centre = centreOf(side);
   const double from = centre - kScaleLength / 2;
   Marker& bar = append(array, "scale", Marker::LINE_LIST, kFrame);
   bar.scale.x = kScaleWidth;
   for (int i = 0; i < kScaleSteps; ++i) {
-    for (const int end : {i, i + 1}) {
-      bar.points.push_back(place(from + kScaleLength * end / kScaleSteps, -3e-3));
+    for (const int edge : {i, i + 1}) {
+      bar.points.push_back(place(from + kScaleLength * edge / kScaleSteps, -3e-3));
       bar.colors.push_back(heat((i + 0.5) / kScaleSteps));
     }
   }
-  appendText(array, centre, 1e-3, kFigureHeight, title);
+  appendTitle(array, side, title);
   appendText(array, from, -6.5e-3, kFigureHeight, "0");
-  appendText(array, from + kScaleLength, -6.5e-3, kFigureHeight, micrometres(largest));
+  appendText(array, from + kScaleLength, -6.5e-3, kFigureHeight, end);
 }
 
 std::string micrometres(double length) {

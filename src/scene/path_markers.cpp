@@ -19,7 +19,7 @@ constexpr double kPathWidth = 0.3e-3;       ///< like all widths, for a cutter t
 constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
 constexpr double kArrowWidth = 0.12e-3;     ///< [m]
 constexpr double kLongestArrow = 3e-3;      ///< [m]
-constexpr double kNoError = 1e-12;          ///< below this an error is rounding [m]
+constexpr double kSmallestDrawn = 1e-3;     ///< error whose arrow may have full length, of the tolerance
 constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not shown [m]
 constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
 constexpr std::size_t kMostArrows = 200;
@@ -39,9 +39,13 @@ double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radiu
 /// The largest axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
 double pathStep(const GrindProgram& program) {
-  const ConicalCutter& cutter = program.cutter();
-  const double radius = std::min(cutter.radius(program.strokeFrom()), cutter.radius(program.strokeTo()));
-  const double turning = std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius;
+  double turning = 0;  // of the steepest helix
+  for (const Helix& helix : program.helices()) {
+    const ConicalCutter& cutter = helix.cutter;
+    const double radius = std::min(cutter.radius(program.strokeFrom()), cutter.radius(program.strokeTo()));
+    turning =
+        std::max(turning, std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius);
+  }
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
@@ -68,12 +72,15 @@ std::string factorText(double factor) {
 
 ToolPath::ToolPath(const GrindProgram& program)
     : cutter_(program.cutter()),
-      curve_(cutter_),
+      tolerance_(program.job().interpolation.tolerance),
       from_(program.strokeFrom()),
       to_(program.strokeTo()),
       steps_(std::min(kMostSteps, static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program))))),
       measured_(steps_ + 1, -1) {
-  for (const double angle : program.job().tooth_angles) flutes_.push_back({angle, {}});
+  const std::vector<double>& angles = program.job().tooth_angles;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    flutes_.push_back({angles[i], program.helix(static_cast<int>(i)).curve, {}});
+  }
 }
 
 double ToolPath::x(std::size_t i) const {
@@ -93,7 +100,7 @@ bool ToolPath::add(const Setpoint& p, const Axes& actual) {
 }
 
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
-  const double around = flutes_[p.tooth].angle + curve_.a(actual[kX]) - actual[kA];
+  const double around = flutes_[p.tooth].angle + flutes_[p.tooth].curve.a(actual[kX]) - actual[kA];
   const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
   // A faulty drive may report NaN, or a position beyond the cone's apex.
   if (!(error <= kFarthest)) return;
@@ -119,15 +126,7 @@ void ToolPath::deactivate() {
   std::fill(measured_.begin(), measured_.end(), -1);
 }
 
-double ToolPath::scaleEnd() const {
-  float largest = 0;
-  for (const Flute& flute : flutes_) {
-    for (const float error : flute.errors) largest = std::max(largest, error);
-  }
-  return largest;
-}
-
-void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth, double scale_end) const {
+void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
@@ -136,27 +135,24 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth, double scale_e
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
-      m.points.push_back(atRadius(x(i), cutter_.radius(x(i)), flute.angle + curve_.a(x(i))));
-      if (!active && !flute.errors.empty()) m.colors.push_back(heat(scale_end > 0 ? flute.errors[i] / scale_end : 0));
+      m.points.push_back(atRadius(x(i), cutter_.radius(x(i)), flute.angle + flute.curve.a(x(i))));
+      if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
     }
   }
 }
 
 MarkerArray ToolPath::markers() const {
   MarkerArray array = clearedArray();
-  const double scale_end = scaleEnd();
-  for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth, scale_end);
-  if (scale_end > 0) board::appendScale(array, board::Side::kLeft, "measured error of the flutes", scale_end);
+  for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth);
+  const auto is_measured = [](const Flute& flute) { return !flute.errors.empty(); };
+  if (std::any_of(flutes_.begin(), flutes_.end(), is_measured)) {
+    board::appendScale(array, board::Side::kLeft, "measured error of the flutes", board::micrometres(tolerance_));
+  }
   return array;
 }
 
 ExecutedPath::ExecutedPath(const GrindProgram& program) : cutter_(program.cutter()) {
-  const std::vector<double> depths = passDepths(program.job().process);
-  for (const Move& move : program.moves()) {
-    // The infeed includes compensation for wheel wear.
-    const double infeed = program.cutter().y(move.to[kX]) - move.to[kY];
-    wear_of_move_.push_back(infeed - depths[move.pass]);
-  }
+  for (const Move& move : program.moves()) wear_of_move_.push_back(move.wear);
 }
 
 void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
@@ -193,8 +189,11 @@ void PathErrorMarkers::add(const Setpoint& p) {
   const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
   if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
   if (move_ != p.move_index) {
-    *this = PathErrorMarkers(cutter_);
     move_ = p.move_index;
+    points_.clear();
+    largest_ = 0;
+    pairs_ = 0;
+    every_ = 1;
   }
   if (p.step == StepKind::kOdd) ++pairs_;
   largest_ = std::max(largest_, std::abs(deviation));
@@ -217,8 +216,8 @@ void PathErrorMarkers::thinOut() {
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  // Do not show the rounding errors of a path that has no others, as on a cylinder.
-  const double largest = std::max(largest_, kNoError);
+  // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
+  const double largest = std::max(largest_, kSmallestDrawn * tolerance_);
   const double factor = roundDown(kLongestArrow * fineness(cutter_) / largest);
 
   Marker& arrows = append(array, "path_error", Marker::LINE_LIST, kFrame);
@@ -236,9 +235,10 @@ MarkerArray PathErrorMarkers::markers() const {
     to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));
     to.z += offset * (around * std::cos(p.a) - along * sin_cone * std::sin(p.a));
     arrows.points.insert(arrows.points.end(), {from, to});
-    arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / largest));
+    arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / tolerance_));
   }
-  board::appendScale(array, board::Side::kRight, "path error, drawn " + factorText(factor) + " times larger", largest);
+  board::appendScale(array, board::Side::kRight, "path error, " + factorText(factor) + " times larger",
+                     board::micrometres(tolerance_));
   return array;
 }
 

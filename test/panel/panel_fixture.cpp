@@ -1,9 +1,12 @@
 #include "panel_fixture.h"
 
 #include <QAbstractButton>
+#include <QAbstractSpinBox>
 #include <QDir>
+#include <QFile>
 #include <QLayout>
 #include <QProgressBar>
+#include <QTabWidget>
 
 #include <vector>
 
@@ -28,8 +31,9 @@ std::vector<QWidget*> leaves(QWidget& panel) {
     const bool scrolls =
         qobject_cast<QPlainTextEdit*>(widget->parentWidget()) ||
         (widget->parentWidget() && qobject_cast<QPlainTextEdit*>(widget->parentWidget()->parentWidget()));
-    const bool groups = widget->layout() != nullptr;
-    if (widget->isVisible() && !scrolls && !groups) found.push_back(widget);
+    const bool edits = qobject_cast<QAbstractSpinBox*>(widget->parentWidget());
+    const bool groups = widget->layout() || qobject_cast<QTabWidget*>(widget);
+    if (widget->isVisible() && !scrolls && !edits && !groups) found.push_back(widget);
   }
   return found;
 }
@@ -52,6 +56,20 @@ void expectRoomForText(QWidget& widget) {
 }
 
 }  // namespace
+
+QString changedJob(const QString& job, const QString& path,
+                   const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
+  QFile original(job);
+  EXPECT_TRUE(original.open(QFile::ReadOnly));
+  QByteArray text = original.readAll();
+  for (const auto& [from, to] : changes) {
+    EXPECT_EQ(text.count(from), 1) << from.toStdString();
+    text.replace(from, to);
+  }
+  QFile file(path);
+  EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
+  return path;
+}
 
 Panel::Panel(const QString& node, const QString& job)
     : panel_(loader().createUnmanagedInstance("flute_grinder/GrindPanel")) {

@@ -12,6 +12,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -23,6 +25,10 @@ using Names = std::set<std::string>;
 /// The ten buttons that ask for a change of the machine's state.
 inline const Names kRequests{"enable", "disable", "home", "start",  "hold",
                              "resume", "retract", "lift", "cancel", "reset"};
+
+/// Writes a copy of a job file with other values. @return its path.
+QString changedJob(const QString& job, const QString& path,
+                   const std::vector<std::pair<QByteArray, QByteArray>>& changes);
 
 /// The panel as rviz makes it: from its plugin, and with a configuration.
 class Panel {

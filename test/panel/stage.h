@@ -1,9 +1,12 @@
 #pragma once
 
+#include "flute_grinder/ConfirmSwivel.h"
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Jog.h"
+#include "flute_grinder/JogStep.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
@@ -12,6 +15,7 @@
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
 
+#include <cmath>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -29,11 +33,15 @@ class Stage {
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
     services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
     services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
+    services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
     services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
+    services_.push_back(nh_.advertiseService("confirm_swivel", &Stage::onConfirmSwivel, this));
     goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
     stops_ = nh_.subscribe("stop", 10, &Stage::onStop, this);
+    jogs_ = nh_.subscribe("jog", 100, &Stage::onJog, this);
     state.homed = 1;
     state.override = 1;
+    state.swivel = 31.769 * M_PI / 180;  // as jobs/paper.yaml needs it
     timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { tell(); });
   }
   ~Stage() { release(); }
@@ -73,9 +81,14 @@ class Stage {
   bool resume_hangs = false;
   int resumes = 0;
   int lifts = 0;
+  std::string swivel_refusal;  ///< of a confirmation; empty to accept it
+  std::vector<double> swivels;
   std::vector<double> overrides;
   std::vector<GrindActionGoal> goals;
   std::vector<int> stops;
+  std::vector<JogStep::Request> steps;
+  std::string step_refusal;
+  std::vector<Jog> jogs;
   std::string goal_id;  ///< of the progress
   Plan::Response plan;
 
@@ -104,9 +117,29 @@ class Stage {
     response.success = 1;
     return true;
   }
+  bool onJogStep(JogStep::Request& request, JogStep::Response& response) {
+    change([&] {
+      steps.push_back(request);
+      response.success = static_cast<std::uint8_t>(step_refusal.empty());
+      response.message = step_refusal;
+    });
+    return true;
+  }
+  void onJog(const Jog::ConstPtr& jog) {
+    change([&] { jogs.push_back(*jog); });
+  }
   bool onOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
     change([&] { overrides.push_back(request.fraction), state.override = request.fraction; });
     response.success = 1;
+    return true;
+  }
+  bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response) {
+    change([&] {
+      swivels.push_back(request.swivel);
+      response.success = static_cast<std::uint8_t>(swivel_refusal.empty());
+      response.message = swivel_refusal;
+      if (response.success) state.swivel = request.swivel;
+    });
     return true;
   }
   void onGoal(const GrindActionGoal::ConstPtr& goal) {
@@ -120,7 +153,7 @@ class Stage {
   ros::NodeHandle nh_;
   ros::Publisher state_topic_, feedback_, results_, joint_states_;
   std::vector<ros::ServiceServer> services_;
-  ros::Subscriber goals_, stops_;
+  ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;
 };
 

@@ -14,7 +14,9 @@
 #include <QProgressBar>
 #include <QTemporaryDir>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -82,6 +84,8 @@ const std::vector<Row> kStates{
     {GrinderState::CANCELING, "canceling", {"disable", "hold", "cancel"}, "the job ends"},
     {GrinderState::FAULT, "fault", {"disable", "reset"}, "following error 1.2 mm"},
     {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
+    {GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
+    {GrinderState::JOGGING_RETRACTED, "jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
 };
 
 TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
@@ -106,11 +110,13 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     stage.be(row.state, row.name);
     std::string name = row.name;
     name[0] = static_cast<char>(name[0] - 'a' + 'A');
+    std::replace(name.begin(), name.end(), '_', ' ');
     WAIT_FOR(panel.state() == name);
     EXPECT_EQ(panel.enabledRequests(), row.allowed);
     EXPECT_EQ(panel.label("grinder"), "/cell/stage");
     EXPECT_NE(panel.label("meaning").find(row.meaning), std::string::npos) << panel.label("meaning");
-    const bool in_job = GrinderState::STARTING <= row.state && row.state <= GrinderState::CANCELING;
+    const bool in_job = (GrinderState::STARTING <= row.state && row.state <= GrinderState::CANCELING) ||
+                        row.state == GrinderState::JOGGING_RETRACTED;
     for (const char* of_a_new_job : {"choose", "plan", "dry_run"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
     EXPECT_EQ(panel.enabled("stroke"), in_job);
     EXPECT_EQ(panel.label("place"), in_job ? "Tooth 4, pass 20" : "No job runs");
@@ -274,6 +280,92 @@ TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
   WAIT_FOR(!panel.enabled("cancel"));
 }
 
+/// With a job that is planned, and a swivel that nobody has confirmed.
+class BeforeTheSwivelIsSet : public OnStage {
+ protected:
+  void SetUp() override {
+    stage.be(GrinderState::READY, "ready");
+    stage.change([&] {
+      stage.plan.valid = 1;
+      stage.state.swivel = std::numeric_limits<double>::quiet_NaN();
+    });
+    WAIT_FOR(panel.enabled("plan"));
+    panel.click("plan");
+    WAIT_FOR(panel.enabled("start"));
+  }
+  void start() {
+    panel.click("start");
+    WAIT_FOR(asks());
+  }
+  /// Tells the panel where the swivel stands, and waits until it knows: what is told later shows.
+  void tell(double angle, bool measured) {
+    stage.change(
+        [&] { stage.state.swivel = angle, stage.state.swivel_measured = static_cast<std::uint8_t>(measured); });
+    stage.be(GrinderState::LIFTING, "lifting");
+    WAIT_FOR(panel.state() == "Lifting");
+    stage.be(GrinderState::READY, "ready");
+    WAIT_FOR(panel.state() == "Ready");
+  }
+  bool asks() { return panel.the<QPushButton>("confirm_swivel").isVisible(); }
+  std::size_t goals() {
+    return stage.get([&] { return stage.goals.size(); });
+  }
+  std::vector<double> swivels() {
+    return stage.get([&] { return stage.swivels; });
+  }
+
+  Panel panel{"cell/stage", kPaper};
+};
+
+TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
+  start();
+  EXPECT_EQ(panel.label("swivel_to_set"), "Set the swivel to 31.769 deg. Is it set and clamped?");
+  panel.picture("swivel_question");
+  panel.click("confirm_swivel");
+  WAIT_FOR(goals() == 1);
+  EXPECT_FALSE(asks());
+  ASSERT_EQ(swivels().size(), 1U);
+  EXPECT_DOUBLE_EQ(swivels()[0], 31.769 * M_PI / 180);
+  EXPECT_FALSE(stage.get([&] { return stage.goals[0].goal.discard; }));
+}
+
+TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
+  start();
+  panel.click("decline_swivel");
+  WAIT_FOR(!asks());
+  EXPECT_TRUE(panel.enabled("start")) << "the plan is still good";
+  start();
+  stage.change([&] { stage.swivel_refusal = "confirm-swivel refused: for a test"; });
+  panel.click("confirm_swivel");
+  WAIT_FOR(panel.text("messages").find("Confirm-swivel refused: for a test") != std::string::npos);
+  EXPECT_FALSE(asks());
+  EXPECT_EQ(goals(), 0U);
+  EXPECT_EQ(swivels().size(), 1U);
+}
+
+TEST_F(BeforeTheSwivelIsSet, TheQuestionGoesWhenSomebodyElseConfirmsIt) {
+  start();
+  stage.change([&] { stage.state.swivel = 31.8 * M_PI / 180; });
+  WAIT_FOR(!asks());
+  panel.click("start");
+  WAIT_FOR(goals() == 1);
+  EXPECT_TRUE(swivels().empty());
+}
+
+TEST_F(BeforeTheSwivelIsSet, AnAngleThatIsOffIsAskedForToo) {
+  tell(31.83 * M_PI / 180, false);
+  start();
+  EXPECT_EQ(goals(), 0U);
+}
+
+TEST_F(BeforeTheSwivelIsSet, ADriveThatMeasuresItIsNotAsked) {
+  tell(0.1, true);
+  panel.click("start");
+  WAIT_FOR(goals() == 1);
+  EXPECT_FALSE(asks());
+  EXPECT_TRUE(swivels().empty()) << "the grinder refuses the goal and says why";
+}
+
 /// With a job of the grinder's journal that is not finished.
 class AfterAJobWasLeft : public OnStage {
  protected:
@@ -329,6 +421,19 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
   EXPECT_TRUE(goal().discard);
   EXPECT_EQ(goal().job_name, "paper.yaml");
   EXPECT_FALSE(panel.the<QPushButton>("discard").isVisible());
+}
+
+TEST_F(AfterAJobWasLeft, TheSwivelIsAskedForOnceItIsDiscarded) {
+  stage.change([&] { stage.state.swivel = 0; });
+  Panel panel("cell/stage", kPaper);
+  planAndStart(panel);
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  panel.click("discard");
+  WAIT_FOR(panel.the<QPushButton>("confirm_swivel").isVisible());
+  EXPECT_EQ(goals(), 0U);
+  panel.click("confirm_swivel");
+  WAIT_FOR(goals() == 1);
+  EXPECT_TRUE(goal().discard);
 }
 
 TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
@@ -441,8 +546,8 @@ TEST_F(OnStage, AJobFileThatChangedSinceThePlanIsNotStarted) {
   QFile file(path);
   ASSERT_TRUE(file.setPermissions(QFile::ReadOwner | QFile::WriteOwner) && file.open(QFile::ReadWrite));
   QByteArray text = file.readAll();
-  ASSERT_TRUE(text.contains("depth_mm: 0.5"));
-  text.replace("depth_mm: 0.5", "depth_mm: 0.4");
+  ASSERT_TRUE(text.contains("depth_mm: 1.6"));
+  text.replace("depth_mm: 1.6", "depth_mm: 1.5");
   ASSERT_TRUE(file.seek(0) && file.write(text) == text.size());
   file.close();
   panel.click("start");
@@ -452,7 +557,7 @@ TEST_F(OnStage, AJobFileThatChangedSinceThePlanIsNotStarted) {
   panel.click("dry_run");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
   EXPECT_TRUE(stage.get([&] { return stage.goals[0].goal.dry_run; }));
-  EXPECT_DOUBLE_EQ(stage.get([&] { return stage.goals[0].goal.process.depth; }), 0.4e-3);
+  EXPECT_DOUBLE_EQ(stage.get([&] { return stage.goals[0].goal.process.depth; }), 1.5e-3);
 }
 
 TEST_F(OnStage, ConfigurationIsSavedAndLoaded) {
@@ -506,6 +611,23 @@ TEST_F(OnStage, PositionsAreThoseOfTheGrindersNamespace) {
   EXPECT_EQ(panel.label("position_a"), "A -3780.000 deg");
   stage.change([&] { stage.joints.name.pop_back(); });
   WAIT_FOR(panel.label("position_x") == "X         - mm");
+}
+
+TEST_F(OnStage, PositionsAreThoseOfTheWork) {
+  Panel panel("cell/stage");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {-0.1, 0.05, 0.02, M_PI};
+    stage.state.position = {-0.1, 0.05, 0.02, M_PI};
+    stage.state.work_position = {-0.112, 0.0125, std::nan(""), M_PI / 2};
+  });
+  WAIT_FOR(panel.label("position_x") == "X  -112.000 mm");
+  EXPECT_EQ(panel.label("position_y"), "Y    12.500 mm");
+  EXPECT_EQ(panel.label("position_z"), "Z         - mm");
+  EXPECT_EQ(panel.label("position_a"), "A    90.000 deg");
+  const auto tip = [&](const char* name) { return panel.the<QLabel>(name).toolTip().toStdString(); };
+  EXPECT_EQ(tip("position_y"), "Position in work coordinates.\nMachine: 50.000 mm\nWork offset: 37.500 mm");
+  EXPECT_EQ(tip("position_z"), "Position in work coordinates.\nMachine: 20.000 mm\nWork offset: - mm");
 }
 
 TEST_F(OnStage, AxesThatAreNotHomedAreTold) {

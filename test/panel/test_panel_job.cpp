@@ -6,7 +6,6 @@
 #include <ros/package.h>
 #include <ros/ros.h>
 #include <QCheckBox>
-#include <QFile>
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QProgressBar>
@@ -24,16 +23,7 @@ const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinde
 /// A copy of jobs/paper.yaml with other values.
 QString jobFile(const QTemporaryDir& folder, const QString& name,
                 const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
-  QFile original(kJobs + "paper.yaml");
-  EXPECT_TRUE(original.open(QFile::ReadOnly));
-  QByteArray text = original.readAll();
-  for (const auto& [from, to] : changes) {
-    EXPECT_EQ(text.count(from), 1) << from.toStdString();
-    text.replace(from, to);
-  }
-  QFile file(folder.filePath(name));
-  EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
-  return file.fileName();
+  return changedJob(kJobs + "paper.yaml", folder.filePath(name), changes);
 }
 
 class WithGrinder : public ::testing::Test {
@@ -69,10 +59,11 @@ class WithGrinder : public ::testing::Test {
     panel.click("enable");
     WAIT_FOR(panel.state() == "Ready");
   }
-  /// Gives up a job that a test before has left.
+  /// Gives up a job that a test before has left, and confirms the swivel if it is asked for.
   static void startAndDiscard(Panel& of) {
     of.click("start");
     if (of.the<QPushButton>("discard").isVisible()) of.click("discard");
+    if (of.the<QPushButton>("confirm_swivel").isVisible()) of.click("confirm_swivel");
   }
   void start() {
     WAIT_FOR(panel.enabled("start"));
@@ -128,8 +119,8 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   const double x = position('x');
   const double y = position('y');
   EXPECT_TRUE(0 < x && x < 30) << x;
-  // On the cone of 5 deg, 0.5 mm deep.
-  EXPECT_NEAR(y, x * std::tan(5 * M_PI / 180) - 0.5, 0.01);
+  // On the cone of 5 deg, 1.6 mm deep.
+  EXPECT_NEAR(y, x * std::tan(5 * M_PI / 180) - 1.6, 0.01);
   EXPECT_GT(position('a'), 10);
   panel.picture("held_in_the_stroke");
   panel.click("retract");
@@ -211,6 +202,30 @@ TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
   panel.picture("wrong_job_file");
   open(folder.filePath("slow.yaml"));
   EXPECT_EQ(panel.text("verdict"), "Not planned yet.");
+}
+
+TEST_F(WithGrinder, TheWheelComesFromTheFileThatTheJobNames) {
+  const auto write = [&](const QByteArray& text) {
+    QFile wheel(folder.filePath("wheel.yaml"));
+    EXPECT_TRUE(wheel.open(QFile::WriteOnly) && wheel.write(text) == text.size());
+  };
+  const QByteArray wheel = "profile: straight\ndiameter_mm: 100\nwidth_mm: 3\n";
+  write(wheel);
+  enable();
+  open(jobFile(folder, "named.yaml",
+               {{"    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
+                 "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
+                 "    file: wheel.yaml\n"}}));
+  plan();
+  WAIT_FOR(panel.enabled("start"));
+  // Dressed since then: Y would be another one.
+  write(wheel + "measured: {date: 2026-11-20, diameter_mm: 99.9}\n");
+  startAndDiscard(panel);
+  WAIT_FOR(panel.text("verdict").find("Plan it again") != std::string::npos);
+  EXPECT_EQ(panel.state(), "Ready");
+  write(wheel + "measured: {date: 2026-11-20, diameter_mm: 100.1}\n");
+  panel.click("plan");
+  EXPECT_EQ(panel.text("verdict").find("wheel.yaml:4: measured.diameter_mm = 100.1 mm"), 0u) << panel.text("verdict");
 }
 
 TEST_F(WithGrinder, AJobBeyondTheAxesIsRefused) {

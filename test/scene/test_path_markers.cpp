@@ -98,7 +98,7 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
     const GrindProgram job = program();
-    PathErrorMarkers errors(job.cutter());
+    PathErrorMarkers errors(job.job());
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
       if (p.cycle % 7 == 0) p.path_error = value;

@@ -3,13 +3,16 @@
 #include "flute_grinder/connection/master_watch.h"
 #include "flute_grinder/panel/grinder_link.h"
 #include "flute_grinder/panel/job_box.h"
+#include "flute_grinder/panel/jog_box.h"
 #include "flute_grinder/panel/override_box.h"
 #include "flute_grinder/panel/readout.h"
+#include "flute_grinder/panel/section_view.h"
 
 #include <rviz/panel.h>
 #include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QPushButton>
+#include <QTabWidget>
 #include <QTimer>
 
 #include <map>
@@ -51,8 +54,10 @@ class GrindPanel : public rviz::Panel {
   void plan(const GrindGoal& goal);
   void dryRun(const GrindGoal& goal);
   void send(const GrindGoal& goal);
+  void confirmSwivel(double angle);
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
+  void jogStep(int axis, double distance, double speed);
   void showMessage(const std::string& text);
 
   const std::shared_ptr<MasterWatch> master_watch_;
@@ -64,6 +69,9 @@ class GrindPanel : public rviz::Panel {
 
   StateBox* state_;
   JobBox* job_;
+  SectionView* section_;
+  JogBox* jog_;
+  QTabWidget* tabs_;  ///< of job, section and jog
   std::map<MachineEvent, QPushButton*> buttons_;
   OverrideBox* override_;
   ProgressBox* progress_;

@@ -27,7 +27,10 @@ struct GrinderView {
   std::optional<GrinderState> state;      ///< nothing if none was received for a second
   std::optional<GrindFeedback> feedback;  ///< of the running job, whoever sent it, or of the last one
   std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing if none is in planning
-  std::optional<Axes> position;   ///< as read by the drive [m], A [rad]; nothing if none was received for a second
+  /// Of the machine, as read by the drive [m], A [rad]; nothing if none was received for a second.
+  std::optional<Axes> position;
+  /// The same in work coordinates; NaN of an axis whose work offset is unknown. Nothing without the state.
+  std::optional<Axes> work_position;
 };
 
 /// Client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. It uses the
@@ -58,6 +61,13 @@ class GrinderLink {
   void request(MachineEvent event, const OnAnswer& on_answer);
   /// @param fraction of the job's feed.
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
+  /// Tells the grinder where the swivel stands. @param angle [rad].
+  void confirmSwivel(double angle, const OnAnswer& on_answer);
+  /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
+  void jogStep(int axis, double distance, double speed, const OnAnswer& on_answer);
+  /// Moves an axis for as long as this is called again and again, by a connection that survives the ROS master.
+  /// @param velocity signed [m/s], A [rad/s]; 0 stops.
+  void jog(int axis, double velocity);
   /// Generates and checks every setpoint. If the grinder does not answer, that is the plan's reason.
   void plan(const GrindGoal& goal, const OnPlan& on_plan);
 
@@ -109,7 +119,7 @@ class GrinderLink {
   std::string sent_;  ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;
 
-  ros::Publisher goals_, stops_;
+  ros::Publisher goals_, stops_, jogs_;
   std::deque<Unsent> unsent_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;

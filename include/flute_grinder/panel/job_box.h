@@ -5,21 +5,24 @@
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/core/grind_job.h"
 #include "flute_grinder/panel/discard_question.h"
+#include "flute_grinder/panel/swivel_question.h"
 
 #include <QCheckBox>
-#include <QGroupBox>
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QStackedWidget>
+#include <QWidget>
 
+#include <memory>
 #include <optional>
+#include <string>
 
 namespace flute_grinder {
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
-/// without violations, and asks before an unfinished job is discarded.
-class JobBox : public QGroupBox {
+/// without violations, and asks before an unfinished job is discarded, and for the swivel unless it is known to be set.
+class JobBox : public QWidget {
   Q_OBJECT
 
  public:
@@ -33,28 +36,42 @@ class JobBox : public QGroupBox {
   /// @param idle whether the grinder can plan now.
   void refresh(const std::optional<GrinderState>& state, bool idle);
 
+  /// @param name resolved name of the parameter with the grinder's robot description.
+  void setDescription(const std::string& name) { description_ = name; }
+
   /// Shows the result of a plan, if it is for the goal that would be started now.
   void setPlan(const GrindGoal& goal, const Plan::Response& plan);
 
   /// The plan is no longer valid.
   void discardPlan();
 
+  /// As read from the file; null if there is none, or if it is wrong. Another object after each reading.
+  const std::shared_ptr<const GrindJob>& job() const { return job_; }
+
   bool planned() const { return planned_.has_value(); }
   /// Starts the planned goal, or asks first. A plan is good for one start: the next needs a plan from the axes' new
   /// position.
   void start();
+  /// The grinder has taken the confirmation of swivelConfirmed(): starts the job.
+  void startConfirmed();
 
  Q_SIGNALS:
   void fileChosen();
+  /// start() has a question, or does not start the job: the text says what or why.
+  void startDelayed();
   void planWanted(const flute_grinder::GrindGoal& goal);
   void dryRunWanted(const flute_grinder::GrindGoal& goal);
   void startWanted(const flute_grinder::GrindGoal& goal);
+  /// The operator has set the swivel for the job to be started. @param angle [rad].
+  void swivelConfirmed(double angle);
 
  private:
   void choose();
+  void openSetup();
   void read();
   std::optional<GrindGoal> takePlanned();
-  void startPlanned(bool discard);
+  void askForSwivel(bool discard);
+  bool asksWithReason() const;
   void keepUnfinished();
   GrindGoal goal() const;
   std::optional<GrindGoal> goalNow();
@@ -63,18 +80,23 @@ class JobBox : public QGroupBox {
   void showVerdict(const QString& text, bool good);
 
   QString file_;
-  std::optional<GrindJob> job_;          ///< from the file, if valid
+  std::string description_;  ///< name of the parameter
+  std::shared_ptr<const GrindJob> job_;
   std::optional<GrindGoal> planned_;     ///< without violations
   std::optional<GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
   JobProgress progress_;                 ///< as last received from the grinder
+  Swivel swivel_;                        ///< as last received from the grinder
+  bool discard_ = false;                 ///< the unfinished job, by the start that waits for the swivel
   QLabel* name_;
   QPushButton* choose_;
+  QPushButton* setup_;
   QCheckBox* continue_;
   QPushButton* plan_;
   QPushButton* dry_run_;
   QPlainTextEdit* verdict_;
   DiscardQuestion* question_;
-  QStackedWidget* answer_;  ///< verdict or question
+  SwivelQuestion* swivel_question_;
+  QStackedWidget* answer_;  ///< verdict or a question
 };
 
 }  // namespace flute_grinder

@@ -48,7 +48,7 @@ class ProgressBox : public QWidget {
   QProgressBar* job_;
 };
 
-/// Position of the axes in mm and deg.
+/// Work position of the axes in mm and deg; the machine's and the work offset in the tool tip.
 class PositionBox : public QWidget {
   Q_OBJECT
 

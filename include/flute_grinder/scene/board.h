@@ -11,7 +11,7 @@
 namespace flute_grinder::board {
 
 /// Where a colour scale stands.
-enum class Side { kLeft, kRight };
+enum class Side { kLeft, kMiddle, kRight };
 
 /// The board itself; needed while there is text on it.
 void appendBoard(visualization_msgs::MarkerArray& array);
@@ -19,10 +19,13 @@ void appendBoard(visualization_msgs::MarkerArray& array);
 /// The line of text on top.
 void appendLine(visualization_msgs::MarkerArray& array, const std::string& text);
 
-/// A colour scale from 0 to a length, labelled in um.
+/// What stands over a colour scale.
+void appendTitle(visualization_msgs::MarkerArray& array, Side side, const std::string& title);
+
+/// A colour scale from 0 to what its colours end at.
 /// @param title what is measured.
-/// @param largest length at the scale's end [m].
-void appendScale(visualization_msgs::MarkerArray& array, Side side, const std::string& title, double largest);
+/// @param end value at the scale's end, with its unit.
+void appendScale(visualization_msgs::MarkerArray& array, Side side, const std::string& title, const std::string& end);
 
 /// A length in um, to three digits.
 std::string micrometres(double length);

@@ -10,7 +10,8 @@
 namespace flute_grinder {
 
 /// The flutes of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
-/// one being ground bright, and a finished one coloured point by point by the largest error measured in its last pass.
+/// one being ground bright, and a finished one coloured point by point by the error measured in its last pass, red at
+/// the job's tolerance.
 class ToolPath {
  public:
   explicit ToolPath(const GrindProgram& program);
@@ -35,17 +36,17 @@ class ToolPath {
  private:
   struct Flute {
     double angle;               ///< of the tooth [rad]
+    LogCurve curve;             ///< A over X of a tooth at angle 0
     std::vector<float> errors;  ///< per point of the strip [m]; empty until a pass is finished
   };
 
   double x(std::size_t i) const;
   void measure(const Setpoint& setpoint, const Axes& actual);
   void finishPass(Flute& flute);
-  double scaleEnd() const;
-  void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth, double scale_end) const;
+  void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
   ConicalCutter cutter_;
-  LogCurve curve_;
+  double tolerance_;   ///< where the colour scale ends [m]
   double from_, to_;   ///< of the stroke [m]
   std::size_t steps_;  ///< between the points of a strip
   std::vector<Flute> flutes_;
@@ -77,10 +78,11 @@ class ExecutedPath {
 };
 
 /// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up by
-/// a factor shown beside them and coloured by size, with the colour scale. Thinned out as setpoints are added.
+/// a factor shown beside them and coloured by size, red at the job's tolerance, with the colour scale. Thinned out as
+/// setpoints are added.
 class PathErrorMarkers {
  public:
-  explicit PathErrorMarkers(const ConicalCutter& cutter) : cutter_(cutter) {}
+  explicit PathErrorMarkers(const GrindJob& job) : cutter_(job.cutter), tolerance_(job.interpolation.tolerance) {}
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
@@ -95,6 +97,7 @@ class PathErrorMarkers {
   void thinOut();
 
   ConicalCutter cutter_;
+  double tolerance_;  ///< [m]
   std::optional<std::uint32_t> move_;
   std::vector<Point> points_;
   double largest_ = 0;  ///< [m]

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "flute_grinder/core/grind_program.h"
+#include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
 
 #include <ros/ros.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -12,14 +14,17 @@ namespace flute_grinder {
 
 /// How the machine is set up for a job: positions of the URDF's undriven joints.
 struct MachineSetup {
-  double wheel_swivel = 0;  ///< the job's spiral angle [rad]
-  double y_zero =
-      0.055;  ///< from the cutter's axis to the wheel's centre at Y = 0; default: cutter 10 mm, wheel 100 mm [m]
+  double wheel_swivel = 0;  ///< of the job's set-up [rad]
+  /// From the cutter's axis to the wheel's centre at the machine's Y = 0; default: cutter 10 mm, wheel 100 mm [m]
+  double y_zero = 0.055;
+  double z_zero = 0;  ///< height of the wheel's centre above the cutter's axis at the machine's Z = 0 [m]
+  double x_zero = 0;  ///< of the cutter's small end from where it stands without a work offset, toward the shank [m]
+  double a_zero = 0;  ///< of the cutter about X, likewise [rad]
 };
 
-/// The job in rviz: blank, wheel, flutes, executed path, path errors and a line of text, on `~scene`, `~tool_path`,
-/// `~executed_path` and `~path_error`, each latched, every message complete. Shows nothing until there is a job.
-/// Not thread safe; not for the control thread.
+/// The job in rviz: ground cutter, wheel, flutes, executed path, path errors and a line of text, on `~ground_cutter`,
+/// `~scene`, `~tool_path`, `~executed_path` and `~path_error`, each latched, every message complete. Shows nothing
+/// until there is a job. Not thread safe; not for the control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
@@ -31,7 +36,7 @@ class Scene {
   void show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned);
 
   /// Adds a setpoint of the job shown.
-  /// @param actual position of the axes [m], A [rad].
+  /// @param actual position of the axes in work coordinates [m], A [rad].
   void add(const Setpoint& setpoint, const Axes& actual);
 
   /// Publishes what has changed; to be called at 10 Hz while the job runs.
@@ -45,21 +50,26 @@ class Scene {
 
  private:
   struct Shown {
-    GrindJob job;
+    std::shared_ptr<const GrindJob> job;
     std::string digest;
     std::size_t passes;  ///< of each tooth
     ToolPath tool_path;
     ExecutedPath executed;
     PathErrorMarkers errors;
     Setpoint last{};
+    Reached reached{};
+    Reached ground{};  ///< what was shown last
   };
 
+  void trackGround(const Setpoint& setpoint, const Axes& actual);
+  void showGround();
   void publishRun(const std::string& text);
   std::string runText(const char* state) const;
 
   ros::Publisher scene_, tool_path_, executed_path_, path_error_;
   MachineSetup setup_;
   std::optional<Shown> shown_;
+  GroundView ground_;
   bool flutes_changed_ = false;
   std::uint64_t updates_ = 0;
 };

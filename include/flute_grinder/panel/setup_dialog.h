@@ -1,0 +1,55 @@
+#pragma once
+
+#include "flute_grinder/geometry/job_setup.h"
+
+#include <QDialog>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QTimer>
+
+#include <atomic>
+#include <future>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Shows the set-up sheet of a job file, and writes the set-up into the file if asked to. Solving and writing have a
+/// thread of their own, and a master that hangs holds it up for a second at most.
+class SetupDialog : public QDialog {
+  Q_OBJECT
+
+ public:
+  /// Begins to solve.
+  /// @param description resolved name of the parameter with the robot description, whose swivel's range counts.
+  SetupDialog(const QString& file, const std::string& description, QWidget* parent);
+  ~SetupDialog() override;
+
+ Q_SIGNALS:
+  /// The set-up is in the file.
+  void written();
+
+ private:
+  /// What the thread has done.
+  struct Done {
+    std::optional<JobSetup> setup;  ///< that was solved and can be written
+    bool written = false;
+    QString text;
+    bool good = false;
+  };
+
+  Done solve() const;
+  Done write(const JobSetup& setup) const;
+  void poll();
+  void take(const Done& done);
+
+  const std::string file_, description_;
+  std::optional<JobSetup> setup_;
+  QPlainTextEdit* sheet_;
+  QPushButton* write_;
+  QTimer poll_timer_;
+  std::atomic<bool> stop_{false};
+  std::future<Done> working_;  ///< last member: its thread uses the others
+};
+
+}  // namespace flute_grinder

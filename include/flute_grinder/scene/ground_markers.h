@@ -1,0 +1,33 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/scene/markers.h"
+
+namespace flute_grinder {
+
+/// How far a job has come: the pass that runs, and the X that its stroke has reached.
+struct Reached {
+  ToothPass pass;
+  PassPhase phase = PassPhase::kBefore;
+  double x = 0;  ///< in the stroke [m]
+
+  bool operator==(const Reached& other) const {
+    return pass.tooth == other.pass.tooth && pass.pass == other.pass.pass && phase == other.phase && x == other.x;
+  }
+};
+
+/// The cutter as a part of a job leaves it: of each tooth the deepest pass that is done, and the stroke that runs up to
+/// where it is. The wheel counts as worn as at the job's begin, since Y takes up what it wears on the way.
+/// @param job as for groundCutterOf(). @throw as groundCutterOf().
+GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
+
+/// The ground cutter as a solid that is cut open, in the frame `cutter`, with the colour scale: the rake faces by how
+/// far they are from the rake that is asked. Below 3 MB.
+/// @param ns namespace of the solid's markers, also told with the scale.
+/// @return markers; the first deletes what was shown before. Instead of a cutter that cannot be shown, as one with its
+///         core cut through, there is only the reason.
+visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns);
+
+}  // namespace flute_grinder

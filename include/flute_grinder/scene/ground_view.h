@@ -1,0 +1,47 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/scene/ground_markers.h"
+
+#include <ros/ros.h>
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace flute_grinder {
+
+/// Shows the ground cutter in rviz on `~ground_cutter`, latched. It is computed in a thread of its own, at low
+/// priority: a plan at once, what is being ground at most once a second and in a twentieth of a core. Of several
+/// requests the latest counts. Thread safe; the calls do not wait for the computation.
+class GroundView {
+ public:
+  /// @param private_nh the node's own namespace.
+  explicit GroundView(ros::NodeHandle private_nh);
+  ~GroundView();
+  GroundView(const GroundView&) = delete;
+  GroundView& operator=(const GroundView&) = delete;
+
+  /// @param reached how far the job is ground; nothing for what it will be.
+  void show(std::shared_ptr<const GrindJob> job, const std::optional<Reached>& reached);
+
+ private:
+  struct Request {
+    std::shared_ptr<const GrindJob> job;
+    std::optional<Reached> reached;
+  };
+
+  void run();
+  std::optional<Request> next(std::chrono::steady_clock::time_point earliest);
+
+  ros::Publisher publisher_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Request> request_;
+  bool ended_ = false;
+  std::thread thread_;  ///< last member, so that it finds the others
+};
+
+}  // namespace flute_grinder

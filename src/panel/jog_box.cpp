@@ -1,0 +1,130 @@
+#include "flute_grinder/panel/jog_box.h"
+
+#include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/units.h"
+
+#include <QApplication>
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QLabel>
+
+namespace flute_grinder {
+
+namespace {
+
+/// At most half of the shortest jog_timeout [ms].
+constexpr int kRepeatInterval = 25;
+
+constexpr double kContinuous = 0;                                 ///< among the steps
+constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< [mm], A [deg]
+
+/// Speeds at first; the operator's are not kept.
+constexpr double kLinearSpeed = 600;   ///< [mm/min]
+constexpr double kRotarySpeed = 1800;  ///< [deg/min]
+constexpr double kLargestSpeed = 99999;
+
+double unitOf(int axis) { return axis == kA ? units::kDegree : units::kMillimetre; }
+
+QDoubleSpinBox* speedBox(const char* name, const QString& unit, double value) {
+  auto* box = new QDoubleSpinBox;
+  box->setObjectName(name);
+  box->setDecimals(0);
+  box->setRange(1, kLargestSpeed);
+  box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
+  box->setSuffix(" " + unit);
+  box->setToolTip("Speed of the jog");
+  box->setValue(value);
+  return box;
+}
+
+}  // namespace
+
+JogBox::JogBox(QWidget* parent)
+    : QWidget(parent),
+      step_(new QComboBox),
+      linear_speed_(speedBox("jog_speed", "mm/min", kLinearSpeed)),
+      rotary_speed_(speedBox("jog_speed_a", "deg/min", kRotarySpeed)) {
+  step_->setObjectName("jog_step");
+  for (const double step : kSteps) step_->addItem(QString("%1 mm, deg").arg(step), step);
+  step_->addItem("while pressed", kContinuous);
+  auto* speeds = new QHBoxLayout;
+  speeds->addWidget(linear_speed_);
+  speeds->addWidget(rotary_speed_);
+  auto* layout = new QGridLayout(this);
+  layout->addWidget(new QLabel("Step"), 0, 0);
+  layout->addWidget(step_, 0, 1, 1, 3);
+  layout->addLayout(speeds, 1, 0, 1, 4);
+  std::size_t place = 0;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    for (const int direction : {1, -1}) {
+      const Button button{addButton(axis, direction), axis, direction};
+      layout->addWidget(button.button, direction > 0 ? 2 : 3, axis);
+      connect(button.button, &QPushButton::clicked, this, [this, button] { click(button); });
+      connect(button.button, &QPushButton::pressed, this, [this, button] { press(button); });
+      connect(button.button, &QPushButton::released, this, &JogBox::repeat);
+      buttons_[place++] = button;
+    }
+    layout->setColumnStretch(axis, 1);
+  }
+  layout->setRowStretch(4, 1);
+  connect(&repeat_, &QTimer::timeout, this, &JogBox::repeat);
+}
+
+QPushButton* JogBox::addButton(int axis, int direction) {
+  const QChar name = "XYZA"[axis];
+  const bool up = direction > 0;
+  auto* button = new QPushButton(QString("%1 %2").arg(name).arg(up ? "+" : QString::fromUtf8("\xe2\x88\x92")));
+  button->setObjectName(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"));
+  button->setToolTip(QString("Jog axis %1").arg(name));
+  button->setMinimumWidth(10);
+  button->setMinimumHeight(2 * fontMetrics().height() + 6);
+  button->setEnabled(false);
+  return button;
+}
+
+bool JogBox::isContinuous() const { return step_->currentData().toDouble() == kContinuous; }
+
+double JogBox::speed(int axis) const {
+  const QDoubleSpinBox& box = axis == kA ? *rotary_speed_ : *linear_speed_;
+  return box.value() * unitOf(axis) / 60;
+}
+
+void JogBox::click(const Button& button) {
+  if (isContinuous()) return;
+  const double step = button.direction * step_->currentData().toDouble();
+  Q_EMIT stepWanted(button.axis, step * unitOf(button.axis), speed(button.axis));
+}
+
+void JogBox::press(const Button& button) {
+  if (!isContinuous()) return;
+  pressed_ = button;
+  repeat_.start(kRepeatInterval);
+  repeat();
+}
+
+void JogBox::repeat() {
+  if (!pressed_) return;
+  const QPushButton& button = *pressed_->button;
+  // A menu or a dialog may take the mouse, so that the button does not see its release.
+  const bool covered = QApplication::activePopupWidget() || QApplication::activeModalWidget();
+  const bool goes_on = button.isDown() && button.isEnabled() && button.isVisible() && !covered;
+  const int axis = pressed_->axis;
+  const double velocity = goes_on ? pressed_->direction * speed(axis) : 0;
+  if (!goes_on) {
+    pressed_.reset();
+    repeat_.stop();
+  }
+  Q_EMIT continuousWanted(axis, velocity);
+}
+
+void JogBox::refresh(const std::optional<GrinderState>& state, bool has_services) {
+  const bool allowed = state && after(static_cast<MachineState>(state->state), MachineEvent::kJog) && state->homed != 0;
+  const bool reached = has_services || isContinuous();
+  for (const Button& button : buttons_) {
+    const bool raises = button.axis == kY && button.direction > 0;
+    const bool safe = state && (!state->wheel_in_work || raises);
+    button.button->setEnabled(allowed && reached && safe);
+  }
+}
+
+}  // namespace flute_grinder

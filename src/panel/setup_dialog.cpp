@@ -1,0 +1,115 @@
+#include "flute_grinder/panel/setup_dialog.h"
+
+#include "flute_grinder/connection/ros_api.h"
+#include "flute_grinder/control/swivel_range.h"
+#include "flute_grinder/geometry/setup_file.h"
+#include "flute_grinder/geometry/setup_sheet.h"
+#include "flute_grinder/panel/text_view.h"
+
+#include <ros/master.h>
+#include <QFileInfo>
+#include <QFontDatabase>
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include <chrono>
+#include <exception>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kPollInterval = 50;  ///< [ms]
+constexpr int kLines = 24, kColumns = 100;
+
+}  // namespace
+
+SetupDialog::SetupDialog(const QString& file, const std::string& description, QWidget* parent)
+    : QDialog(parent),
+      file_(file.toStdString()),
+      description_(description),
+      sheet_(textView("setup_sheet", kLines)),
+      write_(new QPushButton("Write into the file")) {
+  setObjectName("setup_dialog");
+  setWindowTitle("Set-up of " + QFileInfo(file).fileName());
+  sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
+  sheet_->setMinimumWidth(kColumns * sheet_->fontMetrics().horizontalAdvance('0'));
+  write_->setObjectName("write_setup");
+  write_->setToolTip("Write the set-up into the job file; all else in it stays as it is");
+  write_->setEnabled(false);
+  auto* close = new QPushButton("Close");
+  close->setObjectName("close_setup");
+  auto* buttons = new QHBoxLayout;
+  buttons->addStretch(1);
+  buttons->addWidget(write_);
+  buttons->addWidget(close);
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(sheet_, 1);
+  layout->addLayout(buttons);
+  connect(close, &QPushButton::clicked, this, &QDialog::close);
+  connect(write_, &QPushButton::clicked, this, [this] {
+    write_->setEnabled(false);
+    working_ = std::async(std::launch::async, [this, setup = *setup_] { return write(setup); });
+  });
+  connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
+  showText(*sheet_, "Solving ...", true);
+  working_ = std::async(std::launch::async, [this] { return solve(); });
+  poll_timer_.start(kPollInterval);
+}
+
+SetupDialog::~SetupDialog() { stop_ = true; }
+
+SetupDialog::Done SetupDialog::solve() const {
+  const auto refused = [](const std::string& why) {
+    return Done{std::nullopt, false, QString::fromStdString(why), false};
+  };
+  try {
+    const GrindJob job = readJobFile(file_, unsolvedFields(std::nullopt));
+    auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
+    if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
+      return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");
+    }
+    const Range swivel = readSwivelRange(static_cast<std::string>(*description));
+    const auto result = solveJobSetup(job, swivel, std::nullopt);
+    if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
+    const auto& setup = std::get<JobSetup>(result);
+    std::string text = setupSheet(setup, swivel);
+    for (const core::Reason& reason : setup.check.reasons) {
+      text += "a plan will refuse this tool: " + core::text(reason, UnitSystem::kShop) + "\n";
+    }
+    return {setup, false, QString::fromStdString(text), setup.check.reasons.empty()};
+  } catch (const std::exception& error) {
+    return refused(error.what());
+  }
+}
+
+SetupDialog::Done SetupDialog::write(const JobSetup& setup) const {
+  try {
+    writeSetup(file_, setup);
+    return {std::nullopt, true, "Written into " + QString::fromStdString(file_) + ".", true};
+  } catch (const std::exception& error) {
+    return {std::nullopt, false, error.what(), false};
+  }
+}
+
+void SetupDialog::poll() {
+  if (working_.valid() && working_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    take(working_.get());
+  }
+  // Closed, it stays until nothing is left to wait for.
+  if (!isVisible() && !working_.valid()) deleteLater();
+}
+
+void SetupDialog::take(const Done& done) {
+  setup_ = done.setup;
+  write_->setEnabled(setup_.has_value());
+  if (done.written) {
+    sheet_->appendPlainText(done.text);
+    Q_EMIT written();
+  } else {
+    showText(*sheet_, done.text, done.good);
+  }
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,194 @@
+#include "flute_grinder/scene/ground_markers.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/cutter_solid.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/scene/board.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace flute_grinder {
+
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
+constexpr double kMostTriangles = 16000;  ///< of 72 bytes each, and what the cut adds
+constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
+constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
+constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
+/// Seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the flutes.
+constexpr Wedge kCutOut{55 * units::kDegree, 140 * units::kDegree};
+
+/// The strokes of each tooth: the deepest that is done, if any, and the one that runs.
+std::vector<std::vector<GrindStroke>> strokesSoFar(const GrindJob& job, const Reached& reached) {
+  const std::vector<double> depths = passDepths(job.process);
+  std::vector<double> deepest(job.tooth_angles.size(), 0);
+  std::vector<std::vector<GrindStroke>> strokes(job.tooth_angles.size());
+  const auto at = [&](std::size_t tooth, double depth) {
+    return strokeOf(job, static_cast<int>(tooth), depth, job.process.wheel_wear);
+  };
+  for (const ToothPass& pass : passOrder(job)) {
+    const auto tooth = static_cast<std::size_t>(pass.tooth);
+    const double depth = depths[static_cast<std::size_t>(pass.pass)];
+    const bool runs = pass.tooth == reached.pass.tooth && pass.pass == reached.pass.pass;
+    if (runs && reached.phase == PassPhase::kBefore) break;
+    if (runs && reached.phase == PassPhase::kStroke) {
+      GrindStroke stroke = at(tooth, depth);
+      stroke.to = std::clamp(reached.x, std::min(stroke.from, stroke.to), std::max(stroke.from, stroke.to));
+      strokes[tooth].push_back(stroke);
+      break;
+    }
+    deepest[tooth] = std::max(deepest[tooth], depth);
+    if (runs) break;
+  }
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    if (deepest[i] > 0) strokes[i].push_back(at(i, deepest[i]));
+    // One in the air removes nothing.
+    if (strokes[i].empty()) strokes[i].push_back(at(i, -job.process.clearance));
+  }
+  return strokes;
+}
+
+bool isSame(const std::vector<GrindStroke>& a, const std::vector<GrindStroke>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const GrindStroke& s, const GrindStroke& t) { return s.to == t.to && s.y == t.y; });
+}
+
+SolidExtent extentOf(const GrindJob& job) {
+  const double to = job.cutter.flute_length + job.process.overtravel_shank;
+  return {0, to, job.cutter.shank_diameter, std::max(kEnd, to)};
+}
+
+/// As fine as fits a message.
+SolidResolution resolutionOf(const GrindJob& job) {
+  const SolidExtent extent = extentOf(job);
+  double turns = 0;
+  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) {
+    const LogCurve curve{ConicalCutter(cutterOf(job, static_cast<int>(i)))};
+    turns = std::max(turns, std::abs(curve.a(extent.to)) / (2 * units::kPi));
+  }
+  const auto teeth = static_cast<double>(job.tooth_angles.size());
+  SolidResolution r{40, 16, 60};
+  const auto triangles = [&] {
+    const auto rings = static_cast<double>(r.rings), around = std::max(teeth, static_cast<double>(r.around));
+    const auto sections = static_cast<double>(r.sections);
+    const double layers = std::max(sections, turns * around) + sections * (extent.shank_to - extent.to) / extent.to;
+    return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
+  };
+  while (triangles() > kMostTriangles && r.rings > 4) --r.rings;
+  while (triangles() > kMostTriangles && r.around > 6) --r.around;
+  while (triangles() > kMostTriangles && r.sections > 12) --r.sections;
+  return r;
+}
+
+/// How far the rake faces are from the asked rake, as a part of the tolerance.
+class RakeDeviation {
+ public:
+  RakeDeviation(const GroundCutter& cutter, const GrindJob& job) : length_(job.cutter.flute_length) {
+    for (std::size_t i = 0; i < kRakePlaces; ++i) {
+      std::vector<std::optional<double>>& of_teeth = parts_.emplace_back();
+      for (const ToothSection& tooth : cutter.section(length_ * static_cast<double>(i) / (kRakePlaces - 1)).teeth) {
+        of_teeth.emplace_back();
+        if (tooth.rake && tooth.complete) {
+          of_teeth.back() = std::abs(*tooth.rake - job.cutter.rake_angle) / job.cutter.rake_tolerance;
+        }
+      }
+    }
+  }
+
+  /// At the nearest place that was measured; nothing where the flute is not complete.
+  std::optional<double> at(double x, std::size_t tooth) const {
+    if (x > length_) return std::nullopt;
+    const double place = std::clamp(x / length_, 0.0, 1.0) * (kRakePlaces - 1);
+    return parts_[static_cast<std::size_t>(std::lround(place))][tooth];
+  }
+
+ private:
+  double length_;
+  std::vector<std::vector<std::optional<double>>> parts_;  ///< by places, by teeth
+};
+
+std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
+  switch (kind) {
+    case SurfaceKind::kRakeFace: return colour(0.55, 0.57, 0.62);
+    case SurfaceKind::kFluteBack: return colour(0.45, 0.50, 0.60);
+    case SurfaceKind::kLand:
+    case SurfaceKind::kEndFace:
+    case SurfaceKind::kShank: return colour(0.74, 0.75, 0.77);
+    case SurfaceKind::kCut: break;
+  }
+  return colour(0.80, 0.52, 0.30);
+}
+
+constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;
+
+void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviation& rake, const char* ns) {
+  std::array<std::vector<geometry_msgs::Point>, kSurfaceKinds + kRakeColours> by_colour;
+  for (const SolidTriangle& t : solid.triangles) {
+    const auto deviation = t.kind == SurfaceKind::kRakeFace ? rake.at(solid.vertices[t.vertices[0]].x(), t.tooth)
+                                                            : std::optional<double>();
+    const std::size_t level =
+        static_cast<std::size_t>(std::min(deviation.value_or(0), 1 - 1e-9) * static_cast<double>(kRakeColours));
+    auto& points = by_colour[deviation ? kSurfaceKinds + level : static_cast<std::size_t>(t.kind)];
+    for (const std::uint32_t v : t.vertices) {
+      points.push_back(point(solid.vertices[v].x(), solid.vertices[v].y(), solid.vertices[v].z()));
+    }
+  }
+  for (std::size_t i = 0; i < by_colour.size(); ++i) {
+    const auto& points = by_colour[i];
+    for (std::size_t first = 0; first < points.size(); first += kPointsPerMarker) {
+      Marker& m = append(array, ns, Marker::TRIANGLE_LIST, "cutter");
+      m.color = i < kSurfaceKinds ? colourOf(static_cast<SurfaceKind>(i))
+                                  : heat((static_cast<double>(i - kSurfaceKinds) + 0.5) / kRakeColours);
+      const auto from = points.begin() + static_cast<std::ptrdiff_t>(first);
+      m.points.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPointsPerMarker, points.size() - first)));
+    }
+  }
+}
+
+}  // namespace
+
+GroundCutter groundSoFar(const GrindJob& job, const Reached& reached) {
+  const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
+  std::vector<Flute> flutes;
+  std::vector<GroundTooth> teeth;
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    const auto spiral = [&](std::size_t k) { return cutterOf(job, static_cast<int>(k)).spiral_angle; };
+    const auto is_same = [&](std::size_t k) { return spiral(k) == spiral(i) && isSame(strokes[k], strokes[i]); };
+    std::size_t same = 0;
+    while (same < i && !is_same(same)) ++same;
+    teeth.push_back({job.tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
+    if (same < i) continue;
+    Flute& flute = flutes.emplace_back();
+    for (const GrindStroke& stroke : strokes[i]) {
+      flute.push_back(sweepOf(job, static_cast<int>(i), job.process.wheel_wear, stroke));
+    }
+  }
+  return {ConicalCutter(job.cutter), job.cutter.cut, std::move(flutes), std::move(teeth)};
+}
+
+MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns) {
+  MarkerArray array = clearedArray();
+  char text[64];
+  try {
+    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), RakeDeviation(cutter, job), ns);
+  } catch (const std::invalid_argument& error) {
+    array = clearedArray();
+    board::appendTitle(array, board::Side::kMiddle, error.what());
+    return array;
+  }
+  std::snprintf(text, sizeof text, "%s: rake error, %.4g deg asked", ns, job.cutter.rake_angle / units::kDegree);
+  const std::string title = text;
+  std::snprintf(text, sizeof text, "%.3g deg", job.cutter.rake_tolerance / units::kDegree);
+  board::appendScale(array, board::Side::kMiddle, title, text);
+  return array;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,79 @@
+#include "flute_grinder/scene/ground_view.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kNice = 15;
+constexpr std::chrono::duration<double> kLeastPause{1};
+constexpr double kPausePerWork = 20;
+
+/// What this thread has computed for.
+std::chrono::duration<double> worked() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::chrono::duration<double>(static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec));
+}
+
+visualization_msgs::MarkerArray markersOf(const GrindJob& job, const std::optional<Reached>& reached) {
+  const Reached end{passOrder(job).back(), PassPhase::kAfter, 0};
+  return groundMarkers(groundSoFar(job, reached.value_or(end)), job, reached ? "ground" : "planned");
+}
+
+}  // namespace
+
+GroundView::GroundView(ros::NodeHandle private_nh)
+    : publisher_(private_nh.advertise<visualization_msgs::MarkerArray>("ground_cutter", 1, true)),
+      thread_([this] { run(); }) {
+  // Remove what an earlier process left in rviz.
+  publisher_.publish(clearedArray());
+}
+
+GroundView::~GroundView() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void GroundView::show(std::shared_ptr<const GrindJob> job, const std::optional<Reached>& reached) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    request_ = {std::move(job), reached};
+  }
+  changed_.notify_one();
+}
+
+std::optional<GroundView::Request> GroundView::next(Clock::time_point earliest) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait_until(lock, earliest, [this] { return ended_ || (request_ && !request_->reached); });
+  changed_.wait(lock, [this] { return ended_ || request_; });
+  if (ended_) return std::nullopt;
+  return std::exchange(request_, std::nullopt);
+}
+
+void GroundView::run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
+  Clock::time_point earliest = Clock::now();
+  while (const std::optional<Request> request = next(earliest)) {
+    const auto before = worked();
+    publisher_.publish(markersOf(*request->job, request->reached));
+    const auto pause = std::max(kLeastPause, kPausePerWork * (worked() - before));
+    earliest = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
+  }
+}
+
+}  // namespace flute_grinder

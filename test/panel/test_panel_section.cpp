@@ -1,0 +1,223 @@
+// The panel's section of the ground cutter, against figures in closed form.
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/messages/conversions.h"
+#include "panel_fixture.h"
+#include "stage.h"
+
+#include <ros/package.h>
+#include <QCheckBox>
+#include <QDoubleSpinBox>
+#include <QRegularExpression>
+#include <QTabBar>
+#include <QTabWidget>
+#include <QTemporaryDir>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const char* const kRed = "color:#b00020";
+
+// A cylinder of 10 mm with a straight flute of 1.6 mm depth: the wheel's upper face passes the axis at 5 mm sin 8 deg,
+// its surface leaves a flat floor, which ends on the cutter's circle or at the wheel's lower face.
+constexpr double kRadius = 5, kDepth = 1.6;  // [mm]
+const double kFace = kRadius * std::sin(8 * M_PI / 180);
+
+/// The closed form of the flute's angle that a wheel leaves [deg].
+double flute(double width) {
+  const double half_floor = std::acos((kRadius - kDepth) / kRadius);
+  return 8 + std::min(half_floor, std::asin(std::min(1.0, (width - kFace) / kRadius))) * 180 / M_PI;
+}
+
+QByteArray straight(double width) {
+  return "setup: {swivel_deg: 0, height_mm: " + QByteArray::number(kFace - width / 2, 'g', 12) + "}";
+}
+
+class SectionOnStage : public ::testing::Test {
+ protected:
+  /// A copy of jobs/paper.yaml with a cylinder and a straight flute in it.
+  QString cylinder(double width, int teeth) {
+    return changedJob(kPaper, folder.filePath("cylinder.yaml"),
+                      {{"cone_angle_deg: 5", "cone_angle_deg: 0"},
+                       {"spiral_angle_deg: 30", "spiral_angle_deg: 0"},
+                       {"teeth: 1", "teeth: " + QByteArray::number(teeth)},
+                       {"width_mm: 3", "width_mm: " + QByteArray::number(width)},
+                       {"overtravel_mm: [1, 7]", "overtravel_mm: [20, 20]"},
+                       {"setup: {swivel_deg: 31.769, height_mm: 2.788}", straight(width)}});
+  }
+  static void openSection(Panel& panel) {
+    QTabBar& bar = *panel.the<QTabWidget>("tabs").tabBar();
+    for (int tab = 0; tab < bar.count(); ++tab) {
+      if (bar.tabText(tab) == "Section") QTest::mouseClick(&bar, Qt::LeftButton, {}, bar.tabRect(tab).center());
+    }
+    ASSERT_TRUE(panel.the<QWidget>("section_x").isVisible());
+  }
+  static double x(Panel& panel) { return panel.the<QDoubleSpinBox>("section_x").value(); }
+  /// Switches it on or off.
+  static void follow(Panel& panel, bool on = true) {
+    auto& box = panel.the<QCheckBox>("follow_wheel");
+    QTest::mouseClick(&box, Qt::LeftButton, {}, QPoint(8, box.height() / 2));
+    ASSERT_EQ(box.isChecked(), on);
+  }
+  void standAt(double x) {
+    stage.change([&] {
+      stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+      stage.joints.position = {x, 0, 0, 0};
+    });
+  }
+  static bool shows(Panel& panel, const std::string& text) {
+    return panel.label("section_figures").find(text) != std::string::npos;
+  }
+  /// The numbers of the text, in their order.
+  static std::vector<double> numbers(Panel& panel) {
+    std::vector<double> found;
+    const QString text = QString::fromStdString(panel.label("section_figures")).remove(QRegularExpression("<[^>]*>"));
+    auto matches = QRegularExpression(R"(\d+\.\d+)").globalMatch(text);
+    while (matches.hasNext()) found.push_back(matches.next().captured().toDouble());
+    return found;
+  }
+
+  Stage stage;
+  const QTemporaryDir folder;
+};
+
+TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
+  Panel panel("cell/stage", cylinder(3, 1));
+  openSection(panel);
+  WAIT_FOR(shows(panel, "Rake "));
+  EXPECT_EQ(x(panel), 15) << "the middle";
+  EXPECT_TRUE(shows(panel, "Rake 8.00 deg, asked 7.50 to 8.50 deg<br>Core 6.800 mm, asked 6.800 mm<br>Land "))
+      << panel.label("section_figures");
+  const double land = 360 - flute(3);
+  const std::vector<double> shown = numbers(panel);
+  ASSERT_EQ(shown.size(), 7U) << panel.label("section_figures");
+  EXPECT_NEAR(shown[5], land, 0.0051);
+  EXPECT_NEAR(shown[6], kRadius * land * M_PI / 180, 0.0051);
+  EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+}
+
+TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  openSection(panel);
+  WAIT_FOR(shows(panel, "Rake "));
+  // Computed by brute force over points of the wheel: 7.999, 8.019, 7.999 deg at X 1, 17, 29 mm.
+  for (const auto& [place, rake] : {std::pair{1.0, 7.999}, {17.0, 8.019}, {29.0, 7.999}}) {
+    auto& box = panel.the<QDoubleSpinBox>("section_x");
+    box.setValue(place);
+    const double asked_core = 2 * (5 + place * std::tan(5 * M_PI / 180) - 1.6);
+    WAIT_FOR(shows(panel, "asked " + QString::number(asked_core, 'f', 3).toStdString() + " mm"));
+    EXPECT_NEAR(numbers(panel).at(0), rake, 0.006) << place;
+    EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+  }
+  panel.picture("section");
+}
+
+TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
+  const QString job = QString(kPaper).replace("paper", "unequal_d12_t4");
+  std::vector<double> pitches = readJobFile(job.toStdString()).tooth_angles;
+  pitches.push_back(2 * M_PI);
+  std::adjacent_difference(pitches.begin(), pitches.end(), pitches.begin());
+  const auto [least, largest] = std::minmax_element(pitches.begin() + 1, pitches.end());
+  Panel panel("cell/stage", job);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  openSection(panel);
+  WAIT_FOR(shows(panel, "Land "));
+  const std::vector<double> shown = numbers(panel);
+  ASSERT_EQ(shown.size(), 9U) << panel.label("section_figures");
+  EXPECT_NEAR(shown[6] - shown[5], (*largest - *least) * 180 / M_PI, 0.02);
+  panel.picture("section_of_a_tool");
+}
+
+TEST_F(SectionOnStage, WhatIsNotAsAskedIsRed) {
+  // Wider than the pitch of eight teeth lets be.
+  ASSERT_GT(flute(8), 45);
+  Panel narrow("cell/stage", cylinder(8, 8));
+  openSection(narrow);
+  WAIT_FOR(shows(narrow, "<span style=\"color:#b00020\">No land on tooth 1</span>"));
+  narrow.picture("section_without_land");
+  // Another swivel than the one that makes the rake.
+  Panel panel("cell/stage", changedJob(kPaper, folder.filePath("swivel.yaml"),
+                                       {{"swivel_deg: 31.769", "swivel_deg: 20"}, {"teeth: 1", "teeth: 2"}}));
+  openSection(panel);
+  WAIT_FOR(shows(panel, "<span style=\"color:#b00020\">Rake "));
+  EXPECT_GT(std::abs(numbers(panel).at(0) - 8), 0.5) << panel.label("section_figures");
+  panel.picture("section_wrong_rake");
+}
+
+TEST_F(SectionOnStage, ItFollowsTheWheel) {
+  Panel panel("cell/stage", kPaper);
+  stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });
+  stage.be(GrinderState::RUNNING, "running");
+  standAt(0.012345);
+  openSection(panel);
+  follow(panel);
+  WAIT_FOR(x(panel) == 12.35 || x(panel) == 12.34);
+  EXPECT_FALSE(panel.enabled("section_x"));
+  const double core = 2 * (5 + 12.34 * std::tan(5 * M_PI / 180) - 1.6);
+  WAIT_FOR(numbers(panel).size() == 7 && std::abs(numbers(panel)[4] - core) < 0.003);
+  standAt(-0.05);
+  WAIT_FOR(x(panel) == 0);
+  standAt(0.2);
+  WAIT_FOR(x(panel) == 30);
+  stage.change([&] { stage.joints.position.clear(); });
+  WAIT_FOR(shows(panel, "No position comes from the grinder."));
+}
+
+TEST_F(SectionOnStage, ItSaysWhatItCannotShow) {
+  stage.change([&] {
+    stage.state.progress.job_digest = std::string(64, 'a');
+    stage.state.progress.job_name = "published.yaml";
+    stage.state.progress.cutter = goalFromJob(readJobFile(kPaper.toStdString())).cutter;
+  });
+  stage.be(GrinderState::RUNNING, "running");
+  standAt(0.01);
+  {
+    Panel without("cell/stage");
+    openSection(without);
+    WAIT_FOR(shows(without, "No job is chosen"));
+  }
+  Panel panel("cell/stage", kPaper);
+  openSection(panel);
+  WAIT_FOR(shows(panel, "Rake "));
+  const auto hold = [&] { return panel.the<QWidget>("hold").pos(); };
+  const QPoint place = hold();
+  follow(panel);
+  WAIT_FOR(shows(panel, "The grinder runs published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth)"));
+  EXPECT_TRUE(shows(panel, "not the chosen job"));
+  EXPECT_FALSE(panel.the<QWidget>("section").isVisible());
+  panel.picture("section_of_another_job");
+  EXPECT_EQ(hold(), place);
+  follow(panel, false);
+  WAIT_FOR(shows(panel, "Rake "));
+}
+
+TEST_F(SectionOnStage, AQuestionAtTheStartIsSeen) {
+  stage.change([&] {
+    stage.plan.valid = 1;
+    stage.state.progress.job_digest = std::string(64, 'a');
+  });
+  stage.be(GrinderState::READY, "ready");
+  Panel panel("cell/stage", kPaper);
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.enabled("start"));
+  const QPoint place = panel.the<QWidget>("hold").pos();
+  openSection(panel);
+  WAIT_FOR(shows(panel, "Rake "));
+  EXPECT_EQ(panel.the<QWidget>("hold").pos(), place);
+  panel.click("start");
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+}
+
+}  // namespace
+}  // namespace flute_grinder

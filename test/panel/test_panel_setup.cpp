@@ -1,0 +1,75 @@
+// The set-up sheet in the panel: solved for the machine of the running grinder, and written into the job file.
+
+#include "panel_fixture.h"
+
+#include <ros/package.h>
+#include <ros/ros.h>
+#include <QDialog>
+#include <QFile>
+#include <QTemporaryDir>
+
+namespace flute_grinder {
+namespace {
+
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QByteArray kSetup = "  setup: {swivel_deg: 31.769, height_mm: 2.788}";
+
+class SetupSheet : public ::testing::Test {
+ protected:
+  void open(const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
+    file = changedJob(kPaper, folder.filePath("job.yaml"), changes);
+    panel = std::make_unique<Panel>("grinder", file);
+    WAIT_FOR(panel->state() != "" && panel->enabled("setup"));
+    panel->click("setup");
+    WAIT_FOR(dialog());
+    WAIT_FOR(sheet() != "Solving ...");
+  }
+  QDialog* dialog() { return panel->widget().findChild<QDialog*>("setup_dialog"); }
+  std::string sheet() { return panel->text("setup_sheet"); }
+  QByteArray text() {
+    QFile read(file);
+    EXPECT_TRUE(read.open(QFile::ReadOnly));
+    return read.readAll();
+  }
+
+  const QTemporaryDir folder;
+  QString file;
+  std::unique_ptr<Panel> panel;
+};
+
+TEST_F(SetupSheet, IsShownAndWritten) {
+  open({{kSetup, ""}});
+  EXPECT_NE(panel->text("verdict").find("'grind setup --write' finds it"), std::string::npos) << panel->text("verdict");
+  EXPECT_NE(sheet().find("31.767 deg; the machine's range is -60 to 60 deg"), std::string::npos) << sheet();
+  EXPECT_NE(sheet().find("reads D/2 - 1.288 mm"), std::string::npos) << sheet();
+  const QByteArray before = text();
+  WAIT_FOR(panel->enabled("write_setup"));
+  panel->click("write_setup");
+  WAIT_FOR(sheet().find("Written into ") != std::string::npos);
+  EXPECT_FALSE(panel->enabled("write_setup"));
+  EXPECT_EQ(panel->text("verdict"), "Not planned yet.");
+  QByteArray after = text();
+  EXPECT_EQ(after.count("setup: {swivel_deg: 31.7675, height_mm: 2.78785}"), 1);
+  EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.7675, height_mm: 2.78785}\n", "").size(), before.size());
+  panel->click("close_setup");
+  WAIT_FOR(!dialog());
+}
+
+TEST_F(SetupSheet, WithoutASolutionSaysWhy) {
+  open({{"teeth: 1", "teeth: 8"}});
+  EXPECT_EQ(sheet().find("no land is left: "), 0u) << sheet();
+  EXPECT_FALSE(panel->enabled("write_setup"));
+}
+
+TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
+  std::string description;
+  ASSERT_TRUE(ros::param::get("/robot_description", description));
+  ros::param::del("/robot_description");
+  open({});
+  ros::param::set("/robot_description", description);
+  EXPECT_EQ(sheet(), "the machine's swivel is not known: no parameter /robot_description from the ROS master");
+  EXPECT_FALSE(panel->enabled("write_setup"));
+}
+
+}  // namespace
+}  // namespace flute_grinder

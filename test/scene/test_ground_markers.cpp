@@ -1,0 +1,163 @@
+// The ground cutter in rviz: what is shown of it, how far it is ground, its colours and its size.
+
+#include "flute_grinder/scene/ground_markers.h"
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <gtest/gtest.h>
+#include <ros/serialization.h>
+
+#include <cmath>
+#include <filesystem>
+
+namespace flute_grinder {
+namespace {
+
+using units::kDegree;
+using units::kMillimetre;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr std::uint32_t kMostBytes = 3000000;
+
+GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+
+std::vector<Marker> solidOf(const MarkerArray& array, const std::string& ns) {
+  std::vector<Marker> found;
+  for (const Marker& m : array.markers) {
+    if (m.ns == ns) found.push_back(m);
+  }
+  return found;
+}
+
+std::string textsOf(const MarkerArray& array) {
+  std::string all;
+  for (const Marker& m : array.markers) all += m.text + "\n";
+  return all;
+}
+
+void expectFit(const GrindJob& job) {
+  const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+  EXPECT_LT(ros::serialization::serializationLength(array), kMostBytes);
+  EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
+  const std::vector<Marker> solid = solidOf(array, "planned");
+  EXPECT_GT(solid.size(), 3u) << textsOf(array);
+  for (const Marker& m : solid) {
+    EXPECT_EQ(m.header.frame_id, "cutter");
+    EXPECT_LE(m.points.size(), 16384u);
+    EXPECT_EQ(m.points.size() % 3, 0u);
+  }
+}
+
+TEST(GroundMarkers, OfEveryJobFitAMessage) {
+  for (const auto& file : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+    SCOPED_TRACE(file.path());
+    expectFit(readJobFile(file.path()));
+  }
+}
+
+TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
+  GrindJob many = jobOf("finishing_d20_t8");
+  many.tooth_angles.clear();
+  for (int i = 0; i < kMaxTeeth; ++i) many.tooth_angles.push_back(2 * units::kPi * i / kMaxTeeth);
+  expectFit(many);
+  GrindJob steep = jobOf("roughing_d10_t4");
+  steep.cutter.spiral_angle = 70 * kDegree;
+  steep.cutter.flute_length = 100 * kMillimetre;
+  expectFit(steep);
+}
+
+TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
+  const GrindJob job = jobOf("roughing_d10_t4");
+  const GroundCutter cutter = groundSoFar(job, {{0, 0}, PassPhase::kBefore, 0});
+  EXPECT_EQ(cutter.volumeRemoved(0, job.cutter.flute_length, 10), 0);
+}
+
+TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
+  GrindJob even = jobOf("paper");
+  even.process.z_law = ZLaw::kConstantRake;
+  for (const GrindJob& job :
+       {jobOf("roughing_d10_t4"), jobOf("paper"), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
+    SCOPED_TRACE(toolText(job.cutter, job.tooth_angles.size()) + " " + toString(job.process.z_law));
+    const GroundCutter planned = groundCutterOf(job),
+                       done = groundSoFar(job, {passOrder(job).back(), PassPhase::kAfter, 0});
+    for (const double part : {0.1, 0.5, 0.9}) {
+      const GroundSection a = planned.section(part * job.cutter.flute_length);
+      const GroundSection b = done.section(part * job.cutter.flute_length);
+      EXPECT_NEAR(a.core_radius, b.core_radius, 1e-7);
+      for (std::size_t i = 0; i < a.teeth.size(); ++i) {
+        ASSERT_EQ(a.teeth[i].rake.has_value(), b.teeth[i].rake.has_value());
+        EXPECT_NEAR(a.teeth[i].rake.value_or(0), b.teeth[i].rake.value_or(0), 1e-3 * kDegree);
+      }
+    }
+  }
+}
+
+TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    job.process.direction = direction;
+    const double length = job.cutter.flute_length, reached = length / 2;
+    // The second tooth in its last pass; the first is done.
+    const ToothPass pass{1, static_cast<int>(passDepths(job.process).size()) - 1};
+    const GroundCutter cutter = groundSoFar(job, {pass, PassPhase::kStroke, reached});
+    const GroundCutter planned = groundCutterOf(job);
+    const bool from_end = direction == StrokeDirection::kFromEnd;
+    const double ground_at = from_end ? 0.0 : length, whole_at = from_end ? length : 0.0;
+    const double finished = planned.section(ground_at).teeth[1].depth;
+    EXPECT_NEAR(cutter.section(ground_at).teeth[1].depth, finished, 1e-6);
+    EXPECT_NEAR(cutter.section(whole_at).teeth[0].depth, planned.section(whole_at).teeth[0].depth, 1e-6);
+    // Up to the pass before.
+    EXPECT_LT(cutter.section(whole_at).teeth[1].depth, finished + 1e-9);
+    EXPECT_EQ(cutter.section(ground_at).teeth[2].depth, 0);
+    EXPECT_EQ(cutter.section(ground_at).teeth[3].depth, 0);
+    const GroundCutter first = groundSoFar(job, {{1, 0}, PassPhase::kStroke, reached});
+    EXPECT_GT(first.section(ground_at).teeth[1].depth, 0.9 * job.process.infeed);
+    EXPECT_EQ(first.section(whole_at).teeth[1].depth, 0);
+  }
+}
+
+/// The part of the tolerance that a rake face's colour stands for; nothing for the colours of other surfaces.
+std::optional<double> deviationOf(const Marker& m) {
+  for (int level = 0; level < 16; ++level) {
+    const std_msgs::ColorRGBA c = heat((level + 0.5) / 16);
+    if (m.color.r == c.r && m.color.g == c.g && m.color.b == c.b) return (level + 0.5) / 16;
+  }
+  return std::nullopt;
+}
+
+TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  const double ground = *groundCutterOf(job).section(job.cutter.flute_length / 2).teeth[0].rake;
+  for (const auto& [deviation, expected] : {std::pair{0.0, 0.03}, {0.25, 0.5}, {-0.25, 0.5}, {0.45, 0.9}, {3.0, 1.0}}) {
+    SCOPED_TRACE(deviation);
+    job.cutter.rake_angle = ground - deviation * kDegree;
+    job.cutter.rake_tolerance = 0.5 * kDegree;
+    const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+    std::size_t coloured = 0;
+    for (const Marker& m : solidOf(array, "planned")) {
+      const auto level = deviationOf(m);
+      if (!level) continue;
+      coloured += m.points.size();
+      EXPECT_NEAR(*level, expected, 0.1);
+    }
+    EXPECT_GT(coloured, 300u);
+    EXPECT_NE(textsOf(array).find("planned: rake error, "), std::string::npos);
+    EXPECT_NE(textsOf(array).find("\n0.5 deg\n"), std::string::npos);
+  }
+}
+
+TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  job.process.depth = job.process.infeed = 0.6 * job.cutter.end_diameter;
+  job.process.setup_height = 0;
+  const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+  EXPECT_TRUE(solidOf(array, "planned").empty());
+  EXPECT_NE(textsOf(array).find("core radius = "), std::string::npos) << textsOf(array);
+}
+
+}  // namespace
+}  // namespace flute_grinder

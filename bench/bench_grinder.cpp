@@ -1,17 +1,23 @@
 /// @file
-/// What a step, a setpoint, a planned job and a cycle of the control loop cost. Figures per setpoint or per cycle are
-/// the item rates: 10M items/s are 100 ns each.
+/// What a step, a setpoint, a planned job, a simulated tool, a cycle of the control loop and a solved set-up cost.
+/// Figures per setpoint or per cycle are the item rates: 10M items/s are 100 ns each.
 
+#include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/drive/simulated_drive.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/rake_correction.h"
+#include "flute_grinder/geometry/setup_solver.h"
 
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
 #include <cstdlib>
+#include <fstream>
+#include <sstream>
 
 namespace {
 
@@ -103,6 +109,56 @@ void planTool(benchmark::State& state) {
 }
 BENCHMARK(planTool)->Unit(benchmark::kMillisecond);
 
+/// Whether anything is hit in the whole paper job: the URDF read, and the closest place of all pairs of bodies found.
+void collision(benchmark::State& state) {
+  std::ostringstream urdf;
+  urdf << std::ifstream(SOURCE_DIR "/urdf/grinder.urdf").rdbuf();
+  const GrindJob job = paperJob(600);
+  Machine clear = machine();
+  clear.collision_clearance = 1e-3;
+  for (auto _ : state) {
+    const GrindProgram program(job, clear, clear.park);
+    const ClosestPlace place =
+        CollisionCheck(MachineShapes(urdf.str()), collisionJobOf(program)).closest(pathOf(program).points);
+    state.counters["closest_mm"] = place.distance * 1e3;
+    state.SetLabel(place.first + " and " + place.second);
+  }
+}
+BENCHMARK(collision)->Unit(benchmark::kMillisecond);
+
+/// What a plan measures of the ground cutter, for the paper's job and for one of four teeth with wear.
+void checkCutter(benchmark::State& state) {
+  const GrindJob job = state.range(0) == 0 ? paperJob(600) : readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  const Machine plain = machine();
+  JobPlan plan;
+  plan.program = std::make_shared<const GrindProgram>(job, plain, plain.park);
+  for (auto _ : state) {
+    plan.reasons.clear();
+    checkGroundCutter(plan);
+    benchmark::DoNotOptimize(plan.complete);
+  }
+}
+BENCHMARK(checkCutter)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
+
+/// The whole tool of `grind simulate`: four teeth with a flute each, or sharing one, in 60 sections of 64 rings.
+void simulateTool(benchmark::State& state) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  const bool shared = state.range(0) != 0;
+  state.SetLabel(shared ? "same flutes" : "a flute each");
+  job.process.wheel_wear_per_pass = shared ? 0 : 1e-6;
+  for (auto _ : state) {
+    const GroundCutter cutter = groundCutterOf(job);
+    for (int i = 0; i < 60; ++i) {
+      const GroundSection section = cutter.section(job.cutter.flute_length * i / 59);
+      benchmark::DoNotOptimize(cutter.areaRemoved(section));
+    }
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
+}
+BENCHMARK(simulateTool)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
+
 /// One cycle of the control loop: read, checks, next, check, write and record, with the simulated drive.
 void cycle(benchmark::State& state) {
   SimulatedDrive drive;
@@ -117,6 +173,7 @@ void cycle(benchmark::State& state) {
   config.homing_timeout = 1;
   config.spindle_timeout = 1;
   const auto loop = std::make_unique<ControlLoop>(drive, config);
+  loop->postSwivel(paperJob(60).process.setup_swivel);
   const ros::Time time(1000);
   const ros::Duration period(config.machine.period);
   const GrindProgram program(paperJob(60), config.machine, config.machine.park);
@@ -149,6 +206,42 @@ void cycle(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(cycle);
+
+SetupRequest paperSetup(bool core) {
+  using units::kDegree;
+  SetupRequest r;
+  r.cutter = {0.01, 5 * kDegree, 30 * kDegree, 8 * kDegree, 0.03};
+  r.rake = 8 * kDegree;
+  r.tooth_angles = {0};
+  r.nominal_radius = r.wheel.largestRadius();
+  r.depth = 0.0016;
+  if (core) r.core_diameter = 0.0072;
+  r.least_swivel = -60 * kDegree;
+  r.largest_swivel = 60 * kDegree;
+  return r;
+}
+
+/// The set-up for the paper's cutter, by its depth and by its core.
+void setup(benchmark::State& state) {
+  const SetupRequest request = paperSetup(state.range(0) != 0);
+  for (auto _ : state) {
+    const auto result = solveSetup(request);
+    if (!std::holds_alternative<SolvedSetup>(result)) state.SkipWithError("not solved");
+  }
+}
+BENCHMARK(setup)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
+
+/// What the published Z law leaves of the rake's error, taken out.
+void rakeCorrection(benchmark::State& state) {
+  const SetupRequest r = paperSetup(false);
+  const auto solved = std::get<SolvedSetup>(solveSetup(r));
+  const GrindStroke stroke{-solved.overtravel[0], 0.03 + solved.overtravel[1], -solved.depth, 0, 0};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        correctRake(ConicalCutter(r.cutter), r.direction, r.wheel, r.nominal_radius, solved.setup, stroke, r.rake));
+  }
+}
+BENCHMARK(rakeCorrection)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

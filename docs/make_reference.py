@@ -21,6 +21,7 @@ files, not this one. [The node `grinder`](ros-interface.md) explains how the nod
 KEYS = {
     'job': ('The job file', "YAML in mm, deg and mm/min. A key that is missing, unknown, duplicate, of the wrong type or out of range is "
             'refused with file, line, key, value and allowed range. See [how to write a job](write-a-job.md).'),
+    'wheel': ('The wheel file', 'YAML in mm and deg, refused as a job file is. See [wheel files](write-a-job.md#wheel-files).'),
     'machine': ('Parameters: the machine', "In the node's namespace; `config/grinder.yaml` has them. `<joint>` is `axis_x`, `axis_y`, `axis_z` "
                 'or `axis_a`; if there are two units, the second is for A. If a parameter is missing, incomplete or of the wrong type, '
                 'the node exits and names it.'),
@@ -65,7 +66,7 @@ def keys(schema):
         rows = [('`%s`' % name, entry.get('unit', ''), allowed(entry), entry['meaning'])
                 for name, entry in schema[section].items()]
         lines += ['', '## ' + title] + (['', text] if text else [])
-        lines += table(('key' if section == 'job' else 'parameter', 'unit', 'allowed', 'meaning'), rows)
+        lines += table(('key' if section in ('job', 'wheel') else 'parameter', 'unit', 'allowed', 'meaning'), rows)
     return lines
 
 

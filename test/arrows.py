@@ -13,7 +13,7 @@ ROW = re.compile(r'(?m)^\| `(\w+)` \|.*\| ?([^|]*?) ?\|$')
 # `room`, or of a room only `some.h`, `headers.h`
 ARROW = re.compile(r'`(\w+)`(?: \(([^)]+)\))?')
 INCLUDE = re.compile(r'#include [<"](.+?)[>"]')
-OF_CORE = re.compile(r'[a-z_]+|Eigen/\w+|yaml-cpp/yaml\.h|flute_grinder/core/\w+\.h')
+OF_CORE = re.compile(r'[a-z_]+|Eigen/\w+|yaml-cpp/\w+\.h|flute_grinder/core/\w+\.h')
 
 
 def read_rooms():

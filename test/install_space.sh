@@ -32,6 +32,8 @@ roslaunch -p "$port" flute_grinder grinder.launch journal:="$staging/journal" >"
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
+# A job that names its wheel by a file.
+rosrun flute_grinder grind table share/flute_grinder/jobs/unequal_d12_t4.yaml --step-length 1 >/dev/null
 rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$staging/table.csv" >/dev/null
 rosrun flute_grinder grind report "$staging/table.csv" -o "$staging/table.html"
 grep -q '3\.9785e-05 rad' "$staging/table.html"

@@ -63,7 +63,10 @@ def grind_plan(*arguments):
 
 class TestJobFile(unittest.TestCase):
     job = yaml.safe_load((ROOT / 'jobs/paper.yaml').read_text())
-    job['process']['wheel']['wear_per_pass_mm'] = 0
+    # With every key but the lists.
+    job['process']['wheel'].update(profile='angled', angle_deg=20, side='upper', wear_per_pass_mm=0)
+    job['process'].update(depth_end_mm=1.6, incomplete_ok=False)
+    LISTS = {'cutter.tooth_angles_deg', 'cutter.spiral_angles_deg', 'process.wheel.points_mm'}
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -93,12 +96,13 @@ class TestJobFile(unittest.TestCase):
             with self.subTest(key):
                 # A list is shorter then, so that of its keys the last is missed.
                 key = key.replace('[0]', '[1]')
+                remedy = '; ' + entry['remedy'] if 'remedy' in entry else ''
                 self.assertEqual(self.refusal(changed(self.job, key, MISSING)),
-                                 ['%s is missing; allowed: %s' % (key, self.allowed(entry))])
+                                 ['%s is missing; allowed: %s%s' % (key, self.allowed(entry), remedy)])
 
     def test_no_word_is_taken_for_a_number_or_a_choice(self):
         for key, entry in SCHEMA['job'].items():
-            if entry.get('type') == 'list':
+            if entry.get('type') in ('list', 'text'):
                 continue
             with self.subTest(key):
                 self.assertEqual(self.refusal(changed(self.job, key, 'fast')),
@@ -126,7 +130,12 @@ class TestJobFile(unittest.TestCase):
         for key, entry in SCHEMA['job'].items():
             for choice in entry.get('choices', []):
                 with self.subTest(key, choice=choice):
-                    lines = self.refusal(changed(changed(self.job, key, choice), 'process.depth_mm', -1))
+                    job = changed(changed(self.job, key, choice), 'process.depth_mm', -1)
+                    if key == 'process.wheel.profile' and choice not in ('angled', 'cup'):
+                        job = changed(job, 'process.wheel.side', MISSING)
+                    if choice == 'points':
+                        job = changed(job, 'process.wheel.points_mm', [[-1.5, 50], [1.5, 49]])
+                    lines = self.refusal(job)
                     self.assertEqual([line.split(' = ')[0] for line in lines], ['process.depth_mm'])
 
     def test_tooth_angles(self):
@@ -141,7 +150,66 @@ class TestJobFile(unittest.TestCase):
         line, = self.refusal(changed(self.job, 'strange', 1))
         refused, allowed = line.split(' is not a key of a job file; allowed: ')
         self.assertEqual(refused, 'strange')
-        self.assertEqual(sorted(allowed.split(', ')), sorted(set(SCHEMA['job']) - {'cutter.tooth_angles_deg'}))
+        self.assertEqual(sorted(allowed.split(', ')), sorted(set(SCHEMA['job']) - self.LISTS))
+
+
+class TestWheelFile(unittest.TestCase):
+    """As `grind wheel show` reads it."""
+
+    wheel = yaml.safe_load((ROOT / 'wheels/angled_d100_w10.yaml').read_text())
+    wheel['measured'] = {'date': '2026-11-20', 'diameter_mm': 99, 'width_mm': 9, 'by': 'anna'}
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.file = os.path.join(folder.name, 'wheel.yaml')
+
+    def show(self, wheel):
+        """The exit status, and what is said of a wheel without file and line."""
+        with open(self.file, 'w') as file:
+            yaml.safe_dump(wheel, file)
+        done = subprocess.run([PROGRAMS / 'grind', 'wheel', 'show', self.file], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=60)
+        return done.returncode, [re.sub(r'^%s:\d+: ' % re.escape(self.file), '', line) for line in done.stderr.splitlines()]
+
+    def allowed(self, key, entry):
+        if key == 'measured.diameter_mm':
+            return '1 to 100 mm, the diameter to which Y = 0 is set'
+        if 'choices' in entry:
+            return ', '.join(entry['choices'])
+        return ('%.10g to %.10g %s' % (*entry['range'], entry['unit'])) if 'range' in entry else entry['allowed']
+
+    def test_every_key_but_the_optional_is_missed(self):
+        for key, entry in SCHEMA['wheel'].items():
+            if 'default' in entry or entry.get('type') == 'list':
+                continue
+            with self.subTest(key):
+                self.assertEqual(self.show(changed(self.wheel, key, MISSING)),
+                                 (2, ['%s is missing; allowed: %s' % (key, self.allowed(key, entry))]))
+
+    def test_no_word_is_taken_for_a_number_or_a_choice(self):
+        for key, entry in SCHEMA['wheel'].items():
+            if key == 'measured.by' or entry.get('type') == 'list':
+                continue
+            with self.subTest(key):
+                self.assertEqual(self.show(changed(self.wheel, key, 'fast')),
+                                 (2, ['%s = fast; allowed: %s' % (key, self.allowed(key, entry))]))
+
+    def test_numbers_beyond_the_range_are_refused(self):
+        for key, entry in SCHEMA['wheel'].items():
+            ends = [self.wheel[end] if isinstance(end, str) else end for end in entry.get('range', [])]
+            for value in beyond(*ends) if ends else []:
+                with self.subTest(key, value=value):
+                    status, lines = self.show(changed(self.wheel, key, value))
+                    self.assertEqual(status, 2)
+                    self.assertIn('%s = %.10g %s; allowed: %s' % (key, value, entry['unit'], self.allowed(key, entry)), lines)
+
+    def test_there_are_no_other_keys(self):
+        status, (line,) = self.show(changed(self.wheel, 'strange', 1))
+        self.assertEqual(status, 2)
+        refused, allowed = line.split(' is not a key of a wheel file; allowed: ')
+        self.assertEqual(refused, 'strange')
+        self.assertEqual(sorted(allowed.split(', ')), sorted(set(SCHEMA['wheel']) - {'points_mm'}))
 
 
 class Parameters:
@@ -220,6 +288,8 @@ class TestMachine(Parameters, unittest.TestCase):
             for value in self.range(name, entry):
                 with self.subTest(name, value=value):
                     machine = changed(changed(self.machine, name, value), 'park_position/axis_a', 1e12)
+                    if name.endswith('/max_velocity'):  # the end of another range
+                        machine = changed(machine, 'jog_velocity/' + name.split('/')[1], value)
                     self.assertRegex(self.refusal(machine), '^parameter park_position/axis_a = ')
 
     def test_half_a_limit_is_refused(self):
@@ -262,6 +332,7 @@ class NodeParameters(Parameters):
         cls.addClassCleanup(cls.folder.cleanup)
         cls.machine = copy.deepcopy(Parameters.machine)
         cls.machine['journal'] = cls.folder.name + '/journal'
+        cls.machine['offsets'] = cls.folder.name + '/offsets'
         cls.machine['hardware']['type'] = cls.drive
 
     def refusal(self, machine):
@@ -313,7 +384,7 @@ class TestConfig(unittest.TestCase):
                    for name in self.leaves(yaml.safe_load((ROOT / file).read_text()))}
         needed = {name for section in ('machine', 'node', 'simulated_drive', 'hal')
                   for name, entry in SCHEMA[section].items() if 'default' not in entry}
-        self.assertEqual(needed - shipped, {'journal'})
+        self.assertEqual(needed - shipped, {'journal', 'offsets'})
 
 
 if __name__ == '__main__':

@@ -1,6 +1,7 @@
 #include "flute_grinder/cli/completion.h"
 #include "flute_grinder/cli/offline.h"
 #include "flute_grinder/cli/offsets.h"
+#include "flute_grinder/cli/probe.h"
 #include "flute_grinder/cli/online.h"
 #include "flute_grinder/cli/report.h"
 #include "flute_grinder/cli/setup.h"
@@ -274,20 +275,51 @@ void addWheel(CLI::App& app, WheelOptions& options) {
   addLength(dress, "--face", options.face_mm, "taken off the width", true);
 }
 
+void addFlange(CLI::App& command, std::optional<double>& flange_mm) {
+  command
+      .add_option("--flange", flange_mm, "from the flange's face to the wheel's upper face (default: the wheel file's)")
+      ->type_name("MM")
+      ->check([](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value >= -100 && value <= 100 ? "" : text + "; allowed: -100 to 100 mm";
+      });
+}
+
+void addProbe(CLI::App& app, ProbeOptions& options) {
+  auto& probe = addCommand(app, "probe", "measure with the measuring probe, jogged near; Ctrl-C and Ctrl-Z stop it",
+                           "end-face --job jobs/unequal_d12_t4.yaml");
+  probe.require_subcommand(1);
+  const auto add = [&](const char* name, const char* description, const std::string& arguments) -> CLI::App& {
+    auto* command = probe.add_subcommand(name, description);
+    command->footer(std::string("Example:\n  rosrun flute_grinder grind probe ") + name + " " + arguments);
+    return *command;
+  };
+  auto& face = add("end-face", "X: print the stick-out and set the work offset", "--job jobs/unequal_d12_t4.yaml");
+  auto& diameter = add("diameter", "Y, on two sides: print diameter and run-out of a cylinder", "--within 2");
+  auto& tooth = add("tooth", "A: touch the first tooth's rake face and set the work offset",
+                    "--job jobs/unequal_d12_t4.yaml");
+  for (CLI::App* command : {&face, &tooth}) {
+    command->add_option("--job", options.job, "job to be ground")->required()->type_name(kYamlFile);
+    addFlange(*command, options.flange_mm);
+  }
+  for (CLI::App* command : {&face, &diameter}) {
+    addLength(*command, "--within", options.within_mm, "the farthest way to the touch", false).capture_default_str();
+  }
+  tooth.add_option("--within", options.within_deg, "the farthest turn to the touch")
+      ->type_name("DEG")
+      ->capture_default_str()
+      ->check(CLI::Range(0.01, 360.0));
+  addLength(diameter, "--at", options.at_mm, "sets the work offset of Y so that the diameter is this one", false);
+  diameter.add_option("--job", options.job, "with --at: job to be ground")->type_name(kYamlFile);
+}
+
 void addZeros(CLI::App& app, ZerosOptions& options) {
   auto& command = addCommand(app, "zeros", "compute where the job's X, Y and Z are zero, in machine coordinates",
                              "jobs/unequal_d12_t4.yaml --stickout 62");
   addJob(command, options.job);
   addLength(command, "--stickout", options.stickout_mm, "from the collet's face to the cutter's small end", false)
       .required();
-  command
-      .add_option("--flange", options.flange_mm,
-                  "from the flange's face to the wheel's upper face (default: the wheel file's)")
-      ->type_name("MM")
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value >= -100 && value <= 100 ? "" : text + "; allowed: -100 to 100 mm";
-      });
+  addFlange(command, options.flange_mm);
   addMachine(command, options.parameters, options.urdf);
   addJson(command, options.json);
 }
@@ -330,6 +362,7 @@ struct Options {
   WheelOptions wheel;
   JogOptions jog;
   ZerosOptions zeros;
+  ProbeOptions probe;
   double percent = 100;
   double swivel_deg = 0;
   bool status_json = false;
@@ -356,6 +389,7 @@ void addCommands(CLI::App& app, Options& options) {
   addCalls(app, options.status_json);
   addOffsets(app, options.offsets);
   addTouchOff(app, options.touch_off);
+  addProbe(app, options.probe);
   addCompletion(app, options.shell);
 }
 
@@ -364,6 +398,13 @@ int carryOutWheel(const CLI::App& wheel, const WheelOptions& options) {
   if (command == "measure") return measureWheel(options);
   if (command == "dress") return dressWheel(options);
   return showWheel(options);
+}
+
+int carryOutProbe(const CLI::App& probe, const std::string& node, const ProbeOptions& options) {
+  const std::string command = probe.get_subcommands().front()->get_name();
+  if (command == "diameter") return probeDiameter(node, options);
+  if (command == "tooth") return probeTooth(node, options);
+  return probeEndFace(node, options);
 }
 
 /// Runs the parsed command.
@@ -382,6 +423,7 @@ int carryOut(const CLI::App& app, const Options& options) {
   if (command == "run") return runJob(options.run);
   if (command == "offsets") return runOffsets(node, options.offsets);
   if (command == "touch-off") return runTouchOff(node, options.touch_off);
+  if (command == "probe") return carryOutProbe(*app.get_subcommands().front(), node, options.probe);
   if (command == "status") return printStatus(node, options.status_json);
   if (command == "override") return setFeedOverride(node, options.percent);
   if (command == "confirm-swivel") return confirmSwivel(node, options.swivel_deg);

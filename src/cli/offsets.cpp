@@ -145,6 +145,20 @@ std::string heightRefusal(const GrindJob& job, double z) {
 
 }  // namespace
 
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value) {
+  SetOffset::Request request;
+  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.value = value;
+  request.set_by = userAtHost();
+  return call<SetOffset>(nh, "set_offset", request);
+}
+
+std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh) {
+  const OffsetWatch watch(nh);
+  if (!await(kPatience, [&] { return watch.newest() != nullptr; })) return std::nullopt;
+  return *watch.newest();
+}
+
 std::string offsetRefusal(const std::string& argument) {
   const std::string allowed = "; allowed: AXIS=VALUE, as y=45.2, the axis x, y, z or a, the value in mm or deg";
   if (axisOf(argument) == kAxisCount || argument.size() < 3 || argument[1] != '=') return argument + allowed;
@@ -157,11 +171,8 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   ros::NodeHandle nh(node);
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
-    SetOffset::Request request;
-    request.axis = kJointNames[static_cast<std::size_t>(axis)];
-    request.value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
-    request.set_by = userAtHost();
-    if (const int status = call<SetOffset>(nh, "set_offset", request)) return status;
+    const double value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
+    if (const int status = setWorkOffset(nh, axis, value)) return status;
   }
   return show(nh, options.json);
 }

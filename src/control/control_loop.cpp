@@ -31,6 +31,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
 
 void ControlLoop::readDrive() {
   const std::uint64_t last_feedback = record_.drive.feedback_count;
+  touched_ = record_.drive.probe_contact;
   record_.drive = drive_.getStatus();
   record_.feedback_age = record_.drive.feedback_count == last_feedback ? record_.feedback_age + record_.period : 0;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -104,6 +105,7 @@ void ControlLoop::publish() {
   next_status_.position_valid = record_.position.isFinite().all() && record_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = record_.feed_override;
   next_status_.swivel = record_.swivel;
+  next_status_.probe_contact = record_.drive.probe_contact;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
   status_.store(next_status_);
@@ -283,7 +285,8 @@ void ControlLoop::endJob(JobEnd end) {
 void ControlLoop::fail(const LoopFault& fault) {
   record_.fault = fault;
   if (stream_) endJob(JobEnd::kFault);
-  drive_command_.enable = power_off_next_ = jogging_ = false;
+  if (jogging_) endJog();
+  drive_command_.enable = power_off_next_ = false;
   apply(MachineEvent::kFault);
 }
 

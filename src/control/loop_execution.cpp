@@ -19,6 +19,7 @@ void ControlLoop::executeRequests() {
   for (const MachineEvent stop : StopRequests::kStops) {
     if (!stops.has(stop)) continue;
     dead_man_.block();
+    ++next_status_.stops;
     const Answer answer = answerTo(stop, execute(stop));
     if (stops.wantsReply(stop)) answerStop(answer);
   }

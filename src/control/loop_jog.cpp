@@ -37,6 +37,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!(jog.axis >= 0 && jog.axis < kAxisCount)) return Refusal::kNoAxis;
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
+  if (jog.stops && *jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
   if (!record_.drive.homed) return Refusal::kInterlock;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
@@ -56,6 +57,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!stream_) limit_check_.restart();
   jogging_ = true;
   continuous_ = jog.continuous;
+  next_status_.contact = {};
   power_off_next_ = false;
   apply(MachineEvent::kJog);
   return Refusal::kNone;
@@ -87,12 +89,28 @@ double ControlLoop::lowestJog(int axis) const {
 }
 
 void ControlLoop::advanceJog() {
+  stopJogOnContact();
   // Without the reference the limits mean nothing.
   if ((continuous_ && dead_man_.released()) || !record_.drive.homed) axis_move_.setSpeed(0);
   if (!advanceAxisMove()) return;
-  jogging_ = false;
+  endJog();
   // A job that was canceled meanwhile ends by itself.
   if (state_ != MachineState::kCanceling) comeToRest();
+}
+
+void ControlLoop::stopJogOnContact() {
+  // From a contact, the probe may be moved away.
+  const bool begins = record_.drive.probe_contact && !touched_;
+  if (!begins || next_status_.contact.made) return;
+  next_status_.contact.made = true;
+  std::copy(record_.position.data(), record_.position.data() + kAxisCount, next_status_.contact.position.begin());
+  dead_man_.block();
+  axis_move_.setSpeed(0);
+}
+
+void ControlLoop::endJog() {
+  jogging_ = false;
+  ++next_status_.jogs_ended;
 }
 
 }  // namespace flute_grinder

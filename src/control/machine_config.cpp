@@ -16,6 +16,7 @@ constexpr double kSmallest = kSmallestFigure;
 constexpr double kLargest = kLargestFigure;
 /// Twice the period at which the panel repeats its messages [s].
 constexpr double kShortestJogTimeout = 0.05;
+constexpr double kSmallestBall = 1e-4, kLargestBall = 0.02;  ///< diameter of a probe's [m]
 
 /// One kind of limit, with its names in ros_control.
 struct LimitName {
@@ -67,6 +68,26 @@ const urdf::Joint& axisJoint(const urdf::Model& model, int axis) {
   return *joint;
 }
 
+void readProbing(const ParameterReader& p, const std::string& joint, int axis, LoopConfig& config) {
+  const auto value = [&](const char* what, double largest) {
+    return p.number(std::string("probing/") + what + "/" + joint, kSmallest, largest);
+  };
+  ProbingConfig& probing = config.probing;
+  probing.velocity[axis] = value("velocity", config.machine.limits.max_velocity[axis]);
+  probing.back_off[axis] = value("back_off", 1);
+  probing.largest_spread[axis] = value("largest_spread", 1);
+}
+
+int readTouches(const ParameterReader& p) {
+  constexpr const char* name = "probing/touches";
+  // Of one touch alone there is no spread.
+  const double touches = p.number(name, 2, 100);
+  if (touches == std::floor(touches)) return static_cast<int>(touches);
+  std::ostringstream text;
+  text << "parameter " << p.name(name) << " = " << touches << "; allowed: a whole number";
+  throw ParameterError(text.str());
+}
+
 void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, LoopConfig& config) {
   const urdf::Joint& joint = axisJoint(model, axis);
   const std::string name = joint.name;
@@ -92,10 +113,13 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
   limits.max_jerk[axis] = limit(p, name, kJerk, 0);
   config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kSmallest, kLargest);
   config.jog_velocity[axis] = p.number("jog_velocity/" + name, kSmallest, limits.max_velocity[axis]);
+  readProbing(p, name, axis, config);
   config.machine.park[axis] = p.number("park_position/" + name, limits.min_position[axis], limits.max_position[axis]);
 }
 
-MachineGeometry readGeometry(const ParameterReader& p) {
+}  // namespace
+
+MachineGeometry readMachineGeometry(const ParameterReader& p) {
   constexpr double largest = 10;
   const auto place = [&](const char* name) { return p.number(std::string("geometry/") + name, -largest, largest); };
   MachineGeometry geometry;
@@ -104,10 +128,13 @@ MachineGeometry readGeometry(const ParameterReader& p) {
   geometry.collet_face = place("collet_face/x");
   geometry.swivel_centre = {place("swivel_centre/x"), place("swivel_centre/y"), place("swivel_centre/z")};
   geometry.flange = place("flange");
+  if (p.has("geometry/probe")) {
+    geometry.probe.emplace();
+    geometry.probe->centre = {place("probe/x"), place("probe/y"), place("probe/z")};
+    geometry.probe->diameter = p.number("geometry/probe/diameter", kSmallestBall, kLargestBall);
+  }
   return geometry;
 }
-
-}  // namespace
 
 LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) {
   urdf::Model model;
@@ -121,7 +148,9 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
   config.machine.collision_clearance = p.number("collision_clearance", 0, 1);
   config.jog_timeout = p.number("jog_timeout", kShortestJogTimeout, 1);
-  config.geometry = readGeometry(p);
+  config.geometry = readMachineGeometry(p);
+  config.probing.slow = p.number("probing/slow", kSmallest, 1);
+  config.probing.touches = readTouches(p);
   config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);

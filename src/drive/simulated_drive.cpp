@@ -32,9 +32,29 @@ std::string list(const std::array<const char*, N>& names) {
   return text;
 }
 
+/// @param root,p parameters of the node and of the drive.
+SimulatedDrive::Blank readBlank(const ParameterReader& root, const ParameterReader& p) {
+  constexpr double largest = 10;
+  const auto figure = [](const ParameterReader& from, const std::string& name) {
+    return from.number(name, -largest, largest);
+  };
+  SimulatedDrive::Blank blank;
+  blank.end_face = figure(p, "blank/end_face");
+  blank.diameter = p.number("blank/diameter", 0, largest);
+  blank.run_out = p.number("blank/run_out", 0, largest);
+  if (p.has("blank/rake_face")) {
+    blank.rake_face = {figure(p, "blank/rake_face/height"), p.number("blank/rake_face/angle", -units::kPi, units::kPi)};
+  }
+  blank.ball_diameter = root.number("geometry/probe/diameter", 0, largest);
+  blank.ball_centre = {figure(root, "geometry/probe/x"),
+                       figure(root, "geometry/probe/y") - figure(root, "geometry/work_axis/y"),
+                       figure(root, "geometry/probe/z") - figure(root, "geometry/work_axis/z")};
+  return blank;
+}
+
 }  // namespace
 
-bool SimulatedDrive::init(ros::NodeHandle&, ros::NodeHandle& robot_hw_nh) {
+bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
   XmlRpc::XmlRpcValue parameters;
   robot_hw_nh.getParam("", parameters);
   const ParameterReader p(parameters, robot_hw_nh.getNamespace());
@@ -50,6 +70,11 @@ bool SimulatedDrive::init(ros::NodeHandle&, ros::NodeHandle& robot_hw_nh) {
   Equipment equipment{p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)};
   if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
   init(model, equipment);
+  if (p.has("blank")) {
+    XmlRpc::XmlRpcValue root;
+    root_nh.getParam("", root);
+    clamp(readBlank(ParameterReader(root, root_nh.getNamespace()), p));
+  }
   inject_service_ = robot_hw_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
   return true;
 }
@@ -76,6 +101,7 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   readEquipment(fault, dt);
   const Axes last = motor_;
   moveMotors(fault, failing_axis, dt);
+  status_.probe_contact = touchesBlank();
   if (fault == Fault::kStaleFeedback) return;
   for (int i = 0; i < kAxisCount; ++i) {
     const auto n = static_cast<std::size_t>(i);
@@ -104,6 +130,23 @@ void SimulatedDrive::readEquipment(Fault fault, double dt) {
   status_.spindle_at_speed = spindle_speed_ >= 1;
   status_.coolant_on = drive_command_.coolant && fault != Fault::kCoolantLost;
   status_.swivel = equipment_.swivel + (fault == Fault::kSwivelSlipped ? kSlip : 0);
+}
+
+bool SimulatedDrive::touchesBlank() const {
+  if (!blank_) return false;
+  const double radius = blank_->ball_diameter / 2;
+  const double x = blank_->ball_centre[0] + motor_[kX], y = blank_->ball_centre[1] + motor_[kY],
+               z = blank_->ball_centre[2] + motor_[kZ];
+  const double before_end = std::max(0.0, blank_->end_face - x);
+  if (blank_->rake_face) {
+    // Turned back with the work.
+    const double a = motor_[kA] - blank_->rake_face->angle;
+    const double below = blank_->rake_face->height - (y * std::sin(a) + z * std::cos(a));
+    if (below > 0) return before_end == 0 && below <= radius;
+  }
+  const double eccentricity = blank_->run_out / 2;
+  const double from_axis = std::hypot(y - eccentricity * std::cos(motor_[kA]), z + eccentricity * std::sin(motor_[kA]));
+  return std::hypot(before_end, std::max(0.0, from_axis - blank_->diameter / 2)) <= radius;
 }
 
 void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {

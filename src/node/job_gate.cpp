@@ -17,7 +17,7 @@ bool isMeantFor(const actionlib_msgs::GoalID& cancel, const actionlib_msgs::Goal
 
 bool JobGate::open(const actionlib_msgs::GoalID& goal, std::function<void()> give_up) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (shut_ || jobs_shut_out_) return false;
+  if (shut_ || shut_outs_ > 0) return false;
   phase_ = Phase::kAhead;
   goal_ = goal;
   give_up_ = std::move(give_up);
@@ -69,13 +69,13 @@ void JobGate::shut() {
 bool JobGate::shutOutJobs() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (phase_ != Phase::kIdle) return false;
-  jobs_shut_out_ = true;
+  ++shut_outs_;
   return true;
 }
 
 void JobGate::letJobsIn() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  jobs_shut_out_ = false;
+  --shut_outs_;
 }
 
 bool JobGate::isShut() const {

@@ -119,6 +119,17 @@ TEST_F(PackageMachine, HasAGeometry) {
   EXPECT_EQ(config_.geometry.collet_face, 0.062);
   EXPECT_EQ(config_.geometry.swivel_centre, Eigen::Vector3d(0, 0.055, 0));
   EXPECT_EQ(config_.geometry.flange, 0.0035);
+  ASSERT_TRUE(config_.geometry.probe);
+  EXPECT_EQ(config_.geometry.probe->centre, Eigen::Vector3d(0.06, -0.02, 0));
+  EXPECT_EQ(config_.geometry.probe->diameter, 0.001);
+}
+
+TEST_F(PackageMachine, ProbesSlowlyThreeTimes) {
+  expectAxes(config_.probing.velocity, {0.002, 0.002, 0.002, 0.1});
+  expectAxes(config_.probing.back_off, {0.0005, 0.0005, 0.0005, 0.02});
+  expectAxes(config_.probing.largest_spread, {5e-6, 5e-6, 5e-6, 5e-4});
+  EXPECT_EQ(config_.probing.slow, 0.1);
+  EXPECT_EQ(config_.probing.touches, 3);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -162,6 +173,12 @@ XmlRpcValue parameters() {
   p["geometry"]["swivel_centre"]["y"] = 0.5;
   p["geometry"]["swivel_centre"]["z"] = 0.6;
   p["geometry"]["flange"] = -0.7;
+  p["geometry"]["probe"]["x"] = 0.8;
+  p["geometry"]["probe"]["y"] = 0.9;
+  p["geometry"]["probe"]["z"] = 1.1;
+  p["geometry"]["probe"]["diameter"] = 0.004;
+  p["probing"]["slow"] = 0.25;
+  p["probing"]["touches"] = 7;
   p["late_cycle"]["slow_down"] = 3.0;
   p["late_cycle"]["fault"] = 25.0;
   for (const char* name : kJointNames) {
@@ -174,6 +191,9 @@ XmlRpcValue parameters() {
     p["constraints"][name]["trajectory"] = 0.001 * axis;
     p["park_position"][name] = 0.01 * axis;
     p["jog_velocity"][name] = 0.02 * axis;
+    p["probing"]["velocity"][name] = 0.03 * axis;
+    p["probing"]["back_off"][name] = 0.04 * axis;
+    p["probing"]["largest_spread"][name] = 0.05 * axis;
   }
   return p;
 }
@@ -236,6 +256,14 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.geometry.collet_face, 0.3);
   EXPECT_EQ(config.geometry.swivel_centre, Eigen::Vector3d(0.4, 0.5, 0.6));
   EXPECT_EQ(config.geometry.flange, -0.7);
+  ASSERT_TRUE(config.geometry.probe);
+  EXPECT_EQ(config.geometry.probe->centre, Eigen::Vector3d(0.8, 0.9, 1.1));
+  EXPECT_EQ(config.geometry.probe->diameter, 0.004);
+  expectAxes(config.probing.velocity, {0.03 * 1, 0.03 * 2, 0.03 * 3, 0.03 * 4});
+  expectAxes(config.probing.back_off, {0.04 * 1, 0.04 * 2, 0.04 * 3, 0.04 * 4});
+  expectAxes(config.probing.largest_spread, {0.05 * 1, 0.05 * 2, 0.05 * 3, 0.05 * 4});
+  EXPECT_EQ(config.probing.slow, 0.25);
+  EXPECT_EQ(config.probing.touches, 7);
   EXPECT_EQ(config.late_slow_down, 3);
   EXPECT_EQ(config.late_fault, 25);
 }
@@ -262,6 +290,11 @@ TEST(MachineConfig, TakesWholeNumbersForNumbers) {
   EXPECT_EQ(config.machine.period, 0.004);
   EXPECT_EQ(config.machine.limits.max_jerk[kZ], 7);
   EXPECT_EQ(config.machine.park[kA], -2);
+}
+
+TEST(MachineConfig, AMachineNeedsNoProbe) {
+  const XmlRpcValue p = without(parameters(), "geometry/probe");
+  EXPECT_FALSE(read(Description().urdf(), p).geometry.probe);
 }
 
 TEST(MachineConfig, TakesAParkPositionAtTheLimits) {
@@ -317,18 +350,25 @@ struct Number {
   bool negative_allowed;
 };
 
-constexpr std::size_t kNumbersPerAxis = 5;
-constexpr std::size_t kMachineNumbers = 17;  ///< that are no axis' own; they come first
+constexpr std::size_t kNumbersPerAxis = 8;
+constexpr std::size_t kMachineNumbers = 23;  ///< that are no axis' own; they come first
 
 std::vector<Number> numbers() {
-  std::vector<Number> all{
-      {"control_rate", "10 to 20000", false, false},    {"feedback_timeout", "0 to 1", true, false},
-      {"enable_timeout", "0 to 60", true, false},       {"homing_timeout", "0 to 3600", true, false},
-      {"spindle_timeout", "0 to 600", true, false},     {"max_job_duration", "1 to 1e+09", false, false},
-      {"collision_clearance", "0 to 1", true, false},   {"late_cycle/slow_down", "2 to 1e+09", false, false},
-      {"late_cycle/fault", "3 to 1e+09", false, false}, {"jog_timeout", "0.05 to 1", false, false}};
+  std::vector<Number> all{{"control_rate", "10 to 20000", false, false},
+                          {"feedback_timeout", "0 to 1", true, false},
+                          {"enable_timeout", "0 to 60", true, false},
+                          {"homing_timeout", "0 to 3600", true, false},
+                          {"spindle_timeout", "0 to 600", true, false},
+                          {"max_job_duration", "1 to 1e+09", false, false},
+                          {"collision_clearance", "0 to 1", true, false},
+                          {"late_cycle/slow_down", "2 to 1e+09", false, false},
+                          {"late_cycle/fault", "3 to 1e+09", false, false},
+                          {"jog_timeout", "0.05 to 1", false, false},
+                          {"probing/slow", "1e-09 to 1", false, false},
+                          {"probing/touches", "2 to 100", false, false},
+                          {"geometry/probe/diameter", "0.0001 to 0.02", false, false}};
   for (const char* place : {"work_axis/y", "work_axis/z", "collet_face/x", "swivel_centre/x", "swivel_centre/y",
-                            "swivel_centre/z", "flange"}) {
+                            "swivel_centre/z", "flange", "probe/x", "probe/y", "probe/z"}) {
     all.push_back({std::string("geometry/") + place, "-10 to 10", true, true});
   }
   const char* park[]{"-0.11 to 0.31", "-0.12 to 0.32", "-0.13 to 0.33", "-114 to 134"};
@@ -340,6 +380,9 @@ std::vector<Number> numbers() {
     all.push_back({"constraints/" + name + "/trajectory", "1e-09 to 1e+09", false, false});
     all.push_back({"park_position/" + name, park[i], true, true});
     all.push_back({"jog_velocity/" + name, std::string("1e-09 to ") + fastest[i], false, false});
+    all.push_back({"probing/velocity/" + name, std::string("1e-09 to ") + fastest[i], false, false});
+    all.push_back({"probing/back_off/" + name, "1e-09 to 1", false, false});
+    all.push_back({"probing/largest_spread/" + name, "1e-09 to 1", false, false});
   }
   return all;
 }
@@ -379,6 +422,7 @@ std::vector<BadParameter> badParameters() {
   add("too_long", "homing_timeout", XmlRpcValue(3601), {"/grinder/homing_timeout = 3601", "allowed: 0 to 3600"});
   add("too_long", "spindle_timeout", XmlRpcValue(601), {"/grinder/spindle_timeout = 601", "allowed: 0 to 600"});
   add("too_short", "jog_timeout", XmlRpcValue(0.049), {"/grinder/jog_timeout = 0.049", "allowed: 0.05 to 1"});
+  add("fraction", "probing/touches", XmlRpcValue(2.5), {"/grinder/probing/touches = 2.5", "allowed: a whole number"});
   add("beyond_the_limit", "jog_velocity/axis_a", XmlRpcValue(24.5),
       {"/grinder/jog_velocity/axis_a = 24.5", "allowed: 1e-09 to 24"});
 

@@ -289,7 +289,8 @@ class TestMachine(Parameters, unittest.TestCase):
                 with self.subTest(name, value=value):
                     machine = changed(changed(self.machine, name, value), 'park_position/axis_a', 1e12)
                     if name.endswith('/max_velocity'):  # the end of another range
-                        machine = changed(machine, 'jog_velocity/' + name.split('/')[1], value)
+                        for speed in ('jog_velocity/', 'probing/velocity/'):
+                            machine = changed(machine, speed + name.split('/')[1], value)
                     self.assertRegex(self.refusal(machine), '^parameter park_position/axis_a = ')
 
     def test_half_a_limit_is_refused(self):

@@ -12,17 +12,18 @@
 namespace flute_grinder {
 
 /// Calls a service of the grinder, and prints why if it is refused or not answered.
-/// @param answer if given, gets the response of a call that succeeded. @return the exit status.
+/// @param answer if given, gets the response of a call that succeeded.
+/// @param patience for the answer. @return the exit status.
 template <typename Service>
 int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
-         typename Service::Response* answer = nullptr) {
+         typename Service::Response* answer = nullptr, const ros::WallDuration& patience = kPatience) {
   ros::ServiceClient there = nh.serviceClient<Service>(service);
   if (!await(kPatience, [&] { return there.exists(); })) return noGrinder(nh);
   std::optional<typename Service::Response> response;
   ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
-                      ros::serialization::serializeMessage(request), kPatience,
+                      ros::serialization::serializeMessage(request), patience,
                       [&](ros::SerializedMessage* message) { response = responseFrom<Service>(message); });
-  await(kPatience, [&] { return running.finished(); });
+  await(patience, [&] { return running.finished(); });
   running.end();
   if (!response) {
     return fail(service + ": no answer from the grinder " + nh.getNamespace() +

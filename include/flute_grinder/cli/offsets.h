@@ -1,6 +1,9 @@
 #pragma once
 
+#include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/core/axes.h"
+
+#include <ros/node_handle.h>
 
 #include <optional>
 #include <string>
@@ -23,6 +26,14 @@ struct TouchOffOptions {
   std::optional<double> at;  ///< of Y, diameter of the blank that the wheel touches; else the work position [mm or deg]
   std::string job;           ///< job file, for Y
 };
+
+/// Sets a work offset in the name of who runs this command.
+/// @param nh the grinder's namespace.
+/// @param value [m], A [rad]. @return the exit status.
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value);
+
+/// The work offsets; nothing if the grinder does not tell them in time. A spinner must be running.
+std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);

@@ -103,6 +103,8 @@ class ControlLoop : public RequestBox {
   void advanceJob();
   void advanceLift();
   void advanceJog();
+  void stopJogOnContact();
+  void endJog();
   bool advanceAxisMove();
   void checkInterlocks();
   void commandOfJob(const Setpoint& setpoint);
@@ -128,6 +130,7 @@ class ControlLoop : public RequestBox {
   AxisMove axis_move_;              ///< of a lift or a jog
   bool jogging_ = false;            ///< in the middle of a job too, whose stream then takes its setpoints over
   bool continuous_ = false;         ///< the jog
+  bool touched_ = false;            ///< the probe, in the previous cycle
   DeadMansSwitch dead_man_;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;

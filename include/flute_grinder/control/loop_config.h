@@ -6,6 +6,15 @@
 
 namespace flute_grinder {
 
+/// How a probing move touches.
+struct ProbingConfig {
+  Axes velocity = Axes::Zero();        ///< of the first touch [m/s], A [rad/s]
+  double slow = 0;                     ///< speed of the touches that count, fraction of `velocity`
+  Axes back_off = Axes::Zero();        ///< off the surface between the touches [m], A [rad]
+  Axes largest_spread = Axes::Zero();  ///< allowed, of the touches that count [m], A [rad]
+  int touches = 0;                     ///< that count
+};
+
 /// The machine, and the control loop's limits and timeouts.
 struct LoopConfig {
   Machine machine;
@@ -17,6 +26,7 @@ struct LoopConfig {
   double spindle_timeout = 0;           ///< longest allowed time until spindle and coolant are ready for a job [s]
   double jog_timeout = 0;               ///< longest allowed time between the messages of a continuous jog [s]
   Axes jog_velocity = Axes::Zero();     ///< speed of a jog that names none [m/s], A [rad/s]
+  ProbingConfig probing;
   double late_slow_down = 2;  ///< cycle period from which the axes are slowed down, then accelerated again [periods]
   double late_fault = 10;     ///< a cycle this long is late: the axes continue slowly, then accelerate again [periods]
 };

@@ -41,6 +41,7 @@ enum class Refusal : std::uint8_t {
   kJogging,         ///< another jog is not over
   kJobOver,         ///< a jog in a job that was held at the very end of its path
   kStopped,         ///< a continuous jog that was stopped or refused, and not released since
+  kStopCameFirst,   ///< a jog of a sequence that was stopped before it
 };
 
 /// The loop's answer to a request: plain data, converted to text by other threads.

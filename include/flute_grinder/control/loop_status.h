@@ -42,6 +42,12 @@ enum class JobEnd : std::uint8_t {
   kFault,
 };
 
+/// Where the measuring probe touched during a jog, which ended the jog.
+struct ProbeContact {
+  bool made = false;
+  std::array<double, kAxisCount> position{};  ///< of the machine, as read in that cycle [m], A [rad]
+};
+
 /// The loop's state in one cycle. Its counts stay correct even if a reader misses cycles.
 struct LoopStatus {
   std::uint64_t cycles = 0;  ///< since the start of the loop
@@ -53,6 +59,10 @@ struct LoopStatus {
   bool position_valid = false;                ///< all of them are finite and fresh
   double feed_override = 1;                   ///< fraction
   Swivel swivel;                              ///< where it stands, as far as is known
+  bool probe_contact = false;                 ///< the measuring probe touches something
+  ProbeContact contact;                       ///< of the present jog, or else the last one
+  std::uint64_t jogs_ended = 0;               ///< since the start of the loop
+  std::uint64_t stops = 0;                    ///< requested since the start of the loop
   std::uint64_t jobs_started = 0;             ///< since the start of the loop
   std::uint64_t jobs_ended = 0;               ///< since the start of the loop
   // For the running job, or else the last one:

@@ -9,12 +9,16 @@ namespace flute_grinder {
 
 /// Reads the machine data: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in
 /// ros_control; control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
-/// homing_timeout, spindle_timeout, jog_timeout, jog_velocity/<joint>, max_job_duration, collision_clearance,
-/// geometry/..., late_cycle/slow_down and .../fault; the swivel's range from the URDF alone. Every axis must have
-/// complete limits of position, velocity, acceleration and jerk.
+/// homing_timeout, spindle_timeout, jog_timeout, jog_velocity/<joint>, probing/..., max_job_duration,
+/// collision_clearance, geometry/..., late_cycle/slow_down and .../fault; the swivel's range from the URDF alone. Every
+/// axis must have complete limits of position, velocity, acceleration and jerk.
 /// @param urdf the robot description in XML.
 /// @param parameters the node's parameters.
 /// @throw ParameterError
 LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& parameters);
+
+/// Reads the parameters geometry/... alone; geometry/probe may be missing, on a machine without one.
+/// @throw ParameterError
+MachineGeometry readMachineGeometry(const ParameterReader& parameters);
 
 }  // namespace flute_grinder

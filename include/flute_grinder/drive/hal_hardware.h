@@ -34,7 +34,7 @@ class HalHardware : public AxesHW {
     };
     std::array<Joint, kAxisCount> joints;
     // Inputs from HAL, about the machine.
-    hal_bit_t *enabled, *emergency_stop, *homing, *spindle_at_speed, *coolant_on, *probe_free;
+    hal_bit_t *enabled, *emergency_stop, *homing, *spindle_at_speed, *coolant_on, *probe_free, *probe_contact;
     hal_float_t *servo_cycles, *servo_rate, *swivel;
     hal_u32_t* played;
     hal_s32_t* underruns;
@@ -55,6 +55,7 @@ class HalHardware : public AxesHW {
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
+  bool has_probe_ = false;    ///< HAL reads the measuring probe
   bool has_swivel_ = false;   ///< HAL reads the swivel's encoder
   std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
 

@@ -5,17 +5,20 @@
 
 #include <atomic>
 #include <limits>
+#include <optional>
 
 namespace flute_grinder {
 
 /// A simulated tool grinder. Each axis follows its command with a first-order lag and is read through an encoder; an
 /// incremental encoder reads 0 at the start position until the axis is homed. Homing moves the axes one at a time to
 /// their home positions, in the order Y, X, Z, A. The spindle reaches its speed in a given time; coolant flows at once.
-/// The service ~hardware/inject_fault injects faults.
+/// The measuring probe touches a blank, if there is one. The service ~hardware/inject_fault injects faults.
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
-/// `absolute_encoders`, `spindle_run_up_time` [s]; and `swivel` [rad] if the swivel has an encoder.
+/// `absolute_encoders`, `spindle_run_up_time` [s]; `swivel` [rad] if the swivel has an encoder; and `blank/...` with
+/// the members of Blank if the probe is to find one, together with the machine's parameters geometry/probe and
+/// geometry/work_axis.
 class SimulatedDrive : public AxesHW {
  public:
   /// Model of one axis.
@@ -34,6 +37,21 @@ class SimulatedDrive : public AxesHW {
     double spindle_run_up_time = 0;  ///< [s]
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
+  };
+
+  /// A plane that a blank is ground down to, over its whole length: what is below it, with A at `angle`, is gone.
+  struct RakeFace {
+    double height = 0;  ///< above the work spindle's axis [m]
+    double angle = 0;   ///< [rad]
+  };
+  /// What the measuring probe touches: a cylinder in the work spindle.
+  struct Blank {
+    double end_face = 0;  ///< X in machine coordinates [m]
+    double diameter = 0;  ///< [m]
+    double run_out = 0;   ///< total [m]
+    std::optional<RakeFace> rake_face;
+    double ball_diameter = 0;             ///< of the probe [m]
+    std::array<double, 3> ball_centre{};  ///< X in machine coordinates, Y and Z from the axis, the axes at zero [m]
   };
 
   enum class Fault : std::uint8_t {
@@ -55,6 +73,8 @@ class SimulatedDrive : public AxesHW {
 
   /// Initialises the drive without ROS.
   void init(const Model& model, const Equipment& equipment);
+  /// Puts a blank into the work spindle, before the first cycle.
+  void clamp(const Blank& blank) { blank_ = blank; }
 
   /// Injects a fault from the next read() on, or removes all faults (kNone); a drive fault stays until it is reset.
   /// Thread safe.
@@ -64,12 +84,14 @@ class SimulatedDrive : public AxesHW {
  private:
   void readSwitches(Fault fault);
   void readEquipment(Fault fault, double dt);
+  bool touchesBlank() const;
   void moveMotors(Fault fault, int failing_axis, double dt);
   void home(double dt);
   bool onInjectFault(InjectFault::Request& request, InjectFault::Response& response);
 
   Model model_;
   Equipment equipment_;
+  std::optional<Blank> blank_;
   std::atomic<std::uint16_t> injected_{0};  ///< fault and axis in one word
   ros::ServiceServer inject_service_;
 

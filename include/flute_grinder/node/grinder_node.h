@@ -9,6 +9,7 @@
 #include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/plan_desk.h"
 #include "flute_grinder/node/planner.h"
+#include "flute_grinder/node/probe_desk.h"
 #include "flute_grinder/node/request_desk.h"
 #include "flute_grinder/node/stop_desk.h"
 #include "flute_grinder/node/telemetry.h"
@@ -54,6 +55,7 @@ class GrinderNode {
   std::unique_ptr<PlanDesk> plans_;
   std::unique_ptr<GoalDesk> goals_;
   std::unique_ptr<OffsetDesk> offset_desk_;
+  std::unique_ptr<ProbeDesk> probes_;
 };
 
 }  // namespace flute_grinder

@@ -37,7 +37,7 @@ class JobGate {
   /// Cancels the goal if its job has not started, and prevents every later start.
   void shut();
 
-  /// Lets no goal in until letJobsIn().
+  /// Lets no goal in until letJobsIn(); each call wants one of these.
   /// @return false, and nothing is changed, if there is one already.
   bool shutOutJobs();
   void letJobsIn();
@@ -58,7 +58,7 @@ class JobGate {
   bool canceled_ = false;
   bool held_ = false;
   bool shut_ = false;
-  bool jobs_shut_out_ = false;
+  int shut_outs_ = 0;  ///< shutOutJobs() less letJobsIn()
 };
 
 }  // namespace flute_grinder

@@ -1,0 +1,189 @@
+#include "flute_grinder/cli/probe.h"
+
+#include "flute_grinder/JogStep.h"
+#include "flute_grinder/Probe.h"
+#include "flute_grinder/cli/call.h"
+#include "flute_grinder/cli/interrupt.h"
+#include "flute_grinder/cli/offsets.h"
+#include "flute_grinder/cli/stop_keys.h"
+#include "flute_grinder/cli/zeros.h"
+#include "flute_grinder/control/machine_config.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/rake_touch.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+using units::kMillimetre;
+
+const ros::WallDuration kProbing(600);  ///< longest time of a probing move
+constexpr double kTurned = 1e-4;        ///< within which half a turn has reached its end [rad]
+
+std::string shown(double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop, 6); }
+
+/// Why there is no result, after it was printed.
+struct Failed {
+  int status;
+};
+
+/// A connected grinder with a measuring probe. Ctrl-C and Ctrl-Z stop its motion.
+class ProbedMachine {
+ public:
+  /// @throw Failed
+  explicit ProbedMachine(const std::string& node) : nh_(node), spinner_(1), watch_(nh_), keys_(nh_, watch_) {
+    spinner_.start();
+    if (!await(kPatience, [&] { return watch_.begun() && keys_.connected(); })) throw Failed{noGrinder(nh_)};
+    XmlRpc::XmlRpcValue parameters;
+    nh_.getParam("", parameters);
+    geometry_ = readMachineGeometry(ParameterReader(parameters, nh_.getNamespace()));
+    if (!geometry_.probe) throw Failed{fail("parameter " + nh_.getNamespace() + "/geometry/probe is missing")};
+    catchInterrupts();
+    catchHolds();
+    keys_.start([this] { keys_.hold(); });
+  }
+
+  const MachineGeometry& geometry() const { return geometry_; }
+  double ballRadius() const { return geometry_.probe->diameter / 2; }
+  GrinderState state() const { return watch_.newest(); }
+  ros::NodeHandle& nodeHandle() { return nh_; }
+
+  /// The ball's centre in machine coordinates, at a touch [m].
+  Eigen::Vector3d ballAt(const Probe::Response& touch) const {
+    return geometry_.probe->centre + Eigen::Vector3d(touch.axes[kX], touch.axes[kY], touch.axes[kZ]);
+  }
+  /// The same from the work spindle's axis, X in machine coordinates [m].
+  Eigen::Vector3d ballFromAxis(const Probe::Response& touch) const {
+    return ballAt(touch) - Eigen::Vector3d(0, geometry_.work_axis_y, geometry_.work_axis_z);
+  }
+
+  /// @param distance signed [m], A [rad]. @throw Failed
+  Probe::Response probe(int axis, double distance) {
+    Probe::Request request;
+    request.axis = static_cast<std::uint8_t>(axis);
+    request.distance = distance;
+    Probe::Response touch;
+    if (const int status = call<Probe>(nh_, "probe", request, &touch, kProbing)) throw Failed{status};
+    touch.axes[static_cast<std::size_t>(axis)] = touch.position;
+    return touch;
+  }
+
+  /// Turns the work. @throw Failed
+  void turn(double angle) {
+    if (!watch_.awaitNext()) throw Failed{fail(kLinkLost)};
+    const double end = state().position[kA] + angle;
+    JogStep::Request request;
+    request.axis = kA;
+    request.distance = angle;
+    if (const int status = call<JogStep>(nh_, "jog_step", request)) throw Failed{status};
+    do {
+      if (!watch_.awaitNext()) throw Failed{fail(kLinkLost)};
+    } while (state().state == GrinderState::JOGGING);
+    if (!(std::abs(state().position[kA] - end) <= kTurned)) throw Failed{fail("A was stopped before its end")};
+  }
+
+  /// @throw Failed
+  void setOffset(int axis, double value) {
+    if (const int status = setWorkOffset(nh_, axis, value)) throw Failed{status};
+    std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis],
+                text({value, unitOf(axis, 0)}, UnitSystem::kShop, 9).c_str());
+  }
+
+ private:
+  ros::NodeHandle nh_;
+  ros::AsyncSpinner spinner_;
+  StateWatch watch_;
+  StopKeys keys_;
+  MachineGeometry geometry_;
+};
+
+void printTouch(const char* name, double value, double spread, int axis) {
+  const Unit unit = unitOf(axis, 0);
+  std::printf("%-15s %s, spread %s\n", name, text({value, unit}, UnitSystem::kShop, 9).c_str(),
+              text({spread, unit}, UnitSystem::kShop, 3).c_str());
+}
+
+template <typename Cycle>
+int withMachine(const std::string& node, const Cycle& cycle) {
+  try {
+    ProbedMachine machine(node);
+    cycle(machine);
+    return 0;
+  } catch (const Failed& failed) {
+    return failed.status;
+  }
+}
+
+/// The diameter of a circle about the work spindle's axis that the ball touches from outside [m].
+double diameterTouched(const Eigen::Vector3d& ball, double ball_radius) {
+  return 2 * (std::hypot(ball.y(), ball.z()) - ball_radius);
+}
+
+}  // namespace
+
+int probeEndFace(const std::string& node, const ProbeOptions& options) {
+  const GrindJob job = readJobFile(options.job);
+  const double flange = flangeOf(options.job, options.flange_mm);
+  return withMachine(node, [&](ProbedMachine& machine) {
+    const Probe::Response touch = machine.probe(kX, options.within_mm * kMillimetre);
+    const double face = machine.ballAt(touch).x() + machine.ballRadius();
+    const double stickout = machine.geometry().collet_face - face;
+    printTouch("end face", face, touch.spread, kX);
+    std::printf("%-15s %s\n", "stick-out", shown(stickout).c_str());
+    if (!(stickout >= job.cutter.flute_length)) {
+      throw Failed{fail("stick-out = " + shown(stickout) + "; allowed: the flutes' length or more, " +
+                        shown(job.cutter.flute_length))};
+    }
+    machine.setOffset(kX, workZero(machine.geometry(), job, {flange, stickout}).x());
+  });
+}
+
+int probeDiameter(const std::string& node, const ProbeOptions& options) {
+  if (options.at_mm.has_value() == options.job.empty()) {
+    throw std::invalid_argument("--at, the diameter of the blank, and --job; allowed: both or none");
+  }
+  const std::optional<GrindJob> job = options.job.empty() ? std::nullopt : std::optional(readJobFile(options.job));
+  return withMachine(node, [&](ProbedMachine& machine) {
+    const auto probe = [&] { return machine.probe(kY, -options.within_mm * kMillimetre); };
+    const Probe::Response one = probe();
+    machine.turn(units::kPi);
+    const Probe::Response other = probe();
+    machine.turn(-units::kPi);
+    const double radius = machine.ballRadius();
+    const double at_one = diameterTouched(machine.ballFromAxis(one), radius);
+    const double at_other = diameterTouched(machine.ballFromAxis(other), radius);
+    const double diameter = (at_one + at_other) / 2;
+    printTouch("diameter", diameter, std::max(one.spread, other.spread), kY);
+    std::printf("%-15s %s\n", "run-out", shown(std::abs(at_one - at_other) / 2).c_str());
+    if (!job) return;
+    // By how much the machine's Y is off, as this diameter shows.
+    const double off = (diameter - *options.at_mm * kMillimetre) / 2;
+    machine.setOffset(kY, workZero(machine.geometry(), *job, {}).y() + off);
+  });
+}
+
+int probeTooth(const std::string& node, const ProbeOptions& options) {
+  const GrindJob job = withZLaw(readJobFile(options.job));
+  const double flange = flangeOf(options.job, options.flange_mm);
+  return withMachine(node, [&](ProbedMachine& machine) {
+    const std::optional<WorkOffsets> offsets = workOffsets(machine.nodeHandle());
+    if (!offsets) throw Failed{noGrinder(machine.nodeHandle())};
+    if (offsets->set_at[kX].isZero()) throw Failed{fail("the work offset of X was never set; probe the end face first")};
+    // The rake face of a right-hand tooth comes down to the ball as A grows.
+    const double toward = job.cutter.spiral_angle < 0 ? -1 : 1;
+    const Probe::Response touch = machine.probe(kA, toward * options.within_deg * units::kDegree);
+    Eigen::Vector3d ball = machine.ballFromAxis(touch);
+    ball.x() -= offsets->values[kX] + wheelCentre(machine.geometry(), job.process, flange).x();
+    printTouch("tooth 1", touch.position, touch.spread, kA);
+    machine.setOffset(kA, touch.position - rakeTouchAngle(job, ball, machine.geometry().probe->diameter));
+  });
+}
+
+}  // namespace flute_grinder

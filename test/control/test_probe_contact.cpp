@@ -1,0 +1,126 @@
+#include "control/checks.h"
+#include "control/paper_job.h"
+#include "control/rig.h"
+
+#include <cmath>
+
+// Jogs that end where the measuring probe touches.
+namespace flute_grinder::test_support {
+namespace {
+
+/// A wall that the probe touches while X stands at or beyond it.
+template <typename Drive>
+void putWall(Drive& drive, double x) {
+  drive.on_read = [x](FakeDrive& d) { d.status.probe_contact = d.position[kX] >= x; };
+}
+
+class ProbeFrom : public testing::TestWithParam<S> {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
+    rig_.run(5);
+    at_ = rig_.last().command;
+    wall_ = at_[kX] + 0.0123;
+    putWall(rig_.drive, wall_);
+  }
+  JogRequest step(double distance, double speed = 0.02) const { return {kX, false, distance, speed, {}}; }
+
+  Rig<FakeDrive> rig_;
+  Axes at_ = Axes::Zero();
+  double wall_ = 0;
+};
+
+TEST_P(ProbeFrom, AStepEndsAtTheContactWhichIsKept) {
+  const std::uint64_t ended = rig_.loop->status().jogs_ended;
+  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
+  EXPECT_EQ(rig_.loop->status().jogs_ended, ended);
+  EXPECT_FALSE(rig_.loop->status().contact.made);
+  rig_.runUntil(GetParam());
+  const LoopStatus status = rig_.loop->status();
+  EXPECT_EQ(status.jogs_ended, ended + 1);
+  ASSERT_TRUE(status.contact.made);
+  EXPECT_TRUE(status.probe_contact);
+  // As read: the wall is met between two cycles, and rests where the speed of 0.02 m/s could be lost.
+  EXPECT_GE(status.contact.position[kX], wall_);
+  EXPECT_LT(status.contact.position[kX], wall_ + 0.02 * 0.001 * 1.01);
+  EXPECT_EQ(status.contact.position[kA], at_[kA]);
+  EXPECT_GT(rig_.last().command[kX], wall_);
+  const double braking = std::pow(0.02, 1.5) / std::sqrt(10.0);
+  EXPECT_LT(rig_.last().command[kX], wall_ + braking + 0.02 * 0.005);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(ProbeFrom, FromAContactItMovesAwayAndTouchesAgain) {
+  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
+  rig_.runUntil(GetParam());
+  const double beyond = rig_.last().command[kX];
+  ASSERT_TRUE(rig_.jog(step(-0.002)).accepted);
+  EXPECT_FALSE(rig_.loop->status().contact.made) << "of the jog before";
+  rig_.runUntil(GetParam());
+  EXPECT_EQ(rig_.last().command[kX], beyond - 0.002);
+  EXPECT_FALSE(rig_.loop->status().contact.made);
+  EXPECT_FALSE(rig_.loop->status().probe_contact);
+  ASSERT_TRUE(rig_.jog(step(0.004, 0.002)).accepted);
+  rig_.runUntil(GetParam());
+  EXPECT_LT(rig_.loop->status().contact.position[kX], wall_ + 0.002 * 0.001 * 1.01);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(ProbeFrom, OfAContactThatBouncesTheFirstIsKept) {
+  const double wall = wall_;
+  rig_.drive.on_read = [wall](FakeDrive& d) {
+    d.status.probe_contact = d.position[kX] >= wall && d.status.feedback_count % 2 == 0;
+  };
+  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
+  rig_.runUntil(GetParam());
+  EXPECT_LT(rig_.loop->status().contact.position[kX], wall_ + 2 * 0.02 * 0.001 * 1.01);
+  EXPECT_LT(rig_.last().command[kX], wall_ + 0.002);
+}
+
+TEST_P(ProbeFrom, AButtonThatStaysPressedDoesNotPressOn) {
+  double rested = 0;
+  for (int i = 0; i < 2000; ++i) {
+    if (i % 20 == 0) {
+      rig_.loop->postJog({kX, true, 0, 0.02, {}});
+    }
+    rig_.cycle();
+    static_cast<void>(rig_.loop->jogReply());
+    if (i == 1000) rested = rig_.last().command[kX];
+  }
+  EXPECT_EQ(rig_.last().state, GetParam());
+  EXPECT_EQ(rig_.last().command[kX], rested);
+  EXPECT_GT(rested, wall_);
+  EXPECT_LT(rested, wall_ + 0.002);
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(ProbeFrom, AStepOfASeriesIsRefusedAfterAnyStop) {
+  JogRequest next = step(0.001);
+  next.stops = rig_.loop->status().stops;
+  ASSERT_TRUE(rig_.jog(next).accepted);
+  rig_.runUntil(GetParam());
+  ASSERT_TRUE(rig_.jog(next).accepted) << "no stop came";
+  rig_.runUntil(GetParam());
+  // Nothing moves, so that the hold has nothing to stop; it ends the series none the less.
+  EXPECT_EQ(rig_.ask(E::kHold).accepted, false);
+  const std::size_t rest = rig_.log.size() - 1;
+  EXPECT_EQ(rig_.jog(next).text, "jog refused: a stop came first");
+  rig_.run(10);
+  EXPECT_TRUE(atRestFrom(rig_.log, rest));
+  EXPECT_TRUE(rig_.jog(step(0.001)).accepted) << "by hand";
+}
+
+TEST_P(ProbeFrom, AFaultEndsTheJog) {
+  const std::uint64_t ended = rig_.loop->status().jogs_ended;
+  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
+  rig_.run(10);
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
+  rig_.cycle();
+  EXPECT_EQ(rig_.last().state, S::kFault);
+  EXPECT_EQ(rig_.loop->status().jogs_ended, ended + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted), stateName);
+
+}  // namespace
+}  // namespace flute_grinder::test_support

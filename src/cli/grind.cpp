@@ -1,8 +1,8 @@
 #include "flute_grinder/cli/completion.h"
 #include "flute_grinder/cli/offline.h"
 #include "flute_grinder/cli/offsets.h"
-#include "flute_grinder/cli/probe.h"
 #include "flute_grinder/cli/online.h"
+#include "flute_grinder/cli/probe.h"
 #include "flute_grinder/cli/report.h"
 #include "flute_grinder/cli/setup.h"
 #include "flute_grinder/cli/simulate.h"
@@ -296,8 +296,8 @@ void addProbe(CLI::App& app, ProbeOptions& options) {
   };
   auto& face = add("end-face", "X: print the stick-out and set the work offset", "--job jobs/unequal_d12_t4.yaml");
   auto& diameter = add("diameter", "Y, on two sides: print diameter and run-out of a cylinder", "--within 2");
-  auto& tooth = add("tooth", "A: touch the first tooth's rake face and set the work offset",
-                    "--job jobs/unequal_d12_t4.yaml");
+  auto& tooth =
+      add("tooth", "A: touch the first tooth's rake face and set the work offset", "--job jobs/unequal_d12_t4.yaml");
   for (CLI::App* command : {&face, &tooth}) {
     command->add_option("--job", options.job, "job to be ground")->required()->type_name(kYamlFile);
     addFlange(*command, options.flange_mm);

@@ -175,14 +175,19 @@ int probeTooth(const std::string& node, const ProbeOptions& options) {
   return withMachine(node, [&](ProbedMachine& machine) {
     const std::optional<WorkOffsets> offsets = workOffsets(machine.nodeHandle());
     if (!offsets) throw Failed{noGrinder(machine.nodeHandle())};
-    if (offsets->set_at[kX].isZero()) throw Failed{fail("the work offset of X was never set; probe the end face first")};
+    if (offsets->set_at[kX].isZero())
+      throw Failed{fail("the work offset of X was never set; probe the end face first")};
     // The rake face of a right-hand tooth comes down to the ball as A grows.
-    const double toward = job.cutter.spiral_angle < 0 ? -1 : 1;
+    const double toward = job.cutter.cut == CutDirection::kLeftHand ? -1 : 1;
     const Probe::Response touch = machine.probe(kA, toward * options.within_deg * units::kDegree);
     Eigen::Vector3d ball = machine.ballFromAxis(touch);
     ball.x() -= offsets->values[kX] + wheelCentre(machine.geometry(), job.process, flange).x();
     printTouch("tooth 1", touch.position, touch.spread, kA);
-    machine.setOffset(kA, touch.position - rakeTouchAngle(job, ball, machine.geometry().probe->diameter));
+    try {
+      machine.setOffset(kA, touch.position - rakeTouchAngle(job, ball, machine.geometry().probe->diameter));
+    } catch (const core::ReasonError& error) {
+      throw Failed{fail(core::text(error.reason(), UnitSystem::kShop))};
+    }
   });
 }
 

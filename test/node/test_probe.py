@@ -1,0 +1,245 @@
+#!/usr/bin/env python3
+"""Shows that the measuring probe finds what stands in the simulated machine: end face, diameter and run-out, and the first tooth;
+that the work offsets follow; and that a stop ends it."""
+
+import json
+import math
+import os
+import re
+import shutil
+import tempfile
+import threading
+import unittest
+
+import rospy
+import rostest
+import yaml
+from flute_grinder.msg import GrinderState, GrindResult
+from flute_grinder.srv import JogStep, Probe
+from std_srvs.srv import Trigger
+
+import grinder_client as gc
+from grinder_client import A, DEG, MM, X, Y, Z
+
+BLANK = {'end_face': 17 * MM, 'diameter': 10 * MM, 'run_out': 0.02 * MM}
+BALL = 1 * MM
+# Where the ball's centre stands with the axes at zero, as in config/grinder.yaml.
+BALL_X, BALL_Y = 60 * MM, -20 * MM
+JOB = gc.package_file('jobs/unequal_d12_t4.yaml')
+# The last touches move by 0.2 um in a cycle; a stalled host may make it some more.
+TOUCH = 2e-6
+
+
+class ProbeTest(unittest.TestCase):
+    started = 0
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def start(self, blank=BLANK, **changes):
+        """Starts a node, ready, with the probe swung in before the blank."""
+        ProbeTest.started += 1
+        parameters = gc.machine()
+        parameters.update(changes)
+        parameters['hardware']['blank'] = blank
+        self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
+        self.addCleanup(self.node.close)
+        self.client = self.node.client()
+        self.addCleanup(self.client.close)
+        self.client.make_ready()
+        return self.client
+
+    def jog(self, axis, distance):
+        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
+        self.assertTrue(reply.success, reply.message)
+        self.client.wait_state(GrinderState.READY)
+        self.client.wait_rest()
+
+    def bring_ball(self, x, y):
+        """Its centre to X in machine coordinates and a distance from the axis."""
+        at = self.client.wait_rest()
+        self.jog(X, x - BALL_X - at[X])
+        self.jog(Y, y - BALL_Y - at[Y])
+
+    def probe(self, axis, distance):
+        return self.client._call('probe', Probe, axis, distance)
+
+    def grind(self, *arguments):
+        return gc.grind('--node', self.client.name, *arguments, timeout=60)
+
+    def cycle(self, *arguments):
+        """Runs `grind probe`; what it printed, by its names."""
+        done = self.grind('probe', *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ''), done.stdout)
+        return dict(re.split(r'  +', line, maxsplit=1) for line in done.stdout.splitlines())
+
+    def offset(self, axis):
+        return json.loads(self.grind('offsets', '--json').stdout)['axes']['xyza'[axis]]
+
+
+def number(text):
+    return float(re.match(r'[-0-9.e]+', text).group())
+
+
+class TestCycles(ProbeTest):
+    def test_the_end_face_gives_the_stick_out_and_the_offset(self):
+        self.start()
+        self.bring_ball(12 * MM, 0)
+        said = self.cycle('end-face', '--job', JOB)
+        self.assertAlmostEqual(number(said['end face']), 17, delta=TOUCH / MM)
+        self.assertAlmostEqual(number(said['stick-out']), 45, delta=TOUCH / MM)
+        zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
+        self.assertAlmostEqual(self.offset(X)['offset_mm'], zeros['x_mm'], delta=TOUCH / MM)
+        self.assertIn('@', self.offset(X)['set_by'])
+        # Off the surface again.
+        self.assertAlmostEqual(self.client.wait_rest()[X] + BALL_X + BALL / 2, (17 - 0.5) * MM, delta=5e-6)
+
+    def test_two_sides_give_diameter_and_run_out(self):
+        self.start()
+        self.bring_ball(30 * MM, 7 * MM)
+        before = self.client.wait_rest()
+        said = self.cycle('diameter')
+        self.assertAlmostEqual(number(said['diameter']), 10, delta=2 * TOUCH / MM)
+        self.assertAlmostEqual(number(said['run-out']), 0.02, delta=2 * TOUCH / MM)
+        self.assertNotIn('work offset', said)
+        self.assertAlmostEqual(self.client.wait_rest()[A], before[A], delta=1e-5)
+
+    def test_a_known_diameter_sets_y(self):
+        self.start()
+        self.bring_ball(30 * MM, 7 * MM)
+        self.cycle('diameter', '--at', '10.03', '--job', JOB)
+        # As if the axis were nearer by half of what is missing.
+        zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
+        self.assertAlmostEqual(self.offset(Y)['offset_mm'], zeros['y_mm'] - 0.015, delta=2 * TOUCH / MM)
+
+    def test_the_first_tooth_gives_the_offset_of_a(self):
+        """A straight flute: its rake face is a plane, at the height of the wheel's upper face."""
+        job = yaml.safe_load(open(JOB))
+        job['cutter'].update(end_diameter_mm=10, cone_angle_deg=0, spiral_angle_deg=0, shank_diameter_mm=16,
+                             rake_angle_deg=math.degrees(math.asin(1.2 / 5)), tooth_angles_deg=[0, 180])
+        job['process']['wheel'] = {'file': gc.package_file('wheels/straight_d100_w3.yaml')}
+        job['process']['setup'] = {'swivel_deg': 0, 'height_mm': 1.2 - 1.5}
+        path = os.path.join(self.folder, 'straight.yaml')
+        with open(path, 'w') as file:
+            yaml.safe_dump(job, file)
+        angle = 0.7
+        self.start(dict(BLANK, run_out=0.0, rake_face={'height': 1.2 * MM, 'angle': angle}))
+        self.bring_ball(12 * MM, 3 * MM)
+        self.assertIn('probe the end face first', self.grind('probe', 'tooth', '--job', path).stderr)
+        self.jog(A, angle + math.pi / 2)  # what is left of the end face comes before the ball
+        self.cycle('end-face', '--job', path)
+        self.jog(A, -2)
+        self.jog(Y, 7 * MM)
+        self.jog(X, 12 * MM)
+        self.jog(Y, -5.5 * MM)
+        self.cycle('tooth', '--job', path)
+        # The blank's rake face is horizontal at this angle of the machine, the job's at A = 0.
+        self.assertAlmostEqual(self.offset(A)['offset_deg'], math.degrees(angle), delta=0.01)
+
+
+class TestMove(ProbeTest):
+    def test_touches_agree(self):
+        client = self.start()
+        self.bring_ball(12 * MM, 0)
+        answer = self.probe(X, 8 * MM)
+        self.assertTrue(answer.success, answer.message)
+        self.assertAlmostEqual(answer.position, 17 * MM - BALL / 2 - BALL_X, delta=TOUCH)
+        self.assertLess(answer.spread, TOUCH)
+        self.assertEqual(answer.axes[A], client.joints[-1].position[A])
+
+    def test_nothing_there(self):
+        self.start()
+        self.bring_ball(12 * MM, 0)
+        done = self.grind('probe', 'end-face', '--job', JOB, '--within', '1')
+        self.assertEqual((done.returncode, done.stderr), (1, 'probing ended: nothing was touched over 1 mm\n'))
+        self.assertAlmostEqual(self.client.wait_rest()[X], 13 * MM - BALL_X, delta=1e-6)
+        self.assertEqual(self.offset(X)['set_by'], None)
+
+    def test_a_probe_that_touches_already(self):
+        self.start(dict(BLANK, end_face=-20 * MM, diameter=80 * MM))
+        self.assertIn('the probe touches already', self.probe(X, 1 * MM).message)
+
+    def test_touches_that_do_not_agree(self):
+        probing = gc.machine()['probing']
+        probing.update(slow=1.0, velocity=dict(probing['velocity'], axis_x=0.05),
+                       largest_spread=dict(probing['largest_spread'], axis_x=1e-9))
+        probing['back_off'] = dict(probing['back_off'], axis_x=4 * MM)
+        self.start(probing=probing)
+        self.bring_ball(12 * MM, 0)
+        self.assertRegex(self.probe(X, 8 * MM).message, '^probing ended: the touches spread over .*; allowed: up to ')
+
+    def test_requests_are_checked(self):
+        self.start()
+        for axis, distance in ((4, 0.001), (X, 0), (X, math.nan), (X, math.inf)):
+            answer = self.probe(axis, distance)
+            self.assertFalse(answer.success)
+            self.assertIn('allowed: ', answer.message)
+        self.assertIn('; allowed: up to 300 mm', self.probe(X, 1.0).message)
+        self.client.disable()
+        self.assertIn('state disabled; allowed: ready', self.probe(X, 0.001).message)
+
+    def test_a_machine_without_a_probe(self):
+        geometry = gc.machine()['geometry']
+        del geometry['probe']
+        parameters = gc.machine()
+        parameters['geometry'] = geometry
+        self.node = gc.NodeProcess('without_probe', parameters)
+        self.addCleanup(self.node.close)
+        self.client = self.node.client()
+        self.addCleanup(self.client.close)
+        done = self.grind('probe', 'diameter')
+        self.assertEqual((done.returncode, done.stderr), (1, 'parameter /without_probe/geometry/probe is missing\n'))
+
+
+class TestStop(ProbeTest):
+    def begin(self, distance):
+        answers = []
+        thread = threading.Thread(target=lambda: answers.append(self.probe(X, distance)))
+        thread.start()
+        self.addCleanup(thread.join)
+        self.client.wait_state(GrinderState.JOGGING)
+        return answers, thread
+
+    def test_a_hold_ends_it(self):
+        self.start()
+        self.bring_ball(-35 * MM, 0)
+        answers, thread = self.begin(45 * MM)
+        self.assertTrue(self.client._call('hold', Trigger).success)
+        thread.join()
+        self.assertEqual(answers[0].message, 'probing ended: stopped before anything was touched')
+        at = self.client.wait_rest()[X]
+        self.assertLess(at, 0)
+        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+
+    def test_no_job_starts_meanwhile(self):
+        self.start()
+        self.bring_ball(-35 * MM, 0)
+        answers, thread = self.begin(45 * MM)
+        run = self.client.send(gc.SHORT).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.BUSY))
+        self.client._call('hold', Trigger)
+        thread.join()
+        self.assertFalse(answers[0].success)
+
+    def test_the_end_of_the_node_does_not_wait_for_it(self):
+        self.start()
+        self.bring_ball(-35 * MM, 0)
+        process = self.node.process
+        request = threading.Thread(target=self.probe_until_the_end)
+        request.start()
+        self.addCleanup(request.join)
+        self.client.wait_state(GrinderState.JOGGING)
+        process.terminate()
+        self.assertEqual(process.wait(timeout=gc.PATIENCE), 0)
+
+    def probe_until_the_end(self):
+        try:
+            self.probe(X, 45 * MM)
+        except rospy.ServiceException:
+            pass
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_probe')
+    rostest.rosrun('flute_grinder', 'probe', '__main__')

@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""Shows on the real HAL that a probing move stops at the probe's contact, though commands wait in a buffer, and where it was."""
+
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.srv import Probe
+
+import hal_bench
+from hal_bench import gc
+from grinder_client import MM, X
+
+RECORDER = hal_bench.Recorder()
+BUFFER = 0.1
+WAY = 3 * MM
+
+
+class TestProbe(unittest.TestCase):
+    def setUp(self):
+        hal_bench.patience(1000)
+        self.node = hal_bench.Node(buffer=BUFFER)
+        self.grinder = gc.Grinder()
+        self.at = self.grinder.make_ready()[X]
+
+    def tearDown(self):
+        self.grinder.close()
+        self.node.end()
+
+    def probe(self):
+        return self.grinder._call('probe', Probe, X, 10 * MM)
+
+    def test_it_stops_at_the_contact_and_says_where(self):
+        wall = self.at + WAY
+        hal_bench.halcmd('setp', 'wall.in0', repr(wall))
+        self.addCleanup(hal_bench.halcmd, 'setp', 'wall.in0', '1000')
+        first = RECORDER.now()
+        answers = []
+
+        def agree():
+            # A host that stalls sees a contact late; the touches then disagree, and it says so.
+            answers.append(self.probe())
+            if not answers[-1].success:
+                self.assertIn('the touches spread over', answers[-1].message)
+            return answers[-1].success
+
+        gc.poll(agree, 'touches that agree')
+        self.assertAlmostEqual(answers[-1].position, wall, delta=5e-6)
+        largest = max(row.position[X] for row in RECORDER.read()[first:])
+        # What was in the buffer is played; then the axis comes to rest.
+        self.assertGreater(largest, wall)
+        self.assertLess(largest, wall + 1 * MM)
+
+    def test_without_a_contact_it_goes_all_the_way(self):
+        self.assertEqual(self.probe().message, 'probing ended: nothing was touched over 10 mm')
+        self.assertAlmostEqual(self.grinder.wait_rest()[X], self.at + 10 * MM, delta=1e-6)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_hal_probe')
+    rostest.rosrun('flute_grinder', 'hal_probe', '__main__')

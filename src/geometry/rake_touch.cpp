@@ -1,0 +1,265 @@
+#include "flute_grinder/geometry/rake_touch.h"
+
+#include "flute_grinder/core/reason.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/ground_job.h"
+
+#include <boost/math/tools/minima.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+using units::kPi;
+
+constexpr int kSteps = 12;                ///< either way over the ball, from which a touch is refined
+constexpr std::size_t kCandidates = 3;    ///< places of the ball that may touch first
+constexpr int kBits = 20;                 ///< to which a place is refined: the angle is far better
+constexpr std::uintmax_t kMaxSteps = 60;  ///< of a refinement
+constexpr int kDistances = 24;            ///< that are tried for what is allowed
+constexpr int kHalvings = 6;              ///< of the diameter, the same
+constexpr double kAtEdge = 10e-6;         ///< nearer to the edge than this is no rake face [m]
+constexpr double kFar = 1e3;              ///< more than any angle of a wall [rad]
+constexpr double kRounding = 1e-6;        ///< of lengths in texts, and the least ball [m]
+
+/// Why a ball does not come to the rake face.
+enum class Fit { kTouches, kOutside, kEdge, kFloor, kOtherWall };
+
+const char* whatItTouches(Fit fit) {
+  switch (fit) {
+    case Fit::kTouches: return "the rake face";
+    case Fit::kOutside: return "nothing of the flute";
+    case Fit::kEdge: return "the cutting edge";
+    case Fit::kFloor: return "the flute's floor first";
+    case Fit::kOtherWall: break;
+  }
+  return "the flute's other wall first";
+}
+
+const Flute& firstFlute(const GroundCutter& cutter) { return cutter.flutes().at(cutter.teeth().at(0).flute); }
+
+/// A ball that turns about the cutter's axis, in the first tooth's flute. On every circle about that axis the ball has
+/// an arc about its centre's angle, and the flute an arc between its walls; the ball is free as long as the first lies
+/// within the second on all circles. So the circle that lets it turn least says where it touches.
+class TurningBall {
+ public:
+  TurningBall(const GroundCutter& cutter, double x, double from_axis, double radius)
+      : cutter_(cutter), flute_(firstFlute(cutter)), x_(x), from_axis_(from_axis), radius_(radius) {}
+
+  struct Result {
+    Fit fit = Fit::kOutside;
+    double angle = 0;  ///< of the ball's centre in the cutter's frame when it touches the rake face [rad]
+  };
+  Result turn() const {
+    return resultOf([this](int side) { return first(side); });
+  }
+
+  /// The same from a grid of places on the ball alone.
+  Fit coarseFit() const {
+    return resultOf([this](int side) { return coarse(side, 1).front(); }).fit;
+  }
+
+ private:
+  /// A place on the ball, in angles, and the angle that the ball's centre has when it comes to a wall there, times the
+  /// side of that wall.
+  struct Place {
+    double along = 0;   ///< from the ball's middle along the axis, in its section
+    double across = 0;  ///< within that section from the innermost place to the outermost within the blank, 0 to 1
+    double angle = kFar;
+  };
+  /// The circle about the cutter's axis on which a place lies.
+  struct Circle {
+    double x, r;
+    double half_angle;  ///< of the arc of it that is inside the ball
+  };
+
+  /// 1 for the wall at the larger angles, -1 for the other one.
+  int rakeSide() const { return cutter_.direction() == CutDirection::kRightHand ? 1 : -1; }
+
+  std::optional<Circle> circleAt(double along, double across) const {
+    const double x = x_ + radius_ * std::sin(along);
+    const double section = radius_ * std::cos(along);
+    const double outward = cutter_.cutter().radius(x) - from_axis_;
+    if (!(outward > -section)) return std::nullopt;
+    const double outermost = outward < section ? std::asin(outward / section) : kPi / 2;
+    const double at = -kPi / 2 + across * (outermost + kPi / 2);
+    const double r = from_axis_ + section * std::sin(at);
+    if (!(r > 0)) return Circle{x, 0, 0};
+    return Circle{x, r, 2 * std::asin(std::min(1.0, section * std::cos(at) / (2 * std::sqrt(r * from_axis_))))};
+  }
+
+  /// How far the ball may turn before it touches a wall on the circle of a place.
+  double angleAt(int side, double along, double across) const {
+    const auto circle = circleAt(along, across);
+    if (!circle) return kFar;
+    double wall = -kFar;
+    for (const WheelSweep& sweep : flute_) {
+      if (!(circle->r > 0)) break;
+      const auto at = sweep.wall(circle->x, circle->r, side > 0);
+      if (at) wall = std::max(wall, side * at->angle);
+    }
+    return wall - circle->half_angle;
+  }
+
+  /// The places of a grid that come to a wall before their neighbours do; the first ones, in order.
+  std::vector<Place> coarse(int side, std::size_t count) const {
+    std::array<std::array<Place, kSteps + 1>, kSteps + 1> grid;
+    for (std::size_t i = 0; i <= kSteps; ++i) {
+      for (std::size_t k = 0; k <= kSteps; ++k) {
+        const double along = kPi * (static_cast<double>(i) / kSteps - 0.5), across = static_cast<double>(k) / kSteps;
+        grid[i][k] = {along, across, angleAt(side, along, across)};
+      }
+    }
+    std::vector<Place> found;
+    for (std::size_t i = 0; i <= kSteps; ++i) {
+      for (std::size_t k = 0; k <= kSteps; ++k) {
+        bool is_first = true;
+        for (std::size_t m = i == 0 ? 0 : i - 1; m <= std::min<std::size_t>(i + 1, kSteps); ++m) {
+          for (std::size_t n = k == 0 ? 0 : k - 1; n <= std::min<std::size_t>(k + 1, kSteps); ++n)
+            is_first = is_first && grid[i][k].angle <= grid[m][n].angle;
+        }
+        if (is_first) found.push_back(grid[i][k]);
+      }
+    }
+    std::sort(found.begin(), found.end(), [](const Place& a, const Place& b) { return a.angle < b.angle; });
+    found.resize(std::min(found.size(), count));
+    return found;
+  }
+
+  template <typename Function>
+  static std::pair<double, double> least(const Function& f, double middle, double step, double from, double to) {
+    std::uintmax_t steps = kMaxSteps;
+    return boost::math::tools::brent_find_minima(f, std::max(from, middle - step), std::min(to, middle + step), kBits,
+                                                 steps);
+  }
+
+  Place refined(int side, const Place& place) const {
+    const auto in_section = [&](double along) {
+      const auto f = [&](double across) { return angleAt(side, along, across); };
+      return least(f, place.across, 1.0 / kSteps, 0, 1);
+    };
+    const auto f = [&](double along) { return in_section(along).second; };
+    const auto [along, angle] = least(f, place.along, kPi / kSteps, -kPi / 2, kPi / 2);
+    return {along, in_section(along).first, angle};
+  }
+
+  /// Where the ball comes to a wall first.
+  Place first(int side) const {
+    const std::vector<Place> candidates = coarse(side, kCandidates);
+    Place best = candidates.front();
+    for (const Place& candidate : candidates) {
+      if (!(std::abs(candidate.angle) < kFar / 2)) continue;
+      const Place place = refined(side, candidate);
+      if (place.angle < best.angle) best = place;
+    }
+    return best;
+  }
+
+  Fit fitAt(const Place& rake) const {
+    if (rake.angle < -kFar / 2) return Fit::kFloor;
+    const auto circle = circleAt(rake.along, rake.across);
+    if (!circle || !(rake.angle < kFar / 2)) return Fit::kOutside;
+    if (!(circle->r < cutter_.cutter().radius(circle->x) - kAtEdge)) return Fit::kEdge;
+    // Where a wall lies more across the radius than along it, it is the floor.
+    const double inward = from_axis_ * std::cos(circle->half_angle) - circle->r;
+    const double around = from_axis_ * std::sin(circle->half_angle);
+    return inward < around ? Fit::kTouches : Fit::kFloor;
+  }
+
+  /// @param find the place where the ball comes to the wall of a side first.
+  template <typename Function>
+  Result resultOf(const Function& find) const {
+    const Place rake = find(rakeSide());
+    Result result{fitAt(rake), rakeSide() * rake.angle};
+    // Both walls bound the ball's angle, the other one its negative.
+    if (result.fit == Fit::kTouches && !(rake.angle + find(-rakeSide()).angle > 0)) result.fit = Fit::kOtherWall;
+    return result;
+  }
+
+  const GroundCutter& cutter_;
+  const Flute& flute_;
+  double x_, from_axis_, radius_;
+};
+
+double rounded(double length) { return std::nearbyint(length / kRounding) * kRounding; }
+
+/// Refuses what is asked of a ball.
+/// @param why said after the allowed range.
+[[noreturn]] void refuse(const char* what, double value, const Range& allowed, std::string why) {
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kOutOfRange;
+  reason.field = what;
+  reason.detail = std::move(why);
+  reason.unit = Unit::kMetre;
+  reason.value = rounded(value);
+  reason.low = rounded(allowed.from);
+  reason.limit = rounded(allowed.to);
+  throw core::ReasonError(std::move(reason));
+}
+
+/// The distances from the axis at which a ball comes to the rake face, of some that are tried: the innermost that
+/// follow one another.
+std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, double radius) {
+  const double blank = cutter.cutter().radius(x);
+  const double core = std::min(blank, firstFlute(cutter).front().leastRadius(x, blank));
+  const auto at = [&](int i) { return rounded(core + (blank + radius - core) * i / kDistances); };
+  const auto fits = [&](int i) { return TurningBall(cutter, x, at(i), radius).coarseFit() == Fit::kTouches; };
+  int from = 1;
+  while (from < kDistances && !fits(from)) ++from;
+  int to = from;
+  while (to + 1 < kDistances && fits(to + 1)) ++to;
+  // The ends, near which a grid may err.
+  const auto touches = [&](int i) { return TurningBall(cutter, x, at(i), radius).turn().fit == Fit::kTouches; };
+  while (from <= to && !(from < kDistances && touches(from))) ++from;
+  while (from < to && !touches(to)) --to;
+  if (from > to) return std::nullopt;
+  return Range{at(from), at(to)};
+}
+
+/// Says what is allowed in place of a ball that does not come to the rake face.
+[[noreturn]] void refuseFit(Fit fit, const GroundCutter& cutter, double x, double from_axis, double radius) {
+  const std::string else_touches = std::string("else it touches ") + whatItTouches(fit);
+  if (const auto distances = fittingDistances(cutter, x, radius))
+    refuse("ball's distance from the axis", from_axis, *distances, else_touches);
+  double smaller = radius;
+  for (int i = 0; i < kHalvings; ++i) {
+    smaller /= 2;
+    if (fittingDistances(cutter, x, smaller))
+      refuse("ball diameter", 2 * radius, {kRounding, 2 * smaller}, else_touches);
+  }
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kNotAllowed;
+  reason.field = "ball's X";
+  reason.unit = Unit::kMetre;
+  reason.value = rounded(x);
+  reason.detail = "where the first tooth has a rake face";
+  throw core::ReasonError(std::move(reason));
+}
+
+}  // namespace
+
+double rakeTouchAngle(const GrindJob& job, const Eigen::Vector3d& ball, double ball_diameter) {
+  const double length = job.cutter.flute_length, radius = ball_diameter / 2;
+  if (!(ball_diameter >= kRounding && ball_diameter <= length))
+    refuse("ball diameter", ball_diameter, {kRounding, length}, "no longer than the flute");
+  if (!(ball.x() >= radius && ball.x() <= length - radius))
+    refuse("ball's X", ball.x(), {radius, length - radius}, "with the whole ball within the flute's length");
+  const double from_axis = std::hypot(ball.y(), ball.z());
+  if (!std::isfinite(from_axis))
+    refuse("ball's distance from the axis", from_axis, {0, ConicalCutter(job.cutter).radius(ball.x()) + radius},
+           "a finite number");
+  const GroundCutter cutter = groundCutterOf(job);
+  const TurningBall::Result result = TurningBall(cutter, ball.x(), from_axis, radius).turn();
+  if (result.fit != Fit::kTouches) refuseFit(result.fit, cutter, ball.x(), from_axis, radius);
+  return result.angle - std::atan2(ball.z(), ball.y());
+}
+
+}  // namespace flute_grinder

@@ -15,7 +15,8 @@ void ControlLoop::executeRequests() {
     answerJobStart(answer);
   }
   if (const auto event = takeRequest()) executeRequest(*event);
-  if (const auto jog = takeJog()) executeJog(*jog);
+  if (const auto jog = takeJog()) answerJog(executeJog(*jog));
+  if (const auto jog = takeSeriesJog()) answerSeriesJog(executeJog(*jog));
   for (const MachineEvent stop : StopRequests::kStops) {
     if (!stops.has(stop)) continue;
     dead_man_.block();

@@ -6,7 +6,7 @@
 // Jogs: their requests and their motion; all of it is real-time.
 namespace flute_grinder {
 
-void ControlLoop::executeJog(const JogRequest& jog) {
+Answer ControlLoop::executeJog(const JogRequest& jog) {
   Answer answer = answerTo(MachineEvent::kJog, Refusal::kNone);
   answer.axis = jog.axis;
   answer.refusal = jog.continuous ? jogOn(jog, answer) : beginJog(jog, answer);
@@ -14,7 +14,7 @@ void ControlLoop::executeJog(const JogRequest& jog) {
     dead_man_.block();
     if (jogging_ && continuous_) axis_move_.setSpeed(0);
   }
-  answerJog(answer);
+  return answer;
 }
 
 Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {

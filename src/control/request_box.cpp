@@ -97,6 +97,12 @@ RequestReply RequestBox::jog(const JogRequest& jog) {
 
 std::optional<RequestReply> RequestBox::jogReply() { return toReply(jogs_.reply()); }
 
+RequestReply RequestBox::jogInSeries(const JogRequest& jog) {
+  return ask(
+      toString(MachineEvent::kJog), kAnswerTimeout, [&] { return series_jogs_.post(jog); },
+      [&] { return toReply(series_jogs_.reply()); });
+}
+
 std::optional<RequestReply> RequestBox::startJobReply() { return toReply(job_starts_.reply()); }
 
 }  // namespace flute_grinder

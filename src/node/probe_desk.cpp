@@ -77,7 +77,7 @@ class ProbingMove {
   /// Jogs, unless a stop came since the beginning. @return the status when the axis rests.
   LoopStatus step(double distance, double velocity) {
     const std::uint64_t ended = loop_.status().jogs_ended;
-    const RequestReply reply = loop_.jog({axis_, false, distance, velocity, stops_});
+    const RequestReply reply = loop_.jogInSeries({axis_, false, distance, velocity, stops_});
     if (!reply.accepted) throw ProbingError(reply.text);
     const LoopStatus status = awaitEnd(ended + 1);
     if (status.jogs_ended != ended + 1) throw ProbingError("another jog came between");

@@ -207,6 +207,7 @@ void Telemetry::publishState() {
   message.wheel_in_work = record_.wheel_in_work;
   message.swivel = record_.swivel.angle;
   message.swivel_measured = record_.swivel.measured;
+  message.probe_contact = record_.drive.probe_contact;
   message.override = record_.feed_override;
   const Axes offset = offsets_.offsets().values();
   for (int axis = 0; axis < kAxisCount; ++axis) {

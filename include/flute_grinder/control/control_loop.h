@@ -89,7 +89,7 @@ class ControlLoop : public RequestBox {
   double liftTarget() const;
   Refusal setSwivel(double angle);
   Interlock openInterlock() const;
-  void executeJog(const JogRequest& jog);
+  Answer executeJog(const JogRequest& jog);
   Refusal jogOn(const JogRequest& jog, Answer& answer);
   Refusal beginJog(const JogRequest& jog, Answer& answer);
   Refusal refusalOfSpeed(const JogRequest& jog, Answer& answer) const;

@@ -82,6 +82,8 @@ class RequestBox {
   bool postJog(const JogRequest& jog) noexcept { return jogs_.post(jog); }
   /// The answer to the last postJog(), once available.
   std::optional<RequestReply> jogReply();
+  /// As jog(), for one other thread, which has JogRequest::stops set.
+  RequestReply jogInSeries(const JogRequest& jog);
 
  protected:
   /// @param enable_timeout longest allowed time from an enable to its answer [s].
@@ -94,9 +96,11 @@ class RequestBox {
   std::optional<MachineEvent> takeRequest() noexcept { return requests_.take(); }
   std::optional<double> takeSwivel() noexcept { return swivels_.take(); }
   std::optional<JogRequest> takeJog() noexcept { return jogs_.take(); }
+  std::optional<JogRequest> takeSeriesJog() noexcept { return series_jogs_.take(); }
   void answerStop(const Answer& answer) noexcept { stops_.answer(answer); }
   void answerJobStart(const Answer& answer) noexcept { job_starts_.answer(answer); }
   void answerJog(const Answer& answer) noexcept { jogs_.answer(answer); }
+  void answerSeriesJog(const Answer& answer) noexcept { series_jogs_.answer(answer); }
   void answerRequest(const Answer& answer) noexcept { requests_.answer(answer); }
   void answerSwivel(const Answer& answer) noexcept { swivels_.answer(answer); }
 
@@ -105,6 +109,7 @@ class RequestBox {
   StopRequests stops_;
   RequestSlot<JobStart> job_starts_;
   RequestSlot<JogRequest> jogs_;
+  RequestSlot<JogRequest> series_jogs_;
   RequestSlot<MachineEvent> requests_;
   RequestSlot<double> swivels_;
 };

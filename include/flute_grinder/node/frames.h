@@ -61,6 +61,7 @@ class Frames {
   tf2_ros::TransformBroadcaster moving_frames_;
   std::shared_ptr<const GrindProgram> program_;
   std::optional<SetUp> published_;
+  ros::Time contact_stamp_;  ///< of the latest
 };
 
 }  // namespace flute_grinder

@@ -71,7 +71,7 @@ CollisionCheck::CollisionCheck(const MachineShapes& machine, const CollisionJob&
 
 void CollisionCheck::addJob(const MachineShapes& machine, const CollisionJob& job, std::vector<MachinePart> parts) {
   const double y_zero = job.cutter.end_diameter / 2 + job.nominal_radius;
-  const MachinePart cutter_link = machine.on("cutter", y_zero, job.setup.swivel);
+  const MachinePart cutter_link = machine.on(machine.chuck(), y_zero, job.setup.swivel);
   const MachinePart wheel_link = machine.on("wheel", y_zero, job.setup.swivel);
   const ConicalCutter cone(job.cutter);
 

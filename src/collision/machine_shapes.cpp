@@ -1,5 +1,6 @@
 #include "flute_grinder/collision/machine_shapes.h"
 
+#include "flute_grinder/collision/joint_pose.h"
 #include "flute_grinder/core/axes.h"
 
 #include <urdf_parser/urdf_parser.h>
@@ -13,27 +14,9 @@ namespace {
 
 constexpr const char* kYZero = "y_zero";
 constexpr const char* kSwivel = "wheel_swivel";
-constexpr const char* kCutter = "cutter";
 constexpr const char* kWheel = "wheel";
 
 [[noreturn]] void refuse(const std::string& what) { throw std::invalid_argument("robot_description: " + what); }
-
-Eigen::Vector3d toEigen(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
-
-Eigen::Isometry3d toEigen(const urdf::Pose& pose) {
-  const urdf::Rotation& r = pose.rotation;
-  return Eigen::Translation3d(toEigen(pose.position)) * Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized();
-}
-
-/// The motion of a joint's child in the joint's frame.
-Eigen::Isometry3d motionOf(const urdf::Joint& joint, double position) {
-  const Eigen::Vector3d axis = toEigen(joint.axis).normalized();
-  switch (joint.type) {
-    case urdf::Joint::FIXED: return Eigen::Isometry3d::Identity();
-    case urdf::Joint::PRISMATIC: return Eigen::Isometry3d(Eigen::Translation3d(position * axis));
-    default: return Eigen::Isometry3d(Eigen::AngleAxisd(position, axis));
-  }
-}
 
 std::string nameOf(const urdf::Collision& shape, const urdf::Link& link) {
   return shape.name.empty() ? link.name : shape.name;
@@ -78,9 +61,7 @@ void requireJoints(const urdf::ModelInterface& model) {
   for (int axis = 0; axis < kAxisCount; ++axis) require(kJointNames[static_cast<std::size_t>(axis)], axis != kA);
   require(kYZero, true);
   require(kSwivel, false);
-  for (const char* name : {kCutter, kWheel}) {
-    if (!model.getLink(name)) refuse(std::string("no link ") + name);
-  }
+  if (!model.getLink(kWheel)) refuse(std::string("no link ") + kWheel);
 }
 
 }  // namespace
@@ -88,18 +69,17 @@ void requireJoints(const urdf::ModelInterface& model) {
 MachineShapes::MachineShapes(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
   if (!model_) throw std::invalid_argument("robot_description is not a URDF");
   requireJoints(*model_);
-  turning_ = model_->getJoint(kJointNames[kA])->child_link_name;
-  if (!isBelow(kCutter, turning_)) refuse("link cutter does not turn with axis_a");
-  if (isBelow(kWheel, turning_)) refuse("link wheel turns with axis_a");
-  for (const urdf::Link* at = &link(kWheel); at && !isBelow(kCutter, at->name); at = at->getParent().get()) {
+  chuck_ = model_->getJoint(kJointNames[kA])->child_link_name;
+  if (isBelow(kWheel, chuck_)) refuse("link wheel turns with axis_a");
+  for (const urdf::Link* at = &link(kWheel); at && !isBelow(chuck_, at->name); at = at->getParent().get()) {
     wheel_side_ = at->name;
   }
-  if (wheel_side_.empty()) refuse("link cutter moves with link wheel");
+  if (wheel_side_.empty()) refuse("joint axis_a moves with link wheel");
   parts(0, 0);
 }
 
 std::vector<MachinePart> MachineShapes::parts(double y_zero, double swivel) const {
-  const Eigen::Isometry3d turning = pose(turning_, {{kYZero, y_zero}, {kSwivel, swivel}});
+  const Eigen::Isometry3d turning = pose(chuck_, {{kYZero, y_zero}, {kSwivel, swivel}});
   const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
   const Eigen::Isometry3d axis =
       turning * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), toEigen(axis_a.axis));
@@ -122,7 +102,7 @@ MachinePart MachineShapes::on(const std::string& name, double y_zero, double swi
   MachinePart part;
   part.link = name;
   part.with_wheel = isBelow(name, wheel_side_);
-  part.turns = isBelow(name, turning_);
+  part.turns = isBelow(name, chuck_);
   part.solid.pose = pose(name, joints);
   for (int axis = kX; axis <= kZ; ++axis) {
     joints[kJointNames[static_cast<std::size_t>(axis)]] = 1;
@@ -140,8 +120,7 @@ Eigen::Isometry3d MachineShapes::pose(const std::string& name, const Joints& joi
   for (const urdf::Link* at = &link(name); at->parent_joint; at = at->getParent().get()) {
     const urdf::Joint& joint = *at->parent_joint;
     const auto position = joints.find(joint.name);
-    pose = toEigen(joint.parent_to_joint_origin_transform) *
-           motionOf(joint, position == joints.end() ? 0 : position->second) * pose;
+    pose = childPose(joint, position == joints.end() ? 0 : position->second) * pose;
   }
   return pose;
 }

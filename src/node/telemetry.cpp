@@ -47,7 +47,8 @@ JobProgress toMessage(const Progress& progress) {
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-                     const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds)
+                     const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds,
+                     const std::string& urdf)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
@@ -56,6 +57,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
                    }),
       diagnostic_updater_(nh, private_nh),
+      frames_(urdf),
       scene_(private_nh),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
@@ -73,7 +75,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
 void Telemetry::show(std::shared_ptr<const Preview> preview) {
   thread_.post([this, preview = std::move(preview)] {
     // While a job runs, that job is shown.
-    if (jobs_.empty()) scene_.show(*preview->plan.program, preview->first, *preview->errors);
+    if (jobs_.empty()) showJob(*preview);
   });
 }
 
@@ -88,15 +90,21 @@ void Telemetry::withdrawJob(std::uint64_t number) {
   });
 }
 
+void Telemetry::showJob(const Preview& preview) {
+  frames_.show(preview.plan.program);
+  scene_.show(*preview.plan.program, preview.first, *preview.errors);
+}
+
 void Telemetry::tick() {
   readRecords();
   if (records_read_ == 0) return;
   Job* job = running();
   if (job && !job->shown) {
-    scene_.show(*job->preview->plan.program, job->preview->first, *job->preview->errors);
+    showJob(*job->preview);
     job->shown = true;
   }
   publishJointStates();
+  frames_.publish(record_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(record_.time));
   if (++ticks_ % kTicksPerBatch == 0) {
     publishBatch();
     publishState();
@@ -179,12 +187,6 @@ void Telemetry::publishJointStates() {
     message.position.push_back(record_.position[i]);
     message.velocity.push_back(record_.velocity[i]);
   }
-  // Not driven, but robot_state_publisher takes every joint from this topic.
-  const MachineSetup& setup = scene_.setup();
-  message.name.insert(message.name.end(), {"wheel_swivel", "y_zero", "z_zero", "x_zero", "a_zero"});
-  message.position.insert(message.position.end(),
-                          {setup.wheel_swivel, setup.y_zero, setup.z_zero, setup.x_zero, setup.a_zero});
-  message.velocity.insert(message.velocity.end(), {0, 0, 0, 0, 0});
   joint_states_.publish(message);
 }
 

@@ -76,10 +76,6 @@ void Scene::show(const GrindProgram& program, const ToothPass& first, const Path
   ToolPath path = continued ? shown_->tool_path : ToolPath(program);
   shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, passDepths(job.process).size(), std::move(path),
                        ExecutedPath(program), planned});
-  // The joints of the axes have machine positions.
-  const Axes& offset = program.machine().work_offset;
-  setup_ = {job.process.setup_swivel, job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 - offset[kY],
-            job.process.setup_height - offset[kZ], offset[kX], offset[kA]};
   scene_.publish(sceneMarkers(job));
   ground_.show(shown_->job, std::nullopt);
   tool_path_.publish(shown_->tool_path.markers());

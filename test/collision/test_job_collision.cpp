@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 namespace flute_grinder {
 namespace {
@@ -196,11 +197,22 @@ std::string withOrigin(std::string urdf, const std::string& joint, const std::st
   return urdf.insert(urdf.find('>', begin) + 1, "<origin xyz=\"" + origin + "\"/>");
 }
 
+/// A shape of the chuck moved along X.
+std::string withChuckMoved(const std::string& urdf, const std::string& name, double from, double by) {
+  const std::string begin = "<collision name=\"" + name + "\">\n      <origin xyz=\"";
+  std::ostringstream as_shipped;
+  as_shipped << from;
+  return replaced(urdf, begin + as_shipped.str(), begin + std::to_string(from + by));
+}
+
 /// Compared with a machine whose table and chuck stand elsewhere by as much.
 TEST(JobCollision, TheWorkOffsetOfXSaysHowFarTheCutterStandsOut) {
   for (const double stands_in : {-0.02, -0.01, 0.005}) {
     const std::string in = std::to_string(stands_in), out = std::to_string(-stands_in);
-    const std::string moved = withOrigin(withOrigin(shippedUrdf(), "axis_x", out + " 0 0"), "x_zero", in + " 0 0");
+    const std::string table = withOrigin(withOrigin(shippedUrdf(), "axis_x", out + " 0 0"), "axis_a", in + " 0 0");
+    const std::string collet = withChuckMoved(table, "collet", 0.0885, -stands_in);
+    const std::string moved = withChuckMoved(collet, "spindle_nose", 0.1225, -stands_in);
+    ASSERT_FALSE(moved.empty());
     const JobPlan expected = checked(paperJob(), moved);
     const JobPlan plan = checked(paperJob(), shippedUrdf(), {stands_in, 0.02, 0.01, 3});
     ASSERT_TRUE(plan.closest && expected.closest);

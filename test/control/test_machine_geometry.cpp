@@ -124,7 +124,7 @@ TEST(WorkZero, KnowsTheShippedMachineAsItsUrdfShowsIt) {
   EXPECT_NEAR(machine.collet_face, mouth->origin.position.x - lengthOf(mouth) / 2, 1e-12);
   const auto flange = shapeOf("wheel", "flange");
   EXPECT_NEAR(machine.flange, flange->origin.position.z - lengthOf(flange) / 2, 1e-12);
-  const Eigen::Vector3d axis = poseOf(model, "cutter", {}).translation();
+  const Eigen::Vector3d axis = poseOf(model, "chuck", {}).translation();
   EXPECT_NEAR(machine.work_axis_y, axis.y(), 1e-12);
   EXPECT_NEAR(machine.work_axis_z, axis.z(), 1e-12);
 }
@@ -155,7 +155,7 @@ TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
     const Eigen::Vector3d wheel =
         poseOf(model, "wheel", joints) * Eigen::Vector3d(0, 0, upper_face - job.process.wheel_width / 2);
     const Eigen::Vector3d end =
-        poseOf(model, "cutter", joints) * Eigen::Vector3d(machine.collet_face - mounting.stickout, 0, 0);
+        poseOf(model, "chuck", joints) * Eigen::Vector3d(machine.collet_face - mounting.stickout, 0, 0);
     const Eigen::Vector3d from_end = wheel - end;
     EXPECT_NEAR(from_end.x(), 0, 1e-12);
     EXPECT_NEAR(from_end.y(), (job.cutter.end_diameter + job.process.wheel_diameter) / 2, 1e-12);

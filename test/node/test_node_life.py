@@ -176,6 +176,8 @@ BAD_DESCRIPTIONS = [
     ('revolute_x', 'name="axis_x" type="prismatic"', 'name="axis_x" type="revolute"', 'axis_x must be prismatic'),
     ('no_z', '"axis_z"', '"axis_zz"', 'no joint axis_z'),
     ('no_swivel', 'joint name="wheel_swivel"', 'joint name="wheel_other"', 'no joint wheel_swivel'),
+    ('no_z_zero', 'joint name="z_zero"', 'joint name="z_other"', 'no joint z_zero'),
+    ('cutter_is_a_link', '"z_datum"', '"cutter"', 'link cutter; allowed: another name'),
     ('swivel_without_limits', '<limit lower="-1.0471976" upper="1.0471976" velocity="0" effort="0"/>', '',
      'robot_description is not a URDF'),
     ('velocity_zero', 'upper="0.3" velocity="0.2"', 'upper="0.3" velocity="0"',

@@ -146,11 +146,26 @@ class TestTwoJobsAtOnce(unittest.TestCase):
                 self.assertAlmostEqual(math.remainder(angle + at['axis_a'], 2 * math.pi), 0, delta=1e-9)
             self.assertGreater(max(at['axis_x'] for _, at in seen['table']), 20 * MM)
 
+    def test_wheel_is_set_up_for_the_own_job(self):
+        for client in (self.left, self.right):
+            # Both that make transforms keep those that they have latched.
+            told = []
+            subscriber = rospy.Subscriber(client.name.replace('grinder', 'tf_static'), TFMessage, told.append)
+            self.addCleanup(subscriber.unregister)
+            job = gc.job_from_file(self.jobs[client.name])
+
+            def wheel():
+                return [t for message in list(told) for t in message.transforms if t.child_frame_id == 'wheel']
+
+            turned = gc.poll(wheel, 'the wheel')[-1].transform.rotation
+            self.assertAlmostEqual(-2 * math.atan2(turned.y, turned.w), job['process.setup_swivel'], delta=1e-9)
+
     def test_nobody_tells_transforms_or_joint_states_for_all(self):
         published, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
         topics = {topic for topic, nodes in published}
-        self.assertEqual(topics & {'/tf', '/joint_states'}, set())
-        self.assertLessEqual({'/left/tf', '/right/tf', '/left/joint_states', '/right/joint_states'}, topics)
+        own = {'tf', 'tf_static', 'joint_states'}
+        self.assertEqual(topics & {'/' + topic for topic in own}, set())
+        self.assertLessEqual({'/%s/%s' % (side, topic) for side in ('left', 'right') for topic in own}, topics)
 
     def test_path_is_shown_in_the_own_namespace_and_frame(self):
         for client, sign in ((self.left, 1), (self.right, -1)):
@@ -169,12 +184,11 @@ class TestTwoJobsAtOnce(unittest.TestCase):
 
     def test_diagnostics_tell_them_apart(self):
         names = set()
-
-        def both():
-            names.update(s.name for s in rospy.wait_for_message('/diagnostics', DiagnosticArray, gc.PATIENCE).status)
-            return {'left/grinder: Drive link', 'right/grinder: Drive link'} <= names
-
-        gc.poll(both, 'diagnostics of both')
+        # One connection to each: a new one for every message may be told by the same grinder each time.
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda m: names.update(s.name for s in m.status))
+        self.addCleanup(subscriber.unregister)
+        both = {'left/grinder: Drive link', 'right/grinder: Drive link'}
+        gc.poll(lambda: both <= names, 'diagnostics of both')
 
 
 # Its stroke takes some seconds.

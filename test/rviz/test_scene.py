@@ -51,7 +51,7 @@ class Rviz:
         self.frames = {}
         self._subscribers = [rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
                              for topic in TOPICS]
-        self._subscribers.append(rospy.Subscriber('/tf', TFMessage, self._on_frames))
+        self._subscribers += [rospy.Subscriber(topic, TFMessage, self._on_frames) for topic in ('/tf', '/tf_static')]
         rospy.wait_for_service('/rviz/report', gc.PATIENCE)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
 

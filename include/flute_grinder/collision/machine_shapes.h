@@ -28,8 +28,8 @@ struct MachinePart {
 class MachineShapes {
  public:
   /// @param urdf the robot description in XML.
-  /// @throw std::invalid_argument naming the link, or what else is wrong: no joint of an axis, no link `cutter` or
-  ///        `wheel`, or a shape that is no box, cylinder or sphere.
+  /// @throw std::invalid_argument naming the link, or what else is wrong: no joint of an axis, no link `wheel`, or a
+  ///        shape that is no box, cylinder or sphere.
   explicit MachineShapes(const std::string& urdf);
 
   /// The bodies with the joints y_zero [m] and wheel_swivel [rad] set for a job.
@@ -37,6 +37,10 @@ class MachineShapes {
 
   /// A part without a body, for what a job fastens to a link. The pose of its solid is the link's.
   MachinePart on(const std::string& link, double y_zero, double swivel) const;
+
+  /// The link that holds the cutter, the child of axis_a. Its origin is the centre of the small end face of a cutter
+  /// without a work offset, +X toward the shank.
+  const std::string& chuck() const { return chuck_; }
 
  private:
   using Joints = std::map<std::string, double>;
@@ -46,7 +50,7 @@ class MachineShapes {
   const urdf::Link& link(const std::string& name) const { return *model_->getLink(name); }
 
   urdf::ModelInterfaceSharedPtr model_;
-  std::string turning_;     ///< child link of axis_a
+  std::string chuck_;
   std::string wheel_side_;  ///< the first link toward the wheel that the cutter does not hang on
 };
 

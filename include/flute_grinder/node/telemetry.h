@@ -3,6 +3,7 @@
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/diagnostics.h"
+#include "flute_grinder/node/frames.h"
 #include "flute_grinder/node/journal_writer.h"
 #include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/planner.h"
@@ -21,16 +22,18 @@
 
 namespace flute_grinder {
 
-/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the markers for
-/// rviz and diagnostics. Its own thread reads the loop's records; nothing blocks on it. If it falls too far behind,
-/// records are lost, and it reports how many.
+/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the frames and
+/// markers for rviz, and diagnostics. Its own thread reads the loop's records; nothing blocks on it. If it falls too
+/// far behind, records are lost, and it reports how many.
 class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
   /// @param private_nh the node's private namespace, for everything else.
   /// @param loop,journal,offsets must outlive this object.
+  /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds);
+            const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds,
+            const std::string& urdf);
 
   /// Starts publishing.
   void start() { thread_.start(); }
@@ -65,6 +68,7 @@ class Telemetry {
     std::deque<Buffered> buffered{};  ///< written, not yet published
   };
 
+  void showJob(const Preview& preview);
   void tick();
   void readRecords();
   void processRecord();
@@ -85,6 +89,7 @@ class Telemetry {
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
   ros::Publisher joint_states_, state_, setpoints_, feedback_;
+  Frames frames_;
   Scene scene_;
 
   CycleRecord record_;  ///< the latest

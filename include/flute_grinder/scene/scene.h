@@ -12,16 +12,6 @@
 
 namespace flute_grinder {
 
-/// How the machine is set up for a job: positions of the URDF's undriven joints.
-struct MachineSetup {
-  double wheel_swivel = 0;  ///< of the job's set-up [rad]
-  /// From the cutter's axis to the wheel's centre at the machine's Y = 0; default: cutter 10 mm, wheel 100 mm [m]
-  double y_zero = 0.055;
-  double z_zero = 0;  ///< height of the wheel's centre above the cutter's axis at the machine's Z = 0 [m]
-  double x_zero = 0;  ///< of the cutter's small end from where it stands without a work offset, toward the shank [m]
-  double a_zero = 0;  ///< of the cutter about X, likewise [rad]
-};
-
 /// The job in rviz: ground cutter, wheel, flutes, executed path, path errors and a line of text, on `~ground_cutter`,
 /// `~scene`, `~tool_path`, `~executed_path` and `~path_error`, each latched, every message complete. Shows nothing
 /// until there is a job. Not thread safe; not for the control thread.
@@ -46,8 +36,6 @@ class Scene {
   /// Ends the job: publishes the final picture.
   void end(const char* state);
 
-  const MachineSetup& setup() const { return setup_; }
-
  private:
   struct Shown {
     std::shared_ptr<const GrindJob> job;
@@ -67,7 +55,6 @@ class Scene {
   std::string runText(const char* state) const;
 
   ros::Publisher scene_, tool_path_, executed_path_, path_error_;
-  MachineSetup setup_;
   std::optional<Shown> shown_;
   GroundView ground_;
   bool flutes_changed_ = false;

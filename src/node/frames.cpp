@@ -1,0 +1,106 @@
+#include "flute_grinder/node/frames.h"
+
+#include "flute_grinder/collision/joint_pose.h"
+
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr const char* kWork = "work";
+constexpr const char* kCutter = "cutter";
+constexpr const char* kContact = "contact";
+
+geometry_msgs::TransformStamped toMessage(const std::string& parent, const std::string& frame,
+                                          const Eigen::Isometry3d& pose, const ros::Time& stamp) {
+  geometry_msgs::TransformStamped message;
+  message.header.stamp = stamp;
+  message.header.frame_id = parent;
+  message.child_frame_id = frame;
+  const Eigen::Vector3d at = pose.translation();
+  const Eigen::Quaterniond turned(pose.linear());
+  message.transform.translation.x = at.x();
+  message.transform.translation.y = at.y();
+  message.transform.translation.z = at.z();
+  message.transform.rotation.x = turned.x();
+  message.transform.rotation.y = turned.y();
+  message.transform.rotation.z = turned.z();
+  message.transform.rotation.w = turned.w();
+  return message;
+}
+
+}  // namespace
+
+bool Frames::SetUp::operator==(const SetUp& other) const {
+  return wheel_y == other.wheel_y && height == other.height && swivel == other.swivel && (offset == other.offset).all();
+}
+
+Frames::Frames(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
+  if (!model_->getJoint("z_zero")) throw std::invalid_argument("robot_description: no joint z_zero");
+  for (const char* frame : {kWork, kCutter, kContact}) {
+    if (model_->getLink(frame)) {
+      throw std::invalid_argument(std::string("robot_description: link ") + frame +
+                                  "; allowed: another name, since the node itself tells the frame " + frame);
+    }
+  }
+}
+
+void Frames::publish(const Axes& position, const Axes& offset, int tooth, const ros::Time& stamp) {
+  const SetUp set_up = setUpFor(offset.isFinite().select(offset, 0));
+  if (!published_ || !(*published_ == set_up)) {
+    published_ = set_up;
+    publishSetUp(stamp);
+  }
+  if (program_) publishContact(position[kX] - set_up.offset[kX], tooth, stamp);
+}
+
+Frames::SetUp Frames::setUpFor(const Axes& offset) const {
+  SetUp set_up;
+  set_up.offset = offset;
+  if (!program_) return set_up;
+  const GrindJob& job = program_->job();
+  set_up.wheel_y = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2;
+  set_up.height = job.process.setup_height;
+  set_up.swivel = job.process.setup_swivel;
+  return set_up;
+}
+
+void Frames::publishSetUp(const ros::Time& stamp) {
+  const SetUp& set_up = *published_;
+  std::vector<geometry_msgs::TransformStamped> frames;
+  const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
+  const Eigen::Translation3d end(set_up.offset[kX], 0, 0);
+  frames.push_back(toMessage(axis_a.parent_link_name, kWork, childPose(axis_a, 0) * end, stamp));
+  frames.push_back(toMessage(axis_a.child_link_name, kCutter,
+                             end * Eigen::AngleAxisd(set_up.offset[kA], Eigen::Vector3d::UnitX()), stamp));
+  const auto add_child = [&](const char* name, double at) {
+    const urdf::Joint& joint = *model_->getJoint(name);
+    frames.push_back(toMessage(joint.parent_link_name, joint.child_link_name, childPose(joint, at), stamp));
+  };
+  // The joints of the axes have machine positions.
+  add_child("y_zero", set_up.wheel_y - set_up.offset[kY]);
+  add_child("z_zero", set_up.height - set_up.offset[kZ]);
+  add_child("wheel_swivel", set_up.swivel);
+  set_up_frames_.sendTransform(frames);
+}
+
+void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
+  // A faulty drive may report NaN. tf complains of a stamp that it knows, as of a loop that stalls.
+  if (!std::isfinite(x) || stamp <= contact_stamp_) return;
+  contact_stamp_ = stamp;
+  const auto [from, to] = std::minmax({program_->strokeFrom(), program_->strokeTo()});
+  const double at = std::clamp(x, from, to);
+  const ConicalCutter& cutter = program_->cutter(tooth);
+  Eigen::Isometry3d pose(Eigen::Translation3d(at, cutter.radius(at), 0));
+  pose.linear().col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
+  pose.linear().col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
+  pose.linear().col(2) = pose.linear().col(0).cross(pose.linear().col(1));
+  moving_frames_.sendTransform(toMessage(kWork, kContact, pose, stamp));
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,226 @@
+#!/usr/bin/env python3
+"""Shows that tf knows where wheel, cutter and contact are: while a stroke runs, the wheel is found in the cutter's frame where
+the setpoint has it, with swivel, height and work offsets; that the frames of the set-up are latched and follow its changes;
+and that the joint states are those of the four axes alone."""
+
+import functools
+import math
+import unittest
+
+import numpy
+import rospy
+import rostest
+import tf2_ros
+from flute_grinder.srv import SetOffset
+from tf2_msgs.msg import TFMessage
+
+import grinder_client as gc
+import path_checks as checks
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z, grinder
+
+OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
+SWIVEL, HEIGHT = 20 * DEG, 3 * MM
+TEETH = [0.0, 100 * DEG]
+# Its stroke takes some seconds.
+JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=5 * MM, clearance=1 * MM, tooth_angles=TEETH,
+               setup_swivel=SWIVEL, setup_height=HEIGHT)
+HELIX = checks.Helix(JOB)
+# Of a cutter of 12 mm and a wheel of 100 mm.
+BETWEEN_AXES = 56 * MM
+# Positions are told to the bit; what is left is rounding.
+EXACT = 1e-9
+# Farther from the cutter's axis are neither wheel nor contact.
+REACH = 2 * BETWEEN_AXES
+
+
+class Frames:
+    """What tf knows from now on, and what was latched."""
+
+    def __init__(self):
+        self.buffer = tf2_ros.Buffer(rospy.Duration(gc.PATIENCE))
+        self._listener = tf2_ros.TransformListener(self.buffer)
+
+    def find(self, frame, within, stamp=rospy.Time()):
+        """Origin and rotation matrix of a frame in another, at a time or at the latest."""
+        # The buffer itself would look as seldom as a hundred times until the time is out.
+        gc.poll(lambda: self.buffer.can_transform(within, frame, stamp), '%s in %s' % (frame, within))
+        found = self.buffer.lookup_transform(within, frame, stamp).transform
+        at, turned = found.translation, found.rotation
+        return numpy.array([at.x, at.y, at.z]), rotation(turned.x, turned.y, turned.z, turned.w)
+
+
+def rotation(x, y, z, w):
+    return numpy.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+                        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+                        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
+
+
+def about_x(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return numpy.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+
+
+def wheel_in_work(at):
+    """Centre and axis of the wheel in work coordinates."""
+    return (numpy.array([at[X], BETWEEN_AXES + at[Y], HEIGHT + at[Z]]),
+            numpy.array([-math.sin(SWIVEL), 0, math.cos(SWIVEL)]))
+
+
+class Story:
+    """A job with what tf says of it."""
+
+    def __init__(self):
+        g = grinder()
+        self.frames = Frames()
+        self.before = {frame: self.frames.find(frame, within) for frame, within in (('wheel', 'cutter'), ('cutter', 'work'))}
+        self.position_before = g.positions()
+        # All that is told of one time is here once the wheel is.
+        self.contact_before = self.frames.buffer.can_transform('work', 'contact', rospy.Time())
+        g.make_ready()
+        for joint, offset in zip(gc.JOINTS, OFFSETS):
+            answer = g._call('set_offset', SetOffset, joint, offset, 'test')
+            assert answer.success, answer.message
+        self.of_axes = []
+        subscriber = rospy.Subscriber('/tf', TFMessage, self.of_axes.append, queue_size=10000)
+        self.run = g.send(JOB)
+        self.run.wait_past(self.in_stroke, "the second tooth's stroke")
+        self.seen = []
+        # While the stroke goes on.
+        while self.in_stroke(self.run.last):
+            batch = self.run.batches[-1]
+            self.look(batch)
+            g.wait_for(lambda: self.run.batches[-1] is not batch, 'the next setpoints')
+        self.run.wait_complete()
+        subscriber.unregister()
+        self.late = Frames()
+
+    def interpolated(self, stamp):
+        """How far the axes were at a time from where tf has them, which interpolates between the stamps it knows."""
+        known = sorted({t.header.stamp for message in self.of_axes for t in message.transforms if t.child_frame_id == 'table'})
+        before, after = max(s for s in known if s <= stamp), min(s for s in known if s >= stamp)
+        axes = {joint.header.stamp: numpy.array(gc.axes_of(joint)) for joint in grinder().joints}
+        share = 0 if before == after else (stamp - before) / (after - before)
+        return abs(axes[stamp] - (1 - share) * axes[before] - share * axes[after])
+
+    @staticmethod
+    def in_stroke(setpoint):
+        return (setpoint.tooth, setpoint.move) == (1, STROKE)
+
+    def look(self, batch):
+        """The last setpoint of a batch was written with a joint state of the same stamp."""
+        found = {(frame, within): self.frames.find(frame, within, batch.end_stamp)
+                 for frame, within in (('wheel', 'cutter'), ('wheel', 'work'), ('contact', 'cutter'))}
+        self.seen.append(dict(found, setpoint=batch.setpoints[-1], stamp=batch.end_stamp))
+
+
+@functools.lru_cache(maxsize=None)
+def story():
+    return Story()
+
+
+class TestStroke(unittest.TestCase):
+    def check(self, found, expected, delta):
+        self.assertLess(abs(found - numpy.array(expected)).max(), delta)
+
+    def strokes(self):
+        """What was seen in the stroke, each with the tolerance for lengths and that for directions."""
+        strokes = [seen for seen in story().seen if Story.in_stroke(seen['setpoint'])]
+        self.assertGreater(len(strokes), 20)
+        self.assertEqual(story().run.status, 'SUCCEEDED', story().run.text)
+        for seen in strokes:
+            off = story().interpolated(seen['stamp'])
+            seen['turn'] = off[A] + EXACT
+            seen['delta'] = sum(off[:3]) + REACH * seen['turn']
+        return strokes
+
+    def test_frames_are_told_of_the_joint_states_times(self):
+        stamps = {joint.header.stamp for joint in grinder().joints}
+        self.assertLessEqual({seen['stamp'] for seen in self.strokes()}, stamps)
+
+    def test_wheel_moves_along_the_cutter(self):
+        strokes = self.strokes()
+        ends = [seen['setpoint'].position[X] for seen in (strokes[0], strokes[-1])]
+        self.assertGreater(abs(ends[1] - ends[0]), 1 * MM)
+
+    def test_wheel_is_where_the_axes_are_in_work_coordinates(self):
+        for seen in self.strokes():
+            centre, axis = wheel_in_work(seen['setpoint'].actual)
+            at, turned = seen['wheel', 'work']
+            self.check(at, centre, seen['delta'])
+            self.check(turned[:, 2], axis, seen['turn'])
+
+    def test_wheel_in_the_cutter_has_the_pose_of_the_setpoint(self):
+        tolerance = [rospy.get_param('/grinder/constraints/%s/trajectory' % joint) for joint in gc.JOINTS]
+        for seen in self.strokes():
+            at, turned = seen['wheel', 'cutter']
+            actual = seen['setpoint'].actual
+            # A point of the cutter at the angle phi is in the machine at phi - A.
+            to_cutter = about_x(actual[A])
+            centre, axis = wheel_in_work(actual)
+            self.check(at, to_cutter @ centre, seen['delta'])
+            self.check(turned[:, 2], to_cutter @ axis, seen['turn'])
+            self.check(turned[:, 1], to_cutter @ [0, 1, 0], seen['turn'])
+            # The axes follow the setpoint as closely as the machine asks.
+            setpoint = seen['setpoint'].position
+            centre, axis = wheel_in_work(setpoint)
+            self.check(at, about_x(setpoint[A]) @ centre, sum(tolerance[:3]) + tolerance[A] * numpy.linalg.norm(centre))
+            self.check(turned[:, 2], about_x(setpoint[A]) @ axis, tolerance[A])
+
+    def test_contact_runs_along_the_flute_on_the_cutters_surface(self):
+        for seen in self.strokes():
+            x, a = (seen['setpoint'].actual[axis] for axis in (X, A))
+            at, turned = seen['contact', 'cutter']
+            to_cutter = about_x(a)
+            self.check(at, to_cutter @ [x, HELIX.radius(x), 0], seen['delta'])
+            along = to_cutter @ [1, HELIX.tan_cone, HELIX.tan_spiral]
+            self.check(turned[:, 0], along / numpy.linalg.norm(along), seen['turn'])
+            outward = to_cutter @ [-HELIX.tan_cone, 1, 0]
+            self.check(turned[:, 1], outward / numpy.linalg.norm(outward), seen['turn'])
+            # As far as the axes follow, it is on the theoretical flute.
+            flute = TEETH[1] + HELIX.a(x)
+            self.check(at[1:], [HELIX.radius(x) * math.cos(flute), HELIX.radius(x) * math.sin(flute)], 0.05 * MM)
+
+
+class TestSetUp(unittest.TestCase):
+    def check_frame(self, frames, frame, within, at, turned):
+        found = frames.find(frame, within)
+        self.assertLess(abs(found[0] - numpy.array(at)).max(), EXACT, frame)
+        self.assertLess(abs(found[1] - turned).max(), EXACT, frame)
+
+    def test_ahead_of_a_job_they_are_those_of_a_plain_one(self):
+        at = story().position_before
+        centre, turned = story().before['wheel']
+        self.assertLess(abs(centre - about_x(at[A]) @ [at[X], 0.055 + at[Y], at[Z]]).max(), EXACT)
+        self.assertLess(abs(turned - about_x(at[A])).max(), EXACT)
+        self.assertFalse(story().contact_before)
+
+    def test_late_listener_gets_what_is_latched(self):
+        swivel = numpy.array([[math.cos(SWIVEL), 0, -math.sin(SWIVEL)], [0, 1, 0], [math.sin(SWIVEL), 0, math.cos(SWIVEL)]])
+        unturned = numpy.identity(3)
+        late = story().late
+        self.check_frame(late, 'work', 'table', [OFFSETS[X], 0, 0], unturned)
+        self.check_frame(late, 'cutter', 'chuck', [OFFSETS[X], 0, 0], about_x(OFFSETS[A]))
+        self.check_frame(late, 'y_datum', 'base', [0, BETWEEN_AXES - OFFSETS[Y], 0], unturned)
+        self.check_frame(late, 'z_datum', 'column', [0, 0, HEIGHT - OFFSETS[Z]], unturned)
+        self.check_frame(late, 'wheel', 'wheel_head', [0, 0, 0], swivel)
+
+    def move_work(self, x):
+        self.assertTrue(grinder()._call('set_offset', SetOffset, 'axis_x', x, 'test').success)
+        for frame, within in (('work', 'table'), ('cutter', 'chuck')):
+            gc.poll(lambda: abs(story().late.find(frame, within)[0][0] - x) < EXACT, 'the new place of ' + frame)
+
+    def test_change_of_a_work_offset_is_told(self):
+        story()
+        self.addCleanup(self.move_work, OFFSETS[X])
+        self.move_work(-0.03)
+
+    def test_joint_states_are_those_of_the_axes_alone(self):
+        story()
+        for joint in grinder().joints:
+            self.assertEqual(joint.name, gc.JOINTS)
+            self.assertEqual((len(joint.position), len(joint.velocity)), (4, 4))
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_frames')
+    rostest.rosrun('flute_grinder', 'frames', '__main__')

@@ -10,6 +10,7 @@
 #include <QDoubleSpinBox>
 #include <QTabWidget>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
@@ -182,6 +183,13 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   WAIT_FOR(offset() == "Work offset of A: -90.0000 deg, never set");
   axes.setCurrentText("Y");
   panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {-0.0295, 0.0025, -0.0015, -M_PI / 2};
+    std::copy(stage.joints.position.begin(), stage.joints.position.end(), stage.state.position.begin());
+    stage.state.work_position = {0.022, 0.00101, 0.001184, 0};
+  });
+  WAIT_FOR(panel.label("position_y") == "Y     1.010 mm");
   WAIT_FOR(offset().find("set by anna") != std::string::npos);
   WAIT_FOR(panel.enabled("touch_off"));
   panel.picture("jog");

@@ -1,27 +1,16 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/touch_off.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 namespace flute_grinder {
 
 namespace {
 
 using namespace units;
-
-std::string format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 double mm(double metres) { return metres / kMillimetre; }
 double deg(double radians) { return radians / kDegree; }

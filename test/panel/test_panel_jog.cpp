@@ -12,8 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace flute_grinder {
@@ -22,6 +22,13 @@ namespace {
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
                      "jog_z_plus", "jog_z_minus", "jog_a_plus", "jog_a_minus"};
+
+/// Whether a state allows what a test asks for.
+struct Row {
+  std::uint8_t state;
+  const char* name;
+  bool allowed;
+};
 
 class Jogging : public ::testing::Test {
  protected:
@@ -73,24 +80,23 @@ class Jogging : public ::testing::Test {
 };
 
 TEST_F(Jogging, ButtonsAreEnabledWhereAnAxisMayBeJogged) {
-  for (const auto& [state, name, allowed] : std::vector<std::tuple<std::uint8_t, const char*, bool>>{
-           {GrinderState::READY, "ready", true},
-           {GrinderState::HELD, "held", false},
-           {GrinderState::RETRACTED, "retracted", true},
-           {GrinderState::RUNNING, "running", false},
-           {GrinderState::JOGGING, "jogging", true},
-           {GrinderState::DISABLED, "disabled", false},
-           {GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
-    stage.be(state, name);
-    WAIT_FOR(panel.enabled("jog_x_plus") == allowed);
-    WAIT_FOR(enabledButtons() == (allowed ? kButtons : Names()));
+  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
+                                         {GrinderState::HELD, "held", false},
+                                         {GrinderState::RETRACTED, "retracted", true},
+                                         {GrinderState::RUNNING, "running", false},
+                                         {GrinderState::JOGGING, "jogging", true},
+                                         {GrinderState::DISABLED, "disabled", false},
+                                         {GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
+    stage.be(row.state, row.name);
+    WAIT_FOR(panel.enabled("jog_x_plus") == row.allowed);
+    WAIT_FOR(enabledButtons() == (row.allowed ? kButtons : Names()));
   }
   WAIT_FOR(panel.state() == "Jogging retracted");
   stage.be(GrinderState::READY, "ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
-  WAIT_FOR(enabledButtons() == Names());
+  WAIT_FOR(enabledButtons().empty());
 }
 
 TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
@@ -166,7 +172,7 @@ TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
 TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   const auto offset = [&] { return panel.label("work_offset"); };
   auto& axes = panel.the<QComboBox>("touch_axis");
-  EXPECT_EQ(offset(), "");
+  EXPECT_TRUE(offset().empty());
   WorkOffsets offsets;
   offsets.values = {-0.0515, 0.00149, std::nan(""), -M_PI / 2};
   offsets.set_by[kY] = "anna@cell-3";
@@ -194,17 +200,16 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   WAIT_FOR(panel.enabled("touch_off"));
   panel.picture("jog");
   stage.change([&] { stage.silent = true; });
-  WAIT_FOR(offset() == "");
+  WAIT_FOR(offset().empty());
 }
 
 TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
-  for (const auto& [state, name, allowed] :
-       std::vector<std::tuple<std::uint8_t, const char*, bool>>{{GrinderState::READY, "ready", true},
-                                                                {GrinderState::JOGGING, "jogging", false},
-                                                                {GrinderState::DISABLED, "disabled", true},
-                                                                {GrinderState::RETRACTED, "retracted", false}}) {
-    stage.be(state, name);
-    WAIT_FOR(panel.enabled("touch_off") == allowed);
+  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
+                                         {GrinderState::JOGGING, "jogging", false},
+                                         {GrinderState::DISABLED, "disabled", true},
+                                         {GrinderState::RETRACTED, "retracted", false}}) {
+    stage.be(row.state, row.name);
+    WAIT_FOR(panel.enabled("touch_off") == row.allowed);
   }
   stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.enabled("touch_off"));

@@ -1,11 +1,11 @@
 #include "flute_grinder/cli/ground_tool.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/section_outline.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 
 namespace flute_grinder {
@@ -26,10 +26,7 @@ struct Place {
 
   const ToothSection& tooth() const { return section.ground.teeth[number]; }
   CutterGeometry cutter() const { return cutterOf(job, static_cast<int>(number)); }
-  double askedDepth() const {
-    const GrindProcess& p = job.process;
-    return p.depth + (p.depthEnd() - p.depth) * section.ground.x / job.cutter.flute_length;
-  }
+  double askedDepth() const { return flute_grinder::askedDepth(job, section.ground.x); }
 };
 
 using Value = std::optional<double>;
@@ -96,16 +93,6 @@ void forEachTooth(const GroundTool& tool, const Visit& visit) {
   for (const MeasuredSection& section : tool.sections) {
     for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) visit(Place{tool.job, section, i});
   }
-}
-
-std::string format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* format, ...) {
-  char text[64];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 std::string cell(int width, Value value, const char* plus = "") {

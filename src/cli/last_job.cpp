@@ -1,24 +1,12 @@
 #include "flute_grinder/cli/last_job.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
 
-#include <cstdio>
-
 namespace flute_grinder {
 
-namespace {
-
-using namespace units;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-}  // namespace
+using units::kMillimetre;
 
 std::string lastJob(const JobProgress& p) {
   const std::string came_to =

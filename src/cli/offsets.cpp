@@ -5,13 +5,11 @@
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/cli/call.h"
 #include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/work_offsets.h"
-#include "flute_grinder/geometry/ground_job.h"
-
-#include <pwd.h>
-#include <unistd.h>
+#include "flute_grinder/geometry/touch_off.h"
 
 #include <array>
 #include <cmath>
@@ -25,8 +23,6 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTouchTolerance = 1e-6;  ///< of the wheel's radius where it touches [m]
-
 /// The axis whose letter is first in a text; kAxisCount if there is none.
 int axisOf(const std::string& text) {
   const std::size_t at = text.empty() ? std::string::npos : std::string(kAxisLetters).find(text[0]);
@@ -34,14 +30,6 @@ int axisOf(const std::string& text) {
 }
 
 double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
-
-/// Who runs this command.
-std::string userAtHost() {
-  const passwd* user = getpwuid(geteuid());
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  return std::string(user ? user->pw_name : std::to_string(geteuid())) + "@" + host.data();
-}
 
 std::string timeText(const ros::Time& time, bool utc) {
   const auto seconds = static_cast<std::time_t>(time.sec);
@@ -120,27 +108,6 @@ int show(ros::NodeHandle& nh, bool json) {
     printTable(*offsets.newest(), watch.newest());
   }
   return 0;
-}
-
-/// The work Y at which the job's wheel touches a blank: where its centre is by (D - D1) / 2 above that of Y = 0, less
-/// what the wheel has lost since it was as large as the job says.
-double touchY(const GrindJob& job, double diameter) {
-  return (diameter - job.cutter.end_diameter) / 2 - job.process.wheel_wear;
-}
-
-/// Why the wheel would not touch a blank on its highest line, with what is largest on the wheel; empty if it would.
-/// @param z work position [m].
-std::string heightRefusal(const GrindJob& job, double z) {
-  const WheelProfile wheel = wheelOf(job);
-  const double height = job.process.setup_height + z;
-  const double w = -height / std::cos(job.process.setup_swivel);
-  const bool meets =
-      w >= wheel.lowerFace() && w <= wheel.upperFace() && wheel.radius(w) >= wheel.largestRadius() - kTouchTolerance;
-  if (meets) return "";
-  const auto shown = [](double si) { return text({si, Unit::kMetre}, UnitSystem::kShop); };
-  return "the wheel's centre stands " + shown(height) +
-         " above the cutter's axis: there the wheel does not touch a blank with its largest diameter; move Z, to " +
-         shown(-job.process.setup_height) + " for the middle of the wheel, and touch again";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "flute_grinder/cli/progress_bar.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
 
 #include <sys/ioctl.h>
@@ -31,13 +32,6 @@ std::size_t terminalWidth() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
   return known ? size.ws_col - 1U : 79U;
-}
-
-template <typename... Arguments>
-std::string format(const char* pattern, Arguments... arguments) {
-  char text[100];
-  std::snprintf(text, sizeof text, pattern, arguments...);
-  return text;
 }
 
 std::string timeLeft(double seconds) {

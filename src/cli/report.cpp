@@ -2,6 +2,7 @@
 
 #include "flute_grinder/cli/csv.h"
 #include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/core/format.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -38,11 +39,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& arguments) {
 
 void append(std::vector<std::string>& arguments, const char* option, const Axes& values) {
   arguments.emplace_back(option);
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.17g", values[axis]);
-    arguments.emplace_back(text);
-  }
+  for (int axis = 0; axis < kAxisCount; ++axis) arguments.push_back(format("%.17g", values[axis]));
 }
 
 }  // namespace

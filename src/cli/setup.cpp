@@ -5,6 +5,7 @@
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
+#include "flute_grinder/geometry/touch_off.h"
 
 #include <cstdio>
 
@@ -18,7 +19,7 @@ using units::kMillimetre;
 Json toJson(const JobSetup& setup) {
   const GrindProcess& p = setup.job.process;
   const auto& complete = setup.check.complete;
-  const TouchOff touch = touchOffOf(setup.job);
+  const TouchReadings touch = touchReadings(setup.job);
   return {{"swivel_deg", p.setup_swivel / kDegree},
           {"height_mm", p.setup_height / kMillimetre},
           {"depth_mm", p.depth / kMillimetre},

@@ -3,13 +3,12 @@
 #include "flute_grinder/cli/csv.h"
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/connection/user_at_host.h"
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_edit.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/core/wheel_file.h"
 #include "flute_grinder/geometry/replace_file.h"
-
-#include <pwd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -29,12 +28,6 @@ using namespace units;
 /// The largest difference that is no change of a size [m].
 constexpr double kRounding = 1e-9;
 
-std::string format(const char* pattern, double value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), pattern, value);
-  return text.data();
-}
-
 /// To a picometre, so that rounding does not show.
 std::string millimetres(double metres) {
   constexpr double per_millimetre = 1e9;
@@ -50,12 +43,9 @@ std::string now() {
   return text.data();
 }
 
-/// user@host, without what YAML might take for something else.
+/// userAtHost(), without what YAML might take for something else.
 std::string whoami() {
-  const passwd* user = ::getpwuid(::geteuid());
-  std::array<char, 256> host{};
-  if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = 0;
-  std::string name = (user ? std::string(user->pw_name) : std::to_string(::geteuid())) + "@" + host.data();
+  std::string name = userAtHost();
   std::replace_if(
       name.begin(), name.end(),
       [](unsigned char c) {

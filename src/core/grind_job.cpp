@@ -1,11 +1,11 @@
 #include "flute_grinder/core/grind_job.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/units.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
@@ -137,15 +137,15 @@ void checkWheel(Checker& checker, const GrindProcess& p) {
     checker.below("process.wheel_width", p.wheel_width, (p.wheel_diameter / 2 - p.wheel_wear) / std::tan(p.wheel_angle),
                   "where the wheel's smaller face closes");
   }
-  const bool round = p.wheel_profile == WheelShape::kFullRadius;
-  const double room = round ? 0 : p.wheel_width;
-  const double corners = p.wheel_corner_radius_lower + p.wheel_corner_radius_upper;
-  if (!(corners <= room)) {
-    checker.refuse(ReasonKind::kAbove, "process.wheel_corner_radius_lower", {corners, Unit::kMetre},
-                   round ? "none for this profile" : "the wheel's width for both corners together", room);
-  }
-  if (round && !(p.wheel_width < p.wheel_diameter)) {
+  const Quantity corners{p.wheel_corner_radius_lower + p.wheel_corner_radius_upper, Unit::kMetre};
+  if (p.wheel_profile == WheelShape::kFullRadius) {
+    if (!(corners.si <= 0)) {
+      checker.refuse(ReasonKind::kNotAllowed, "process.wheel_corner_radius_lower", corners, "0 for this profile");
+    }
     checker.below("process.wheel_width", p.wheel_width, p.wheel_diameter, "the wheel's diameter");
+  } else if (!(corners.si <= p.wheel_width)) {
+    checker.refuse(ReasonKind::kAbove, "process.wheel_corner_radius_lower", corners,
+                   "the wheel's width for both corners together", p.wheel_width);
   }
 }
 
@@ -187,12 +187,9 @@ void checkTogether(Checker& checker, const GrindJob& job) {
 }  // namespace
 
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
-  char text[200];
-  std::snprintf(text, sizeof text, "D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s",
-                cutter.end_diameter / units::kMillimetre, cutter.cone_angle / units::kDegree,
-                cutter.spiral_angle / units::kDegree, cutter.rake_angle / units::kDegree, teeth,
-                teeth == 1 ? "tooth" : "teeth");
-  return text;
+  return format("D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s", cutter.end_diameter / units::kMillimetre,
+                cutter.cone_angle / units::kDegree, cutter.spiral_angle / units::kDegree,
+                cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
 }
 
 CutterGeometry cutterOf(const GrindJob& job, int tooth) {
@@ -267,6 +264,11 @@ std::vector<double> wearOfPasses(const GrindJob& job) {
     wear[i] = job.process.wheel_wear + static_cast<double>(i) * job.process.wheel_wear_per_pass;
   }
   return wear;
+}
+
+double askedDepth(const GrindJob& job, double x) {
+  const GrindProcess& p = job.process;
+  return p.depth + (p.depthEnd() - p.depth) * x / job.cutter.flute_length;
 }
 
 DepthLaw depthLaw(const GrindJob& job, double depth) {

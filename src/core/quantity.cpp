@@ -1,10 +1,10 @@
 #include "flute_grinder/core/quantity.h"
 
 #include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
 
 #include <array>
-#include <cstdio>
 
 namespace flute_grinder {
 
@@ -37,10 +37,8 @@ constexpr std::array<Symbols, kUnitCount> kSymbols{{
 const Symbols& symbolsOf(Unit unit) { return kSymbols[static_cast<std::size_t>(unit)]; }
 
 std::string number(const Quantity& quantity, UnitSystem units, int digits) {
-  char text[48];
   const double value = units == UnitSystem::kSi ? quantity.si : quantity.si / shopScale(quantity.unit);
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  return format("%.*g", digits, value);
 }
 
 }  // namespace

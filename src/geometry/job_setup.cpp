@@ -1,12 +1,12 @@
 #include "flute_grinder/geometry/job_setup.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/z_law.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -34,9 +34,7 @@ double rounded(double value, double scale, int decimals) {
 
 /// A number as it is written, without zeros at its end.
 std::string textOf(double value, double scale, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value / scale);
-  std::string number = text;
+  std::string number = format("%.*f", decimals, value / scale);
   number.erase(number.find_last_not_of('0') + 1);
   if (number.back() == '.') number.pop_back();
   return number == "-0" ? "0" : number;

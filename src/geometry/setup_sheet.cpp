@@ -1,10 +1,10 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/touch_off.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 namespace flute_grinder {
 
@@ -12,33 +12,8 @@ namespace {
 
 using namespace units;
 
-constexpr int kPlaces = 400;       ///< at which the wheel's largest radius is looked for
-constexpr double kLargest = 1e-6;  ///< of the radius, that the largest one may fall short
-
-std::string format(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 double mm(double metres) { return metres / kMillimetre; }
 double deg(double radians) { return radians / kDegree; }
-
-/// The middle of where a wheel's circumference is largest, along its spindle [m].
-double largestPlace(const WheelProfile& wheel) {
-  const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
-  const auto is_largest = [&](int i) {
-    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kLargest);
-  };
-  int first = 0, last = kPlaces;
-  while (first < kPlaces && !is_largest(first)) ++first;
-  while (last > first && !is_largest(last)) --last;
-  return from + length * (first + last) / 2 / kPlaces;
-}
 
 /// "+ 1.200 mm", or "- 1.200 mm"
 std::string added(double metres) { return format("%c %.3f mm", metres < 0 ? '-' : '+', std::abs(mm(metres))); }
@@ -75,7 +50,7 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
 }
 
 std::string whatToTouch(const GrindJob& job) {
-  const TouchOff touch = touchOffOf(job);
+  const TouchReadings touch = touchReadings(job);
   const double end = job.cutter.end_diameter;
   const auto reads = [&](const std::string& formula, double at_end) {
     return line("", format("reads %s: %.3f mm for D = %g mm", formula.c_str(), mm(at_end), mm(end)));
@@ -113,16 +88,6 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
 }
 
 }  // namespace
-
-TouchOff touchOffOf(const GrindJob& job) {
-  const GrindProcess& p = job.process;
-  const WheelProfile wheel = wheelOf(job);
-  TouchOff touch;
-  touch.y = 0 - p.wheel_wear;
-  touch.z_for_y = -(p.setup_height + largestPlace(wheel) * std::cos(p.setup_swivel));
-  touch.z = -wheel.lowerFace() - p.setup_height;
-  return touch;
-}
 
 double upperFaceHeight(const GrindJob& job) {
   return job.process.setup_height + wheelOf(job).upperFace() / std::cos(job.process.setup_swivel);

@@ -144,6 +144,7 @@ void KeptFile::write(const std::string& text) const {
     requireAllowed(sealed.size() <= kLargestFile, "size", sealed.size(),
                    std::to_string(kLargestFile) + " bytes at most");
     acquire();
+    // Always the same name, so that a crash leaves one file behind at most; the lock keeps others away from it.
     const std::string fresh = file_ + ".new";
     {
       File file(fresh, O_WRONLY | O_CREAT);

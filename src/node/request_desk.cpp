@@ -1,5 +1,7 @@
 #include "flute_grinder/node/request_desk.h"
 
+#include <std_msgs/String.h>
+
 #include <cmath>
 #include <sstream>
 
@@ -32,6 +34,7 @@ RequestDesk::RequestDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, J
   services_.push_back(nh.advertiseService("jog_step", &RequestDesk::onJogStep, this));
   // Of several messages that wait only the last one counts.
   jogs_ = nh.subscribe("jog", 1, &RequestDesk::onJog, this, ros::TransportHints().tcpNoDelay());
+  jog_refusals_ = nh.advertise<std_msgs::String>("jog_refusal", 10);
   thread_.start();
 }
 
@@ -77,7 +80,22 @@ void RequestDesk::onJog(const Jog::ConstPtr& message) {
   // An axis is stopped however late the message comes.
   if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
   if (refusal.empty()) refusal = loop_.jog({message->axis, true, 0, message->velocity}).text;
-  if (!refusal.empty()) ROS_WARN_STREAM_THROTTLE(kWarningInterval, refusal);
+  tellJogRefusal(refusal);
+}
+
+/// Once for each press of a button. @param refusal of its latest message; empty if that was accepted.
+void RequestDesk::tellJogRefusal(const std::string& refusal) {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const bool pressed_before = (now - last_jog_).toSec() <= loop_.config().jog_timeout;
+  const bool told = jog_refused_ && pressed_before;
+  last_jog_ = now;
+  jog_refused_ = !refusal.empty();
+  if (!jog_refused_) return;
+  ROS_WARN_STREAM_THROTTLE(kWarningInterval, refusal);
+  if (told) return;
+  std_msgs::String why;
+  why.data = refusal;
+  jog_refusals_.publish(why);
 }
 
 }  // namespace flute_grinder

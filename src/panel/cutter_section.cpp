@@ -80,14 +80,12 @@ bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flu
 
 CutterSection cutterSection(const GrindJob& job, double x) {
   const GroundCutter cutter = groundCutterOf(job);
-  const GrindProcess& p = job.process;
   CutterSection made;
   made.ground = cutter.section(x);
   made.cut = job.cutter.cut;
   made.asked_rake = job.cutter.rake_angle;
   made.rake_tolerance = job.cutter.rake_tolerance;
-  const double depth = p.depth + (p.depthEnd() - p.depth) * x / job.cutter.flute_length;
-  made.asked_core = std::max(0.0, made.ground.radius - depth);
+  made.asked_core = std::max(0.0, made.ground.radius - askedDepth(job, x));
   if (!(made.ground.core_radius >= kLeastCore)) return made;
   const std::size_t teeth = job.tooth_angles.size();
   made.outline = sectionOutline(cutter, x, made.ground.radius, {teeth, kRings, kColumns / teeth + 1});

@@ -1,5 +1,7 @@
 #include "flute_grinder/panel/grind_panel.h"
 
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
@@ -8,6 +10,9 @@
 #include <QTime>
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
+
+#include <exception>
+#include <stdexcept>
 
 namespace flute_grinder {
 
@@ -40,6 +45,7 @@ GrindPanel::GrindPanel(QWidget* parent)
       job_(new JobBox),
       section_(new SectionView),
       jog_(new JogBox),
+      touch_off_(new TouchOffBox),
       tabs_(new QTabWidget),
       override_(new OverrideBox),
       progress_(new ProgressBox),
@@ -62,6 +68,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
+  connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::touchOff);
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
     setNode(node_edit_->text());
@@ -73,10 +80,16 @@ GrindPanel::GrindPanel(QWidget* parent)
 }
 
 void GrindPanel::layOut() {
+  auto* by_hand = new QWidget;
+  auto* hand_layout = new QVBoxLayout(by_hand);
+  hand_layout->setContentsMargins(6, 6, 6, 6);
+  hand_layout->addWidget(jog_);
+  hand_layout->addWidget(touch_off_);
+  hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
   tabs_->addTab(job_, "Job");
   tabs_->addTab(section_, "Section");
-  tabs_->addTab(jog_, "Jog");
+  tabs_->addTab(by_hand, "Jog");
   // Beyond its minimum it gets what the tabs leave.
   messages_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
 
@@ -160,7 +173,8 @@ void GrindPanel::connectLink() {
   // Without a master it would wait for one.
   if (name_.empty() || master_watch_->master() == Master::kMissing) return;
   link_ = std::make_unique<GrinderLink>(
-      name_, [this](const std::string& id, const GrindResult& result) { onResult(id, result); });
+      name_, [this](const std::string& id, const GrindResult& result) { onResult(id, result); },
+      [this](const std::string& refusal) { showMessage(refusal); });
 }
 
 void GrindPanel::refresh() {
@@ -183,6 +197,7 @@ void GrindPanel::refresh() {
   job_->refresh(view.state, idle && master == Master::kAnswers);
   for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   jog_->refresh(view.state, master == Master::kAnswers);
+  touch_off_->refresh(view, master == Master::kAnswers);
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
   progress_->show(view, job_runs);
@@ -277,6 +292,29 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
   link_->jogStep(axis, distance, speed, [this](const std::string& refusal) {
     if (!refusal.empty()) showMessage(refusal);
   });
+}
+
+void GrindPanel::touchOff(int axis, double at) {
+  try {
+    const double position = axis == kY ? touchedY(at) : at;
+    link_->touchOff(axis, position, [this](const std::string& refusal) {
+      if (!refusal.empty()) showMessage(refusal);
+    });
+  } catch (const std::exception& error) {
+    showMessage(std::string("touch-off: ") + error.what());
+  }
+}
+
+double GrindPanel::touchedY(double diameter) const {
+  if (job_->file().isEmpty()) {
+    throw std::invalid_argument("Y is 0 where the wheel touches the small end of a job's cutter; open the job first");
+  }
+  const GrindJob job = readJobFile(job_->file().toStdString());
+  const auto state = link_->view().state;
+  if (!state) throw std::invalid_argument("no position comes from the grinder");
+  const std::string refused = heightRefusal(job, state->work_position[kZ]);
+  if (!refused.empty()) throw std::invalid_argument(refused);
+  return touchY(job, diameter);
 }
 
 void GrindPanel::showMessage(const std::string& text) {

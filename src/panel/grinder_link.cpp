@@ -6,6 +6,8 @@
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
+#include "flute_grinder/TouchOff.h"
+#include "flute_grinder/connection/user_at_host.h"
 
 #include <std_srvs/Trigger.h>
 
@@ -42,8 +44,8 @@ bool isFresh(const std::optional<Message>& received) {
 
 }  // namespace
 
-GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
-    : nh_(node), on_result_(std::move(on_result)), spinner_(1, &queue_) {
+GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefusal on_jog_refusal)
+    : nh_(node), on_result_(std::move(on_result)), on_jog_refusal_(std::move(on_jog_refusal)), spinner_(1, &queue_) {
   nh_.setCallbackQueue(&queue_);
   ros::NodeHandle around(ros::names::parentNamespace(nh_.getNamespace()));
   around.setCallbackQueue(&queue_);
@@ -51,6 +53,8 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result)
   subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
+  subscribers_.push_back(nh_.subscribe("jog_refusal", 10, &GrinderLink::onJogRefusal, this, hints));
+  subscribers_.push_back(nh_.subscribe("offsets", 10, &GrinderLink::onOffsets, this, hints));
   subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
   goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
   stops_ = nh_.advertise<Stop>("stop", 10);
@@ -63,7 +67,10 @@ GrinderLink::~GrinderLink() { spinner_.stop(); }
 GrinderView GrinderLink::view() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   GrinderView view;
-  if (isFresh(state_)) view.state = state_->message;
+  if (isFresh(state_)) {
+    view.state = state_->message;
+    view.offsets = offsets_;
+  }
   if (isFresh(position_)) view.position = position_->message;
   if (view.position && view.state) {
     const Axes offset = Axes(view.state->position.data()) - Axes(view.state->work_position.data());
@@ -93,6 +100,15 @@ void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
     if (shown) feedback_->message.feedback.state.clear();  // no longer in planning
   }
   post([this, result] { on_result_(result->status.goal_id.id, result->result); });
+}
+
+void GrinderLink::onJogRefusal(const std_msgs::String::ConstPtr& refusal) {
+  post([this, refusal] { on_jog_refusal_(refusal->data); });
+}
+
+void GrinderLink::onOffsets(const WorkOffsets::ConstPtr& offsets) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  offsets_ = *offsets;
 }
 
 void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
@@ -162,6 +178,17 @@ void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
                         if (!response) return on_answer("confirm-swivel: " + silence);
                         on_answer(response->success ? "" : response->message);
                       });
+}
+
+void GrinderLink::touchOff(int axis, double position, const OnAnswer& on_answer) {
+  TouchOff::Request request;
+  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.position = position;
+  request.set_by = userAtHost();
+  call<TouchOff>("touch_off", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
+    if (!response) return on_answer("touch-off: " + silence);
+    on_answer(response->success ? "" : "touch-off: " + response->message);
+  });
 }
 
 void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswer& on_answer) {

@@ -1,25 +1,18 @@
 #include "flute_grinder/panel/plain_words.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <cmath>
-#include <cstdio>
 
 namespace flute_grinder {
 
 namespace {
 
 using namespace units;
-
-template <typename... Values>
-std::string format(const char* pattern, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
 
 const char* sentence(MachineState state) {
   switch (state) {

@@ -10,6 +10,7 @@
 #include <QFileInfo>
 #include <QFontDatabase>
 #include <QHBoxLayout>
+#include <QLabel>
 #include <QVBoxLayout>
 
 #include <chrono>
@@ -30,17 +31,24 @@ SetupDialog::SetupDialog(const QString& file, const std::string& description, QW
       file_(file.toStdString()),
       description_(description),
       sheet_(textView("setup_sheet", kLines)),
+      keep_(new QComboBox),
       write_(new QPushButton("Write into the file")) {
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + QFileInfo(file).fileName());
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   sheet_->setMinimumWidth(kColumns * sheet_->fontMetrics().horizontalAdvance('0'));
+  keep_->setObjectName("keep_figure");
+  keep_->setToolTip("Leave this figure as it is in the job file");
+  keep_->addItem("nothing");
+  for (const auto& figure : kSetupFigures) keep_->addItem(figure.name);
   write_->setObjectName("write_setup");
   write_->setToolTip("Write the set-up into the job file; all else in it stays as it is");
   write_->setEnabled(false);
   auto* close = new QPushButton("Close");
   close->setObjectName("close_setup");
   auto* buttons = new QHBoxLayout;
+  buttons->addWidget(new QLabel("Keep"));
+  buttons->addWidget(keep_);
   buttons->addStretch(1);
   buttons->addWidget(write_);
   buttons->addWidget(close);
@@ -48,30 +56,41 @@ SetupDialog::SetupDialog(const QString& file, const std::string& description, QW
   layout->addWidget(sheet_, 1);
   layout->addLayout(buttons);
   connect(close, &QPushButton::clicked, this, &QDialog::close);
+  connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
   connect(write_, &QPushButton::clicked, this, [this] {
+    keep_->setEnabled(false);
     write_->setEnabled(false);
     working_ = std::async(std::launch::async, [this, setup = *setup_] { return write(setup); });
   });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
-  showText(*sheet_, "Solving ...", true);
-  working_ = std::async(std::launch::async, [this] { return solve(); });
+  beginToSolve();
   poll_timer_.start(kPollInterval);
 }
 
 SetupDialog::~SetupDialog() { stop_ = true; }
 
-SetupDialog::Done SetupDialog::solve() const {
+void SetupDialog::beginToSolve() {
+  keep_->setEnabled(false);
+  write_->setEnabled(false);
+  showText(*sheet_, "Solving ...", true);
+  std::optional<SetupFigure> keep;
+  const auto chosen = static_cast<std::size_t>(keep_->currentIndex());
+  if (chosen > 0) keep = kSetupFigures[chosen - 1].value;
+  working_ = std::async(std::launch::async, [this, keep] { return solve(keep); });
+}
+
+SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
   const auto refused = [](const std::string& why) {
     return Done{std::nullopt, false, QString::fromStdString(why), false};
   };
   try {
-    const GrindJob job = readJobFile(file_, unsolvedFields(std::nullopt));
+    const GrindJob job = readJobFile(file_, unsolvedFields(keep));
     auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
     if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
       return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");
     }
     const Range swivel = readSwivelRange(static_cast<std::string>(*description));
-    const auto result = solveJobSetup(job, swivel, std::nullopt);
+    const auto result = solveJobSetup(job, swivel, keep);
     if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
     const auto& setup = std::get<JobSetup>(result);
     std::string text = setupSheet(setup, swivel);
@@ -103,6 +122,7 @@ void SetupDialog::poll() {
 
 void SetupDialog::take(const Done& done) {
   setup_ = done.setup;
+  keep_->setEnabled(true);
   write_->setEnabled(setup_.has_value());
   if (done.written) {
     sheet_->appendPlainText(done.text);

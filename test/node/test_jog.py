@@ -13,6 +13,7 @@ import rospy
 import rostest
 from flute_grinder.msg import GrinderState, Jog, Stop
 from flute_grinder.srv import JogStep
+from std_msgs.msg import String
 
 import grinder_client as gc
 import path_checks as checks
@@ -216,6 +217,23 @@ class TestContinuous(JogTest):
         time.sleep(0.1)
         button.message.velocity = 0.005
         g.wait_state(GrinderState.JOGGING)
+
+    def test_a_refusal_is_told_once_until_the_button_is_released(self):
+        g = grinder()
+        refusals = []
+        topic = rospy.Subscriber('/grinder/jog_refusal', String, lambda message: refusals.append(message.data))
+        self.addCleanup(topic.unregister)
+        gc.poll(lambda: topic.get_num_connections() > 0, 'a connection')
+        button = self.press(Z, -0.05)
+        gc.poll(lambda: refusals, 'a refusal')
+        self.assertEqual(refusals, ['jog refused: axis Z stands at -50 mm, the end of its way'])
+        g.positions_over(0.5)  # the button stays pressed
+        self.assertEqual(len(refusals), 1)
+        button.let_go()
+        g.positions_over(1.5)  # longer than jog_timeout
+        self.press(X, 1.0)
+        gc.poll(lambda: len(refusals) > 1, 'another refusal')
+        self.assertRegex(refusals[1], '^jog refused: speed of axis X = 60000 mm/min; allowed: ')
 
     def test_a_message_from_long_ago_moves_nothing(self):
         g = grinder()

@@ -10,9 +10,12 @@
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
+#include "flute_grinder/TouchOff.h"
+#include "flute_grinder/WorkOffsets.h"
 
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
 #include <std_srvs/Trigger.h>
 
 #include <cmath>
@@ -29,11 +32,14 @@ class Stage {
     state_topic_ = nh_.advertise<GrinderState>("state", 10, true);
     feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
     results_ = nh_.advertise<GrindActionResult>("grind/result", 10);
+    offsets_ = nh_.advertise<WorkOffsets>("offsets", 10, true);
+    jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
     services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
     services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
     services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
+    services_.push_back(nh_.advertiseService("touch_off", &Stage::onTouchOff, this));
     services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
     services_.push_back(nh_.advertiseService("confirm_swivel", &Stage::onConfirmSwivel, this));
     goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
@@ -71,6 +77,12 @@ class Stage {
     message.result = result;
     results_.publish(message);
   }
+  void tellOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
+  void refuseJog(const std::string& why) {
+    std_msgs::String message;
+    message.data = why;
+    jog_refusals_.publish(message);
+  }
   /// Listens to no stop any more.
   void stopListening() { stops_.shutdown(); }
 
@@ -89,6 +101,8 @@ class Stage {
   std::vector<JogStep::Request> steps;
   std::string step_refusal;
   std::vector<Jog> jogs;
+  std::vector<TouchOff::Request> touches;
+  std::string touch_refusal;
   std::string goal_id;  ///< of the progress
   Plan::Response plan;
 
@@ -125,6 +139,14 @@ class Stage {
     });
     return true;
   }
+  bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response) {
+    change([&] {
+      touches.push_back(request);
+      response.success = static_cast<std::uint8_t>(touch_refusal.empty());
+      response.message = touch_refusal;
+    });
+    return true;
+  }
   void onJog(const Jog::ConstPtr& jog) {
     change([&] { jogs.push_back(*jog); });
   }
@@ -151,7 +173,7 @@ class Stage {
 
   std::mutex mutex_;
   ros::NodeHandle nh_;
-  ros::Publisher state_topic_, feedback_, results_, joint_states_;
+  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, jog_refusals_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;

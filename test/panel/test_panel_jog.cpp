@@ -1,22 +1,34 @@
 // The jog buttons of the panel, against a grinder of the test's own.
 
+#include "flute_grinder/core/axes.h"
 #include "panel_fixture.h"
 #include "stage.h"
 
+#include <ros/package.h>
 #include <QComboBox>
+#include <QDateTime>
 #include <QDoubleSpinBox>
 #include <QTabWidget>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 namespace flute_grinder {
 namespace {
 
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
                      "jog_z_plus", "jog_z_minus", "jog_a_plus", "jog_a_minus"};
+
+/// Whether a state allows what a test asks for.
+struct Row {
+  std::uint8_t state;
+  const char* name;
+  bool allowed;
+};
 
 class Jogging : public ::testing::Test {
  protected:
@@ -46,6 +58,9 @@ class Jogging : public ::testing::Test {
   std::vector<JogStep::Request> steps() {
     return stage.get([&] { return stage.steps; });
   }
+  std::vector<TouchOff::Request> touches() {
+    return stage.get([&] { return stage.touches; });
+  }
   /// Presses a button until some messages have come.
   void hold(const char* name) {
     const std::size_t before = jogs().size();
@@ -65,24 +80,23 @@ class Jogging : public ::testing::Test {
 };
 
 TEST_F(Jogging, ButtonsAreEnabledWhereAnAxisMayBeJogged) {
-  for (const auto& [state, name, allowed] : std::vector<std::tuple<std::uint8_t, const char*, bool>>{
-           {GrinderState::READY, "ready", true},
-           {GrinderState::HELD, "held", false},
-           {GrinderState::RETRACTED, "retracted", true},
-           {GrinderState::RUNNING, "running", false},
-           {GrinderState::JOGGING, "jogging", true},
-           {GrinderState::DISABLED, "disabled", false},
-           {GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
-    stage.be(state, name);
-    WAIT_FOR(panel.enabled("jog_x_plus") == allowed);
-    WAIT_FOR(enabledButtons() == (allowed ? kButtons : Names()));
+  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
+                                         {GrinderState::HELD, "held", false},
+                                         {GrinderState::RETRACTED, "retracted", true},
+                                         {GrinderState::RUNNING, "running", false},
+                                         {GrinderState::JOGGING, "jogging", true},
+                                         {GrinderState::DISABLED, "disabled", false},
+                                         {GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
+    stage.be(row.state, row.name);
+    WAIT_FOR(panel.enabled("jog_x_plus") == row.allowed);
+    WAIT_FOR(enabledButtons() == (row.allowed ? kButtons : Names()));
   }
   WAIT_FOR(panel.state() == "Jogging retracted");
   stage.be(GrinderState::READY, "ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
-  WAIT_FOR(enabledButtons() == Names());
+  WAIT_FOR(enabledButtons().empty());
 }
 
 TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
@@ -105,7 +119,102 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
   stage.change([&] { stage.step_refusal = "jog refused: because"; });
   panel.click("jog_z_minus");
   WAIT_FOR(panel.text("messages").find("Jog refused: because") != std::string::npos);
+}
+
+TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
+  auto& axes = panel.the<QComboBox>("touch_axis");
+  auto& at = panel.the<QDoubleSpinBox>("touch_at");
+  WAIT_FOR(panel.enabled("touch_off"));
+  at.setValue(1.5);
+  panel.click("touch_off");
+  WAIT_FOR(touches().size() == 1);
+  axes.setCurrentText("A");
+  EXPECT_EQ(at.value(), 0) << "that was X";
+  at.setValue(-30);
+  panel.click("touch_off");
+  WAIT_FOR(touches().size() == 2);
+  EXPECT_EQ(touches()[0].axis, "axis_x");
+  EXPECT_DOUBLE_EQ(touches()[0].position, 1.5e-3);
+  EXPECT_EQ(touches()[1].axis, "axis_a");
+  EXPECT_DOUBLE_EQ(touches()[1].position, -M_PI / 6);
+  for (const TouchOff::Request& touch : touches()) {
+    EXPECT_NE(touch.set_by.find('@'), std::string::npos) << touch.set_by;
+  }
+  EXPECT_EQ(panel.text("messages"), "");
+  stage.change([&] { stage.touch_refusal = "the axes are not homed"; });
+  panel.click("touch_off");
+  WAIT_FOR(panel.text("messages").find("Touch-off: the axes are not homed") != std::string::npos);
+}
+
+TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
+  panel.the<QComboBox>("touch_axis").setCurrentText("Y");
+  auto& diameter = panel.the<QDoubleSpinBox>("touch_at");
+  WAIT_FOR(panel.enabled("jog_x_plus"));
+  EXPECT_FALSE(panel.enabled("touch_off")) << "without a diameter";
+  diameter.setValue(12.02);
+  WAIT_FOR(panel.enabled("touch_off"));
+  panel.click("touch_off");
+  WAIT_FOR(panel.text("messages").find("open the job first") != std::string::npos);
+
+  Panel with_job("cell/stage", kPaper);
+  with_job.the<QComboBox>("touch_axis").setCurrentText("Y");
+  with_job.the<QDoubleSpinBox>("touch_at").setValue(12.02);
+  WAIT_FOR(with_job.enabled("touch_off"));
+  with_job.click("touch_off");
+  WAIT_FOR(with_job.text("messages").find("move Z to -2.788 mm, and touch again") != std::string::npos);
+  stage.change([&] { stage.state.work_position[kZ] = -2.788e-3; });
+  // The job's end diameter is 10 mm.
+  WAIT_FOR((with_job.click("touch_off"), !touches().empty()));
+  EXPECT_EQ(touches()[0].axis, "axis_y");
+  EXPECT_NEAR(touches()[0].position, 1.01e-3, 1e-12);
+}
+
+TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
+  const auto offset = [&] { return panel.label("work_offset"); };
+  auto& axes = panel.the<QComboBox>("touch_axis");
+  EXPECT_TRUE(offset().empty());
+  WorkOffsets offsets;
+  offsets.values = {-0.0515, 0.00149, std::nan(""), -M_PI / 2};
+  offsets.set_by[kY] = "anna@cell-3";
+  const QDateTime when(QDate(2024, 2, 29), QTime(23, 59, 1));
+  offsets.set_at[kY] = ros::Time(static_cast<double>(when.toSecsSinceEpoch()));
+  offsets.error = "its file is damaged";
+  stage.tellOffsets(offsets);
+  WAIT_FOR(offset() == "Work offset of X: -51.5000 mm, never set");
+  axes.setCurrentText("Y");
+  WAIT_FOR(offset() == "Work offset of Y: 1.4900 mm, set by anna@cell-3, 2024-02-29 23:59:01");
+  axes.setCurrentText("Z");
+  WAIT_FOR(offset() == "Work offset of Z is unknown: its file is damaged");
+  axes.setCurrentText("A");
+  WAIT_FOR(offset() == "Work offset of A: -90.0000 deg, never set");
+  axes.setCurrentText("Y");
+  panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {-0.0295, 0.0025, -0.0015, -M_PI / 2};
+    std::copy(stage.joints.position.begin(), stage.joints.position.end(), stage.state.position.begin());
+    stage.state.work_position = {0.022, 0.00101, 0.001184, 0};
+  });
+  WAIT_FOR(panel.label("position_y") == "Y     1.010 mm");
+  WAIT_FOR(offset().find("set by anna") != std::string::npos);
+  WAIT_FOR(panel.enabled("touch_off"));
   panel.picture("jog");
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(offset().empty());
+}
+
+TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
+  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
+                                         {GrinderState::JOGGING, "jogging", false},
+                                         {GrinderState::DISABLED, "disabled", true},
+                                         {GrinderState::RETRACTED, "retracted", false}}) {
+    stage.be(row.state, row.name);
+    WAIT_FOR(panel.enabled("touch_off") == row.allowed);
+  }
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("touch_off"));
+  stage.change([&] { stage.state.homed = 0; });
+  WAIT_FOR(!panel.enabled("touch_off"));
 }
 
 TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
@@ -118,6 +227,9 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
     EXPECT_DOUBLE_EQ(jog.velocity, -0.005);
     EXPECT_LT(std::abs((ros::Time::now() - jog.header.stamp).toSec()), 60);
   }
+  EXPECT_EQ(panel.text("messages"), "");
+  stage.refuseJog("jog refused: axis Y stands at -20 mm, the end of its way");
+  WAIT_FOR(panel.text("messages").find("Jog refused: axis Y stands at -20 mm") != std::string::npos);
   QTest::mouseRelease(&panel.the<QPushButton>("jog_y_minus"), Qt::LeftButton);
   expectStopped();
   EXPECT_TRUE(steps().empty());

@@ -4,6 +4,7 @@
 
 #include <ros/package.h>
 #include <ros/ros.h>
+#include <QComboBox>
 #include <QDialog>
 #include <QFile>
 #include <QTemporaryDir>
@@ -51,6 +52,25 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   QByteArray after = text();
   EXPECT_EQ(after.count("setup: {swivel_deg: 31.7675, height_mm: 2.78785}"), 1);
   EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.7675, height_mm: 2.78785}\n", "").size(), before.size());
+  panel->click("close_setup");
+  WAIT_FOR(!dialog());
+}
+
+TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
+  open({{"swivel_deg: 31.769", "swivel_deg: 31"}});
+  EXPECT_NE(sheet().find("31.767 deg; the machine's range"), std::string::npos) << sheet();
+  auto& keep = panel->the<QComboBox>("keep_figure");
+  ASSERT_EQ(keep.currentText(), "nothing");
+  QTest::keyClick(&keep, Qt::Key_Down);
+  EXPECT_EQ(keep.currentText(), "swivel");
+  EXPECT_FALSE(panel->enabled("write_setup"));
+  WAIT_FOR(panel->enabled("write_setup"));
+  EXPECT_NE(sheet().find("31.000 deg; the machine's range"), std::string::npos) << sheet();
+  panel->click("write_setup");
+  WAIT_FOR(sheet().find("Written into ") != std::string::npos);
+  EXPECT_EQ(text().count("setup: {swivel_deg: 31, height_mm: 1.65"), 1) << text().toStdString();
+  QTest::keyClick(&keep, Qt::Key_Down);  // and once more
+  WAIT_FOR(panel->enabled("write_setup"));
   panel->click("close_setup");
   WAIT_FOR(!dialog());
 }

@@ -81,7 +81,7 @@ struct GrindProcess {
   WheelFace wheel_side = WheelFace::kUpper;  ///< the larger face of a tapered wheel
   double wheel_corner_radius_lower = 0;      ///< between surface and lower face; 0 for a sharp edge [m]
   double wheel_corner_radius_upper = 0;      ///< the same at the upper face [m]
-  double wheel_wear = 0;                     ///< of the radius below half of that; compensated in Y [m]
+  double wheel_wear = 0;                     ///< of the radius below half of wheel_diameter; compensated in Y [m]
   double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
   double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
@@ -155,6 +155,9 @@ std::vector<ToothPass> passOrder(const GrindJob& job);
 
 /// The wheel's wear when each pass begins, as foreseen by the job, in the order of passOrder() [m].
 std::vector<double> wearOfPasses(const GrindJob& job);
+
+/// The depth of the flute that a job asks for at `x`, radial [m]. @param x from the small end [m].
+double askedDepth(const GrindJob& job, double x);
 
 /// The depth of a pass over X.
 struct DepthLaw {

@@ -15,8 +15,8 @@
 namespace flute_grinder {
 
 /// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents, the services
-/// `~confirm_swivel` and `~jog_step`, and the topic `~jog`. Runs in its own thread, which waits for the control loop's
-/// reply, one request at a time.
+/// `~confirm_swivel` and `~jog_step`, and the topics `~jog` and `~jog_refusal`. Runs in its own thread, which waits for
+/// the control loop's reply, one request at a time.
 class RequestDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -29,12 +29,16 @@ class RequestDesk {
   bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response);
   bool onJogStep(JogStep::Request& request, JogStep::Response& response);
   void onJog(const Jog::ConstPtr& message);
+  void tellJogRefusal(const std::string& refusal);
 
   ControlLoop& loop_;
   JobGate& gate_;
   ServedQueue thread_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber jogs_;
+  ros::Publisher jog_refusals_;
+  ros::SteadyTime last_jog_;  ///< when the last message of a continuous jog came
+  bool jog_refused_ = false;  ///< that message
 };
 
 }  // namespace flute_grinder

@@ -7,6 +7,7 @@
 #include "flute_grinder/panel/override_box.h"
 #include "flute_grinder/panel/readout.h"
 #include "flute_grinder/panel/section_view.h"
+#include "flute_grinder/panel/touch_off_box.h"
 
 #include <rviz/panel.h>
 #include <QLineEdit>
@@ -58,6 +59,9 @@ class GrindPanel : public rviz::Panel {
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
+  void touchOff(int axis, double at);
+  /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
+  double touchedY(double diameter) const;
   void showMessage(const std::string& text);
 
   const std::shared_ptr<MasterWatch> master_watch_;
@@ -71,6 +75,7 @@ class GrindPanel : public rviz::Panel {
   JobBox* job_;
   SectionView* section_;
   JogBox* jog_;
+  TouchOffBox* touch_off_;
   QTabWidget* tabs_;  ///< of job, section and jog
   std::map<MachineEvent, QPushButton*> buttons_;
   OverrideBox* override_;

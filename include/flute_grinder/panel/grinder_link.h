@@ -4,6 +4,7 @@
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/connection/service_call.h"
 #include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/machine_state.h"
@@ -12,6 +13,7 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
+#include <std_msgs/String.h>
 
 #include <deque>
 #include <functional>
@@ -31,6 +33,7 @@ struct GrinderView {
   std::optional<Axes> position;
   /// The same in work coordinates; NaN of an axis whose work offset is unknown. Nothing without the state.
   std::optional<Axes> work_position;
+  std::optional<WorkOffsets> offsets;  ///< nothing without the state
 };
 
 /// Client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. It uses the
@@ -43,10 +46,13 @@ class GrinderLink {
   /// @param id of the goal, as returned by send().
   using OnResult = std::function<void(const std::string& id, const GrindResult& result)>;
 
+  /// @param text why a continuous jog, from here or elsewhere, moves nothing.
+  using OnJogRefusal = std::function<void(const std::string& text)>;
+
   /// @param node name of the grinder's node; without a leading slash, relative to this program's namespace.
   /// @param on_result called when a goal sent here, or the job shown, ends.
   /// @throw ros::InvalidNameException
-  GrinderLink(const std::string& node, OnResult on_result);
+  GrinderLink(const std::string& node, OnResult on_result, OnJogRefusal on_jog_refusal);
   GrinderLink(const GrinderLink&) = delete;
   GrinderLink& operator=(const GrinderLink&) = delete;
   ~GrinderLink();
@@ -63,6 +69,8 @@ class GrinderLink {
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
   /// Tells the grinder where the swivel stands. @param angle [rad].
   void confirmSwivel(double angle, const OnAnswer& on_answer);
+  /// Sets an axis' work offset from where it stands. @param position in work coordinates [m], A [rad].
+  void touchOff(int axis, double position, const OnAnswer& on_answer);
   /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
   void jogStep(int axis, double distance, double speed, const OnAnswer& on_answer);
   /// Moves an axis for as long as this is called again and again, by a connection that survives the ROS master.
@@ -100,6 +108,8 @@ class GrinderLink {
   void onState(const GrinderState::ConstPtr& state);
   void onFeedback(const GrindActionFeedback::ConstPtr& feedback);
   void onResult(const GrindActionResult::ConstPtr& result);
+  void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
+  void onOffsets(const WorkOffsets::ConstPtr& offsets);
   void onJointState(const sensor_msgs::JointState::ConstPtr& joints);
   void post(std::function<void()> answer);
   template <typename Service, typename OnResponse>
@@ -110,11 +120,13 @@ class GrinderLink {
   ros::CallbackQueue queue_;
   ros::NodeHandle nh_;
   const OnResult on_result_;
+  const OnJogRefusal on_jog_refusal_;
   actionlib::GoalIDGenerator ids_;
 
   mutable std::mutex mutex_;  ///< guards what the callbacks write
   std::optional<Received<GrinderState>> state_;
   std::optional<Received<Axes>> position_;
+  std::optional<WorkOffsets> offsets_;
   std::optional<Received<GrindActionFeedback>> feedback_;
   std::string sent_;  ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/geometry/job_setup.h"
 
+#include <QComboBox>
 #include <QDialog>
 #include <QPlainTextEdit>
 #include <QPushButton>
@@ -14,8 +15,9 @@
 
 namespace flute_grinder {
 
-/// Shows the set-up sheet of a job file, and writes the set-up into the file if asked to. Solving and writing have a
-/// thread of their own, and a master that hangs holds it up for a second at most.
+/// Shows the set-up sheet of a job file, leaving a figure of it as it is if asked to, and writes the set-up into the
+/// file if asked to. Solving and writing have a thread of their own, and a master that hangs holds it up for a second
+/// at most.
 class SetupDialog : public QDialog {
   Q_OBJECT
 
@@ -38,7 +40,8 @@ class SetupDialog : public QDialog {
     bool good = false;
   };
 
-  Done solve() const;
+  void beginToSolve();
+  Done solve(std::optional<SetupFigure> keep) const;
   Done write(const JobSetup& setup) const;
   void poll();
   void take(const Done& done);
@@ -46,6 +49,7 @@ class SetupDialog : public QDialog {
   const std::string file_, description_;
   std::optional<JobSetup> setup_;
   QPlainTextEdit* sheet_;
+  QComboBox* keep_;
   QPushButton* write_;
   QTimer poll_timer_;
   std::atomic<bool> stop_{false};

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flute_grinder/core/grind_job.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// What the axes read when the wheel touches a blank, of any diameter D where it touches.
+struct TouchReadings {
+  double y = 0;        ///< (D - D1) / 2 and this, with the circumference at the height of the cutter's axis [m]
+  double z_for_y = 0;  ///< Z at which the circumference, where it is largest, stands at that height [m]
+  double z = 0;        ///< D / 2 and this, with the lower face on top of the blank and the swivel at 0 [m]
+};
+
+/// @param job with its set-up.
+TouchReadings touchReadings(const GrindJob& job);
+
+/// The work Y at which the job's wheel touches a blank with its largest diameter. @param diameter of the blank [m].
+double touchY(const GrindJob& job, double diameter);
+
+/// Why the wheel would not touch a blank on its highest line, with what is largest on the wheel, so that touchY() would
+/// be wrong; empty if it would. For the operator, in mm.
+/// @param z work position of Z [m].
+std::string heightRefusal(const GrindJob& job, double z);
+
+}  // namespace flute_grinder

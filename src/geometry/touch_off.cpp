@@ -1,0 +1,59 @@
+#include "flute_grinder/geometry/touch_off.h"
+
+#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/geometry/ground_job.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kPlaces = 400;              ///< at which the wheel's largest radius is looked for
+constexpr double kLargest = 1e-6;         ///< of the radius, that the largest one may fall short
+constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that touches, and of its radius [m]
+
+/// The middle of where a wheel's circumference is largest, along its spindle [m].
+double largestPlace(const WheelProfile& wheel) {
+  const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
+  const auto is_largest = [&](int i) {
+    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kLargest);
+  };
+  int first = 0, last = kPlaces;
+  while (first < kPlaces && !is_largest(first)) ++first;
+  while (last > first && !is_largest(last)) --last;
+  return from + length * (first + last) / 2 / kPlaces;
+}
+
+}  // namespace
+
+TouchReadings touchReadings(const GrindJob& job) {
+  const GrindProcess& p = job.process;
+  const WheelProfile wheel = wheelOf(job);
+  TouchReadings touch;
+  touch.y = 0 - p.wheel_wear;
+  touch.z_for_y = -(p.setup_height + largestPlace(wheel) * std::cos(p.setup_swivel));
+  touch.z = -wheel.lowerFace() - p.setup_height;
+  return touch;
+}
+
+double touchY(const GrindJob& job, double diameter) {
+  return (diameter - job.cutter.end_diameter) / 2 + touchReadings(job).y;
+}
+
+std::string heightRefusal(const GrindJob& job, double z) {
+  const WheelProfile wheel = wheelOf(job);
+  const double height = job.process.setup_height + z;
+  const double w = -height / std::cos(job.process.setup_swivel);
+  const double on_wheel = std::clamp(w, wheel.lowerFace(), wheel.upperFace());
+  const bool meets =
+      std::abs(w - on_wheel) <= kTouchTolerance && wheel.radius(on_wheel) >= wheel.largestRadius() - kTouchTolerance;
+  if (meets) return "";
+  const auto shown = [](double si) { return text({si, Unit::kMetre}, UnitSystem::kShop); };
+  return "the wheel's centre stands " + shown(height) +
+         " above the cutter's axis: there the wheel does not touch a blank with its largest diameter; move Z to " +
+         shown(touchReadings(job).z_for_y) + ", and touch again";
+}
+
+}  // namespace flute_grinder

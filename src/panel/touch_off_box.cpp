@@ -1,0 +1,92 @@
+#include "flute_grinder/panel/touch_off_box.h"
+
+#include "flute_grinder/core/quantity.h"
+
+#include <QDateTime>
+#include <QGridLayout>
+
+#include <cmath>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kDecimals = 4;        ///< of positions and offsets
+constexpr double kFarthest = 9999;  ///< [mm or deg]
+
+double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
+const char* unitName(int axis) { return axis == kA ? "deg" : "mm"; }
+
+/// Whether the grinder sets offsets in its state.
+bool mayTouchOff(const GrinderState& state) {
+  return (state.state == GrinderState::READY || state.state == GrinderState::DISABLED) && state.homed != 0;
+}
+
+}  // namespace
+
+TouchOffBox::TouchOffBox(QWidget* parent)
+    : QWidget(parent),
+      axis_(new QComboBox),
+      at_(new QDoubleSpinBox),
+      touch_(new QPushButton("Touch off")),
+      offset_(new QLabel) {
+  axis_->setObjectName("touch_axis");
+  for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
+  at_->setObjectName("touch_at");
+  at_->setDecimals(kDecimals);
+  touch_->setObjectName("touch_off");
+  touch_->setToolTip("Set the axis' work offset from where it stands now; nothing moves");
+  offset_->setObjectName("work_offset");
+  offset_->setWordWrap(true);
+  offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  // A long text must not make the panel grow.
+  offset_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
+  offset_->setMinimumHeight(3 * offset_->fontMetrics().lineSpacing() + 4);
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(axis_, 0, 0);
+  layout->addWidget(at_, 0, 1);
+  layout->addWidget(touch_, 0, 2);
+  layout->addWidget(offset_, 1, 0, 1, 3);
+  layout->setColumnStretch(1, 1);
+  connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
+  connect(touch_, &QPushButton::clicked, this, [this] { Q_EMIT wanted(axis(), at_->value() * scaleOf(axis())); });
+  chooseAxis();
+}
+
+void TouchOffBox::chooseAxis() {
+  const bool diameter = axis() == kY;
+  at_->setRange(diameter ? 0 : -kFarthest, kFarthest);
+  at_->setValue(0);
+  at_->setPrefix(diameter ? "D " : "at ");
+  at_->setSuffix(QString(" ") + unitName(axis()));
+  at_->setToolTip(diameter ? "Diameter of the blank that the wheel touches; the job file has the rest"
+                           : "Where the axis stands, in work coordinates");
+}
+
+void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
+  const bool given = axis() != kY || at_->value() > 0;
+  touch_->setEnabled(has_services && given && view.state && mayTouchOff(*view.state));
+  const QString text = offsetText(view);
+  if (text == offset_->text()) return;
+  offset_->setText(text);
+  offset_->setToolTip(text);
+}
+
+QString TouchOffBox::offsetText(const GrinderView& view) const {
+  if (!view.offsets) return "";
+  const auto i = static_cast<std::size_t>(axis());
+  const double value = view.offsets->values[i];
+  const QString error = QString::fromStdString(view.offsets->error);
+  if (!std::isfinite(value)) return QString("Work offset of %1 is unknown: %2").arg(axis_->currentText(), error);
+  QString text = QString("Work offset of %1: %2 %3, ")
+                     .arg(axis_->currentText())
+                     .arg(value / scaleOf(axis()), 0, 'f', kDecimals)
+                     .arg(unitName(axis()));
+  const ros::Time& at = view.offsets->set_at[i];
+  if (at.isZero()) return text + "never set";
+  const QString time = QDateTime::fromSecsSinceEpoch(at.sec).toString("yyyy-MM-dd HH:mm:ss");
+  return text + QString("set by %1, %2").arg(QString::fromStdString(view.offsets->set_by[i]), time);
+}
+
+}  // namespace flute_grinder

@@ -235,7 +235,7 @@ class Parameters:
 
     def range(self, name, entry):
         """The ends of a parameter's range, some of which are other parameters."""
-        joint = name.split('/')[1] if '/' in name else ''
+        joint = next((step for step in name.split('/') if step in JOINTS), '')
         return [value_at(self.machine, end.replace('<joint>', joint)) if isinstance(end, str) else end
                 for end in entry['range']]
 
@@ -355,6 +355,12 @@ class TestSimulatedDrive(NodeParameters, unittest.TestCase):
     section = 'simulated_drive'
     # All are read alike, and each start of the node takes its time.
     joints = ['axis_y']
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.machine['hardware']['blank'] = {'end_face': 0.0, 'diameter': 0.01, 'run_out': 0.0,
+                                            'rake_face': {'height': 0.0, 'angle': 0.0}}
 
 
 class TestHal(NodeParameters, unittest.TestCase):

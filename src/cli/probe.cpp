@@ -24,8 +24,9 @@ namespace {
 
 using units::kMillimetre;
 
-const ros::WallDuration kProbing(600);  ///< longest time of a probing move
-constexpr double kTurned = 1e-4;        ///< within which half a turn has reached its end [rad]
+const ros::WallDuration kProbing(600);     ///< longest time of a probing move
+const ros::WallDuration kHoldAgain(0.05);  ///< after a key that stops: a motion may be just about to begin
+constexpr double kTurned = 1e-4;           ///< within which half a turn has reached its end [rad]
 
 std::string shown(double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop, 6); }
 
@@ -48,6 +49,9 @@ class ProbedMachine {
     catchInterrupts();
     catchHolds();
     keys_.start([this] { keys_.hold(); });
+    again_ = nh_.createWallTimer(kHoldAgain, [this](const ros::WallTimerEvent&) {
+      if (stopped()) keys_.hold();
+    });
   }
 
   const MachineGeometry& geometry() const { return geometry_; }
@@ -69,6 +73,7 @@ class ProbedMachine {
     Probe::Request request;
     request.axis = static_cast<std::uint8_t>(axis);
     request.distance = distance;
+    checkStop();
     Probe::Response touch;
     if (const int status = call<Probe>(nh_, "probe", request, &touch, kProbing)) throw Failed{status};
     touch.axes[static_cast<std::size_t>(axis)] = touch.position;
@@ -82,6 +87,7 @@ class ProbedMachine {
     JogStep::Request request;
     request.axis = kA;
     request.distance = angle;
+    checkStop();
     if (const int status = call<JogStep>(nh_, "jog_step", request)) throw Failed{status};
     do {
       if (!watch_.awaitNext()) throw Failed{fail(kLinkLost)};
@@ -97,11 +103,17 @@ class ProbedMachine {
   }
 
  private:
+  static bool stopped() { return interrupts() + holds() > 0; }
+  static void checkStop() {
+    if (stopped()) throw Failed{fail("stopped")};
+  }
+
   ros::NodeHandle nh_;
   ros::AsyncSpinner spinner_;
   StateWatch watch_;
   StopKeys keys_;
   MachineGeometry geometry_;
+  ros::WallTimer again_;
 };
 
 void printTouch(const char* name, double value, double spread, int axis) {

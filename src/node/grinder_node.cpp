@@ -63,10 +63,10 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   stopAxesOnCrash(*loop_);
   telemetry_->start();
   requests_ = std::make_unique<RequestDesk>(private_nh_, *loop_, gate_);
-  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
-  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
   offset_desk_ = std::make_unique<OffsetDesk>(private_nh_, *loop_, gate_, *offsets_);
   probes_ = std::make_unique<ProbeDesk>(private_nh_, *loop_, gate_);
+  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
+  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }

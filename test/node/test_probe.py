@@ -7,6 +7,8 @@ import math
 import os
 import re
 import shutil
+import signal
+import subprocess
 import tempfile
 import threading
 import unittest
@@ -210,6 +212,21 @@ class TestStop(ProbeTest):
         self.assertEqual(answers[0].message, 'probing ended: stopped before anything was touched')
         at = self.client.wait_rest()[X]
         self.assertLess(at, 0)
+        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+
+    def test_ctrl_c_ends_a_cycle_between_its_moves_too(self):
+        self.start()
+        self.bring_ball(30 * MM, 7 * MM)
+        before = self.client.wait_rest()[A]
+        cycle = subprocess.Popen([gc.program('grind'), '--node', self.client.name, 'probe', 'diameter'],
+                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(cycle.wait)
+        self.addCleanup(cycle.stderr.close)
+        self.client.wait_for(lambda: abs(self.client.joints[-1].position[A] - before) > 0.1, 'the turn')
+        cycle.send_signal(signal.SIGINT)
+        self.assertEqual((cycle.wait(gc.PATIENCE), cycle.stderr.read()), (1, 'A was stopped before its end\n'))
+        at = self.client.wait_rest()
+        self.assertLess(at[A], before + math.pi - 0.1)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
 
     def test_no_job_starts_meanwhile(self):

@@ -52,10 +52,10 @@ class GrinderNode {
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<StopDesk> stops_;
   std::unique_ptr<RequestDesk> requests_;
-  std::unique_ptr<PlanDesk> plans_;
-  std::unique_ptr<GoalDesk> goals_;
   std::unique_ptr<OffsetDesk> offset_desk_;
   std::unique_ptr<ProbeDesk> probes_;
+  std::unique_ptr<PlanDesk> plans_;
+  std::unique_ptr<GoalDesk> goals_;
 };
 
 }  // namespace flute_grinder

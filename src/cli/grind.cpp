@@ -320,6 +320,7 @@ void addZeros(CLI::App& app, ZerosOptions& options) {
   addLength(command, "--stickout", options.stickout_mm, "from the collet's face to the cutter's small end", false)
       .required();
   addFlange(command, options.flange_mm);
+  command.add_flag("--set", options.set, "by the geometry of the running grinder, and set them as its work offsets");
   addMachine(command, options.parameters, options.urdf);
   addJson(command, options.json);
 }
@@ -416,11 +417,12 @@ int carryOut(const CLI::App& app, const Options& options) {
   if (command == "setup") return runSetup(options.setup);
   if (command == "simulate") return runSimulate(options.simulate);
   if (command == "wheel") return carryOutWheel(*app.get_subcommands().front(), options.wheel);
-  if (command == "zeros") return printZeros(options.zeros);
+  if (command == "zeros" && !options.zeros.set) return printZeros(options.zeros);
   if (command == "report") writeReport(options.report);
   if (!awaitMaster()) return 1;
   const std::string& node = options.run.node;
   if (command == "run") return runJob(options.run);
+  if (command == "zeros") return setZeros(node, options.zeros);
   if (command == "offsets") return runOffsets(node, options.offsets);
   if (command == "touch-off") return runTouchOff(node, options.touch_off);
   if (command == "probe") return carryOutProbe(*app.get_subcommands().front(), node, options.probe);

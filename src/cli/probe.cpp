@@ -7,7 +7,6 @@
 #include "flute_grinder/cli/offsets.h"
 #include "flute_grinder/cli/stop_keys.h"
 #include "flute_grinder/cli/zeros.h"
-#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/units.h"
@@ -42,9 +41,7 @@ class ProbedMachine {
   explicit ProbedMachine(const std::string& node) : nh_(node), spinner_(1), watch_(nh_), keys_(nh_, watch_) {
     spinner_.start();
     if (!await(kPatience, [&] { return watch_.begun() && keys_.connected(); })) throw Failed{noGrinder(nh_)};
-    XmlRpc::XmlRpcValue parameters;
-    nh_.getParam("", parameters);
-    geometry_ = readMachineGeometry(ParameterReader(parameters, nh_.getNamespace()));
+    geometry_ = geometryOf(nh_);
     if (!geometry_.probe) throw Failed{fail("parameter " + nh_.getNamespace() + "/geometry/probe is missing")};
     catchInterrupts();
     catchHolds();

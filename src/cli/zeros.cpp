@@ -2,6 +2,10 @@
 
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/machine_file.h"
+#include "flute_grinder/cli/offsets.h"
+#include "flute_grinder/cli/online.h"
+#include "flute_grinder/cli/state_watch.h"
+#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/core/wheel_file.h"
@@ -15,6 +19,26 @@ namespace {
 
 using units::kMillimetre;
 
+/// [m]; nothing, and a reason on stderr, if the cutter does not stand out far enough.
+std::optional<Eigen::Vector3d> zeroOf(const ZerosOptions& options, const MachineGeometry& geometry) {
+  const GrindJob job = readJobFile(options.job);
+  const double flange = flangeOf(options.job, options.flange_mm);
+  const double stickout = options.stickout_mm * kMillimetre;
+  if (stickout >= job.cutter.flute_length) return workZero(geometry, job, {flange, stickout});
+  std::fprintf(stderr, "--stickout = %.10g mm; allowed: the flutes' length or more, %.10g mm\n", options.stickout_mm,
+               job.cutter.flute_length / kMillimetre);
+  return std::nullopt;
+}
+
+void printZero(const Eigen::Vector3d& metres, bool json) {
+  const Eigen::Vector3d zero = metres / kMillimetre;
+  if (json) {
+    print(Json{{"x_mm", zero.x()}, {"y_mm", zero.y()}, {"z_mm", zero.z()}});
+  } else {
+    std::printf("%-20s X %.4f  Y %.4f  Z %.4f mm\n", "work zero", zero.x(), zero.y(), zero.z());
+  }
+}
+
 }  // namespace
 
 double flangeOf(const std::string& job, const std::optional<double>& flange_mm) {
@@ -26,22 +50,29 @@ double flangeOf(const std::string& job, const std::optional<double>& flange_mm) 
   return *flange;
 }
 
+MachineGeometry geometryOf(const ros::NodeHandle& nh) {
+  XmlRpc::XmlRpcValue parameters;
+  nh.getParam("", parameters);
+  return readMachineGeometry(ParameterReader(parameters, nh.getNamespace()));
+}
+
 int printZeros(const ZerosOptions& options) {
-  const GrindJob job = readJobFile(options.job);
   const MachineGeometry geometry = readMachineFiles(options.parameters, options.urdf).geometry;
-  const double flange = flangeOf(options.job, options.flange_mm);
-  const double stickout = options.stickout_mm * kMillimetre;
-  if (!(stickout >= job.cutter.flute_length)) {
-    std::fprintf(stderr, "--stickout = %.10g mm; allowed: the flutes' length or more, %.10g mm\n", options.stickout_mm,
-                 job.cutter.flute_length / kMillimetre);
-    return 1;
+  const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometry);
+  if (!zero) return 1;
+  printZero(*zero, options.json);
+  return 0;
+}
+
+int setZeros(const std::string& node, const ZerosOptions& options) {
+  ros::NodeHandle nh(node);
+  if (!await(kPatience, [&] { return nh.hasParam("geometry"); })) return noGrinder(nh);
+  const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometryOf(nh));
+  if (!zero) return 1;
+  for (const int axis : {kX, kY, kZ}) {
+    if (const int status = setWorkOffset(nh, axis, (*zero)[axis])) return status;
   }
-  const Eigen::Vector3d zero = workZero(geometry, job, {flange, stickout}) / kMillimetre;
-  if (options.json) {
-    print(Json{{"x_mm", zero.x()}, {"y_mm", zero.y()}, {"z_mm", zero.z()}});
-  } else {
-    std::printf("%-20s X %.4f  Y %.4f  Z %.4f mm\n", "work zero", zero.x(), zero.y(), zero.z());
-  }
+  printZero(*zero, options.json);
   return 0;
 }
 

@@ -97,6 +97,19 @@ class TestCycles(ProbeTest):
         # Off the surface again.
         self.assertAlmostEqual(self.client.wait_rest()[X] + BALL_X + BALL / 2, (17 - 0.5) * MM, delta=5e-6)
 
+    def test_zeros_become_the_offsets_by_the_grinders_own_geometry(self):
+        geometry = gc.machine()['geometry']
+        self.start(geometry=dict(geometry, collet_face={'x': geometry['collet_face']['x'] + 1 * MM}))
+        told = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
+        done = self.grind('zeros', JOB, '--stickout', '45', '--set')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        for axis, value in ((X, told['x_mm'] + 1), (Y, told['y_mm']), (Z, told['z_mm'])):
+            self.assertAlmostEqual(self.offset(axis)['offset_mm'], value, delta=1e-9)
+        self.assertIsNone(self.offset(A)['set_by'])
+        refused = self.grind('zeros', JOB, '--stickout', '20', '--set')
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn('--stickout = 20 mm; allowed: ', refused.stderr)
+
     def test_two_sides_give_diameter_and_run_out(self):
         self.start()
         self.bring_ball(30 * MM, 7 * MM)

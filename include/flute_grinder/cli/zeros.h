@@ -1,5 +1,9 @@
 #pragma once
 
+#include "flute_grinder/core/machine_geometry.h"
+
+#include <ros/node_handle.h>
+
 #include <optional>
 #include <string>
 
@@ -12,6 +16,7 @@ struct ZerosOptions {
   std::optional<double> flange_mm;  ///< instead of the wheel file's
   std::string parameters;           ///< YAML of the machine
   std::string urdf;
+  bool set = false;  ///< by the grinder's own geometry, as its work offsets
   bool json = false;
 };
 
@@ -19,7 +24,15 @@ struct ZerosOptions {
 /// @throw std::invalid_argument if neither does; JobFileError
 double flangeOf(const std::string& job, const std::optional<double>& flange_mm);
 
-/// Prints where a job's X, Y and Z are zero in machine coordinates, by the machine's geometry. @return the exit status.
+/// The geometry in a grinder's parameters. @param nh the grinder's namespace. @throw ParameterError
+MachineGeometry geometryOf(const ros::NodeHandle& nh);
+
+/// Prints where a job's X, Y and Z are zero in machine coordinates, by the geometry of options.parameters. @return the
+/// exit status.
 int printZeros(const ZerosOptions& options);
+
+/// Sets them as the grinder's work offsets, by its own geometry, and prints them. @param node the grinder's. @return
+/// the exit status.
+int setZeros(const std::string& node, const ZerosOptions& options);
 
 }  // namespace flute_grinder

@@ -13,7 +13,10 @@
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 
@@ -23,7 +26,7 @@ namespace {
 
 using units::kMillimetre;
 
-const ros::WallDuration kProbing(600);     ///< longest time of a probing move
+const ros::WallDuration kProbing(86400);   ///< longest time of a probing move
 const ros::WallDuration kHoldAgain(0.05);  ///< after a key that stops: a motion may be just about to begin
 constexpr double kTurned = 1e-4;           ///< within which half a turn has reached its end [rad]
 
@@ -70,9 +73,12 @@ class ProbedMachine {
     Probe::Request request;
     request.axis = static_cast<std::uint8_t>(axis);
     request.distance = distance;
+    request.stops = stops_;
     checkStop();
     Probe::Response touch;
-    if (const int status = call<Probe>(nh_, "probe", request, &touch, kProbing)) throw Failed{status};
+    const auto lost = [this] { return watch_.lost(); };
+    if (const int status = call<Probe>(nh_, "probe", request, &touch, kProbing, lost)) throw Failed{status};
+    stops_ = touch.stops;
     touch.axes[static_cast<std::size_t>(axis)] = touch.position;
     return touch;
   }
@@ -84,6 +90,7 @@ class ProbedMachine {
     JogStep::Request request;
     request.axis = kA;
     request.distance = angle;
+    request.stops = stops_;
     checkStop();
     if (const int status = call<JogStep>(nh_, "jog_step", request)) throw Failed{status};
     do {
@@ -94,6 +101,7 @@ class ProbedMachine {
 
   /// @throw Failed
   void setOffset(int axis, double value) {
+    checkStop();
     if (const int status = setWorkOffset(nh_, axis, value)) throw Failed{status};
     std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis],
                 text({value, unitOf(axis, 0)}, UnitSystem::kShop, 9).c_str());
@@ -111,6 +119,7 @@ class ProbedMachine {
   StopKeys keys_;
   MachineGeometry geometry_;
   ros::WallTimer again_;
+  std::uint64_t stops_ = 0;  ///< of the grinder's last answer; a later stop refuses the next motion
 };
 
 void printTouch(const char* name, double value, double spread, int axis) {
@@ -161,16 +170,18 @@ int probeDiameter(const std::string& node, const ProbeOptions& options) {
   const std::optional<GrindJob> job = options.job.empty() ? std::nullopt : std::optional(readJobFile(options.job));
   return withMachine(node, [&](ProbedMachine& machine) {
     const auto probe = [&] { return machine.probe(kY, -options.within_mm * kMillimetre); };
-    const Probe::Response one = probe();
-    machine.turn(units::kPi);
-    const Probe::Response other = probe();
-    machine.turn(-units::kPi);
-    const double radius = machine.ballRadius();
-    const double at_one = diameterTouched(machine.ballFromAxis(one), radius);
-    const double at_other = diameterTouched(machine.ballFromAxis(other), radius);
-    const double diameter = (at_one + at_other) / 2;
-    printTouch("diameter", diameter, std::max(one.spread, other.spread), kY);
-    std::printf("%-15s %s\n", "run-out", shown(std::abs(at_one - at_other) / 2).c_str());
+    std::array<double, 4> sides{};
+    double spread = 0;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (i > 0) machine.turn(units::kPi / 2);
+      const Probe::Response touch = probe();
+      sides[i] = diameterTouched(machine.ballFromAxis(touch), machine.ballRadius());
+      spread = std::max(spread, touch.spread);
+    }
+    machine.turn(-1.5 * units::kPi);
+    const double diameter = (sides[0] + sides[1] + sides[2] + sides[3]) / 4;
+    printTouch("diameter", diameter, spread, kY);
+    std::printf("%-15s %s\n", "run-out", shown(std::hypot(sides[0] - sides[2], sides[1] - sides[3]) / 2).c_str());
     if (!job) return;
     // By how much the machine's Y is off, as this diameter shows.
     const double off = (diameter - *options.at_mm * kMillimetre) / 2;

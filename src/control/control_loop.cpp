@@ -105,6 +105,7 @@ void ControlLoop::publish() {
   next_status_.position_valid = record_.position.isFinite().all() && record_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = record_.feed_override;
   next_status_.swivel = record_.swivel;
+  next_status_.has_probe = record_.drive.has_probe;
   next_status_.probe_contact = record_.drive.probe_contact;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();

@@ -37,7 +37,8 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!(jog.axis >= 0 && jog.axis < kAxisCount)) return Refusal::kNoAxis;
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
-  if (jog.stops && *jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
+  if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
+  if (jog.to_touch && record_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
   if (!record_.drive.homed) return Refusal::kInterlock;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
@@ -58,6 +59,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   jogging_ = true;
   continuous_ = jog.continuous;
   next_status_.contact = {};
+  ++next_status_.jogs_begun;
   power_off_next_ = false;
   apply(MachineEvent::kJog);
   return Refusal::kNone;

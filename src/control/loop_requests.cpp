@@ -70,6 +70,7 @@ RequestReply Answer::reply() const {
     case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
     case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;
     case Refusal::kStopped: text << "it was stopped or refused before; release the button first"; break;
+    case Refusal::kTouches: text << "the probe touches already; move it off first"; break;
     case Refusal::kStopCameFirst: text << "a stop came first"; break;
   }
   return {false, text.str(), true};

@@ -65,7 +65,7 @@ void HalHardware::makePins() {
   c.addPin("spindle-at-speed", HAL_IN, pins.spindle_at_speed, true);
   c.addPin("coolant-on", HAL_IN, pins.coolant_on, true);
   c.addPin("probe-free", HAL_IN, pins.probe_free, true);
-  has_probe_ = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
+  status_.has_probe = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
   has_swivel_ = c.addPin("swivel", HAL_IN, pins.swivel, false);
   c.addPin("servo-cycles", HAL_IN, pins.servo_cycles, true);
   c.addPin("servo-rate", HAL_IN, pins.servo_rate, true);
@@ -99,7 +99,7 @@ void HalHardware::read(const ros::Time&, const ros::Duration&) {
   status_.spindle_at_speed = *pins_->spindle_at_speed;
   status_.coolant_on = *pins_->coolant_on;
   status_.probe_free = *pins_->probe_free;
-  if (has_probe_) status_.probe_contact = *pins_->probe_contact;
+  if (status_.has_probe) status_.probe_contact = *pins_->probe_contact;
   if (has_swivel_) status_.swivel = *pins_->swivel;
   readJoints();
   readHoming();

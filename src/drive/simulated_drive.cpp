@@ -83,6 +83,7 @@ void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
   model_ = model;
   equipment_ = equipment;
   status_.homed = equipment.absolute_encoders;
+  status_.has_probe = true;
   for (std::size_t i = 0; i < model.size(); ++i) {
     const int axis = static_cast<int>(i);
     motor_[axis] = model[i].start_position;

@@ -91,7 +91,7 @@ void Frames::publishSetUp(const ros::Time& stamp) {
 
 void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   // A faulty drive may report NaN. tf complains of a stamp that it knows, as of a loop that stalls.
-  if (!std::isfinite(x) || stamp <= contact_stamp_) return;
+  if (!std::isfinite(x) || stamp == contact_stamp_) return;
   contact_stamp_ = stamp;
   const auto [from, to] = std::minmax({program_->strokeFrom(), program_->strokeTo()});
   const double at = std::clamp(x, from, to);

@@ -13,7 +13,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll(2);    ///< of the loop's status
+constexpr std::chrono::milliseconds kPoll(2);  ///< of the loop's status
+constexpr std::uint32_t kThreads = 2;
 constexpr std::chrono::seconds kLoopTimeout(5);  ///< without a cycle
 
 /// Why there is no result.
@@ -26,20 +27,20 @@ class ProbingError : public std::runtime_error {
 class ProbingMove {
  public:
   /// @param distance the farthest, signed [m], A [rad].
-  ProbingMove(ControlLoop& loop, int axis, double distance)
+  /// @param stops LoopStatus::stops when it was decided on.
+  ProbingMove(ControlLoop& loop, int axis, double distance, std::uint64_t stops)
       : loop_(loop),
         config_(loop.config().probing),
         axis_(axis),
         n_(static_cast<std::size_t>(axis)),
         toward_(distance < 0 ? -1 : 1),
-        stops_(loop.status().stops) {
-    backOff(touch(distance, config_.velocity[axis]));
+        stops_(stops) {
+    touch(distance, config_.velocity[axis]);
     for (int i = 0; i < config_.touches; ++i) {
       const double at = touch(2 * toward_ * config_.back_off[axis], config_.slow * config_.velocity[axis]);
       least_ = std::min(least_, at);
       most_ = std::max(most_, at);
       sum_ += at;
-      backOff(at);
     }
     if (!(spread() <= config_.largest_spread[axis])) {
       throw ProbingError("the touches spread over " + shown(spread()) + "; allowed: up to " +
@@ -54,46 +55,54 @@ class ProbingMove {
  private:
   std::string shown(double si) const { return text({si, unitOf(axis_, 0)}, UnitSystem::kShop); }
 
-  /// Moves to the next contact. @return the axis' position there.
+  /// Moves to the next contact, and off it. @return the axis' position at the contact.
   double touch(double distance, double velocity) {
-    if (loop_.status().probe_contact) throw ProbingError("the probe touches already; move it off first");
     const double end = loop_.status().command[n_] + distance;
-    const LoopStatus status = step(distance, velocity);
+    const LoopStatus status = step(distance, velocity, true);
     if (!status.contact.made) {
       throw ProbingError(status.command[n_] == end ? "nothing was touched over " + shown(std::abs(distance))
-                                                   : "stopped before anything was touched");
+                                                   : "the axis rests before anything was touched");
     }
     last_touch_ = status.contact.position;
+    backOff(last_touch_[n_]);
     return last_touch_[n_];
   }
 
   void backOff(double from) {
-    const double to = from - toward_ * config_.back_off[axis_];
-    if (step(to - loop_.status().command[n_], config_.velocity[axis_]).probe_contact) {
-      throw ProbingError("the probe still touches, " + shown(config_.back_off[axis_]) + " off the surface");
+    const double at = loop_.status().command[n_];
+    const double distance = from - toward_ * config_.back_off[axis_] - at;
+    const LoopStatus status = step(distance, config_.velocity[axis_], false);
+    if (status.command[n_] != at + distance || status.probe_contact) {
+      throw ProbingError("the probe still touches, or again, within " + shown(config_.back_off[axis_]) +
+                         " of the surface");
     }
   }
 
   /// Jogs, unless a stop came since the beginning. @return the status when the axis rests.
-  LoopStatus step(double distance, double velocity) {
-    const std::uint64_t ended = loop_.status().jogs_ended;
-    const RequestReply reply = loop_.jogInSeries({axis_, false, distance, velocity, stops_});
+  LoopStatus step(double distance, double velocity, bool to_touch) {
+    const std::uint64_t jog = loop_.status().jogs_begun + 1;
+    const RequestReply reply = loop_.jogInSeries({axis_, false, distance, velocity, stops_, to_touch});
+    if (!reply.answered) loop_.postStop(MachineEvent::kHold);  // it may still begin
     if (!reply.accepted) throw ProbingError(reply.text);
-    const LoopStatus status = awaitEnd(ended + 1);
-    if (status.jogs_ended != ended + 1) throw ProbingError("another jog came between");
+    const LoopStatus status = awaitEnd(jog);
     if (status.state == MachineState::kFault) throw ProbingError("the machine is in state fault");
+    if (status.stops != stops_) throw ProbingError("stopped");
+    if (status.jogs_begun != jog) throw ProbingError("another jog came between");
     return status;
   }
 
-  LoopStatus awaitEnd(std::uint64_t jogs) {
+  LoopStatus awaitEnd(std::uint64_t jog) {
     LoopStatus status = loop_.status();
     auto alive = std::chrono::steady_clock::now();
-    while (status.jogs_ended < jogs) {
+    while (status.jogs_ended < jog) {
       std::this_thread::sleep_for(kPoll);
       const LoopStatus next = loop_.status();
       const auto now = std::chrono::steady_clock::now();
       if (next.cycles != status.cycles) alive = now;
-      if (now - alive > kLoopTimeout) throw ProbingError("the control loop has stopped");
+      if (now - alive > kLoopTimeout) {
+        loop_.postStop(MachineEvent::kHold);
+        throw ProbingError("the control loop has stopped");
+      }
       status = next;
     }
     return status;
@@ -109,7 +118,7 @@ class ProbingMove {
   double least_ = std::numeric_limits<double>::infinity(), most_ = -least_, sum_ = 0;
 };
 
-void checkRequest(const Probe::Request& request, const LoopStatus& status) {
+void checkRequest(const Probe::Request& request, const ControlLoop& loop, const LoopStatus& status) {
   if (!(request.axis < kAxisCount)) {
     throw ProbingError("axis = " + std::to_string(request.axis) + "; allowed: 0 to 3 for X, Y, Z, A");
   }
@@ -119,36 +128,54 @@ void checkRequest(const Probe::Request& request, const LoopStatus& status) {
   if (status.state != MachineState::kReady) {
     throw ProbingError(std::string("the machine is in state ") + toString(status.state) + "; allowed: ready");
   }
+  if (!loop.config().geometry.probe) throw ProbingError("the machine has no parameter geometry/probe");
+  if (!status.has_probe) throw ProbingError("the drive reads no probe");
 }
 
 }  // namespace
 
-ProbeDesk::ProbeDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate) : loop_(loop), gate_(gate) {
+ProbeDesk::ProbeDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
+    : loop_(loop), gate_(gate), spinner_(kThreads, &queue_) {
   ros::NodeHandle nh(private_nh);
-  nh.setCallbackQueue(thread_.queue());
+  nh.setCallbackQueue(&queue_);
   service_ = nh.advertiseService("probe", &ProbeDesk::onProbe, this);
-  thread_.start();
+  spinner_.start();
+}
+
+ProbeDesk::~ProbeDesk() {
+  service_.shutdown();
+  spinner_.stop();
 }
 
 bool ProbeDesk::onProbe(Probe::Request& request, Probe::Response& response) {
-  response.success = 0;
-  if (!gate_.shutOutJobs()) {
-    response.message = "probing refused: a job is in progress; allowed: after its end";
+  if (probing_.exchange(true)) {
+    response.message = "probing refused: another probing move is in progress";
   } else {
-    try {
-      checkRequest(request, loop_.status());
-      const ProbingMove move(loop_, request.axis, request.distance);
-      response.position = move.mean();
-      response.spread = move.spread();
-      std::copy(move.lastTouch().begin(), move.lastTouch().end(), response.axes.begin());
-      response.success = 1;
-    } catch (const ProbingError& error) {
-      response.message = std::string("probing ended: ") + error.what();
-    }
-    gate_.letJobsIn();
+    probe(request, response);
+    probing_ = false;
   }
   if (!response.success) ROS_WARN_STREAM(response.message);
   return true;
+}
+
+void ProbeDesk::probe(const Probe::Request& request, Probe::Response& response) {
+  if (!gate_.shutOutJobs()) {
+    response.message = "probing refused: a job is planned or in progress; allowed: after its end";
+    return;
+  }
+  try {
+    const LoopStatus status = loop_.status();
+    checkRequest(request, loop_, status);
+    response.stops = request.stops != 0 ? request.stops : status.stops;
+    const ProbingMove move(loop_, request.axis, request.distance, response.stops);
+    response.position = move.mean();
+    response.spread = move.spread();
+    std::copy(move.lastTouch().begin(), move.lastTouch().end(), response.axes.begin());
+    response.success = 1;
+  } catch (const ProbingError& error) {
+    response.message = std::string("probing ended: ") + error.what();
+  }
+  gate_.letJobsIn();
 }
 
 }  // namespace flute_grinder

@@ -65,7 +65,7 @@ bool RequestDesk::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel
 }
 
 bool RequestDesk::onJogStep(JogStep::Request& request, JogStep::Response& response) {
-  JogRequest jog{request.axis, false, request.distance, request.speed};
+  JogRequest jog{request.axis, false, request.distance, request.speed, request.stops};
   const bool named = request.speed != 0 || request.axis >= kAxisCount;
   if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
   const RequestReply reply = loop_.jog(jog);

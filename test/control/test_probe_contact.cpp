@@ -23,7 +23,7 @@ class ProbeFrom : public testing::TestWithParam<S> {
     wall_ = at_[kX] + 0.0123;
     putWall(rig_.drive, wall_);
   }
-  JogRequest step(double distance, double speed = 0.02) const { return {kX, false, distance, speed, {}}; }
+  JogRequest step(double distance, double speed = 0.02) const { return {kX, false, distance, speed}; }
 
   Rig<FakeDrive> rig_;
   Axes at_ = Axes::Zero();
@@ -81,7 +81,7 @@ TEST_P(ProbeFrom, AButtonThatStaysPressedDoesNotPressOn) {
   double rested = 0;
   for (int i = 0; i < 2000; ++i) {
     if (i % 20 == 0) {
-      rig_.loop->postJog({kX, true, 0, 0.02, {}});
+      rig_.loop->postJog({kX, true, 0, 0.02});
     }
     rig_.cycle();
     static_cast<void>(rig_.loop->jogReply());

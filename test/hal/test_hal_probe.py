@@ -28,7 +28,7 @@ class TestProbe(unittest.TestCase):
         self.node.end()
 
     def probe(self):
-        return self.grinder._call('probe', Probe, X, 10 * MM)
+        return self.grinder._call('probe', Probe, X, 10 * MM, 0)
 
     def test_it_stops_at_the_contact_and_says_where(self):
         wall = self.at + WAY

@@ -42,7 +42,7 @@ while True:
 
 
 def step(axis, distance, speed=0.0):
-    return grinder()._call('jog_step', JogStep, axis, distance, speed)
+    return grinder()._call('jog_step', JogStep, axis, distance, speed, 0)
 
 
 class Button:

@@ -248,7 +248,7 @@ class TestSetting(OffsetsTest):
             gc.poll(lambda: os.path.exists(self.file + '.new'), 'the new file')
             run = self.client.send(gc.SHORT).wait()
             self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
-            self.assertIn('a work offset is being set', run.text)
+            self.assertIn('a work offset is being set, or the machine probes', run.text)
             self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
             self.assertTrue(self.client.disable().success)
             self.client.wait_state(GrinderState.DISABLED)

@@ -53,7 +53,7 @@ class ProbeTest(unittest.TestCase):
         return self.client
 
     def jog(self, axis, distance):
-        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
+        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM, 0)
         self.assertTrue(reply.success, reply.message)
         self.client.wait_state(GrinderState.READY)
         self.client.wait_rest()
@@ -65,7 +65,7 @@ class ProbeTest(unittest.TestCase):
         self.jog(Y, y - BALL_Y - at[Y])
 
     def probe(self, axis, distance):
-        return self.client._call('probe', Probe, axis, distance)
+        return self.client._call('probe', Probe, axis, distance, 0)
 
     def grind(self, *arguments):
         return gc.grind('--node', self.client.name, *arguments, timeout=60)
@@ -113,6 +113,7 @@ class TestCycles(ProbeTest):
     def test_two_sides_give_diameter_and_run_out(self):
         self.start()
         self.bring_ball(30 * MM, 7 * MM)
+        self.jog(A, 1.0)  # the run-out is not where it is touched
         before = self.client.wait_rest()
         said = self.cycle('diameter')
         self.assertAlmostEqual(number(said['diameter']), 10, delta=2 * TOUCH / MM)
@@ -173,7 +174,7 @@ class TestMove(ProbeTest):
 
     def test_a_probe_that_touches_already(self):
         self.start(dict(BLANK, end_face=-20 * MM, diameter=80 * MM))
-        self.assertIn('the probe touches already', self.probe(X, 1 * MM).message)
+        self.assertIn('jog refused: the probe touches already', self.probe(X, 1 * MM).message)
 
     def test_touches_that_do_not_agree(self):
         probing = gc.machine()['probing']
@@ -222,7 +223,7 @@ class TestStop(ProbeTest):
         answers, thread = self.begin(45 * MM)
         self.assertTrue(self.client._call('hold', Trigger).success)
         thread.join()
-        self.assertEqual(answers[0].message, 'probing ended: stopped before anything was touched')
+        self.assertEqual(answers[0].message, 'probing ended: stopped')
         at = self.client.wait_rest()[X]
         self.assertLess(at, 0)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
@@ -241,6 +242,56 @@ class TestStop(ProbeTest):
         at = self.client.wait_rest()
         self.assertLess(at[A], before + math.pi - 0.1)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+
+    def test_a_stop_while_it_backs_off_for_the_last_time_ends_it_too(self):
+        probing = gc.machine()['probing']
+        probing.update(slow=1.0, back_off=dict(probing['back_off'], axis_x=4 * MM),
+                       largest_spread=dict(probing['largest_spread'], axis_x=1.0))
+        self.start(probing=probing)
+        self.bring_ball(12 * MM, 0)
+        answers = []
+        thread = threading.Thread(target=lambda: answers.append(self.probe(X, 8 * MM)))
+        thread.start()
+        self.addCleanup(thread.join)
+        ways = self.ways_off()
+        self.client.wait_for(lambda: len(ways()) == 4, 'the last way off the surface')
+        self.client._call('hold', Trigger)
+        thread.join()
+        self.assertEqual(answers[0].message, 'probing ended: stopped')
+
+    def ways_off(self):
+        """The velocities with which X has begun to move away from the surface, from now on."""
+        first = len(self.client.joints)
+
+        def begun():
+            found, away = [], False
+            velocities = [j.velocity[X] for j in self.client.joints[first:]]
+            for velocity in velocities:
+                if velocity < -0.5 * MM and not away:
+                    found.append(velocity)
+                away = velocity < -0.1 * MM
+            return found
+
+        return begun
+
+    def test_another_call_meanwhile_is_refused(self):
+        self.start()
+        self.bring_ball(-35 * MM, 0)
+        answers, thread = self.begin(45 * MM)
+        self.assertEqual(self.probe(X, 1 * MM).message, 'probing refused: another probing move is in progress')
+        self.client._call('hold', Trigger)
+        thread.join()
+
+    def test_a_stop_refuses_what_follows(self):
+        self.start()
+        self.bring_ball(12 * MM, 0)
+        answer = self.probe(X, 8 * MM)
+        self.assertTrue(answer.success, answer.message)
+        self.client._call('hold', Trigger)
+        step = self.client._call('jog_step', JogStep, A, 0.1, 1.0, answer.stops)
+        self.assertEqual((step.success, step.message), (False, 'jog refused: a stop came first'))
+        self.assertEqual(self.client._call('probe', Probe, X, 1 * MM, answer.stops).message,
+                         'probing ended: jog refused: a stop came first')
 
     def test_no_job_starts_meanwhile(self):
         self.start()

@@ -6,6 +6,7 @@
 
 #include <ros/ros.h>
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -13,17 +14,19 @@ namespace flute_grinder {
 
 /// Calls a service of the grinder, and prints why if it is refused or not answered.
 /// @param answer if given, gets the response of a call that succeeded.
-/// @param patience for the answer. @return the exit status.
+/// @param patience for the answer. @param give_up ends the wait for it earlier. @return the exit status.
 template <typename Service>
-int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
-         typename Service::Response* answer = nullptr, const ros::WallDuration& patience = kPatience) {
+int call(
+    ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
+    typename Service::Response* answer = nullptr, const ros::WallDuration& patience = kPatience,
+    const std::function<bool()>& give_up = [] { return false; }) {
   ros::ServiceClient there = nh.serviceClient<Service>(service);
   if (!await(kPatience, [&] { return there.exists(); })) return noGrinder(nh);
   std::optional<typename Service::Response> response;
   ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
                       ros::serialization::serializeMessage(request), patience,
                       [&](ros::SerializedMessage* message) { response = responseFrom<Service>(message); });
-  await(patience, [&] { return running.finished(); });
+  await(patience, [&] { return running.finished() || give_up(); });
   running.end();
   if (!response) {
     return fail(service + ": no answer from the grinder " + nh.getNamespace() +

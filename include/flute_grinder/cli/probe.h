@@ -17,8 +17,8 @@ struct ProbeOptions {
 /// Probes the cutter's end face with X, prints the stick-out, and sets the work offset of X. @return the exit status.
 int probeEndFace(const std::string& node, const ProbeOptions& options);
 
-/// Probes a cylinder with Y on two sides, and prints its diameter and run-out. With options.at_mm, sets the work offset
-/// of Y so that the diameter is the known one. @return the exit status.
+/// Probes a cylinder with Y on four sides, and prints its diameter and run-out. With options.at_mm, sets the work
+/// offset of Y so that the diameter is the known one. @return the exit status.
 int probeDiameter(const std::string& node, const ProbeOptions& options);
 
 /// Probes the first tooth's rake face with A, and sets the work offset of A. @return the exit status.

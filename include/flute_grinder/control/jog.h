@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 namespace flute_grinder {
 
@@ -14,9 +13,10 @@ struct JogRequest {
   bool continuous = false;
   double distance = 0;  ///< of a step, signed [m], A [rad]
   double velocity = 0;  ///< of a step, its speed; of a continuous jog, signed, and 0 stops it [m/s], A [rad/s]
-  /// LoopStatus::stops when this step was decided on, for a step that no human hand asks for: a stop since then refuses
-  /// it. Nothing if no stop does.
-  std::optional<std::uint64_t> stops;
+  /// LoopStatus::stops when this step was decided on, for a step of a series: a stop since then refuses it. 0 if no
+  /// stop does.
+  std::uint64_t stops = 0;
+  bool to_touch = false;  ///< refused if the measuring probe touches already
 };
 
 /// The dead man's switch of a continuous jog, whose messages must come again and again. Once the jog was stopped or

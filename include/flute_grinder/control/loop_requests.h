@@ -41,6 +41,7 @@ enum class Refusal : std::uint8_t {
   kJogging,         ///< another jog is not over
   kJobOver,         ///< a jog in a job that was held at the very end of its path
   kStopped,         ///< a continuous jog that was stopped or refused, and not released since
+  kTouches,         ///< a jog to touch, while the probe touches already
   kStopCameFirst,   ///< a jog of a sequence that was stopped before it
 };
 

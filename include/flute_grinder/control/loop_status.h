@@ -59,10 +59,12 @@ struct LoopStatus {
   bool position_valid = false;                ///< all of them are finite and fresh
   double feed_override = 1;                   ///< fraction
   Swivel swivel;                              ///< where it stands, as far as is known
+  bool has_probe = false;                     ///< the drive reads a measuring probe
   bool probe_contact = false;                 ///< the measuring probe touches something
   ProbeContact contact;                       ///< of the present jog, or else the last one
+  std::uint64_t jogs_begun = 0;               ///< since the start of the loop
   std::uint64_t jogs_ended = 0;               ///< since the start of the loop
-  std::uint64_t stops = 0;                    ///< requested since the start of the loop
+  std::uint64_t stops = 1;                    ///< 1 + those requested since the start of the loop
   std::uint64_t jobs_started = 0;             ///< since the start of the loop
   std::uint64_t jobs_ended = 0;               ///< since the start of the loop
   // For the running job, or else the last one:

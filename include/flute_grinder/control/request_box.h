@@ -82,7 +82,7 @@ class RequestBox {
   bool postJog(const JogRequest& jog) noexcept { return jogs_.post(jog); }
   /// The answer to the last postJog(), once available.
   std::optional<RequestReply> jogReply();
-  /// As jog(), for one other thread, which has JogRequest::stops set.
+  /// As jog(), for the steps of a series, whose JogRequest::stops is set. For one other thread at a time.
   RequestReply jogInSeries(const JogRequest& jog);
 
  protected:

@@ -55,7 +55,6 @@ class HalHardware : public AxesHW {
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
-  bool has_probe_ = false;    ///< HAL reads the measuring probe
   bool has_swivel_ = false;   ///< HAL reads the swivel's encoder
   std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
 

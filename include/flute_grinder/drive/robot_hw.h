@@ -75,6 +75,7 @@ struct DriveStatus {
   bool spindle_at_speed = false;     ///< the wheel turns at its grinding speed
   bool coolant_on = false;           ///< coolant flows
   bool probe_free = true;            ///< the measuring probe, if there is one, is out of the wheel's way
+  bool has_probe = false;            ///< the drive reads the contact of a measuring probe
   bool probe_contact = false;        ///< the measuring probe touches something
   std::uint64_t feedback_count = 0;  ///< incremented with each fresh set of positions
   /// For a drive that buffers: number of written commands that had not reached the axes when the positions were read.

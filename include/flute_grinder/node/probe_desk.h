@@ -3,29 +3,34 @@
 #include "flute_grinder/Probe.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/job_gate.h"
-#include "flute_grinder/node/served_queue.h"
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 
-#include <string>
+#include <atomic>
 
 namespace flute_grinder {
 
-/// Serves `~probe`: a series of jogs that end where the measuring probe touches. Runs in its own thread, which waits
-/// for the motion; a stop goes to the control loop past it, and ends the series.
+/// Serves `~probe`: a series of jogs that end where the measuring probe touches. Two threads: one waits for the motion,
+/// the other refuses further calls, so that none waits and then moves after a stop. A stop goes to the control loop
+/// past them, and ends the series.
 class ProbeDesk {
  public:
   /// @param private_nh the node's own namespace.
   /// @param loop,gate must outlive this object.
   ProbeDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
+  ~ProbeDesk();
 
  private:
   bool onProbe(Probe::Request& request, Probe::Response& response);
+  void probe(const Probe::Request& request, Probe::Response& response);
 
   ControlLoop& loop_;
   JobGate& gate_;
-  ServedQueue thread_;
+  std::atomic<bool> probing_{false};
+  ros::CallbackQueue queue_;
   ros::ServiceServer service_;
+  ros::AsyncSpinner spinner_;  ///< last member, so that no call is running when the others are destroyed
 };
 
 }  // namespace flute_grinder

@@ -253,24 +253,23 @@ class TestStop(ProbeTest):
         thread = threading.Thread(target=lambda: answers.append(self.probe(X, 8 * MM)))
         thread.start()
         self.addCleanup(thread.join)
-        ways = self.ways_off()
-        self.client.wait_for(lambda: len(ways()) == 4, 'the last way off the surface')
+        # Once after the fast touch, and after each of the three that count.
+        self.client.wait_for(self.turns_away(4), 'the last way off the surface')
         self.client._call('hold', Trigger)
         thread.join()
         self.assertEqual(answers[0].message, 'probing ended: stopped')
 
-    def ways_off(self):
-        """The velocities with which X has begun to move away from the surface, from now on."""
-        first = len(self.client.joints)
+    def turns_away(self, times):
+        """A condition: X has begun to move away from the surface so often, seen at each call."""
+        seen = {'at': self.client.joints[-1].position[X], 'away': False, 'times': 0}
 
         def begun():
-            found, away = [], False
-            velocities = [j.velocity[X] for j in self.client.joints[first:]]
-            for velocity in velocities:
-                if velocity < -0.5 * MM and not away:
-                    found.append(velocity)
-                away = velocity < -0.1 * MM
-            return found
+            at = self.client.joints[-1].position[X]
+            if abs(at - seen['at']) > 5e-6:
+                seen['times'] += at < seen['at'] and not seen['away']
+                seen['away'] = at < seen['at']
+                seen['at'] = at
+            return seen['times'] == times
 
         return begun
 

@@ -119,8 +119,9 @@ void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, cons
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
     return reject(goal, GrindResult::NOT_READY,
-                  gate_.isShut() ? "the grinder is being shut down"
-                                 : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
+                  gate_.isShut()
+                      ? "the grinder is being shut down"
+                      : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
   }
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request;

@@ -295,7 +295,7 @@ void addProbe(CLI::App& app, ProbeOptions& options) {
     return *command;
   };
   auto& face = add("end-face", "X: print the stick-out and set the work offset", "--job jobs/unequal_d12_t4.yaml");
-  auto& diameter = add("diameter", "Y, on two sides: print diameter and run-out of a cylinder", "--within 2");
+  auto& diameter = add("diameter", "Y, on four sides: print diameter and run-out of a cylinder", "--within 2");
   auto& tooth =
       add("tooth", "A: touch the first tooth's rake face and set the work offset", "--job jobs/unequal_d12_t4.yaml");
   for (CLI::App* command : {&face, &tooth}) {

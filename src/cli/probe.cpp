@@ -195,8 +195,9 @@ int probeTooth(const std::string& node, const ProbeOptions& options) {
   return withMachine(node, [&](ProbedMachine& machine) {
     const std::optional<WorkOffsets> offsets = workOffsets(machine.nodeHandle());
     if (!offsets) throw Failed{noGrinder(machine.nodeHandle())};
-    if (offsets->set_at[kX].isZero())
+    if (offsets->set_at[kX].isZero()) {
       throw Failed{fail("the work offset of X was never set; probe the end face first")};
+    }
     // The rake face of a right-hand tooth comes down to the ball as A grows.
     const double toward = job.cutter.cut == CutDirection::kLeftHand ? -1 : 1;
     const Probe::Response touch = machine.probe(kA, toward * options.within_deg * units::kDegree);

@@ -110,7 +110,7 @@ class TestCycles(ProbeTest):
         self.assertEqual(refused.returncode, 1)
         self.assertIn('--stickout = 20 mm; allowed: ', refused.stderr)
 
-    def test_two_sides_give_diameter_and_run_out(self):
+    def test_four_sides_give_diameter_and_run_out(self):
         self.start()
         self.bring_ball(30 * MM, 7 * MM)
         self.jog(A, 1.0)  # the run-out is not where it is touched
@@ -204,6 +204,8 @@ class TestMove(ProbeTest):
         self.addCleanup(self.node.close)
         self.client = self.node.client()
         self.addCleanup(self.client.close)
+        self.client.make_ready()
+        self.assertEqual(self.probe(X, 1 * MM).message, 'probing ended: the machine has no parameter geometry/probe')
         done = self.grind('probe', 'diameter')
         self.assertEqual((done.returncode, done.stderr), (1, 'parameter /without_probe/geometry/probe is missing\n'))
 

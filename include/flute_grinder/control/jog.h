@@ -7,7 +7,7 @@
 
 namespace flute_grinder {
 
-/// A request to move an axis by hand.
+/// A request to move an axis: by hand, or as a step of a series.
 struct JogRequest {
   int axis = kX;
   bool continuous = false;

@@ -155,9 +155,9 @@ GrindGoal goalFor(const GrindJob& job, const RunOptions& options) {
 
 }  // namespace
 
-int runJob(const RunOptions& options) {
+int runJob(const std::string& node, const RunOptions& options) {
   const GrindJob job = readJobFile(options.job);
-  ros::NodeHandle nh(options.node);
+  ros::NodeHandle nh(node);
   ros::AsyncSpinner spinner(1);
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);

@@ -10,7 +10,6 @@ namespace flute_grinder {
 
 /// Arguments of `grind run`.
 struct RunOptions {
-  std::string node;  ///< name of the grinder's node
   std::string job;
   bool dry_run = false;
   bool go_on = false;    ///< from the first unfinished pass
@@ -27,8 +26,9 @@ int fail(const std::string& text);
 int noGrinder(const ros::NodeHandle& nh);
 
 /// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it.
-/// @return the exit status. @throw FileError, before anything is sent, if a file cannot be opened.
-int runJob(const RunOptions& options);
+/// @param node the grinder's. @return the exit status. @throw FileError, before anything is sent, if a file cannot be
+/// opened.
+int runJob(const std::string& node, const RunOptions& options);
 
 /// Prints what the grinder is doing. @param json in JSON. @return the exit status.
 int printStatus(const std::string& node, bool json);

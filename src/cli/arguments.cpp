@@ -1,0 +1,63 @@
+#include "flute_grinder/cli/arguments.h"
+
+#include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/offsets.h"
+
+#include <ros/package.h>
+
+#include <vector>
+
+namespace flute_grinder {
+
+void addJob(CLI::App& command, std::string& job) {
+  command.add_option("JOB", job, "job file (YAML, mm, deg, mm/min)")->required()->type_name(kYamlFile);
+}
+
+void addCsv(CLI::App& command, std::string& csv, const char* description) {
+  command.add_option("--csv", csv, description)->type_name(kAnyFile);
+}
+
+void addJson(CLI::App& command, bool& json) { command.add_flag("--json", json, "print only JSON"); }
+
+void addCountedJob(CLI::App& command, const char* name, int& number) {
+  command.add_option(name, number, "which of a bag's jobs, counted from 1 (default: the last)")
+      ->check([](const std::string& text) {
+        return std::strtol(text.c_str(), nullptr, 10) >= 1 ? "" : text + "; allowed: 1 or more";
+      });
+}
+
+void addMachine(CLI::App& command, std::string& parameters, std::string& urdf) {
+  command.add_option("--machine", parameters, "parameters of the machine (default: config/grinder.yaml)")
+      ->type_name(kYamlFile);
+  command.add_option("--urdf", urdf, "robot description (default: urdf/grinder.urdf)")->type_name(kUrdfFile);
+  command.final_callback([&parameters, &urdf] {
+    const std::string package = ros::package::getPath("flute_grinder");
+    if (parameters.empty()) parameters = package + "/config/grinder.yaml";
+    if (urdf.empty()) urdf = package + "/urdf/grinder.urdf";
+  });
+}
+
+void addAxis(CLI::App& command, std::string& axis) {
+  std::vector<std::string> axes;
+  std::string names;
+  for (const char* letter = kAxisLetters; *letter != '\0'; ++letter) {
+    axes.emplace_back(1, *letter);
+    names += (names.empty() ? "" : "|") + axes.back();
+  }
+  command.add_option("AXIS", axis, "which axis")
+      ->required()
+      ->check(CLI::IsMember(axes).description(""))
+      ->type_name("{" + names + "}");
+}
+
+void addFlange(CLI::App& command, std::optional<double>& flange_mm) {
+  command
+      .add_option("--flange", flange_mm, "from the flange's face to the wheel's upper face (default: the wheel file's)")
+      ->type_name("MM")
+      ->check([](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value >= -100 && value <= 100 ? "" : text + "; allowed: -100 to 100 mm";
+      });
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,117 @@
+#include "flute_grinder/cli/arguments.h"
+#include "flute_grinder/cli/commands.h"
+#include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/offline.h"
+#include "flute_grinder/cli/online.h"
+#include "flute_grinder/cli/report.h"
+#include "flute_grinder/cli/setup.h"
+#include "flute_grinder/cli/simulate.h"
+
+#include <memory>
+
+namespace flute_grinder {
+
+namespace {
+
+void addTable(Commands& commands) {
+  const auto options = std::make_shared<TableOptions>();
+  auto& command =
+      commands.add("table", "interpolate the job's curve with a fixed step length, as in the paper's Table 1",
+                   "jobs/paper.yaml --step-length 0.2 --even-step exact", [options] { return runTable(*options); });
+  addJob(command, options->job);
+  command.add_option("--step-length", options->step_length_mm, "step length in mm; A is weighted by rotary_scale")
+      ->required()
+      ->check([](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value >= 1e-4 && value <= 100 ? "" : text + "; allowed: 0.0001 to 100 mm";
+      });
+  addChoice(command, "--even-step", options->even_step, "instead of the job's rule");
+  addCsv(command, options->csv, "write the points to this file");
+  addJson(command, options->json);
+}
+
+void addPlan(Commands& commands) {
+  const auto options = std::make_shared<PlanOptions>();
+  auto& command = commands.add("plan", "generate and check every setpoint of the job, from the park position",
+                               "jobs/paper.yaml --csv setpoints.csv", [options] { return runPlan(*options); });
+  addJob(command, options->job);
+  addCsv(command, options->csv, "write the setpoints to this file");
+  addMachine(command, options->parameters, options->urdf);
+  addJson(command, options->json);
+}
+
+void addSetup(Commands& commands) {
+  const auto options = std::make_shared<SetupOptions>();
+  auto& command = commands.add("setup", "solve swivel, height and depth of the wheel for the job's rake and core",
+                               "jobs/paper.yaml --write", [options] { return runSetup(*options); });
+  addJob(command, options->job);
+  addChoice(command, "--keep", options->keep, "leave this figure as it is in the job file");
+  command.add_flag("--write", options->write, "write the set-up into the job file; all else in it stays as it is");
+  addMachine(command, options->parameters, options->urdf);
+  addJson(command, options->json);
+}
+
+void addSimulate(Commands& commands) {
+  const auto options = std::make_shared<SimulateOptions>();
+  auto& command = commands.add("simulate", "compute and measure the cutter that a job grinds or a run has ground",
+                               "jobs/paper.yaml --at 1,17,29", [options] { return runSimulate(*options); });
+  command.add_option("FILE", options->file, "job file, CSV file of run, or a bag of 'roslaunch ... record:=true'")
+      ->required()
+      ->type_name(kAnyFile);
+  auto* at = command.add_option("--at", options->at_mm, "X of the sections in mm, separated by commas")->delimiter(',');
+  at->type_name("MM,MM,...");
+  command.add_option("--sections", options->sections, "number of sections over the flute's length (default: 9)")
+      ->excludes(at)
+      ->check([](const std::string& text) {
+        const long value = std::strtol(text.c_str(), nullptr, 10);
+        return value >= 2 && value <= kMostSections ? "" : text + "; allowed: 2 to " + std::to_string(kMostSections);
+      });
+  addCsv(command, options->csv, "write the figures of every section and tooth to this file");
+  command.add_option("--stl", options->stl, "write the cutter as a solid to this file, in mm")->type_name(kAnyFile);
+  command.add_option("--svg", options->svg, "draw the sections at both ends and in the middle, and the figures over X")
+      ->type_name(kAnyFile);
+  command.add_option("--job", options->job, "job file of a record that does not have its job")->type_name(kYamlFile);
+  addCountedJob(command, "--run", options->run);
+  addJson(command, options->json);
+}
+
+void addRun(Commands& commands) {
+  const auto options = std::make_shared<RunOptions>();
+  auto& command = commands.add("run", "grind the job; Ctrl-C cancels it and waits until it has ended, Ctrl-Z holds it",
+                               "jobs/paper.yaml --csv streamed.csv",
+                               Commands::online([&commands, options] { return runJob(commands.node, *options); }));
+  addJob(command, options->job);
+  command.add_flag("--dry-run", options->dry_run, "plan, check and show the path, but move nothing");
+  auto* go_on =
+      command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
+  command
+      .add_flag("--discard", options->discard,
+                "start even if the grinder's journal holds another, unfinished job, and discard that job")
+      ->excludes(go_on);
+  addCsv(command, options->csv, "write the streamed setpoints to this file");
+}
+
+void addReport(Commands& commands) {
+  const auto options = std::make_shared<ReportOptions>();
+  auto& command = commands.add("report", "draw a table, a plan or a recorded run as an HTML file",
+                               "setpoints.csv -o report.html", [options]() -> int { writeReport(*options); });
+  command.add_option("FILE", options->file, "CSV file of table, plan or run, or a bag of 'roslaunch ... record:=true'")
+      ->required()
+      ->type_name(kAnyFile);
+  command.add_option("-o,--output", options->output, "HTML file to write")->required()->type_name(kAnyFile);
+  addCountedJob(command, "--job", options->job);
+  addMachine(command, options->parameters, options->urdf);
+}
+
+}  // namespace
+
+void addJobCommands(Commands& commands) {
+  addTable(commands);
+  addPlan(commands);
+  addSetup(commands);
+  addSimulate(commands);
+  addRun(commands);
+  addReport(commands);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,97 @@
+#include "flute_grinder/cli/arguments.h"
+#include "flute_grinder/cli/commands.h"
+#include "flute_grinder/cli/offsets.h"
+#include "flute_grinder/cli/online.h"
+#include "flute_grinder/core/feed_schedule.h"
+
+#include <memory>
+
+namespace flute_grinder {
+
+namespace {
+
+void addOverride(Commands& commands) {
+  const auto percent = std::make_shared<double>(100);
+  auto& command =
+      commands.add("override", "set the feed override; 0 stops the feed, rapids keep their speed", "50",
+                   Commands::online([&commands, percent] { return setFeedOverride(commands.node, *percent); }));
+  command.add_option("PERCENT", *percent, "of the job's feed, 0 to 120")
+      ->required()
+      ->check([](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return value >= 0 && value <= kMaxFeedOverride * 100 ? "" : text + "; allowed: 0 to 120 %";
+      });
+}
+
+void addConfirmSwivel(Commands& commands) {
+  const auto degrees = std::make_shared<double>(0);
+  auto& command =
+      commands.add("confirm-swivel", "tell the grinder at which angle the swivel has been set and clamped by hand",
+                   "31.769", Commands::online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
+  command.add_option("DEG", *degrees, "as setup.swivel_deg of the job, -90 to 90")
+      ->required()
+      ->check([](const std::string& text) {
+        const double value = std::strtod(text.c_str(), nullptr);
+        return std::abs(value) <= 90 ? "" : text + "; allowed: -90 to 90 deg";
+      });
+}
+
+/// Arguments of `grind jog`.
+struct JogOptions {
+  std::string axis;
+  double distance = 0;
+  double feed = 0;
+};
+
+void addJog(Commands& commands) {
+  const auto options = std::make_shared<JogOptions>();
+  auto& command = commands.add("jog", "move an axis by hand; waits until it rests, and Ctrl-C and Ctrl-Z stop it",
+                               "y 0.5 --feed 100", Commands::online([&commands, options] {
+                                 const auto axis = std::string(kAxisLetters).find(options->axis);
+                                 return jog(commands.node, static_cast<int>(axis), options->distance, options->feed);
+                               }));
+  addAxis(command, options->axis);
+  command.add_option("DISTANCE", options->distance, "in mm, of A in deg; negative in the other direction")->required();
+  command.add_option("--feed", options->feed, "in mm/min, of A in deg/min (default: parameter jog_velocity)")
+      ->check([](const std::string& text) {
+        return std::strtod(text.c_str(), nullptr) > 0 ? "" : text + "; allowed: above 0";
+      });
+}
+
+void addStatus(Commands& commands) {
+  const auto json = std::make_shared<bool>(false);
+  addJson(commands.add("status", "print what the grinder is doing", "",
+                       Commands::online([&commands, json] { return printStatus(commands.node, *json); })),
+          *json);
+}
+
+/// What the command adds to the request.
+std::string waiting(MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kHome: return "; waits for the end, and Ctrl-C switches the power off";
+    case MachineEvent::kLift: return "; waits for the end, and Ctrl-C and Ctrl-Z stop it";
+    case MachineEvent::kCancel: return ", whoever started it; waits for the end";
+    default: return "";
+  }
+}
+
+/// The requests without arguments.
+void addRequests(Commands& commands) {
+  for (const EventRow& row : kMachineEvents) {
+    if (!isTrigger(row.value) && !isStop(row.value)) continue;
+    commands.add(row.name, row.help + waiting(row.value), "",
+                 Commands::online([&commands, event = row.value] { return request(commands.node, event); }));
+  }
+}
+
+}  // namespace
+
+void addMachineCommands(Commands& commands) {
+  addOverride(commands);
+  addConfirmSwivel(commands);
+  addJog(commands);
+  addStatus(commands);
+  addRequests(commands);
+}
+
+}  // namespace flute_grinder

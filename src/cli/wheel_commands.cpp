@@ -1,0 +1,57 @@
+#include "flute_grinder/cli/arguments.h"
+#include "flute_grinder/cli/commands.h"
+#include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/wheel.h"
+#include "flute_grinder/cli/zeros.h"
+
+#include <memory>
+
+namespace flute_grinder {
+
+namespace {
+
+void addWheel(Commands& commands) {
+  const auto options = std::make_shared<WheelOptions>();
+  auto& wheel = commands.add("wheel", "show a wheel file, or write into it what the wheel has become",
+                             "show wheels/straight_d125_w2.yaml", nullptr);
+  const auto add = [&](const char* name, const char* description, const std::string& example,
+                       int (*action)(const WheelOptions&)) -> CLI::App& {
+    auto& command = commands.addTo(wheel, name, description, example, [options, action] { return action(*options); });
+    command.add_option("FILE", options->file, "wheel file (YAML, mm, deg)")->required()->type_name(kYamlFile);
+    return command;
+  };
+  addJson(add("show", "print the wheel as it is now", "wheels/straight_d125_w2.yaml", showWheel), options->json);
+  auto& measure =
+      add("measure", "write a measurement into the file", "wheels/my_wheel.yaml --diameter 99.62", measureWheel);
+  addLength(measure, "--diameter", options->diameter_mm, "largest diameter as measured", false).required();
+  addLength(measure, "--width", options->width_mm, "width as measured (default: as before)", false);
+  measure.add_flag("--force", options->force, "the wheel may be larger than the file says, which was wrong");
+  auto& dress =
+      add("dress", "write into the file what the wheel has lost", "wheels/my_wheel.yaml --radial 0.02", dressWheel);
+  addLength(dress, "--radial", options->radial_mm, "taken off the radius", true);
+  addLength(dress, "--face", options->face_mm, "taken off the width", true);
+}
+
+void addZeros(Commands& commands) {
+  const auto options = std::make_shared<ZerosOptions>();
+  const Action set = Commands::online([&commands, options] { return setZeros(commands.node, *options); });
+  auto& command = commands.add("zeros", "compute where the job's X, Y and Z are zero, in machine coordinates",
+                               "jobs/unequal_d12_t4.yaml --stickout 62",
+                               [options, set] { return options->set ? set() : printZeros(*options); });
+  addJob(command, options->job);
+  addLength(command, "--stickout", options->stickout_mm, "from the collet's face to the cutter's small end", false)
+      .required();
+  addFlange(command, options->flange_mm);
+  command.add_flag("--set", options->set, "by the geometry of the running grinder, and set them as its work offsets");
+  addMachine(command, options->parameters, options->urdf);
+  addJson(command, options->json);
+}
+
+}  // namespace
+
+void addWheelCommands(Commands& commands) {
+  addWheel(commands);
+  addZeros(commands);
+}
+
+}  // namespace flute_grinder

@@ -1,5 +1,5 @@
-"""Draws a report; `grind report` starts it and gives it the limits, in SI units. Exit status 2 for a file that cannot be
-read or written."""
+"""Draws a report; `grind report` starts it and gives it the machine's limits, in SI units, for files that do not tell them. Exit
+status 2 for a file that cannot be read or written."""
 
 import argparse
 import json
@@ -7,19 +7,22 @@ import os
 import signal
 import subprocess
 import sys
-from collections import namedtuple
+import tempfile
 
-from record import SourceError
+from record import Record, SourceError
+from verdict import read_tolerances
 
 SECTIONS = 17  # of the tool
-
-Limits = namedtuple('Limits', 'speed acceleration following')
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog='grind report')
     parser.add_argument('file')
-    parser.add_argument('--output', required=True)
+    parser.add_argument('--output')
+    parser.add_argument('--pdf')
+    parser.add_argument('--json', action='store_true')
+    parser.add_argument('--note', default='')
+    parser.add_argument('--tolerances', required=True)
     parser.add_argument('--job', type=int, required=True)
     parser.add_argument('--grind', required=True, help='the program itself, which simulates the tool')
     for limit in ('velocity', 'acceleration', 'following-error'):
@@ -27,53 +30,124 @@ def arguments():
     return parser.parse_args()
 
 
-def simulate(record, path, job, grind):
-    """Gives a record its tool, if its job is known."""
-    which = ['--run', str(job)] if job else []
-    done = subprocess.run([grind, 'simulate', path, '--json', '--sections', str(SECTIONS), *which], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, universal_newlines=True)
-    if done.stdout:
-        record.tool = json.loads(done.stdout)
-    else:
-        record.no_tool = done.stderr.strip()
+class Simulation:
+    """Runs `grind simulate` beside this program."""
+
+    def __init__(self, grind, path, *more):
+        self._process = subprocess.Popen([grind, 'simulate', path, '--json', '--sections', str(SECTIONS), *more],
+                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+
+    def result(self):
+        """The tool, or None, and why there is none."""
+        out, error = self._process.communicate()
+        return (json.loads(out), '') if out else (None, error.strip())
+
+    def give_up(self):
+        self._process.kill()
+        self._process.communicate()
 
 
-def read(path, job, grind):
-    """The record of a file, whose type is recognised by its first bytes."""
+def head_of(path):
     with open(path, 'rb') as file:
-        is_bag = file.read(8) == b'#ROSBAG '
+        return file.read(8)
+
+
+def read_bag_and_tool(given):
+    from read_bag import read_bag
+    simulation = Simulation(given.grind, given.file, *(['--run', str(given.job)] if given.job else []))
+    try:
+        record = read_bag(given.file, given.job)
+    except BaseException:
+        simulation.give_up()
+        raise
+    return record, *simulation.result()
+
+
+def read_record_and_tool(given):
+    from findings import read_record
+    record = Record('record')
+    record.head = read_record(given.file)
+    # What JSON can tell, YAML can: the job in the record is a job file.
+    with tempfile.NamedTemporaryFile('w', suffix='.yaml') as job:
+        json.dump(record.head['job']['file'], job)
+        job.flush()
+        return record, *Simulation(given.grind, job.name).result()
+
+
+def read(given):
+    """The record of a file, whose type is recognised by its first bytes; the tool, or None and why there is none."""
+    head = head_of(given.file)
     # ROS and matplotlib are slow to load.
-    if is_bag:
-        from read_bag import read_bag
-        record = read_bag(path, job)
-        simulate(record, path, job, grind)
-        return record
+    if head == b'#ROSBAG ':
+        return read_bag_and_tool(given)
+    if head.lstrip().startswith(b'{'):
+        return read_record_and_tool(given)
     from read_csv import read_csv
-    return read_csv(path)
+    return read_csv(given.file), None, ''
+
+
+def survey(record, job_file, with_plots):
+    """Figures and plots of the rows, which are gone through once."""
+    from figures import Plots, TablePlots
+    from motion import motions
+    from strokes import Cutter, Figures
+    if record.kind == 'record':
+        return None, None
+    if record.kind == 'table':
+        return None, TablePlots(record) if with_plots else None
+    figures = Figures(record.period, Cutter(job_file) if job_file else None)
+    plots = Plots(record) if with_plots else None
+    for motion in motions(record):
+        figures.add(motion)
+        if plots:
+            plots.add(motion)
+    return figures, plots
+
+
+def write(path, text):
+    with open(path, 'w', encoding='utf-8') as file:
+        file.write(text)
+
+
+def make(given, tolerances, record, tool, no_tool):
+    """Writes what is asked for. @raise SourceError, OSError"""
+    from findings import LIMITS, Findings
+    job_file = tool['job'] if tool else record.head.get('job', {}).get('file')
+    draws = given.output or given.pdf
+    figures, plots = survey(record, job_file, draws)
+    limits = dict(zip(LIMITS, (given.max_velocity, given.max_acceleration, given.max_following_error)))
+    findings = Findings(os.path.basename(given.file), record, figures, tool, no_tool, job_file, limits, tolerances, given.note)
+    if draws:
+        from page import page
+        from pictures import draw
+        text = page(findings.data, draw(plots, findings))
+        if given.output:
+            write(given.output, text)
+        if given.pdf:
+            from pdf import print_pdf
+            print_pdf(text, given.pdf)
+    if given.json:
+        print(json.dumps(findings.data, indent=2, ensure_ascii=False))
 
 
 def main():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     given = arguments()
+    path = given.tolerances
     try:
-        record = read(given.file, given.job, given.grind)
+        tolerances = read_tolerances(path)
+        path = given.file
+        record, tool, no_tool = read(given)
+    except SourceError as error:
+        return '%s: %s' % (path, error)
+    except OSError as error:
+        return '%s: cannot be read: %s' % (path, error.strerror or error)
+    try:
+        make(given, tolerances, record, tool, no_tool)
     except SourceError as error:
         return '%s: %s' % (given.file, error)
     except OSError as error:
-        return '%s: cannot be read: %s' % (given.file, error.strerror or error)
-    from figures import draw
-    from motion import KeyFigures
-    from page import page
-    from tool import tool_pictures
-    limits = Limits(given.max_velocity, given.max_acceleration, given.max_following_error)
-    key = KeyFigures(record)
-    pictures = draw(record, key, limits) + (tool_pictures(record.tool) if record.tool else [])
-    text = page(os.path.basename(given.file), record, key, limits, pictures)
-    try:
-        with open(given.output, 'w', encoding='utf-8') as file:
-            file.write(text)
-    except OSError as error:
-        return '%s: cannot be written: %s' % (given.output, error.strerror or error)
+        return '%s: cannot be written: %s' % (error.filename or 'standard output', error.strerror or error)
     return None
 
 

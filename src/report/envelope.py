@@ -2,7 +2,7 @@
 
 import numpy as np
 
-COLUMNS = 900  # about the pixels across a figure
+COLUMNS = 450  # about the pixels across a picture
 
 
 class Envelope:
@@ -23,10 +23,12 @@ class Envelope:
             self._points.append((x, y))
         elif len(x):
             column = np.clip(((x - self._low) / self._width).astype('i2'), 0, COLUMNS - 1)
-            order = np.argsort(column, kind='stable')
-            columns, starts = np.unique(column[order], return_index=True)
+            if (np.diff(column) < 0).any():
+                order = np.argsort(column, kind='stable')
+                column, y = column[order], y[order]
+            starts = np.flatnonzero(np.diff(column, prepend=-1))
             for values, reduce in ((self._least, np.minimum), (self._largest, np.maximum)):
-                values[columns] = reduce(values[columns], reduce.reduceat(y[order], starts))
+                values[column[starts]] = reduce(values[column[starts]], reduce.reduceat(y, starts))
 
     def line(self, gap, columns=1.5):
         """x and y of a line through all points, broken where x has a gap larger than `gap` and than this number of columns. In
@@ -38,6 +40,8 @@ class Envelope:
     def points(self):
         """x and y of all points, or of the minimum and maximum in each column."""
         if self.is_exact:
+            if not self._points:
+                return np.zeros(0), np.zeros((0, self._least.shape[1]))
             return np.concatenate([x for x, _ in self._points]), np.concatenate([y for _, y in self._points])
         full = np.flatnonzero(np.isfinite(self._least[:, 0]))
         x = self._low + (np.repeat(full, 2) + 0.5) * self._width

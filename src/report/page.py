@@ -1,138 +1,279 @@
-"""Writes key figures and pictures into a self-contained HTML file."""
+"""Writes what a report tells, and its pictures, into a self-contained HTML file."""
 
-import base64
 import html
+import os
+from datetime import datetime
 
-from figures import axis_units
-from record import AXES, MM_MIN, UM
+from figures import QUANTITIES
 
 PAGE = '''<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
-body {{ font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62em; margin: 2em auto; padding: 0 1em; }}
-h1 {{ font-size: 1.5em; }} h2 {{ font-size: 1.15em; margin-top: 2em; }}
-table {{ border-collapse: collapse; margin: .6em 0; }}
-th, td {{ border-bottom: 1px solid #ddd; padding: .2em 1.2em .2em 0; text-align: left; vertical-align: top; }}
-tr.figures :not(:first-child) {{ text-align: right; font-variant-numeric: tabular-nums; }}
-figure {{ margin: 1.5em 0; break-inside: avoid; }} figure.half {{ display: inline-block; width: 49%; margin: 0; }}
-figure img {{ width: 100%; }} figcaption {{ color: #444; font-size: .93em; }} figcaption b {{ color: #222; }}
-@media print {{ body {{ max-width: none; margin: 0; font-size: 10pt; }} }}
-</style>
+{style}</style>
 </head>
 <body>
-<h1>{title}</h1>
 {body}
 </body>
 </html>
 '''
 
-KINDS = {'table': 'points of a curve, from "grind table"', 'setpoints': 'setpoints, from "grind plan"',
-         'run': 'setpoints, from "grind run"', 'bag': 'record of the grinder (bag)'}
 LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
-MOST_STATES = 100
+MOST_ROWS = 1000  # of a table; --json has all
+PROFILES = {'straight': 'straight', 'angled': 'angled', 'full_radius': 'full radius', 'cup': 'cup', 'points': 'by points'}
 
 
-def table(rows, head=()):
-    """Rows of text; with a head, all but the first column are numbers."""
-    row = '<tr class="figures">%s</tr>' if head else '<tr>%s</tr>'
-    lines = [row % ''.join('<th>%s</th>' % html.escape(text) for text in head)] if head else []
-    for first, *others in rows:
-        cells = ''.join('<td>%s</td>' % html.escape(text) for text in others)
-        lines.append(row % ('<th>%s</th>%s' % (html.escape(first), cells)))
-    return '<table>\n%s\n</table>' % '\n'.join(lines)
+def text(value):
+    return html.escape(str(value))
 
 
-def key_figures(record, key):
-    # As `grind table` and the paper count them: point 0 is where the curve starts.
-    rows = [('points', str(key.points - (record.kind == 'table')))]
-    if record.kind != 'table':
-        rows += [('duration', '%.3f s' % key.duration), ('control cycle', '%.6g ms' % (record.period / 1e-3)),
-                 ('strokes', str(key.strokes))]
-    if record.missing:
-        rows.append(('missing', '%d setpoints are not in the file' % record.missing))
-    if key.strokes > 0:
-        rows += [('largest odd error', '%.4e rad' % key.odd_error), ('largest even error', '%.4e rad' % key.even_error)]
-    if record.max_deviation is not None:
-        rows.append(('largest deviation', '%.3g µm at the cutter\'s surface, as planned' % (record.max_deviation / UM)))
-    if key.strokes > 0 and record.kind != 'table':
-        rows.append(('largest feed', '%.6f mm/min along the cutting edge' % (key.feed / MM_MIN)))
-    if record.kind == 'bag':
-        rows += [('mean loop period', '%.6f ms' % (key.mean_period / 1e-3)),
-                 ('loop period', '%.3f to %.3f ms' % (key.shortest_period / 1e-3, key.longest_period / 1e-3)),
-                 ('late cycles', '%d over 1.5 periods' % key.late_cycles)]
-    return table(rows)
+def facts(rows):
+    """Names and values, without those that are None."""
+    lines = ['<tr><th scope="row">%s</th><td>%s</td></tr>' % (text(name), text(value)) for name, value in rows if value is not None]
+    return '<table class="facts">\n%s\n</table>' % '\n'.join(lines)
 
 
-def axis_table(record, key, limits):
-    columns = [('speed', '/s', key.speed, limits.speed), ('acceleration', '/s²', key.acceleration, limits.acceleration)]
-    if record.has_actual:
-        columns.append(('following error', '', key.following, limits.following))
-    rows = []
-    for axis, name in enumerate(AXES):
-        row = [name]
-        for _, per, largest, limit in columns:
-            scale, unit = axis_units(per)[axis]
-            row += ['%.5g %s' % (largest.values[axis] / scale, unit), '%.5g %s' % (limit[axis] / scale, unit)]
-        rows.append(row)
-    return table(rows, ['axis'] + [text for name, *_ in columns for text in ('largest ' + name, 'limit')])
+class Table:
+    """Rows under a head; on a narrow screen each row is a card. numbers: the columns that are numbers, from 1."""
+
+    def __init__(self, head, numbers=()):
+        self._head, self._numbers, self._rows, self._more = head, numbers, [], 0
+
+    def add(self, *cells, classes=None):
+        """classes: of cells by column."""
+        if len(self._rows) == MOST_ROWS:
+            self._more += 1
+            return
+        row = ['<th scope="row">%s</th>' % text(cells[0])]
+        for column, cell in enumerate(cells[1:], 1):
+            names = [*(['number'] if column in self._numbers else []), *([classes[column]] if classes and column in classes else [])]
+            row.append('<td%s data-label="%s">%s</td>' % (' class="%s"' % ' '.join(names) if names else '', text(self._head[column]),
+                                                          '' if cell is None else text(cell)))
+        self._rows.append('<tr>%s</tr>' % ''.join(row))
+
+    def html(self):
+        head = ''.join('<th scope="col"%s>%s</th>' % (' class="number"' if column in self._numbers else '', text(name))
+                       for column, name in enumerate(self._head))
+        more = '\n<p>And %d more, which --json has.</p>' % self._more if self._more else ''
+        return '<table class="cards">\n<thead><tr>%s</tr></thead>\n<tbody>\n%s\n</tbody>\n</table>%s' % (
+            head, '\n'.join(self._rows), more)
 
 
-def state_table(record):
-    rows = [('%.3f s' % time, state, reason) for time, state, reason in record.states[:MOST_STATES]]
-    if len(record.states) > MOST_STATES:
-        rows.append(('', 'and %d more' % (len(record.states) - MOST_STATES), ''))
-    return table(rows)
+def number(value, digits):
+    return None if value is None else '%.*f' % (digits, value)
 
 
-def diagnostics_table(record):
-    rows = []
-    for name, level, message, count in record.diagnostics:
-        word = LEVELS[level] if level < len(LEVELS) else str(level)
-        rows.append((name, word, message, '× %d' % count))
-    return table(rows)
+def local(stamp):
+    """A point in time on the clock of this computer."""
+    return datetime.fromisoformat(stamp.replace('Z', '+00:00')).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
 
 
-def left_out(record, key):
-    """Lists missing data, and why it is missing."""
-    reasons = []
-    if key.strokes == 0:
-        reasons.append('Curve, error and feed: the job ended before its first stroke.')
-    if record.kind == 'table':
-        reasons.append('Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.')
-    if record.kind == 'setpoints':
-        reasons.append('Following error and loop timing: the CSV file of a plan has only commanded values; a bag has more.')
-    if record.kind == 'run':
-        reasons.append('Loop timing: a CSV file does not have it; a bag does.')
-    if record.max_deviation is None:
-        reasons.append('Deviation at the cutter\'s surface: it depends on the cutter\'s radius, which %s.' % (
-            'is in the job result, which is not in the bag' if record.kind == 'bag' else 'a CSV file does not have'))
-    if record.no_tool:
-        reasons.append('The ground tool: %s' % record.no_tool)
-    return '<ul>\n%s\n</ul>' % '\n'.join('<li>%s</li>' % html.escape(reason) for reason in reasons) if reasons else ''
+def clock(seconds):
+    minutes, rest = divmod(seconds, 60)
+    hours, minutes = divmod(int(minutes), 60)
+    return '%d:%02d:%04.1f h' % (hours, minutes, rest) if hours else '%d:%04.1f min' % (minutes, rest)
 
 
 def figure(picture):
-    data = base64.b64encode(picture.svg).decode()
-    return ('<figure id="%s"%s>\n<img alt="%s" src="data:image/svg+xml;base64,%s">\n<figcaption><b>%s.</b> %s</figcaption>\n'
-            '</figure>') % (picture.name, ' class="half"' if picture.name.startswith('path-') else '',
-                            html.escape(picture.title), data, html.escape(picture.title), html.escape(picture.caption))
+    return ('<figure id="%s"%s>\n%s\n<figcaption><b>%s.</b> %s</figcaption>\n</figure>'
+            % (picture.name, ' class="third"' if picture.name.startswith('section') else '',
+               picture.svg.replace('<svg', '<svg role="img" aria-label="%s"' % text(picture.title), 1),
+               text(picture.title), text(picture.caption)))
 
 
-def page(name, record, key, limits, pictures):
-    """The report of a file of this name."""
-    parts = [table([('file', name), ('type', KINDS[record.kind]), *record.facts]), '<h2>Key figures</h2>',
-             key_figures(record, key)]
-    if record.kind != 'table':
-        parts.append(axis_table(record, key, limits))
-    parts += ['<h2>Pictures</h2>', *map(figure, pictures)]
-    if record.states:
-        parts += ['<h2>States</h2>', '<p>Time since the start of the job.</p>', state_table(record)]
-    if record.diagnostics:
-        parts += ['<h2>Diagnostics</h2>', '<p>The worst status of each in the whole bag.</p>', diagnostics_table(record)]
-    missing = left_out(record, key)
-    if missing:
-        parts += ['<h2>Left out</h2>', missing]
-    return PAGE.format(title=html.escape('Report: ' + name), body='\n'.join(parts))
+def pictures(parts, name):
+    return '<div class="pictures">\n%s\n</div>' % '\n'.join(map(figure, parts[name])) if parts.get(name) else ''
+
+
+def tool_facts(cutter):
+    spirals = cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']]
+    angles = cutter.get('tooth_angles_deg')
+    teeth = len(angles) if angles else cutter['teeth']
+    return [('end diameter', '%g mm' % cutter['end_diameter_mm']), ('flute length', '%g mm' % cutter['flute_length_mm']),
+            ('cone', '%g deg' % cutter['cone_angle_deg']), ('spiral angle', ', '.join('%g' % s for s in spirals) + ' deg'),
+            ('rake', '%g ± %g deg' % (cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])),
+            ('teeth', '%d%s' % (teeth, ' at ' + ', '.join('%g' % a for a in angles) + ' deg' if angles else '')),
+            ('cut', cutter['cut'].replace('_', ' ')), ('shank', '%g mm' % cutter['shank_diameter_mm'])]
+
+
+def process_facts(job_file):
+    process, wheel = job_file['process'], job_file['process']['wheel']
+    corners = wheel.get('corner_radius_mm') or [0, 0]
+    setup = process['setup']
+    return [('wheel', '%s, Ø %g mm, %g mm wide, corners %g and %g mm%s' % (
+                PROFILES.get(wheel['profile'], wheel['profile']), wheel['diameter_mm'], wheel['width_mm'], *corners,
+                ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')),
+            ('wear', '%g mm of the radius' % wheel['wear_mm']),
+            ('set-up', 'swivel %g deg, height %g mm' % (setup['swivel_deg'], setup['height_mm'])),
+            ('depth', '%g mm, infeed %g mm' % (process['depth_mm'], process['infeed_mm'])),
+            ('feed', '%g mm/min' % process['feed_mm_min']),
+            ('interpolation', job_file['interpolation']['even_step'].replace('_', ' '))]
+
+
+def run_facts(data):
+    machine, offsets = data.get('machine', {}), data.get('work_offsets')
+    setpoints = data.get('setpoints', {})
+    return [('file', '%s (%s)' % (data['file'], data['type'])), ('job in the bag', data.get('in_bag')),
+            ('begun', local(data['started']) if 'started' in data else None),
+            ('ended', local(data['ended']) if 'ended' in data else None),
+            ('duration', clock(data['duration_s']) if data.get('duration_s') is not None else None),
+            ('outcome', outcome(data)),
+            ('grinder', data.get('grinder')), ('machine', machine.get('name')), ('drive', machine.get('drive')),
+            ('software', 'flute_grinder ' + machine['software'] if machine else None),
+            ('work offsets', ', '.join('%s %.4f %s' % (name[0].upper(), value, name[2:]) for name, value in offsets.items())
+             if offsets else None),
+            ('setpoints', setpoints.get('written')),
+            ('missing', '%d setpoints are not in the file' % setpoints['lost'] if setpoints.get('lost') else None),
+            ('points', data['points'] if data['kind'] == 'table' else None)]
+
+
+def outcome(data):
+    if 'outcome' not in data:
+        return None
+    return data['outcome'] + (': ' + data['reason'] if data.get('reason') else '')
+
+
+def verdict_line(data):
+    said = data['verdict']
+    kind = said if said in ('passed', 'failed') else 'unknown'
+    line = '<p><span class="verdict %s">%s</span></p>' % (kind, {'passed': 'PASSED', 'failed': 'FAILED'}.get(said, 'NOT COMPLETE'))
+    return line + ('<p>%s</p>' % text(said) if kind == 'unknown' else '')
+
+
+def criteria_table(data):
+    table = Table(['', 'asked', 'measured', 'tolerance', 'result', 'place'], (1, 2, 3))
+    for c in data['criteria']:
+        unit, digits = ' ' + c['unit'], c['digits']
+        asked = None if c['asked'] is None else number(c['asked'], digits) + unit
+        if c['tolerance'] is None and asked:
+            asked = '≥ ' + asked
+        table.add(c['name'], asked, c['remark'] or (None if c['measured'] is None else number(c['measured'], digits) + unit),
+                  None if c['tolerance'] is None else '± ' + number(c['tolerance'], digits) + unit, c['result'], c['place'],
+                  classes={4: c['result'] if c['result'] in ('passed', 'failed') else 'unknown'})
+    return table.html()
+
+
+def events_of(data, stroke):
+    """The holds and overrides during a stroke."""
+    begin, end = stroke['started_s'], stroke['started_s'] + stroke['duration_s']
+    events = ['held %.1f s at %.1f s (%s)' % (hold['duration_s'], hold['at_s'], hold['reason']) for hold in data['holds']
+              if begin <= hold['at_s'] <= end]
+    events += ['override %g %% at %.1f s' % (change['percent'], change['at_s']) for change in data['overrides']
+               if begin <= change['at_s'] <= end]
+    return '; '.join(events)
+
+
+def stroke_table(data):
+    has_following = any('following_error' in stroke for stroke in data['strokes'])
+    head = ['tooth, pass', 'depth mm', 'begun s', 'time s', 'feed mm/min', 'deviation µm']
+    table = Table(head + (['following X, Y, Z µm', 'A mdeg'] if has_following else []) + ['holds, overrides'],
+                  range(1, 8 if has_following else 6))
+    for stroke in data['strokes']:
+        least, largest = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
+        cells = ['%d, %d' % (stroke['tooth'], stroke['pass']), number(stroke['depth_mm'], 4), number(stroke['started_s'], 1),
+                 number(stroke['duration_s'], 1), None if least is None else '%s to %s' % (least, largest),
+                 number(stroke['deviation_um'], 3)]
+        if has_following:
+            errors = stroke['following_error']
+            cells += [', '.join(number(errors[key], 2) for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]
+        table.add(*cells, events_of(data, stroke))
+    return table.html()
+
+
+def events_between(data):
+    """Holds and overrides that are in no stroke."""
+    inside = ' '.join(events_of(data, stroke) for stroke in data['strokes'])
+    events = ['Held for %.1f s at %.1f s (%s).' % (h['duration_s'], h['at_s'], h['reason']) for h in data['holds']
+              if 'held %.1f s at %.1f s' % (h['duration_s'], h['at_s']) not in inside]
+    events += ['Override %g %% at %.1f s.' % (o['percent'], o['at_s']) for o in data['overrides']
+               if 'override %g %% at %.1f s' % (o['percent'], o['at_s']) not in inside]
+    return '<p>Between the strokes: %s</p>' % text(' '.join(events)) if events else ''
+
+
+def axis_table(data, name):
+    per = {'speed': '/s', 'acceleration': '/s²', 'following': ''}[name]
+    table = Table(['axis', 'in the strokes', 'between them', 'limit'], (1, 2, 3))
+    for row in data['axes']:
+        unit = ('deg' if row['axis'] == 'A' else 'mm') + per
+        table.add(row['axis'], *('%.5g %s' % (row[name][key], unit) for key in ('stroke', 'rapid', 'limit')))
+    return table.html()
+
+
+def state_table(data):
+    table = Table(['state', 'from s', 'reason'], (1,))
+    for state in data['states']:
+        table.add(state['state'], number(state['at_s'], 3), state['reason'])
+    return table.html()
+
+
+def diagnostics_table(data):
+    table = Table(['status', 'worst', 'message', 'times'], (3,))
+    for status in data['diagnostics']:
+        level = status['level']
+        table.add(status['name'], LEVELS[level] if level < len(LEVELS) else level, status['message'], status['count'])
+    return table.html()
+
+
+def loop_facts(data):
+    loop, late = data['loop'], data['late_cycles']
+    return facts([('control cycle', '%.6g ms' % data['period_ms']), ('mean', '%.6f ms' % loop['mean_ms']),
+                  ('shortest, longest', '%.3f to %.3f ms' % (loop['shortest_ms'], loop['longest_ms'])),
+                  ('late cycles', '%d over 1.5 periods' % late['count'])])
+
+
+def first_page(data, parts):
+    job = data.get('job')
+    job_name = (job or {}).get('name') or data['file']
+    body = ['<h1>%s</h1>' % text(job_name)]
+    if 'tool' in data:
+        body.append('<p class="quiet">%s</p>' % text(data['tool']['tool']))
+    if 'verdict' in data:
+        body.append(verdict_line(data))
+    if 'note' in data:
+        body.append('<p><b>Note:</b> %s</p>' % text(data['note']))
+    columns = [facts(run_facts(data))]
+    if job:
+        columns = ['<div>%s%s</div>' % (pictures(parts, 'asked'), facts(tool_facts(job['file']['cutter']))),
+                   facts(process_facts(job['file']) + run_facts(data))]
+    body.append('<div class="columns">\n%s\n</div>' % '\n'.join(columns))
+    if 'criteria' in data:
+        body += ['<h2>Passed or failed</h2>', criteria_table(data)]
+    return body
+
+
+def appendix(data, parts):
+    errors = facts([('largest odd error', '%.4e rad' % data['odd_error_rad']),
+                    ('largest even error', '%.4e rad' % data['even_error_rad'])])
+    opened = ' open' if data['kind'] == 'table' else ''
+    return ['<details%s>\n<summary>The interpolation, in radians</summary>' % opened, errors, pictures(parts, 'curve'), '</details>']
+
+
+def page(data, parts):
+    """@param data of Findings. @param parts of draw()."""
+    body = first_page(data, parts)
+    if data.get('strokes'):
+        body += ['<h2>Teeth and passes</h2>', stroke_table(data), events_between(data)]
+    if parts.get('tool'):
+        body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
+    if parts.get('feed'):
+        body += ['<h2>Feed</h2>', pictures(parts, 'feed')]
+    for name, title, *_ in QUANTITIES:
+        if parts.get(name):
+            body += ['<div class="keep"><h2>%s of the axes</h2>' % title, axis_table(data, name), '</div>', pictures(parts, name)]
+    if 'loop' in data:
+        body += ['<div class="keep"><h2>Control loop</h2>', loop_facts(data), '</div>', pictures(parts, 'timing')]
+    if data.get('states'):
+        body += ['<h2>States</h2>', state_table(data)]
+    if data.get('diagnostics'):
+        body += ['<h2>Diagnostics</h2>', '<p>The worst status of each in the whole bag.</p>', diagnostics_table(data)]
+    if parts.get('curve'):
+        body += appendix(data, parts)
+    if data['left_out']:
+        body += ['<h2>Left out</h2>', '<ul>%s</ul>' % ''.join('<li>%s</li>' % text(reason) for reason in data['left_out'])]
+    with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'page.css'), encoding='utf-8') as file:
+        style = file.read()
+    return PAGE.format(title=text('Report: ' + ((data.get('job') or {}).get('name') or data['file'])), style=style,
+                       body='\n'.join(part for part in body if part))

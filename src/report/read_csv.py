@@ -39,7 +39,7 @@ def read_rows(file, record, columns, convert):
         lines = [text for _, text in zip(range(BLOCK), file)]
         if not lines:
             break
-        record.append(convert(parse(lines, line, columns), record))
+        record.append(*convert(parse(lines, line, columns), record))
         line += len(lines)
     record.finish()
     return record
@@ -73,7 +73,7 @@ def from_table(table, _):
     rows['error'] = table['error_rad']
     rows['move'] = MOVES.index('stroke')
     rows['step'] = np.where(table['point'] % 2 == 1, ODD, EVEN)
-    return rows
+    return rows, np.zeros(len(rows))
 
 
 def from_setpoints(table, record):
@@ -91,14 +91,14 @@ def from_setpoints(table, record):
     # The times are whole cycles.
     if table['cycle'][-1] > 0:
         record.period = float(table['time_s'][-1] / table['cycle'][-1])
-    return rows
+    return rows, table['time_s'].copy()
 
 
 def from_run(table, record):
-    rows = from_setpoints(table, record)
+    rows, times = from_setpoints(table, record)
     for axis, (name, _) in enumerate(ACTUAL):
         rows['actual'][:, axis] = table[name] * (MM if name.endswith('_mm') else 1)
-    return rows
+    return rows, times
 
 
 def in_range(table, column, largest):

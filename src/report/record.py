@@ -10,10 +10,11 @@ from flute_grinder.msg import WrittenSetpoint
 MM = 1e-3
 MM_MIN = 1e-3 / 60
 UM = 1e-6
+MS = 1e-3
 DEG = np.pi / 180
 
 AXES = 'XYZA'
-X, A = 0, 3
+X, Y, Z, A = range(4)
 
 
 def names_of_constants(message):
@@ -29,9 +30,10 @@ def names_of_constants(message):
 MOVES, STEPS = names_of_constants(WrittenSetpoint)
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
-# SI units: m, A in rad; m/s. Values missing in the source are 0.
-ROW = np.dtype([('cycle', 'i8'), ('position', 'f8', 4), ('error', 'f8'), ('feed', 'f8'), ('move', 'u1'), ('step', 'u1'),
-                ('tooth', 'u2'), ('pass', 'u2'), ('actual', 'f8', 4), ('cycle_period', 'f8')])
+# A setpoint, as in a SetpointBatch on the wire, since that is what there are millions of. SI units: m, A in rad; m/s. Values
+# missing in the source are 0.
+ROW = np.dtype([('cycle', '<u8'), ('position', '<f8', 4), ('velocity', '<f8', 4), ('actual', '<f8', 4), ('cycle_period', '<f8'),
+                ('error', '<f8'), ('feed', '<f8'), ('move', 'u1'), ('step', 'u1'), ('tooth', '<u2'), ('pass', '<u2')])
 
 BLOCK = 1 << 17  # rows processed at once
 
@@ -44,23 +46,21 @@ class Record:
     """The rows of a file, with what else the file contains.
 
     kind: 'table', 'setpoints' (CSV of a plan), 'run' (CSV) or 'bag'; `actual` is in the latter two, `cycle_period` in a bag
-    alone. period: of the control
-    cycle [s], 0 for a table. facts: (name, text) pairs for the reader. max_deviation: [m], or None if unknown.
-    tool: of `grind simulate`, or None; no_tool: the
-    reason why not. states: (time since the first cycle [s], state, reason). diagnostics: (name, level, message, count)."""
+    alone. period: of the control cycle [s], 0 for a table. head: what the file tells of the job as a whole, in the keys of
+    the grinder's own records of jobs (docs/ros-interface.md). states: (time [s], state, reason, tooth, pass), overrides:
+    (time [s], fraction, tooth, pass), teeth and passes from 0. diagnostics: (name, level, message, count). missing: number of
+    setpoints that the file lacks. odd_error, even_error: largest at the points of the curve [rad]. worst: tooth and pass of the
+    largest error, None without a point of the curve. low_x, high_x: of those points [m]."""
 
     def __init__(self, kind):
         self.kind = kind
         self.period = 0.0
-        self.facts = []
-        self.max_deviation = None
-        self.tool = None
-        self.no_tool = ''
+        self.head = {}
         self.states = []
+        self.overrides = []
         self.diagnostics = []
-        self._file = tempfile.TemporaryFile()
-        self._last_cycle = None
-        self.missing = 0
+        self._rows, self._times = tempfile.TemporaryFile(), tempfile.TemporaryFile()
+        self.restart()
 
     @property
     def has_actual(self):
@@ -68,49 +68,63 @@ class Record:
 
     def restart(self):
         """Deletes the rows."""
-        self._file.seek(0)
-        self._file.truncate()
-        self._last_cycle = None
+        for file in (self._rows, self._times):
+            file.seek(0)
+            file.truncate()
+        self._last_cycle = -1  # cycle 0 is the start position of a job
         self.missing = 0
+        self.odd_error = self.even_error = 0.0
+        self.worst = None
+        self.low_x, self.high_x = np.inf, -np.inf
 
-    def append(self, rows):
-        """Adds rows, whose cycles must ascend. @raise SourceError"""
-        cycles = rows['cycle']
-        if self._last_cycle is None:
-            # Cycle 0 is the start position of a job.
-            self._last_cycle = -1
+    def append(self, rows, times):
+        """Adds rows, whose cycles must ascend. times: since the start of the job [s]. @raise SourceError"""
+        cycles = rows['cycle'].astype('i8')
         steps = np.diff(cycles, prepend=self._last_cycle)
         if not (steps > 0).all():
             bad = np.argmax(steps <= 0)
             raise SourceError('cycle %d follows cycle %d; allowed: ascending cycles'
                               % (cycles[bad], cycles[bad] - steps[bad]))
         for name in ('position', 'error', 'feed', 'actual', 'cycle_period'):
-            finite = np.isfinite(rows[name]).reshape(len(rows), -1).all(axis=1)
+            finite = np.isfinite(rows[name])
             if not finite.all():
-                raise SourceError('cycle %d: %s is not a finite number' % (cycles[np.argmin(finite)], name))
+                bad = np.argmin(finite.reshape(len(rows), -1).all(axis=1))
+                raise SourceError('cycle %d: %s is not a finite number' % (cycles[bad], name))
         self.missing += int((steps - 1).sum())
         self._last_cycle = int(cycles[-1])
-        rows.tofile(self._file)
+        self._add_errors(rows[rows['step'] != 0])
+        self._rows.write(rows)
+        self._times.write(times)
+
+    def _add_errors(self, rows):
+        if not len(rows):
+            return
+        size, odd = np.abs(rows['error']), rows['step'] == ODD
+        largest = max(self.odd_error, self.even_error)
+        self.odd_error = max(self.odd_error, float(size[odd].max(initial=0)))
+        self.even_error = max(self.even_error, float(size[~odd].max(initial=0)))
+        if self.worst is None or max(self.odd_error, self.even_error) > largest:
+            row = rows[np.argmax(size)]
+            self.worst = int(row['tooth']), int(row['pass'])
+        x = rows['position'][:, X]
+        self.low_x, self.high_x = min(self.low_x, float(x.min())), max(self.high_x, float(x.max()))
 
     def finish(self):
-        """Completes the rows and sets `count`, `first` and `last`. @raise SourceError if there are too few."""
-        count = self._file.tell() // ROW.itemsize
-        if count < 3:
+        """Completes the rows and sets `count`, `first` (the first row), `begin` and `end` (times of the first row and of the
+        last). @raise SourceError if there are too few."""
+        self.count = self._rows.tell() // ROW.itemsize
+        if self.count < 3:
             raise SourceError('has %s; a report needs 3 or more points'
-                              % ('no points' if count == 0 else '%d point(s)' % count))
-        self.count = count
-        self.first, self.last = self._read(0, 1)[0], self._read(count - 1, 1)[0]
+                              % ('no points' if self.count == 0 else '%d point(s)' % self.count))
+        rows, begin = self._read(0, 1)
+        self.first, self.begin, self.end = rows[0], float(begin[0]), float(self._read(self.count - 1, 1)[1][0])
 
     def _read(self, start, count):
-        self._file.seek(start * ROW.itemsize)
-        return np.fromfile(self._file, ROW, count)
+        self._rows.seek(start * ROW.itemsize)
+        self._times.seek(start * 8)
+        return np.fromfile(self._rows, ROW, count), np.fromfile(self._times, 'f8', count)
 
     def blocks(self):
-        """The rows, part by part."""
+        """The rows and their times, part by part."""
         for start in range(0, self.count, BLOCK):
             yield self._read(start, BLOCK)
-
-    def stroke_blocks(self):
-        """The points of the curve, part by part: rows with an odd or an even step."""
-        for rows in self.blocks():
-            yield rows[rows['step'] != 0]

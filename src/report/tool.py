@@ -9,10 +9,7 @@ import sys
 import numpy as np
 from matplotlib.figure import Figure
 
-from figures import CURVE, LIMIT, THEORY, picture
-
-METAL = '#dfe5ec'
-TEETH = [CURVE, '#d96c00', '#2b8a3e', '#8e3b8e', '#00808a', '#8a6d00', '#555555', '#c2185b']
+from style import CURVE, INK, LIMIT, METAL, TEETH, THEORY, new_figure, picture, svg_of
 
 # Key, asked key, title; of the section or of each tooth.
 CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
@@ -65,7 +62,7 @@ def draw_section(axes, tool, section):
 def draw_rake(axes, radius, tooth, sign):
     """The radius to the edge on top, and against it the rake asked and the one ground."""
     axes.plot([0, 0], [0, 1.25 * radius], color=THEORY, linewidth=0.6)
-    for rake, style in ((tooth['asked_rake_deg'], {'color': LIMIT, 'linestyle': '--'}), (tooth['rake_deg'], {'color': 'black'})):
+    for rake, style in ((tooth['asked_rake_deg'], {'color': LIMIT, 'linestyle': '--'}), (tooth['rake_deg'], {'color': INK})):
         if rake is not None:
             # With a positive rake, the face falls back behind the radius on its way to the core.
             x, y = point(1, 90 - sign * rake)
@@ -80,72 +77,78 @@ def draw_land(axes, radius, tooth, sign):
         return
     # Behind the edge; an arc with its length.
     angles = np.radians(90 + sign * np.linspace(0, tooth['land_deg'], 60))
-    axes.plot(1.08 * radius * np.cos(angles), 1.08 * radius * np.sin(angles), color='black')
+    axes.plot(1.08 * radius * np.cos(angles), 1.08 * radius * np.sin(angles), color=INK)
     for end in (90, 90 + sign * tooth['land_deg']):
-        axes.plot(*np.transpose([point(1.02 * radius, end), point(1.12 * radius, end)]), color='black')
+        axes.plot(*np.transpose([point(1.02 * radius, end), point(1.12 * radius, end)]), color=INK)
     middle = 90 + sign * min(tooth['land_deg'] / 2, 60)
     axes.text(*point(1.15 * radius, middle), '%.2f' % tooth['land_mm'], ha='right' if sign > 0 else 'left')
 
 
-def draw_sections(figure, tool):
+def shown_sections(tool):
+    """At both ends and in the middle."""
     sections = tool['sections']
-    shown = sorted({0, len(sections) // 2, len(sections) - 1})
-    for axes, i in zip(np.ravel(figure.subplots(1, len(shown))), shown):
-        draw_section(axes, tool, sections[i])
+    return [sections[i] for i in sorted({0, len(sections) // 2, len(sections) - 1})]
 
 
-def draw_curves(figure, tool):
+def draw_curve(axes, tool, key, asked, title):
     sections = tool['sections']
     x = [section['x_mm'] for section in sections]
-    panels = figure.subplots(len(CURVES), sharex=True)
-    for axes, (key, asked, title) in zip(panels, CURVES):
-        of_section = key in sections[0]
-        for i in range(1 if of_section else tool['teeth']):
-            rows = sections if of_section else [section['teeth'][i] for section in sections]
-            style = {'color': TEETH[i % len(TEETH)], 'marker': '.', 'markersize': 4}
-            axes.plot(x, [number(row[key]) for row in rows], label=None if of_section else 'tooth %d' % (i + 1), **style)
-            if asked:
-                axes.plot(x, [row[asked] for row in rows], color=LIMIT, linestyle='--')
-        if key == 'rake_deg':
-            rake, tolerance = sections[0]['teeth'][0][asked], tool['rake_tolerance_deg']
-            axes.axhspan(rake - tolerance, rake + tolerance, color=LIMIT, alpha=0.08)
-        axes.set_title(title, loc='left')
-        axes.ticklabel_format(useOffset=False)
-    if tool['teeth'] > 1:
-        panels[0].legend(ncols=min(tool['teeth'], 8), fontsize=7)
-    panels[-1].set_xlabel('X [mm]')
+    of_section = key in sections[0]
+    for i in range(1 if of_section else tool['teeth']):
+        rows = sections if of_section else [section['teeth'][i] for section in sections]
+        style = {'color': TEETH[i % len(TEETH)], 'marker': '.', 'markersize': 4}
+        axes.plot(x, [number(row[key]) for row in rows], label=None if of_section else 'tooth %d' % (i + 1), **style)
+        if asked:
+            axes.plot(x, [row[asked] for row in rows], color=LIMIT, linestyle='--')
+    if key == 'rake_deg':
+        rake, tolerance = sections[0]['teeth'][0][asked], tool['rake_tolerance_deg']
+        axes.axhspan(rake - tolerance, rake + tolerance, color=LIMIT, alpha=0.08)
+    axes.set_title(title, loc='left')
+    axes.ticklabel_format(useOffset=False)
+    if key == 'rake_deg' and tool['teeth'] > 1:
+        axes.legend(ncols=min(tool['teeth'], 4), fontsize=7)
 
 
 def tool_pictures(tool):
     """For a report."""
-    sections = Figure((9, 3.9), layout='constrained')
-    draw_sections(sections, tool)
-    curves = Figure((9, 7.5), layout='constrained')
-    draw_curves(curves, tool)
-    return [
-        picture('tool-sections', 'The ground tool in sections',
-                'At both ends and in the middle, the first tooth on top, in mm; dotted: blank and core; dashed: the core and '
-                'the rake asked. Core, rake and land are dimensioned, the land along the outer circle.', sections),
-        picture('tool-figures', 'The ground tool over X',
-                'Rake, core diameter, land and spiral angle of the ground edge, over X in mm; dashed: as asked; shaded: the '
-                'tolerance of the rake.', curves)]
+    pictures = []
+    for i, section in enumerate(shown_sections(tool), 1):
+        figure = new_figure(5)
+        draw_section(figure.add_subplot(), tool, section)
+        pictures.append(picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
+                                'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the rake asked. The '
+                                'land is dimensioned along the outer circle.', figure))
+    for key, asked, title in CURVES:
+        figure = new_figure(2.6)
+        axes = figure.add_subplot(xlabel='X [mm]')
+        draw_curve(axes, tool, key, asked, title)
+        name = title.split(' [')[0]
+        pictures.append(picture(key.rsplit('_', 1)[0].replace('_', '-'), name[0].upper() + name[1:],
+                                'Of the ground tool, over X in mm' + ('; dashed: as asked' if asked else '') +
+                                ('; shaded: the tolerance.' if key == 'rake_deg' else '.'), figure))
+    return pictures
 
 
 def draw_file(tool):
     """All in one picture."""
-    figure = Figure((9, 11.7), layout='constrained')
+    figure = Figure((9, 11.7), layout='constrained', facecolor='white')
     above, below = figure.subfigures(2, height_ratios=(4.1, 7.5))
     above.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
-    draw_sections(above, tool)
-    draw_curves(below, tool)
-    return picture('tool', '', '', figure).svg
+    shown = shown_sections(tool)
+    for axes, section in zip(np.ravel(above.subplots(1, len(shown))), shown):
+        draw_section(axes, tool, section)
+    panels = below.subplots(len(CURVES), sharex=True)
+    for axes, curve in zip(panels, CURVES):
+        draw_curve(axes, tool, *curve)
+    panels[-1].set_xlabel('X [mm]')
+    return svg_of(figure)
 
 
 def main():
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     svg = draw_file(json.load(sys.stdin))
     try:
-        with open(sys.argv[1], 'wb') as file:
+        with open(sys.argv[1], 'w', encoding='utf-8') as file:
             file.write(svg)
     except OSError as error:
         return '%s: cannot be written: %s' % (sys.argv[1], error.strerror or error)

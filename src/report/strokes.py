@@ -1,0 +1,125 @@
+"""Figures of a record: of the whole and of each stroke."""
+
+import math
+
+import numpy as np
+
+from motion import LATE
+from record import AXES, DEG, MM, MM_MIN, UM, X
+
+MDEG = DEG / 1000
+
+
+class Cutter:
+    """What the figures need of the job's cutter, from its job file."""
+
+    def __init__(self, job_file):
+        cutter = job_file['cutter']
+        self.length = cutter['flute_length_mm'] * MM
+        self._end = cutter['end_diameter_mm'] / 2 * MM
+        self._cone = cutter['cone_angle_deg'] * DEG
+        self._spirals = cutter.get('spiral_angles_deg') or [cutter.get('spiral_angle_deg')]
+
+    def radius(self, x):
+        return self._end + x * math.tan(self._cone)
+
+    def deviation(self, tooth, x, error):
+        """Of the path at the surface, normal to the helix [m]: the arc, by the cosine of its angle against the generatrix."""
+        spiral = self._spirals[tooth if tooth < len(self._spirals) else 0] * DEG
+        return np.abs(error) * self.radius(x) * math.cos(math.atan(math.tan(spiral) * math.cos(self._cone)))
+
+
+class Largest:
+    """The largest absolute value of each axis."""
+
+    def __init__(self):
+        self.values = np.zeros(len(AXES))
+
+    def add(self, known, values):
+        if known.any():
+            self.values = np.maximum(self.values, np.abs(values[known]).max(axis=0))
+
+
+class Stroke:
+    """Figures of one stroke [SI]; a stroke that went on after a hold is one. Feed off the overtravel."""
+
+    def __init__(self, tooth, pass_):
+        self.tooth, self.pass_ = tooth, pass_
+        self.begin = self.end = None
+        self.least_feed, self.least_feed_x, self.largest_feed = math.inf, None, 0.0
+        self.deviation, self.deviation_x = 0.0, None
+        self.following = Largest()
+
+    def add(self, rows, time, known, following, cutter):
+        if self.begin is None:
+            self.begin = float(time[0])
+        self.end = float(time[-1])
+        x = rows['position'][:, X]
+        in_flute = (x >= 0) & (x <= cutter.length) if cutter else np.ones(len(x), bool)
+        if in_flute.any():
+            feed = rows['feed'][in_flute]
+            if feed.min() < self.least_feed:
+                self.least_feed, self.least_feed_x = float(feed.min()), float(x[in_flute][np.argmin(feed)])
+            self.largest_feed = max(self.largest_feed, float(feed.max()))
+        if cutter:
+            deviation = cutter.deviation(self.tooth, x, rows['error'])
+            if deviation.max() >= self.deviation:
+                self.deviation, self.deviation_x = float(deviation.max()), float(x[np.argmax(deviation)])
+        self.following.add(known, following)
+
+    def head(self, has_actual, depths):
+        """In the keys of the grinder's own records of jobs."""
+        known = self.least_feed_x is not None
+        head = {'tooth': self.tooth + 1, 'pass': self.pass_ + 1,
+                'depth_mm': depths[self.pass_] if depths else None,
+                'started_s': self.begin, 'duration_s': self.end - self.begin,
+                'feed_min_mm_min': self.least_feed / MM_MIN if known else None,
+                'feed_min_x_mm': self.least_feed_x / MM if known else None,
+                'feed_max_mm_min': self.largest_feed / MM_MIN if known else None,
+                'deviation_um': None if self.deviation_x is None else self.deviation / UM,
+                'deviation_x_mm': None if self.deviation_x is None else self.deviation_x / MM}
+        if has_actual:
+            x, y, z, a = self.following.values
+            head['following_error'] = {'x_um': x / UM, 'y_um': y / UM, 'z_um': z / UM, 'a_mdeg': a / MDEG}
+        return head
+
+
+class Figures:
+    """Of all rows of a record; largest absolute values, SI units. `speed`, `acceleration`, `following`: of the strokes, and
+    of the rapids and infeeds between them."""
+
+    def __init__(self, period, cutter=None):
+        self.strokes = {}
+        self.speed, self.acceleration, self.following = ((Largest(), Largest()) for _ in range(3))
+        self.shortest_period, self.longest_period, self.late_cycles = math.inf, 0.0, 0
+        self._period, self._cutter = period, cutter
+        self._sum, self._count = 0.0, 0
+
+    def add(self, motion):
+        for name in ('speed', 'acceleration', 'following'):
+            known, values = getattr(motion, name)
+            for largest, part in zip(getattr(self, name), (motion.stroke, ~motion.stroke)):
+                largest.add(known & part, values)
+        self._add_strokes(motion, np.flatnonzero(motion.stroke))
+        periods = motion.rows['cycle_period']
+        self.shortest_period = min(self.shortest_period, float(periods.min()))
+        self.longest_period = max(self.longest_period, float(periods.max()))
+        self.late_cycles += int((periods > LATE * self._period).sum())
+        self._sum, self._count = self._sum + float(periods.sum()), self._count + len(periods)
+
+    @property
+    def mean_period(self):
+        return self._sum / self._count
+
+    def _add_strokes(self, motion, points):
+        if not len(points):
+            return
+        rows = motion.rows
+        key = rows['tooth'][points].astype('i8') << 16 | rows['pass'][points]
+        ends = np.flatnonzero((np.diff(points) != 1) | (np.diff(key) != 0)) + 1
+        known, following = motion.following
+        for part in np.split(points, ends):
+            piece = slice(part[0], part[-1] + 1)
+            tooth, pass_ = int(rows['tooth'][part[0]]), int(rows['pass'][part[0]])
+            stroke = self.strokes.setdefault((tooth, pass_), Stroke(tooth, pass_))
+            stroke.add(rows[piece], motion.time[piece], known[piece], following[piece], self._cutter)

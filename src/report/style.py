@@ -1,0 +1,51 @@
+"""How the pictures look: small ones, so that their text can be read on a phone. Shapes repeat the meaning of colours, so that they
+can be read in grey."""
+
+import io
+import re
+from collections import namedtuple
+
+import matplotlib
+from matplotlib.figure import Figure
+
+Picture = namedtuple('Picture', 'name title caption svg')
+
+WIDTH = 4.6  # of a picture [in]
+
+# Colours differ in lightness too. In a page each is a variable of its style sheet, which has another value in the dark.
+INK, GRID, THEORY, CURVE = '#222222', '#dddddd', '#888888', '#1f4e8c'
+LIMIT, ODD_COLOUR, METAL, HELD = '#c03020', '#d96c00', '#dfe5ec', '#c9c4b4'
+TEETH = [CURVE, ODD_COLOUR, '#2b8a3e', '#8e3b8e', '#00808a', '#8a6d00', '#555555', '#c2185b']
+VARIABLES = {INK: 'ink', GRID: 'grid', THEORY: 'theory', LIMIT: 'limit', METAL: 'metal', HELD: 'held',
+             **{colour: 'tooth%d' % i for i, colour in enumerate(TEETH)}}
+
+ODD_STYLE = {'marker': 'o', 'color': ODD_COLOUR, 'markerfacecolor': 'none'}
+EVEN_STYLE = {'marker': 's', 'color': CURVE}
+
+matplotlib.rcParams.update({
+    'axes.axisbelow': True, 'axes.edgecolor': INK, 'axes.facecolor': 'none', 'axes.grid': True, 'axes.labelcolor': INK,
+    'axes.spines.right': False, 'axes.spines.top': False, 'axes.titlesize': 9, 'figure.facecolor': 'none', 'font.size': 9,
+    'grid.color': GRID, 'grid.linewidth': 0.6, 'legend.frameon': False, 'lines.linewidth': 0.9, 'svg.fonttype': 'none',
+    'svg.hashsalt': 'grind report', 'text.color': INK, 'xtick.color': INK, 'ytick.color': INK})
+
+
+def new_figure(height):
+    return Figure((WIDTH, height), layout='constrained')
+
+
+def svg_of(figure):
+    """A file of its own."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format='svg', metadata={'Date': None})
+    return buffer.getvalue().decode()
+
+
+def picture(name, title, caption, figure):
+    """A part of a page: ids that no other picture has, and colours by the page's variables."""
+    svg = svg_of(figure)
+    svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
+    svg = re.sub(r' (width|height)="[\d.]+pt"', '', svg, count=2)
+    svg = re.sub(r'( id="|href="#|url\(#)', r'\g<1>%s-' % name, svg)
+    for colour, variable in VARIABLES.items():
+        svg = svg.replace(colour, 'var(--%s)' % variable)
+    return Picture(name, title, caption, svg)

@@ -1,0 +1,131 @@
+"""Passes or fails a ground tool: what was asked, measured and allowed."""
+
+import math
+
+import yaml
+
+from record import DEG, SourceError
+
+ALLOWED = {
+    'core_diameter_mm': 'difference of the core diameter from the one asked',
+    'land_mm': 'least land',
+    'spiral_angle_deg': 'difference of the spiral angle from the one asked',
+    'following_error_um': 'following error in the strokes, of A at the largest radius',
+    'feed_percent': 'difference of the feed from the job\'s, between the ends of the flute',
+    'late_cycles_percent': 'late control cycles'}
+
+
+def read_tolerances(path):
+    """@raise SourceError, OSError"""
+    with open(path, encoding='utf-8') as file:
+        try:
+            given = yaml.safe_load(file)
+        except yaml.YAMLError as error:
+            raise SourceError(' '.join(str(error).split()))
+    if not isinstance(given, dict):
+        raise SourceError('has no keys; allowed: %s' % ', '.join(ALLOWED))
+    for key, value in given.items():
+        if key not in ALLOWED:
+            raise SourceError('%s: not known; allowed: %s' % (key, ', '.join(ALLOWED)))
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value < math.inf:
+            raise SourceError('%s = %s; allowed: a number from 0' % (key, value))
+    for key in ALLOWED:
+        if key not in given:
+            raise SourceError('%s is missing' % key)
+    return given
+
+
+class Criterion:
+    """One line of the verdict. All in `unit`; asked, measured and place may be None. tolerance: largest difference from what
+    is asked; None: `asked` is the least allowed."""
+
+    def __init__(self, name, unit, digits, asked, tolerance):
+        self.name, self.unit, self.digits, self.asked, self.tolerance = name, unit, digits, asked, tolerance
+        self.measured, self.place, self.remark = None, '', ''
+        self._worst = -math.inf
+
+    def add(self, value, place, asked=None):
+        """A measured value; the one that is farthest off remains. None: there is nothing to measure where there should be."""
+        asked = self.asked if asked is None else asked
+        off = math.inf if value is None else asked - value if self.tolerance is None else abs(value - asked)
+        if off > self._worst:
+            self._worst, self.asked, self.measured, self.place = off, asked, value, place
+            self.remark = 'there is none' if value is None else ''
+
+    @property
+    def result(self):
+        if self._worst == -math.inf:
+            return 'not measured'
+        return 'passed' if self._worst <= (self.tolerance or 0) else 'failed'
+
+    def head(self):
+        return {'name': self.name, 'unit': self.unit, 'digits': self.digits, 'asked': self.asked, 'measured': self.measured,
+                'tolerance': self.tolerance, 'place': self.place, 'result': self.result, 'remark': self.remark}
+
+
+def place_of(stroke, x=None):
+    return 'tooth %d, pass %d' % (stroke['tooth'], stroke['pass']) + ('' if x is None else ', X = %.3f mm' % x)
+
+
+def of_strokes(job_file, strokes, tolerances):
+    deviation = Criterion('path deviation', 'µm', 3, 0, job_file['interpolation']['tolerance_um'])
+    following = Criterion('following error in strokes', 'µm', 2, 0, tolerances['following_error_um'])
+    asked = job_file['process']['feed_mm_min']
+    feed = Criterion('feed held', 'mm/min', 1, asked, asked * tolerances['feed_percent'] / 100)
+    cutter = job_file['cutter']
+    length, half = cutter['flute_length_mm'], cutter['end_diameter_mm'] / 2
+    radius = max(half, half + length * math.tan(cutter['cone_angle_deg'] * DEG))
+    for stroke in strokes:
+        if stroke['deviation_um'] is not None:
+            deviation.add(stroke['deviation_um'], place_of(stroke, stroke.get('deviation_x_mm')))
+        for name, value in stroke.get('following_error', {}).items():
+            at_surface = value * 1e-3 * DEG * radius * 1e3 if name == 'a_mdeg' else value
+            following.add(at_surface, '%s, %s' % (name[0].upper(), place_of(stroke)))
+        if stroke['feed_min_mm_min'] is not None:
+            feed.add(stroke['feed_min_mm_min'], place_of(stroke, stroke.get('feed_min_x_mm')))
+            feed.add(stroke['feed_max_mm_min'], place_of(stroke))
+    return deviation, following, feed
+
+
+def of_tool(tool, tolerances):
+    sections = tool['sections'] if tool else []
+    first = sections[0]['teeth'][0] if sections else {}
+    rake = Criterion('rake', 'deg', 3, first.get('asked_rake_deg'), tool['rake_tolerance_deg'] if tool else None)
+    core = Criterion('core diameter', 'mm', 3, None, tolerances['core_diameter_mm'])
+    land = Criterion('land', 'mm', 3, tolerances['land_mm'], None)
+    spiral = Criterion('spiral angle', 'deg', 3, None, tolerances['spiral_angle_deg'])
+    for section in sections:
+        at = 'X = %.3f mm' % section['x_mm']
+        core.add(section['core_diameter_mm'], at, section['asked_core_diameter_mm'])
+        for i, tooth in enumerate(section['teeth'], 1):
+            place = 'tooth %d, %s' % (i, at)
+            rake.add(tooth['rake_deg'], place, tooth['asked_rake_deg'])
+            land.add(tooth['land_mm'], place)
+            spiral.add(tooth['spiral_deg'], place, tooth['asked_spiral_deg'])
+    return rake, core, land, spiral
+
+
+def criteria(data, tolerances):
+    """The lines of the verdict, in the order of the report."""
+    job_file = data['job']['file']
+    deviation, following, feed = of_strokes(job_file, data['strokes'], tolerances)
+    late = Criterion('late cycles', '%', 3, 0, tolerances['late_cycles_percent'])
+    cycles = data.get('setpoints', {}).get('written')
+    if 'late_cycles' in data and cycles:
+        count = data['late_cycles']['count']
+        late.add(100 * count / cycles, '%d of %d cycles, the longest %.3f ms' % (count, cycles, data['late_cycles']['longest_ms']))
+    return [c.head() for c in (deviation, *of_tool(data.get('tool'), tolerances), following, feed, late)]
+
+
+def verdict(data):
+    """passed, failed, or why neither can be told."""
+    results = [c['result'] for c in data['criteria']]
+    if data.get('outcome') not in (None, 'done') or 'failed' in results:
+        return 'failed'
+    unknown = []
+    if data.get('outcome') is None:
+        unknown.append('the end of the job is not in the record')
+    if data.get('setpoints', {}).get('lost'):
+        unknown.append('%d setpoints are missing' % data['setpoints']['lost'])
+    unknown += ['%s: not measured' % c['name'] for c in data['criteria'] if c['result'] == 'not measured']
+    return 'passed' if not unknown else 'not complete: ' + '; '.join(unknown)

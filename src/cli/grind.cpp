@@ -1,4 +1,5 @@
 #include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/history.h"
 #include "flute_grinder/cli/offline.h"
 #include "flute_grinder/cli/offsets.h"
 #include "flute_grinder/cli/online.h"
@@ -245,6 +246,13 @@ void addReport(CLI::App& app, ReportOptions& options) {
   addMachine(command, options.parameters, options.urdf);
 }
 
+void addHistory(CLI::App& app, HistoryOptions& options) {
+  auto& command = addCommand(app, "history", "list the records of the grinder's last jobs, the newest last");
+  command.add_option("--folder", options.folder, "folder of the records (default: the grinder's below ~/.ros)")
+      ->type_name(kFolder);
+  addJson(command, options.json);
+}
+
 /// A length in mm that may be as small as `least`.
 template <typename Length>
 CLI::Option& addLength(CLI::App& command, const char* name, Length& length_mm, const char* description, bool zero) {
@@ -360,6 +368,7 @@ struct Options {
   SetupOptions setup;
   RunOptions run;
   ReportOptions report;
+  HistoryOptions history;
   WheelOptions wheel;
   JogOptions jog;
   ZerosOptions zeros;
@@ -382,6 +391,7 @@ void addCommands(CLI::App& app, Options& options) {
   addSimulate(app, options.simulate);
   addRun(app, options.run);
   addReport(app, options.report);
+  addHistory(app, options.history);
   addWheel(app, options.wheel);
   addZeros(app, options.zeros);
   addOverride(app, options.percent);
@@ -419,8 +429,9 @@ int carryOut(const CLI::App& app, const Options& options) {
   if (command == "wheel") return carryOutWheel(*app.get_subcommands().front(), options.wheel);
   if (command == "zeros" && !options.zeros.set) return printZeros(options.zeros);
   if (command == "report") writeReport(options.report);
-  if (!awaitMaster()) return 1;
   const std::string& node = options.run.node;
+  if (command == "history") return printHistory(node, options.history);
+  if (!awaitMaster()) return 1;
   if (command == "run") return runJob(options.run);
   if (command == "zeros") return setZeros(node, options.zeros);
   if (command == "offsets") return runOffsets(node, options.offsets);

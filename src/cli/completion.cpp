@@ -19,6 +19,11 @@ _grind_files() {
   mapfile -t COMPREPLY < <(compgen -f ${1:+-X "!*.$1"} -- "$2"; [ -z "$1" ] || compgen -d -- "$2")
 }
 
+_grind_folders() {
+  compopt -o filenames 2>/dev/null
+  mapfile -t COMPREPLY < <(compgen -d -- "$1")
+}
+
 # From the word that is grind on.
 _grind_from() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} command='' i
@@ -81,6 +86,7 @@ std::string completer(const CLI::Option& option) {
   if (type == kAnyFile) return "_grind_files '' \"$cur\"";
   if (type == kYamlFile) return "_grind_files yaml \"$cur\"";
   if (type == kUrdfFile) return "_grind_files urdf \"$cur\"";
+  if (type == kFolder) return "_grind_folders \"$cur\"";
   if (type.front() != '{') return "COMPREPLY=()";
   std::replace(type.begin(), type.end(), '|', ' ');
   return "_grind_words '" + type.substr(1, type.size() - 2) + "' \"$cur\"";

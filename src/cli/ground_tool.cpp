@@ -223,6 +223,15 @@ Json outline(const GroundTool& tool, double x) {
   return points;
 }
 
+/// The radial depth of every pass at the small end.
+Json passDepths(const GrindJob& job) {
+  Json depths = Json::array();
+  for (const double depth : flute_grinder::passDepths(job.process)) {
+    depths.push_back(depthLaw(job, depth).at_end / kMillimetre);
+  }
+  return depths;
+}
+
 Json toJson(const GroundTool& tool, const MeasuredSection& section) {
   Json json{{"x_mm", section.ground.x / kMillimetre}, {"diameter_mm", 2 * section.ground.radius / kMillimetre}};
   append(json, {tool.job, section, 0}, true);
@@ -279,6 +288,8 @@ Json toJson(const GroundTool& tool) {
   return {{"source", tool.source},
           {"tool", toolText(tool.job.cutter, tool.job.tooth_angles.size())},
           {"cut", toString(tool.job.cutter.cut)},
+          {"job", toJson(tool.job)},
+          {"pass_depths_mm", passDepths(tool.job)},
           {"valid", tool.check.reasons.empty()},
           {"reasons", reasons},
           {"teeth", tool.job.tooth_angles.size()},

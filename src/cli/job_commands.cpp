@@ -1,6 +1,7 @@
 #include "flute_grinder/cli/arguments.h"
 #include "flute_grinder/cli/commands.h"
 #include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/history.h"
 #include "flute_grinder/cli/offline.h"
 #include "flute_grinder/cli/online.h"
 #include "flute_grinder/cli/report.h"
@@ -93,14 +94,32 @@ void addRun(Commands& commands) {
 
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
-  auto& command = commands.add("report", "draw a table, a plan or a recorded run as an HTML file",
-                               "setpoints.csv -o report.html", [options]() -> int { writeReport(*options); });
-  command.add_option("FILE", options->file, "CSV file of table, plan or run, or a bag of 'roslaunch ... record:=true'")
-      ->required()
-      ->type_name(kAnyFile);
-  command.add_option("-o,--output", options->output, "HTML file to write")->required()->type_name(kAnyFile);
+  auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
+                               "record.bag -o report.html", [&commands, options]() -> int {
+                                 writeReport(commands.node, *options);
+                               });
+  auto* file = command.add_option("FILE", options->file,
+                                  "bag of 'roslaunch ... record:=true', record of 'grind history', or CSV file of table, "
+                                  "plan or run");
+  file->type_name(kAnyFile);
+  command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself")->excludes(file);
+  command.add_option("-o,--output", options->html, "HTML file to write")->type_name(kAnyFile);
+  command.add_option("--pdf", options->pdf, "PDF file to write, by Chromium")->type_name(kAnyFile);
+  addJson(command, options->json);
+  command.add_option("--note", options->note, "the operator's words for the first page")->type_name("TEXT");
+  command.add_option("--tolerances", options->tolerances, "what the tool is passed by (default: config/tolerances.yaml)")
+      ->type_name(kYamlFile);
   addCountedJob(command, "--job", options->job);
   addMachine(command, options->parameters, options->urdf);
+}
+
+void addHistory(Commands& commands) {
+  const auto options = std::make_shared<HistoryOptions>();
+  auto& command = commands.add("history", "list the records of the grinder's last jobs, the newest last", "",
+                               [&commands, options] { return printHistory(commands.node, *options); });
+  command.add_option("--folder", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
+      ->type_name(kFolder);
+  addJson(command, options->json);
 }
 
 }  // namespace
@@ -112,6 +131,7 @@ void addJobCommands(Commands& commands) {
   addSimulate(commands);
   addRun(commands);
   addReport(commands);
+  addHistory(commands);
 }
 
 }  // namespace flute_grinder

@@ -12,14 +12,6 @@ namespace {
 
 using namespace units;
 
-/// One number per axis, the unit of X, Y and Z and that of A in the names.
-Json axes(const Axes& value, const std::string& per_time) {
-  return {{"x_mm" + per_time, value[kX] / kMillimetre},
-          {"y_mm" + per_time, value[kY] / kMillimetre},
-          {"z_mm" + per_time, value[kZ] / kMillimetre},
-          {"a_deg" + per_time, value[kA] / kDegree}};
-}
-
 Json moveDurations(const core::PathStatistics& statistics) {
   Json json = Json::object();
   for (const MoveRow& move : kMoveKinds) {
@@ -81,10 +73,10 @@ Json toJson(const JobPlan& plan) {
           {"smallest_feed_mm_min", s.min_feed / kMillimetrePerMinute},
           {"largest_feed_mm_min", s.max_feed / kMillimetrePerMinute},
           {"feed_limits", feedLimits(s)},
-          {"largest_velocity", axes(s.max_velocity, "_s")},
-          {"largest_acceleration", axes(s.max_acceleration, "_s2")},
-          {"largest_jerk", axes(s.max_jerk, "_s3")},
-          {"odd_even_ripple", axes(s.ripple_acceleration, "_s2")}};
+          {"largest_velocity", toJson(s.max_velocity, "_s")},
+          {"largest_acceleration", toJson(s.max_acceleration, "_s2")},
+          {"largest_jerk", toJson(s.max_jerk, "_s3")},
+          {"odd_even_ripple", toJson(s.ripple_acceleration, "_s2")}};
 }
 
 Json toJson(const GrinderState& state) {
@@ -98,8 +90,8 @@ Json toJson(const GrinderState& state) {
           {"wheel_in_work", state.wheel_in_work != 0},
           {"swivel_deg", state.swivel / kDegree},
           {"swivel_measured", state.swivel_measured != 0},
-          {"machine", axes(Axes(state.position.data()), "")},
-          {"work", axes(Axes(state.work_position.data()), "")},
+          {"machine", toJson(Axes(state.position.data()), "")},
+          {"work", toJson(Axes(state.work_position.data()), "")},
           {"feed_mm_min", state.feed / kMillimetrePerMinute},
           {"override_percent", state.override * 100},
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
@@ -107,11 +99,6 @@ Json toJson(const GrinderState& state) {
           {"hold_reason", state.hold_reason},
           {"fault", faultText(state)},
           {"last_job", lastJob(state.progress)}};
-}
-
-std::string text(const Json& json) {
-  // A file's name may be any bytes.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 void print(const Json& json) { std::printf("%s\n", text(json).c_str()); }

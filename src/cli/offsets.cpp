@@ -5,17 +5,16 @@
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/cli/call.h"
 #include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/cli/time_text.h"
 #include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/work_offsets.h"
 #include "flute_grinder/geometry/touch_off.h"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <mutex>
 #include <stdexcept>
 
@@ -30,15 +29,6 @@ int axisOf(const std::string& text) {
 }
 
 double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
-
-std::string timeText(const ros::Time& time, bool utc) {
-  const auto seconds = static_cast<std::time_t>(time.sec);
-  std::tm parts{};
-  utc ? gmtime_r(&seconds, &parts) : localtime_r(&seconds, &parts);
-  std::array<char, 40> text{};
-  std::strftime(text.data(), text.size(), utc ? "%Y-%m-%dT%H:%M:%SZ" : "%Y-%m-%d %H:%M:%S", &parts);
-  return text.data();
-}
 
 /// Receives the work offsets; a spinner must be running.
 class OffsetWatch {
@@ -73,7 +63,7 @@ Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
                                              {"machine" + unit, toShop(axis, state.position[i])},
                                              {"work" + unit, toShop(axis, state.work_position[i])},
                                              {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
-                                             {"set_at", set ? Json(timeText(offsets.set_at[i], true)) : Json(nullptr)}};
+                                             {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)}};
   }
   return {{"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }
@@ -87,7 +77,7 @@ void printTable(const WorkOffsets& offsets, const GrinderState& state) {
     if (offsets.set_at[i].isZero()) {
       std::printf("  never set\n");
     } else {
-      std::printf("  set by %s, %s\n", offsets.set_by[i].c_str(), timeText(offsets.set_at[i], false).c_str());
+      std::printf("  set by %s, %s\n", offsets.set_by[i].c_str(), timeText(offsets.set_at[i].toSec(), false).c_str());
     }
   }
   if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");

@@ -1,8 +1,11 @@
 #include "flute_grinder/cli/report.h"
 
 #include "flute_grinder/cli/csv.h"
+#include "flute_grinder/cli/history.h"
 #include "flute_grinder/cli/machine_file.h"
 #include "flute_grinder/core/format.h"
+
+#include <ros/package.h>
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -13,6 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace flute_grinder {
@@ -42,16 +46,37 @@ void append(std::vector<std::string>& arguments, const char* option, const Axes&
   for (int axis = 0; axis < kAxisCount; ++axis) arguments.push_back(format("%.17g", values[axis]));
 }
 
+/// The newest record of a grinder. @throw FileError if there is none.
+std::string lastRecord(const std::string& node) {
+  const std::string folder = historyFolder(node);
+  const std::optional<std::string> newest = newestRecord(folder);
+  if (!newest) throw FileError(folder + ": has no record of a job");
+  return *newest;
+}
+
 }  // namespace
 
-void writeReport(const ReportOptions& options) {
+void writeReport(const std::string& node, const ReportOptions& options) {
+  if (options.file.empty() && !options.last) throw FileError("FILE is missing; allowed: a file, or --last");
+  if (options.html.empty() && options.pdf.empty() && !options.json)
+    throw FileError("nothing to write; allowed: --output, --pdf, --json");
   const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
-  std::vector<std::string> arguments{PYTHON_EXECUTABLE,           programPath(), "--output", options.output, "--job",
-                                     std::to_string(options.job), "--grind",     ownPath()};
+  const std::string own_tolerances = ros::package::getPath("flute_grinder") + "/config/tolerances.yaml";
+  std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath(), "--grind", ownPath()};
+  const auto add = [&](const char* option, const std::string& value) {
+    // In one word, since a value may begin with a dash.
+    if (!value.empty()) arguments.push_back(std::string(option) + "=" + value);
+  };
+  add("--output", options.html);
+  add("--pdf", options.pdf);
+  add("--note", options.note);
+  add("--tolerances", options.tolerances.empty() ? own_tolerances : options.tolerances);
+  add("--job", std::to_string(options.job));
+  if (options.json) arguments.emplace_back("--json");
   append(arguments, "--max-velocity", config.machine.limits.max_velocity);
   append(arguments, "--max-acceleration", config.machine.limits.max_acceleration);
   append(arguments, "--max-following-error", config.following_error);
-  arguments.insert(arguments.end(), {"--", options.file});
+  arguments.insert(arguments.end(), {"--", options.last ? lastRecord(node) : options.file});
   std::vector<char*> argv = pointersTo(arguments);
   execv(argv[0], argv.data());
   throw FileError(arguments[0] + ": cannot be started: " + std::strerror(errno));

@@ -140,6 +140,7 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   urdf::Model model;
   if (!model.initString(urdf)) throw ParameterError("robot_description is not a URDF");
   LoopConfig config;
+  config.name = model.getName();
   config.machine.period = 1 / p.number("control_rate", 10, 20000);
   config.feedback_timeout = p.number("feedback_timeout", 0, 1);
   config.enable_timeout = p.number("enable_timeout", 0, 60);

@@ -5,6 +5,9 @@
 #include "flute_grinder/core/units.h"
 
 #include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
 
 namespace flute_grinder {
 
@@ -53,6 +56,22 @@ std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int
 }
 
 double shopScale(Unit unit) noexcept { return symbolsOf(unit).scale; }
+
+double shopNumber(double si, Unit unit) {
+  const double scale = shopScale(unit);
+  const double quotient = si / scale;
+  constexpr int all_digits = std::numeric_limits<double>::max_digits10;
+  for (int digits = 1; digits <= all_digits; ++digits) {
+    const double rounded = std::strtod(format("%.*g", digits, quotient).c_str(), nullptr);
+    if (rounded * scale == si) return rounded;
+  }
+  // The quotient is rounded too.
+  for (const double way : {-HUGE_VAL, HUGE_VAL}) {
+    const double neighbour = std::nextafter(quotient, way);
+    if (neighbour * scale == si) return neighbour;
+  }
+  return quotient;
+}
 
 Unit unitOf(int axis, int derivative) noexcept {
   const Unit position = axis == kA ? Unit::kRadian : Unit::kMetre;

@@ -41,18 +41,13 @@ class Descriptor {
   int number_;
 };
 
-}  // namespace
-
-void replaceFile(const std::string& path, const std::string& text) {
-  const std::filesystem::path file = std::filesystem::canonical(path);
-  struct stat old {};
-  require(::stat(file.c_str(), &old) == 0 && ::access(file.c_str(), W_OK) == 0);
+/// @param adorn gives the new file owner and mode. @param file an absolute path.
+template <typename Adorn>
+void writeInOneStep(const std::filesystem::path& file, const std::string& text, const Adorn& adorn) {
   std::string fresh = file.string() + ".XXXXXX";
   const Descriptor descriptor(::mkostemp(fresh.data(), O_CLOEXEC));
   try {
-    // Who is not root cannot give a file away, and need not, if it is his own.
-    require(::fchown(descriptor.number(), old.st_uid, old.st_gid) == 0 || errno == EPERM);
-    require(::fchmod(descriptor.number(), old.st_mode & 07777) == 0);
+    adorn(descriptor.number());
     descriptor.write(text);
     descriptor.sync();
     require(::rename(fresh.c_str(), file.c_str()) == 0);
@@ -62,6 +57,24 @@ void replaceFile(const std::string& path, const std::string& text) {
   }
   // The rename is safe only once the folder is synced too.
   Descriptor(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)).sync();
+}
+
+}  // namespace
+
+void replaceFile(const std::string& path, const std::string& text) {
+  const std::filesystem::path file = std::filesystem::canonical(path);
+  struct stat old {};
+  require(::stat(file.c_str(), &old) == 0 && ::access(file.c_str(), W_OK) == 0);
+  writeInOneStep(file, text, [&](int descriptor) {
+    // Who is not root cannot give a file away, and need not, if it is his own.
+    require(::fchown(descriptor, old.st_uid, old.st_gid) == 0 || errno == EPERM);
+    require(::fchmod(descriptor, old.st_mode & 07777) == 0);
+  });
+}
+
+void writeFile(const std::string& path, const std::string& text) {
+  writeInOneStep(std::filesystem::absolute(path), text,
+                 [](int descriptor) { require(::fchmod(descriptor, 0644) == 0); });
 }
 
 }  // namespace flute_grinder

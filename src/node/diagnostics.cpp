@@ -1,5 +1,7 @@
 #include "flute_grinder/node/diagnostics.h"
 
+#include "flute_grinder/node/cycle_figures.h"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -10,7 +12,6 @@ namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-constexpr double kLate = 1.5;  ///< periods after which a cycle counts as late
 constexpr double kPercent = 0.01;
 constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend
 constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
@@ -31,12 +32,16 @@ unsigned char levelBelow(double value, const DiagnosticLevels& levels) {
   return levelAbove(-value, {-levels.warn, -levels.error});
 }
 
-/// Keeps the larger value; NaN is kept.
-void keepLargest(double& largest, double value) {
-  if (!(value <= largest) && !std::isnan(largest)) largest = value;
-}
-
 std::string joint(int axis) { return kJointNames[static_cast<std::size_t>(axis)]; }
+
+/// What is kept on disk. @param error why it is not; empty if it is.
+void reportKept(Diagnostics::Status& status, const std::string& error, unsigned char level) {
+  if (error.empty()) {
+    status.summary(DiagnosticStatus::OK, "kept");
+  } else {
+    status.summary(level, error);
+  }
+}
 
 template <typename... Parts>
 std::string text(const Parts&... parts) {
@@ -71,6 +76,7 @@ void Diagnostics::addTo(diagnostic_updater::Updater& updater) {
   updater.add("Limit margin", this, &Diagnostics::reportLimits);
   updater.add("Buffer", this, &Diagnostics::reportBuffer);
   updater.add("Journal", this, &Diagnostics::reportJournal);
+  updater.add("History", this, &Diagnostics::reportHistory);
 }
 
 void Diagnostics::setJournalError(const std::string& error) {
@@ -78,12 +84,17 @@ void Diagnostics::setJournalError(const std::string& error) {
   journal_error_ = error;
 }
 
+void Diagnostics::setHistoryError(const std::string& error) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  history_error_ = error;
+}
+
 void Diagnostics::add(const CycleRecord& record) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++loop_.cycles;
   loop_.total += record.period;
   keepLargest(loop_.longest, record.period);
-  if (!(record.period <= kLate * config_.machine.period)) ++loop_.late;
+  if (isLate(record.period, config_.machine.period)) ++loop_.late;
 
   addDrive(record);
   const bool was_powered = isPowered(last_.state);
@@ -266,11 +277,12 @@ void Diagnostics::reportBuffer(Status& status) {
 
 void Diagnostics::reportJournal(Status& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (journal_error_.empty()) {
-    status.summary(DiagnosticStatus::OK, "kept");
-  } else {
-    status.summary(DiagnosticStatus::ERROR, journal_error_);
-  }
+  reportKept(status, journal_error_, DiagnosticStatus::ERROR);
+}
+
+void Diagnostics::reportHistory(Status& status) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  reportKept(status, history_error_, DiagnosticStatus::WARN);
 }
 
 }  // namespace flute_grinder

@@ -31,6 +31,17 @@ GrindResult result(int code, const std::vector<core::Reason>& reasons, const cor
   return r;
 }
 
+/// As records of jobs tell it.
+const char* outcomeOf(JobEnd end) {
+  switch (end) {
+    case JobEnd::kFault: return "fault";
+    case JobEnd::kCanceled: return "canceled";
+    case JobEnd::kNone:
+    case JobEnd::kDone: break;
+  }
+  return "done";
+}
+
 /// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
 core::Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
   core::Reason reason;
@@ -202,7 +213,7 @@ void GoalDesk::startWhenJournaled() {
   if (!tracker_.upToDate()) return;
   const std::string error = tracker_.error();
   if (!error.empty()) return abortGoal(error);
-  telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview);
+  telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview, goal_->handle.getGoal()->job_name);
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
@@ -257,6 +268,7 @@ void GoalDesk::endJob() {
   const LoopStatus status = loop_.status();
   GoalHandle handle = goal_->handle;
   const std::shared_ptr<const Preview> preview = goal_->preview;
+  const std::uint64_t number = goal_->number;
   release();
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
@@ -273,6 +285,7 @@ void GoalDesk::endJob() {
     r = result(GrindResult::CANCELED, {endReason(status, at, program)}, statistics);
   }
   r.setpoints_written = status.setpoints_written;
+  telemetry_.concludeJob(number, {outcomeOf(status.end), r.error_string, r.setpoints_written});
   switch (status.end) {
     case JobEnd::kFault:
       ROS_ERROR_STREAM("goal aborted: " << r.error_string);

@@ -29,6 +29,8 @@ std::string join(const std::vector<std::string>& names) {
   return text;
 }
 
+constexpr double kLargestHistory = 1e12;  ///< [bytes]
+
 /// A kept file; if the parameter is a folder, the file in it named after the node.
 std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
   return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
@@ -54,10 +56,15 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
+  const auto history_limit = static_cast<std::uint64_t>(parameters.number("history_limit", 0, kLargestHistory));
+  history_ = std::make_unique<History>(filePath(parameters.text("history"), name, "/"), history_limit);
   loadDrive(parameters);
+  const MachineInfo machine = machineInfo(config, parameters.text("hardware/type"));
+  machine_ = publishMachine(private_nh_, machine);
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
-  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, thresholds, urdf);
+  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
+                                           thresholds, urdf);
   stops_ = std::make_unique<StopDesk>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
@@ -93,6 +100,8 @@ void GrinderNode::shutDown() {
   loop_->postStop(MachineEvent::kDisable);
   await(kStopTimeout, [this] { return !isPowered(loop_->status().state); });
   await(kGoalEndTimeout, [this] { return !goals_->busy(); });
+  // What rviz shows must not outlive the node.
+  telemetry_->clearScene();
   planner_->end();
   loop_->stopThread();
 }

@@ -27,9 +27,17 @@ double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_e
   return begin + p.move_fraction * (static_cast<double>(move_ends[p.move_index]) - begin);
 }
 
+/// X reached in the stroke that the axes make, or from which the wheel was lifted [m].
+double strokeX(const Setpoint& p, const GrindProgram& program) {
+  if (p.move == MoveKind::kStroke) return p.position[kX];
+  const FeedSchedule& schedule = program.schedule(p.tooth);
+  return schedule.x(p.move_fraction * schedule.length());
+}
+
 double strokeFraction(const Setpoint& p, const GrindProgram& program) {
-  if (p.move != MoveKind::kStroke) return phaseOf(p.move) == PassPhase::kAfter ? 1 : 0;
-  return fraction(p.position[kX] - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
+  const MoveKind move = program.moves()[p.move_index].kind;
+  if (move != MoveKind::kStroke) return phaseOf(move) == PassPhase::kAfter ? 1 : 0;
+  return fraction(strokeX(p, program) - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
 }
 
 JobProgress toMessage(const Progress& progress) {
@@ -47,11 +55,12 @@ JobProgress toMessage(const Progress& progress) {
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-                     const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds,
-                     const std::string& urdf)
+                     const JournalWriter& journal, const OffsetStore& offsets, History& history,
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
+      history_(history),
       diagnostics_(loop.config(), thresholds,
                    [&loop] {
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
@@ -59,6 +68,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
       diagnostic_updater_(nh, private_nh),
       frames_(urdf),
       scene_(private_nh),
+      recorder_(private_nh.getNamespace(), machine, history),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
@@ -75,18 +85,35 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
 void Telemetry::show(std::shared_ptr<const Preview> preview) {
   thread_.post([this, preview = std::move(preview)] {
     // While a job runs, that job is shown.
-    if (jobs_.empty()) showJob(*preview);
+    if (jobs_.empty() && !scene_cleared_) showJob(*preview);
   });
 }
 
 void Telemetry::announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal,
-                            std::shared_ptr<const Preview> preview) {
-  thread_.post([this, number, goal, preview = std::move(preview)] { jobs_.push_back({number, goal, preview}); });
+                            std::shared_ptr<const Preview> preview, const std::string& name) {
+  thread_.post([this, number, goal, preview = std::move(preview), name] {
+    jobs_.push_back({number, goal, preview});
+    recorder_.announce(number, preview->plan, preview->first, name);
+  });
 }
 
 void Telemetry::withdrawJob(std::uint64_t number) {
   thread_.post([this, number] {
-    if (!jobs_.empty() && jobs_.back().number == number) jobs_.pop_back();
+    if (jobs_.empty() || jobs_.back().number != number) return;
+    jobs_.pop_back();
+    recorder_.withdraw(number);
+  });
+}
+
+void Telemetry::concludeJob(std::uint64_t number, const JobConclusion& conclusion) {
+  thread_.post([this, number, conclusion] { recorder_.conclude(number, conclusion); });
+}
+
+void Telemetry::clearScene() {
+  thread_.post([this] {
+    scene_cleared_ = true;
+    for (Job& job : jobs_) job.shown = false;
+    scene_.clear();
   });
 }
 
@@ -99,7 +126,7 @@ void Telemetry::tick() {
   readRecords();
   if (records_read_ == 0) return;
   Job* job = running();
-  if (job && !job->shown) {
+  if (job && !job->shown && !scene_cleared_) {
     showJob(*job->preview);
     job->shown = true;
   }
@@ -110,10 +137,11 @@ void Telemetry::tick() {
     publishState();
     publishFeedback();
   }
-  if (ticks_ % kTicksPerScene == 0 && job) scene_.update(toString(record_.state));
+  if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update(toString(record_.state));
   // By this thread's tick count: the system clock may be set back.
   if (ticks_ % ticks_per_diagnostics_ == 0) {
     diagnostics_.setJournalError(journal_.status().error);
+    diagnostics_.setHistoryError(history_.error());
     diagnostic_updater_.force_update();
   }
 }
@@ -135,12 +163,15 @@ void Telemetry::processRecord() {
 }
 
 void Telemetry::trackJob(Job& job) {
+  JobRecord& job_record = recorder_.of(job.number);
+  job_record.addCycle(record_);
   if (record_.has_setpoint) job.buffered.push_back({cycle(), record_.period, record_.setpoint});
   // A drive may buffer commands: publish a setpoint with the positions of the cycle before it reaches the axes.
   auto& buffered = job.buffered;
   while (!buffered.empty() && buffered.front().cycle + record_.drive.commands_waiting <= cycle()) {
     job.last = buffered.front().setpoint;
     if (job.shown) scene_.add(job.last, workPosition(job));
+    job_record.addSetpoint(job.last, record_);
     addToBatch(job, buffered.front());
     buffered.pop_front();
   }
@@ -151,6 +182,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
   const Setpoint& setpoint = written.setpoint;
   const std::uint64_t lost = setpoint.cycle - job.next_cycle;
   job.next_cycle = setpoint.cycle + 1;
+  recorder_.of(job.number).addLost(lost);
   if (lost > 0) publishBatch();
   if (batch_.setpoints.empty()) {
     batch_.header.stamp = ros::Time(record_.time);
@@ -174,6 +206,7 @@ void Telemetry::endJob(Job& job) {
   publishFeedback();
   if (job.shown) scene_.end(toString(record_.state));
   const std::uint64_t number = job.number;
+  recorder_.end(number);
   jobs_.pop_front();
   publishState();
   jobs_published_ = number;

@@ -70,7 +70,7 @@ void GroundView::run() {
   Clock::time_point earliest = Clock::now();
   while (const std::optional<Request> request = next(earliest)) {
     const auto before = worked();
-    publisher_.publish(markersOf(*request->job, request->reached));
+    publisher_.publish(request->job ? markersOf(*request->job, request->reached) : clearedArray());
     const auto pause = std::max(kLeastPause, kPausePerWork * (worked() - before));
     earliest = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
   }

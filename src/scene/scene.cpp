@@ -63,7 +63,11 @@ Scene::Scene(ros::NodeHandle private_nh)
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
       path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)),
       ground_(private_nh) {
-  // Remove what an earlier process left in rviz.
+  publishCleared();
+}
+
+/// Removes from rviz what this process or an earlier one has shown there.
+void Scene::publishCleared() {
   for (const ros::Publisher* publisher : {&scene_, &tool_path_, &executed_path_, &path_error_}) {
     publisher->publish(clearedArray());
   }
@@ -127,6 +131,12 @@ void Scene::end(const char* state) {
   path_error_.publish(shown_->errors.markers());
   publishRun(runText(state));
   showGround();
+}
+
+void Scene::clear() {
+  shown_.reset();
+  publishCleared();
+  ground_.clear();
 }
 
 void Scene::publishRun(const std::string& text) {

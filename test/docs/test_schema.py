@@ -334,6 +334,7 @@ class NodeParameters(Parameters):
         cls.machine = copy.deepcopy(Parameters.machine)
         cls.machine['journal'] = cls.folder.name + '/journal'
         cls.machine['offsets'] = cls.folder.name + '/offsets'
+        cls.machine['history'] = cls.folder.name + '/history'
         cls.machine['hardware']['type'] = cls.drive
 
     def refusal(self, machine):
@@ -391,7 +392,7 @@ class TestConfig(unittest.TestCase):
                    for name in self.leaves(yaml.safe_load((ROOT / file).read_text()))}
         needed = {name for section in ('machine', 'node', 'simulated_drive', 'hal')
                   for name, entry in SCHEMA[section].items() if 'default' not in entry}
-        self.assertEqual(needed - shipped, {'journal', 'offsets'})
+        self.assertEqual(needed - shipped, {'journal', 'offsets', 'history'})
 
 
 if __name__ == '__main__':

@@ -118,6 +118,7 @@ class Node:
         os.chmod(folder, 0o777)
         machine['journal'] = folder + '/journal'
         machine['offsets'] = folder + '/offsets'
+        machine['history'] = folder + '/history'
         rosgraph.Master('/hal_bench').setParam('/' + name, machine)
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen([*prefix, gc.program('grinder'), '__name:=' + name], stdin=subprocess.DEVNULL,

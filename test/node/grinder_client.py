@@ -526,6 +526,7 @@ def grinder():
         for kept in ('journal', 'offsets'):
             atexit.register(remove_file, rospy.get_param('/grinder/' + kept))
             atexit.register(remove_file, rospy.get_param('/grinder/' + kept) + '.lock')
+        atexit.register(shutil.rmtree, rospy.get_param('/grinder/history'), ignore_errors=True)
     return NODE[0]
 
 
@@ -554,7 +555,7 @@ def machine_file(path):
 
 
 class NodeProcess:
-    """A grinder's node with parameters of its own, and with a journal of its own unless the parameters name one."""
+    """A grinder's node with parameters of its own, and with files of its own unless the parameters name them."""
 
     def __init__(self, name, parameters, arguments=(), environment=(), output=None):
         """`output`: a file for what it prints, in place of one of its own."""
@@ -564,7 +565,8 @@ class NodeProcess:
             rospy.delete_param('/' + name)
         if parameters:
             parameters = dict({'journal': os.path.join(self.folder, 'journal'),
-                               'offsets': os.path.join(self.folder, 'offsets')}, **parameters)
+                               'offsets': os.path.join(self.folder, 'offsets'),
+                               'history': os.path.join(self.folder, 'history')}, **parameters)
             parameters = {key: value for key, value in parameters.items() if value is not None}
             rosgraph.Master(rospy.get_name()).setParam('/' + name, parameters)
         # Not a pipe, which would have to be emptied.

@@ -52,7 +52,8 @@ class TestMasterWatch(unittest.TestCase):
         self.start_master()
         self.addCleanup(lambda: self.master.poll() is not None or self.kill_master())
         parameters = dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
-                          offsets=os.path.join(self.folder, 'offsets'))
+                          offsets=os.path.join(self.folder, 'offsets'),
+                          history=os.path.join(self.folder, 'history'))
         self.api.setParam(NODE, parameters)
         with open(gc.package_file('urdf/grinder.urdf')) as urdf:
             self.api.setParam('/robot_description', urdf.read())

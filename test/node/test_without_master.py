@@ -57,7 +57,8 @@ class TestWithoutMaster(RunTest):
     def start_grinder(self, **parameters):
         with open(gc.package_file('urdf/grinder.urdf')) as urdf:
             self.start_master(grinder=dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
-                                           offsets=os.path.join(self.folder, 'offsets')),
+                                           offsets=os.path.join(self.folder, 'offsets'),
+                                           history=os.path.join(self.folder, 'history')),
                               robot_description=urdf.read(), **parameters)
         node = self.master.start([gc.program('grinder')])
         self.addCleanup(self.master.end, node)

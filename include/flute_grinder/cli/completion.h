@@ -10,6 +10,7 @@ namespace flute_grinder {
 constexpr const char* kAnyFile = "FILE";
 constexpr const char* kYamlFile = "FILE.yaml";
 constexpr const char* kUrdfFile = "FILE.urdf";
+constexpr const char* kFolder = "FOLDER";
 
 /// A script for bash that completes a program's sub-commands, options and their arguments, for `grind` and for
 /// `rosrun flute_grinder grind`. All other uses of rosrun keep the existing completion.

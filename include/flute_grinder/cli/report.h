@@ -6,16 +6,23 @@ namespace flute_grinder {
 
 /// Arguments of `grind report`.
 struct ReportOptions {
-  std::string file;        ///< points, setpoints (CSV), or a bag
-  std::string output;      ///< HTML
-  int job = 0;             ///< which of a bag's jobs, from 1; 0 for the last
-  std::string parameters;  ///< YAML of the machine whose limits are drawn
+  std::string file;         ///< a bag, a record of the grinder, or points or setpoints (CSV)
+  bool last = false;        ///< the newest record of the grinder instead
+  std::string html;         ///< file to write; empty for none
+  std::string pdf;          ///< file to write; empty for none
+  bool json = false;        ///< print the data
+  std::string note;         ///< the operator's, for the first page
+  std::string tolerances;   ///< YAML of what the tool is passed by; empty for the package's own
+  int job = 0;              ///< which of a bag's jobs, from 1; 0 for the last
+  std::string parameters;   ///< YAML of the machine, for files that do not tell its limits
   std::string urdf;
 };
 
 /// Writes a report: replaces this process by the Python program that draws it.
-/// @throw FileError or ParameterError if the machine cannot be read, FileError if the program is missing.
-[[noreturn]] void writeReport(const ReportOptions& options);
+/// @param node the grinder's name, as for historyFolder().
+/// @throw FileError or ParameterError if the machine cannot be read, FileError if there is no record, if the program is
+///        missing, or if nothing is asked for.
+[[noreturn]] void writeReport(const std::string& node, const ReportOptions& options);
 
 /// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return whether that succeeded; the
 /// reason is on stderr. @throw FileError if the program is missing.

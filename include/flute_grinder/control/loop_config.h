@@ -4,6 +4,8 @@
 #include "flute_grinder/core/axis_limits.h"
 #include "flute_grinder/core/machine_geometry.h"
 
+#include <string>
+
 namespace flute_grinder {
 
 /// How a probing move touches.
@@ -17,6 +19,7 @@ struct ProbingConfig {
 
 /// The machine, and the control loop's limits and timeouts.
 struct LoopConfig {
+  std::string name;  ///< of the robot description
   Machine machine;
   MachineGeometry geometry;
   Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]

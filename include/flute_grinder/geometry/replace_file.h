@@ -10,4 +10,9 @@ namespace flute_grinder {
 ///        synchronized.
 void replaceFile(const std::string& path, const std::string& text);
 
+/// Writes a file in one step in the same way, whether there is one or not. It can be read by all; a symbolic link is
+/// replaced itself. Until then the text is in a file of this name and a suffix of a dot and six characters.
+/// @throw std::system_error as replaceFile().
+void writeFile(const std::string& path, const std::string& text);
+
 }  // namespace flute_grinder

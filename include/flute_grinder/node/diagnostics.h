@@ -54,6 +54,8 @@ class Diagnostics {
   void add(const CycleRecord& record);
   /// Sets what is wrong with the journal; empty if nothing.
   void setJournalError(const std::string& error);
+  /// Sets why the records of jobs are not kept; empty if they are.
+  void setHistoryError(const std::string& error);
 
   void reportLoop(Status& status);
   void reportDrive(Status& status);
@@ -61,6 +63,7 @@ class Diagnostics {
   void reportLimits(Status& status);
   void reportBuffer(Status& status);
   void reportJournal(Status& status);
+  void reportHistory(Status& status);
 
  private:
   /// Position, velocity, acceleration and jerk of every axis as fractions of their limits, by LimitedQuantity.
@@ -101,7 +104,7 @@ class Diagnostics {
 
   std::mutex mutex_;  ///< guards everything below
   CycleRecord last_;
-  std::string journal_error_;
+  std::string journal_error_, history_error_;
   LimitCheck limit_check_;
   std::uint64_t next_setpoint_ = 0;  ///< cycle number
   int unknown_setpoints_ = 0;        ///< setpoints to come whose history is incomplete

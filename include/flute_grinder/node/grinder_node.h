@@ -3,6 +3,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/node/goal_desk.h"
+#include "flute_grinder/node/history.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/journal_writer.h"
 #include "flute_grinder/node/offset_desk.h"
@@ -46,6 +47,8 @@ class GrinderNode {
   pluginlib::UniquePtr<RobotHW> hw_;
   std::unique_ptr<JournalWriter> journal_;
   std::unique_ptr<OffsetStore> offsets_;
+  std::unique_ptr<History> history_;
+  ros::Publisher machine_;  ///< keeps the latched message
   std::unique_ptr<ControlLoop> loop_;
   JobGate gate_;
   std::unique_ptr<Planner> planner_;

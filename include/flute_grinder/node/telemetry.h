@@ -4,6 +4,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/diagnostics.h"
 #include "flute_grinder/node/frames.h"
+#include "flute_grinder/node/job_recorder.h"
 #include "flute_grinder/node/journal_writer.h"
 #include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/planner.h"
@@ -23,17 +24,17 @@
 namespace flute_grinder {
 
 /// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the frames and
-/// markers for rviz, and diagnostics. Its own thread reads the loop's records; nothing blocks on it. If it falls too
-/// far behind, records are lost, and it reports how many.
+/// markers for rviz, and diagnostics; and gathers the records of jobs for the history. Its own thread reads the loop's
+/// records; nothing blocks on it. If it falls too far behind, records are lost, and it reports how many.
 class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @param loop,journal,offsets must outlive this object.
+  /// @param loop,journal,offsets,history must outlive this object.
   /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, const DiagnosticThresholds& thresholds,
-            const std::string& urdf);
+            const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
+            const DiagnosticThresholds& thresholds, const std::string& urdf);
 
   /// Starts publishing.
   void start() { thread_.start(); }
@@ -41,10 +42,15 @@ class Telemetry {
   /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
   void show(std::shared_ptr<const Preview> preview);
   /// Announces a job before it starts. Thread safe; never blocks.
-  /// @param number the loop's number for this job.
-  void announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview);
+  /// @param number the loop's number for this job. @param name of the job as its goal gives it.
+  void announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview,
+                   const std::string& name);
   /// The job announced last will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
+  /// Tells the result of a job, for its record. Thread safe; never blocks.
+  void concludeJob(std::uint64_t number, const JobConclusion& conclusion);
+  /// Takes back what rviz shows of a job, and shows nothing any more. Thread safe; never blocks.
+  void clearScene();
 
   /// Number of the last job whose setpoints have all been published. Thread safe.
   std::uint64_t jobsPublished() const { return jobs_published_; }
@@ -86,6 +92,7 @@ class Telemetry {
   ControlLoop& loop_;
   const JournalWriter& journal_;
   const OffsetStore& offsets_;
+  const History& history_;
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
   ros::Publisher joint_states_, state_, setpoints_, feedback_;
@@ -95,6 +102,8 @@ class Telemetry {
   CycleRecord record_;  ///< the latest
   std::uint64_t records_read_ = 0;
   std::deque<Job> jobs_;  ///< announced; the first may be running
+  JobRecorder recorder_;
+  bool scene_cleared_ = false;
   SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
   std::uint64_t ticks_per_diagnostics_ = 1;

@@ -27,9 +27,12 @@ class GroundView {
   /// @param reached how far the job is ground; nothing for what it will be.
   void show(std::shared_ptr<const GrindJob> job, const std::optional<Reached>& reached);
 
+  /// Takes back what is shown.
+  void clear() { show(nullptr, std::nullopt); }
+
  private:
   struct Request {
-    std::shared_ptr<const GrindJob> job;
+    std::shared_ptr<const GrindJob> job;  ///< null to show nothing
     std::optional<Reached> reached;
   };
 

@@ -36,6 +36,9 @@ class Scene {
   /// Ends the job: publishes the final picture.
   void end(const char* state);
 
+  /// Takes back everything that is shown, so that it does not outlive the node in rviz.
+  void clear();
+
  private:
   struct Shown {
     std::shared_ptr<const GrindJob> job;
@@ -53,6 +56,8 @@ class Scene {
   void showGround();
   void publishRun(const std::string& text);
   std::string runText(const char* state) const;
+
+  void publishCleared();
 
   ros::Publisher scene_, tool_path_, executed_path_, path_error_;
   std::optional<Shown> shown_;

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind history`.
+struct HistoryOptions {
+  std::string folder;  ///< empty for the default folder of the grinder
+  bool json = false;
+};
+
+/// The folder in which a grinder keeps the records of its jobs by default, on the computer and for the user that run its
+/// node. @param node the grinder's name, as after --node; ros::init() must have been called.
+/// @throw std::runtime_error if there is no home directory.
+std::string historyFolder(const std::string& node);
+
+/// The path of the newest record in a folder; nothing if there is none.
+/// @throw FileError if the folder cannot be read.
+std::optional<std::string> newestRecord(const std::string& folder);
+
+/// Lists the records of a grinder, the newest last. @param node as for historyFolder().
+/// @return the exit status: 2 if a record could not be read.
+/// @throw FileError if the folder cannot be read.
+int printHistory(const std::string& node, const HistoryOptions& options);
+
+}  // namespace flute_grinder

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// @file
+/// The files in which a grinder keeps the records of its jobs: one folder for each grinder, one file for each job, named
+/// after the time at which the job started, so that the names sort by it.
+namespace flute_grinder {
+
+/// A time as records tell it, e.g. "2026-11-22T17:04:13.123Z". @param time since the epoch [s].
+std::string utcText(double time);
+
+/// The time in such a text, since the epoch [s]. @throw std::invalid_argument naming any other text.
+double timeOf(const std::string& utc);
+
+/// The name of a record's file, e.g. "20261122T170413.123Z.json". @param start of the job, since the epoch [s].
+std::string recordName(double start);
+
+/// Whether a file has the name of a record.
+bool isRecordName(std::string_view name);
+
+/// Whether it has the name under which a record is written before it gets its own; one stays if the power fails.
+bool isUnfinishedRecordName(std::string_view name);
+
+/// The paths of the records in a folder, the newest last.
+/// @throw std::filesystem::filesystem_error if the folder cannot be read.
+std::vector<std::string> recordsIn(const std::string& folder);
+
+}  // namespace flute_grinder

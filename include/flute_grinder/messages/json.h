@@ -1,0 +1,26 @@
+#pragma once
+
+#include "flute_grinder/core/axes.h"
+#include "flute_grinder/core/grind_job.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace flute_grinder {
+
+/// What is told in JSON: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
+using Json = nlohmann::ordered_json;
+
+/// One number per axis, in mm and deg, with the units in the names.
+/// @param per_time what the names end in, e.g. "_s" for velocities.
+Json toJson(const Axes& value, const std::string& per_time);
+
+/// A job in the keys and units of a job file: as YAML it is one, and read as one it is the same job, to the last bit if
+/// the job has come from a file. A wheel that has a file of its own is told by its figures.
+Json toJson(const GrindJob& job);
+
+/// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.
+std::string text(const Json& json, int indent = 2);
+
+}  // namespace flute_grinder

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cmath>
+
+namespace flute_grinder {
+
+/// Whether a control cycle counts as late: after more than 1.5 periods. @param period, nominal [s].
+inline bool isLate(double period, double nominal) { return !(period <= 1.5 * nominal); }
+
+/// Keeps the larger value; NaN is kept.
+inline void keepLargest(double& largest, double value) {
+  if (!(value <= largest) && !std::isnan(largest)) largest = value;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <thread>
+
+namespace flute_grinder {
+
+/// A thread for tasks that block on the disk, which it does one after the other. Thread safe; no call waits for a task.
+class DiskThread {
+ public:
+  DiskThread();
+  DiskThread(const DiskThread&) = delete;
+  DiskThread& operator=(const DiskThread&) = delete;
+  /// Waits up to 5 s for the tasks that were posted. After that the disk is presumed dead, and the thread is left to
+  /// itself with what its tasks hold.
+  ~DiskThread();
+
+  /// Queues a task and returns at once. @param task must hold all it uses, since it may outlive everything else.
+  void post(std::function<void()> task);
+
+ private:
+  struct Work;
+
+  std::shared_ptr<Work> work_;  ///< shared with the thread, which outlives this object if the disk is dead
+  std::thread thread_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,150 @@
+#include "flute_grinder/cli/history.h"
+
+#include "flute_grinder/cli/csv.h"
+#include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/cli/time_text.h"
+#include "flute_grinder/core/format.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/record_name.h"
+
+#include <ros/names.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <tuple>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+/// What is told of a record.
+struct Entry {
+  std::string file;
+  std::string started;  ///< as in the record
+  std::string job;
+  std::string tool;
+  std::string outcome, reason;
+  std::size_t strokes = 0;  ///< ground to their end
+  std::size_t passes = 0;   ///< of the job, from the first to grind on
+  double duration = 0;      ///< [s]
+  std::size_t holds = 0;
+};
+
+/// The passes of a job from a first one on, whose tooth and pass count from 1 here.
+std::size_t passesFrom(const GrindJob& job, const Json& first) {
+  const std::vector<ToothPass> passes = passOrder(job);
+  const auto is_first = [&](const ToothPass& p) { return p.tooth + 1 == first.at("tooth") && p.pass + 1 == first.at("pass"); };
+  const auto begin = std::find_if(passes.begin(), passes.end(), is_first);
+  if (begin == passes.end()) throw std::runtime_error("first: no pass of the job");
+  return static_cast<std::size_t>(passes.end() - begin);
+}
+
+/// @throw std::exception if it is no record.
+Entry readEntry(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw std::runtime_error("cannot be read");
+  const Json record = Json::parse(file);
+  if (record.at("record") != 1) throw std::runtime_error("record = " + record["record"].dump() + "; allowed: 1");
+  const GrindJob job = parseJob(record.at("job").at("file").dump(), "job.file");
+  const Json& strokes = record.at("strokes");
+  Entry entry;
+  entry.file = path;
+  entry.started = record.at("started");
+  entry.job = record.at("job").at("name");
+  entry.tool = toolText(job.cutter, job.tooth_angles.size());
+  entry.outcome = record.at("outcome");
+  entry.reason = record.at("reason");
+  entry.strokes = static_cast<std::size_t>(std::count_if(
+      strokes.begin(), strokes.end(), [](const Json& stroke) { return stroke.at("complete").get<bool>(); }));
+  entry.passes = passesFrom(job, record.at("first"));
+  entry.duration = timeOf(record.at("ended")) - timeOf(entry.started);
+  entry.holds = record.at("holds").size();
+  return entry;
+}
+
+Json toJson(const Entry& entry) {
+  return {{"file", entry.file},        {"started", entry.started}, {"job", entry.job},
+          {"tool", entry.tool},        {"outcome", entry.outcome}, {"reason", entry.reason},
+          {"strokes", entry.strokes},  {"passes", entry.passes},   {"duration_s", entry.duration},
+          {"holds", entry.holds}};
+}
+
+using Row = std::array<std::string, 7>;
+
+Row toRow(const Entry& entry) {
+  return {timeText(timeOf(entry.started), false),
+          entry.job.empty() ? "-" : entry.job,
+          entry.tool,
+          entry.outcome,
+          format("%zu of %zu", entry.strokes, entry.passes),
+          format("%.1f s", entry.duration),
+          std::to_string(entry.holds)};
+}
+
+void printTable(const std::vector<Entry>& entries) {
+  std::vector<Row> rows{{"start", "job", "tool", "outcome", "strokes", "duration", "holds"}};
+  std::transform(entries.begin(), entries.end(), std::back_inserter(rows), toRow);
+  std::array<std::size_t, std::tuple_size_v<Row>> widths{};
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) std::printf("%-*s  ", static_cast<int>(widths[i]), row[i].c_str());
+    std::printf("%s\n", row.back().c_str());
+  }
+}
+
+std::vector<std::string> pathsIn(const std::string& folder) {
+  try {
+    return recordsIn(folder);
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw FileError(folder + ": cannot be read: " + error.code().message());
+  }
+}
+
+}  // namespace
+
+std::string historyFolder(const std::string& node) {
+  const char* home = std::getenv("HOME");
+  if (!home || *home == '\0') throw std::runtime_error("HOME is not set; allowed: --folder FOLDER");
+  return std::string(home) + "/.ros/flute_grinder/history" + ros::names::resolve(node);
+}
+
+std::optional<std::string> newestRecord(const std::string& folder) {
+  const std::vector<std::string> paths = pathsIn(folder);
+  if (paths.empty()) return std::nullopt;
+  return paths.back();
+}
+
+int printHistory(const std::string& node, const HistoryOptions& options) {
+  const std::string folder = options.folder.empty() ? historyFolder(node) : options.folder;
+  std::vector<Entry> entries;
+  int status = 0;
+  for (const std::string& path : pathsIn(folder)) {
+    try {
+      entries.push_back(readEntry(path));
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s: %s\n", path.c_str(), error.what());
+      status = 2;
+    }
+  }
+  if (options.json) {
+    Json list = Json::array();
+    for (const Entry& entry : entries) list.push_back(toJson(entry));
+    print(list);
+  } else if (entries.empty()) {
+    std::printf("no records in %s\n", folder.c_str());
+  } else {
+    printTable(entries);
+  }
+  return status;
+}
+
+}  // namespace flute_grinder

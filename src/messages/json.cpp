@@ -1,0 +1,87 @@
+#include "flute_grinder/messages/json.h"
+
+#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/core/units.h"
+
+#include <type_traits>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+/// Where a key of a job file stands, e.g. "process.overtravel_mm[0]".
+Json& at(Json& file, const std::string& key) {
+  std::string pointer = "/";
+  for (const char c : key) {
+    if (c != ']') pointer += c == '.' || c == '[' ? '/' : c;
+  }
+  return file[Json::json_pointer(pointer)];
+}
+
+std::vector<double> degrees(const std::vector<double>& angles) {
+  std::vector<double> list;
+  for (const double angle : angles) list.push_back(shopNumber(angle, Unit::kRadian));
+  return list;
+}
+
+std::vector<double> evenAngles(std::size_t teeth) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < teeth; ++i) {
+    angles.push_back(static_cast<double>(i) * 360.0 / static_cast<double>(teeth) * kDegree);
+  }
+  return angles;
+}
+
+template <typename Choice>
+Json choiceJson(Choice choice) {
+  if constexpr (std::is_enum_v<Choice>) return toString(choice);
+  else return choice;
+}
+
+void addTeeth(Json& file, const GrindJob& job) {
+  if (job.tooth_angles == evenAngles(job.tooth_angles.size())) {
+    file["cutter"]["teeth"] = job.tooth_angles.size();
+  } else {
+    file["cutter"]["tooth_angles_deg"] = degrees(job.tooth_angles);
+  }
+  if (job.spiral_angles.empty()) return;
+  file["cutter"].erase("spiral_angle_deg");
+  file["cutter"]["spiral_angles_deg"] = degrees(job.spiral_angles);
+}
+
+void addWheelPoints(Json& file, const GrindJob& job) {
+  for (const ProfilePoint& point : job.wheel_points) {
+    file["process"]["wheel"]["points_mm"].push_back(
+        {shopNumber(point.w, Unit::kMetre), shopNumber(point.radius, Unit::kMetre)});
+  }
+}
+
+}  // namespace
+
+Json toJson(const Axes& value, const std::string& per_time) {
+  return {{"x_mm" + per_time, value[kX] / kMillimetre},
+          {"y_mm" + per_time, value[kY] / kMillimetre},
+          {"z_mm" + per_time, value[kZ] / kMillimetre},
+          {"a_deg" + per_time, value[kA] / kDegree}};
+}
+
+Json toJson(const GrindJob& job) {
+  Json file = Json::object();
+  visitJobFields([&](const JobField& field, auto of) { at(file, field.file_key) = shopNumber(of(job), field.unit); });
+  visitJobChoices([&](const std::string& path, int, auto of) {
+    const std::string wheel = "process.wheel_";
+    const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
+    at(file, of_wheel ? "process.wheel." + path.substr(wheel.size()) : path) = choiceJson(of(job));
+  });
+  if (!isTapered(job.process.wheel_profile)) file["process"]["wheel"].erase("side");
+  addTeeth(file, job);
+  addWheelPoints(file, job);
+  return file;
+}
+
+std::string text(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace flute_grinder

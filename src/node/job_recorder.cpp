@@ -1,0 +1,48 @@
+#include "flute_grinder/node/job_recorder.h"
+
+#include "flute_grinder/core/record_name.h"
+
+#include <utility>
+
+namespace flute_grinder {
+
+JobRecorder::JobRecorder(std::string grinder, MachineInfo machine, History& history)
+    : grinder_(std::move(grinder)), machine_(std::move(machine)), history_(history) {}
+
+JobRecorder::~JobRecorder() {
+  for (const auto& entry : jobs_) keep(entry.second.record);
+}
+
+void JobRecorder::announce(std::uint64_t number, const JobPlan& plan, const ToothPass& first,
+                           const std::string& name) {
+  jobs_[number].record = std::make_shared<JobRecord>(plan, first, name);
+}
+
+void JobRecorder::end(std::uint64_t number) {
+  jobs_.at(number).ended = true;
+  keepIfComplete(number);
+}
+
+void JobRecorder::conclude(std::uint64_t number, const JobConclusion& conclusion) {
+  const auto job = jobs_.find(number);
+  if (job == jobs_.end()) return;
+  job->second.record->conclude(conclusion);
+  job->second.concluded = true;
+  keepIfComplete(number);
+}
+
+void JobRecorder::keepIfComplete(std::uint64_t number) {
+  const Job job = jobs_.at(number);
+  if (!job.ended || !job.concluded) return;
+  jobs_.erase(number);
+  keep(job.record);
+}
+
+void JobRecorder::keep(const std::shared_ptr<const JobRecord>& record) {
+  if (!record->moved()) return;
+  history_.keep(recordName(record->started()), [record, grinder = grinder_, machine = machine_] {
+    return text(record->json(grinder, machine), -1) + "\n";
+  });
+}
+
+}  // namespace flute_grinder

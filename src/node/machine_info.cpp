@@ -1,0 +1,15 @@
+#include "flute_grinder/node/machine_info.h"
+
+#include "flute_grinder/control/loop_config.h"
+
+namespace flute_grinder {
+
+MachineInfo machineInfo(const LoopConfig& config, const std::string& drive) {
+  const AxisLimits& limits = config.machine.limits;
+  return {config.name,         VERSION,
+          drive,               config.machine.period,
+          limits.max_velocity, limits.max_acceleration,
+          config.following_error};
+}
+
+}  // namespace flute_grinder

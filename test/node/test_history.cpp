@@ -1,0 +1,155 @@
+#include "flute_grinder/node/history.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace flute_grinder {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPlenty = 1 << 20;
+
+class HistoryTest : public ::testing::Test {
+ protected:
+  HistoryTest() : folder_(makeFolder()) {}
+  ~HistoryTest() override { fs::remove_all(folder_); }
+
+  static fs::path makeFolder() {
+    std::string name = ::testing::TempDir() + "history_XXXXXX";
+    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
+    return name;
+  }
+
+  void open(std::uint64_t limit) { history_ = std::make_unique<History>(folder_ / "a" / "b", limit); }
+  void keep(const std::string& name, const std::string& text) {
+    history_->keep(name, [text] { return text; });
+  }
+  /// Waits until all is on the disk.
+  void close() { history_.reset(); }
+
+  static std::string nameOf(int number) {
+    std::string name = "20261122T170413.000Z.json";
+    name.replace(16, 3, std::to_string(100 + number));
+    return name;
+  }
+
+  static std::string read(const fs::path& path) {
+    std::ifstream file(path);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_ / "a" / "b")) names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  void put(const std::string& name, std::size_t size) const {
+    std::ofstream(folder_ / "a" / "b" / name) << std::string(size, '.');
+  }
+
+  const fs::path folder_;
+  std::unique_ptr<History> history_;
+};
+
+TEST_F(HistoryTest, KeepsEveryRecordWithinTheLimit) {
+  open(kPlenty);
+  for (int i = 0; i < 10; ++i) keep(nameOf(i), "record " + std::to_string(i));
+  close();
+  ASSERT_EQ(files().size(), 10U);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(read(folder_ / "a" / "b" / nameOf(i)), "record " + std::to_string(i));
+}
+
+TEST_F(HistoryTest, RemovesTheOldestBeyondTheLimit) {
+  open(250);
+  for (int i = 0; i < 5; ++i) keep(nameOf(i), std::string(100, 'x'));
+  close();
+  EXPECT_EQ(files(), (std::vector<std::string>{nameOf(3), nameOf(4)}));
+}
+
+TEST_F(HistoryTest, KeepsTheNewestWhateverItsSize) {
+  open(250);
+  keep(nameOf(0), "small");
+  keep(nameOf(1), std::string(1000, 'x'));
+  close();
+  EXPECT_EQ(files(), std::vector<std::string>{nameOf(1)});
+}
+
+TEST_F(HistoryTest, RemovesNothingThatIsNotItsOwn) {
+  fs::create_directories(folder_ / "a" / "b");
+  const std::vector<std::string> foreign{"20261122T170413.123Z.json.bak", "20261122T170413.json", "a.json", "notes.txt"};
+  for (const std::string& name : foreign) put(name, 1000);
+  put("20261122T170413.000Z.json.aB3xY9", 1000);  // left by a power failure
+  open(250);
+  for (int i = 0; i < 3; ++i) keep(nameOf(i), std::string(200, 'x'));
+  close();
+  std::vector<std::string> left = foreign;
+  left.push_back(nameOf(2));
+  std::sort(left.begin(), left.end());
+  EXPECT_EQ(files(), left);
+}
+
+TEST_F(HistoryTest, IsNeverReadHalf) {
+  open(kPlenty);
+  std::atomic<bool> done{false};
+  const std::string whole(1 << 16, 'x');
+  std::thread writer([&] {
+    for (int i = 0; i < 12; ++i) keep(nameOf(0), whole);
+    while (!fs::exists(folder_ / "a" / "b" / nameOf(1))) {
+      if (!fs::exists(folder_ / "a" / "b" / nameOf(0))) continue;
+      keep(nameOf(1), "the last");
+      std::this_thread::yield();
+    }
+    done = true;
+  });
+  while (!done) {
+    const fs::path file = folder_ / "a" / "b" / nameOf(0);
+    if (!fs::exists(file)) continue;
+    EXPECT_EQ(read(file).size(), whole.size());
+  }
+  writer.join();
+  close();
+}
+
+TEST_F(HistoryTest, TellsAFolderThatCannotBe) {
+  std::ofstream(folder_ / "a") << "a file";
+  open(kPlenty);
+  keep(nameOf(0), "x");
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_NE(history_->error().find((folder_ / "a" / "b").string()), std::string::npos) << history_->error();
+  // It is well again as soon as a record is kept.
+  fs::remove(folder_ / "a");
+  keep(nameOf(1), "y");
+  while (!history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(history_->error(), "");
+  close();
+  EXPECT_EQ(files().back(), nameOf(1));
+}
+
+TEST_F(HistoryTest, ARecordThatCannotBeMadeIsTold) {
+  open(kPlenty);
+  history_->keep(nameOf(0), []() -> std::string { throw std::runtime_error("no such thing"); });
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_NE(history_->error().find("no such thing"), std::string::npos);
+  close();
+  EXPECT_TRUE(files().empty());
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -1,0 +1,505 @@
+#!/usr/bin/env python3
+"""Shows that the grinder keeps a record of every job that moved, with the figures that follow from its setpoints, that the
+disk cannot hold up a job, and what `grind history` lists of the records; and that the node tells which machine it is."""
+
+import calendar
+import json
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rospkg
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticStatus
+from flute_grinder.msg import GrinderState, Machine
+
+import grinder_client as gc
+import path_checks as checks
+from grinder_client import DEG, EVEN, MM, MM_MIN, STROKE, UM, X, Y
+from test_diagnostics import Reports
+
+# Two unequal teeth of a cone in two passes; with time to interfere, and over soon.
+JOB = gc.paper(flute_length=8 * MM, feed=1200 * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 2.0], infeed=0.3 * MM,
+               cone_angle=8 * DEG)
+NAME = r'\d{8}T\d{6}\.\d{3}Z\.json'
+CYCLE = 0.001
+STAMP = 0.001  # to which a record tells its start
+
+MACHINE_KEYS = ['name', 'software', 'drive', 'period_ms', 'max_velocity', 'max_acceleration', 'max_following_error']
+KEYS = ['record', 'grinder', 'machine', 'job', 'started', 'ended', 'outcome', 'reason', 'first', 'work_offsets', 'planned',
+        'setpoints', 'late_cycles', 'strokes', 'holds', 'overrides']
+STROKE_KEYS = ['tooth', 'pass', 'depth_mm', 'started_s', 'duration_s', 'complete', 'feed_min_mm_min', 'feed_max_mm_min',
+               'deviation_um', 'following_error']
+
+
+def seconds(utc):
+    """Since the epoch."""
+    whole, milliseconds = re.fullmatch(r'(.*)\.(\d{3})Z', utc).groups()
+    return calendar.timegm(time.strptime(whole, '%Y-%m-%dT%H:%M:%S')) + int(milliseconds) / 1000
+
+
+def times_of(run):
+    """When each setpoint was written, by the stamps and the measured periods."""
+    times = []
+    for batch in run.batches:
+        at = batch.header.stamp.to_sec()
+        for i, setpoint in enumerate(batch.setpoints):
+            at += setpoint.cycle_period if i else 0
+            times.append(at)
+    return times
+
+
+class Kept(unittest.TestCase):
+    """A node with a folder of records."""
+
+    name = 'kept'
+    limit = 1e7
+
+    @classmethod
+    def setUpClass(cls):
+        cls.home = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.home)
+        # As by the launch file.
+        cls.parameter = cls.home + '/.ros/flute_grinder/history/'
+        cls.folder = cls.parameter + cls.name
+        cls.start()
+        cls.addClassCleanup(lambda: (cls.grinder.close(), cls.node.close()))
+
+    @classmethod
+    def start(cls):
+        cls.node = gc.NodeProcess(cls.name, dict(gc.machine(), history=cls.parameter, history_limit=float(cls.limit)))
+        cls.grinder = cls.node.client()
+
+    @classmethod
+    def files(cls):
+        return sorted(os.listdir(cls.folder)) if os.path.isdir(cls.folder) else []
+
+    @classmethod
+    def record_of(cls, do):
+        """What is new in the folder after a job, and what `do` returns."""
+        before = cls.files()
+        result = do()
+        gc.poll(lambda: [f for f in cls.files() if f not in before and re.fullmatch(NAME, f)], 'the record')
+        new, = [f for f in cls.files() if f not in before]
+        with open(os.path.join(cls.folder, new)) as file:
+            record = json.load(file)
+        record['file'] = new
+        return record, result
+
+
+class TestRecordOfAJob(Kept):
+    """One that is held, retracted, resumed and slowed down."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.grinder.make_ready()
+        assert cls.grinder.set_feed_override(0.8).success
+        cls.record, cls.job_run = cls.record_of(cls.grind)
+        cls.setpoints, cls.times = cls.job_run.setpoints, times_of(cls.job_run)
+        cls.started = seconds(cls.record['started'])
+
+    @classmethod
+    def grind(cls):
+        g = cls.grinder
+        run = g.send(JOB, job_name='two.yaml')
+        run.wait_past(lambda s: s.move == STROKE and s.tooth == 0 and s.pass_ == 1 and s.position[X] > 2 * MM, 'a stroke')
+        assert g.hold().success
+        g.wait_state(GrinderState.HELD)
+        assert g.retract().success
+        g.wait_state(GrinderState.RETRACTED)
+        assert g.resume().success
+        run.wait_past(lambda s: s.move == STROKE and s.tooth == 1 and s.position[X] > 2 * MM, 'the next tooth')
+        assert g.set_feed_override(1.1).success
+        return run.wait_complete()
+
+    def since(self, i):
+        """When a setpoint was written, in the record's time."""
+        return self.times[i] - self.started
+
+    def strokes(self):
+        """The numbers of the setpoints of each stroke, by tooth and pass."""
+        strokes = {}
+        for i, s in enumerate(self.setpoints):
+            if s.move == STROKE:
+                strokes.setdefault((s.tooth, s.pass_), []).append(i)
+        return strokes
+
+    def test_goal_succeeded(self):
+        self.assertEqual(self.job_run.status, 'SUCCEEDED', self.job_run.text)
+        self.assertTrue(checks.is_gapless(self.setpoints))
+
+    def test_has_the_keys(self):
+        self.assertEqual(list(self.record)[:-1], KEYS)
+        self.assertEqual(self.record['record'], 1)
+        self.assertEqual(self.record['grinder'], '/kept')
+        self.assertEqual(list(self.record['machine']), MACHINE_KEYS)
+        self.assertEqual(list(self.record['job']), ['name', 'digest', 'file'])
+        for stroke in self.record['strokes']:
+            self.assertEqual(list(stroke), STROKE_KEYS)
+
+    def test_is_named_after_its_start(self):
+        self.assertEqual(self.record['file'], re.sub('[-:]', '', self.record['started']) + '.json')
+        self.assertLess(abs(self.started - self.job_run.sent), gc.PATIENCE)
+        self.assertLess(self.started, self.times[0])
+        self.assertGreaterEqual(seconds(self.record['ended']) + STAMP, self.times[-1])
+
+    def test_outcome(self):
+        self.assertEqual((self.record['outcome'], self.record['reason']), ('done', ''))
+        self.assertEqual(self.record['first'], {'tooth': 1, 'pass': 1})
+        self.assertEqual(self.record['work_offsets'], {'x_mm': 0, 'y_mm': 0, 'z_mm': 0, 'a_deg': 0})
+        result = self.job_run.result
+        self.assertEqual(self.record['setpoints'], {'written': result.setpoints_written, 'lost': 0})
+        planned = self.record['planned']
+        self.assertEqual(planned['setpoints'], result.statistics.setpoints)
+        self.assertAlmostEqual(planned['duration_s'], result.statistics.duration, delta=1e-12)
+        self.assertAlmostEqual(planned['max_deviation_um'], result.statistics.max_deviation / UM, delta=1e-9)
+
+    def test_job_is_a_job_file(self):
+        path = os.path.join(self.home, 'told.yaml')
+        with open(path, 'w') as file:
+            yaml.safe_dump(self.record['job']['file'], file)
+        told = gc.job_from_file(path)
+        for name, value in JOB.items():
+            if name in told:
+                if isinstance(value, list):
+                    self.assertEqual(len(told[name]), len(value))
+                for a, b in zip(told[name], value) if isinstance(value, list) else [(told[name], value)]:
+                    self.assertAlmostEqual(a, b, delta=1e-12, msg=name)
+        self.assertEqual(self.record['job']['name'], 'two.yaml')
+        progress = self.grinder.fresh_state().progress
+        self.assertEqual((self.record['job']['name'], self.record['job']['digest']), (progress.job_name, progress.job_digest))
+        # The command line takes it, and it is the same job to the grinder.
+        planned = gc.grind('plan', path, '--json')
+        self.assertEqual(planned.returncode, 0, planned.stderr)
+
+    def test_strokes_are_those_of_the_setpoints(self):
+        told = self.record['strokes']
+        strokes = self.strokes()
+        self.assertEqual([(s['tooth'], s['pass']) for s in told], [(1, 1), (1, 2), (2, 1), (2, 2)])
+        self.assertEqual([(t + 1, p + 1) for t, p in strokes], [(1, 1), (1, 2), (2, 1), (2, 2)])
+        for stroke, indices in zip(told, strokes.values()):
+            self.assertTrue(stroke['complete'])
+            self.assertAlmostEqual(stroke['depth_mm'], {1: 0.3, 2: 0.5}[stroke['pass']], delta=1e-9)
+            self.assertAlmostEqual(stroke['started_s'], self.since(indices[0]), delta=STAMP + 2 * CYCLE)
+            self.assertAlmostEqual(stroke['duration_s'], self.times[indices[-1]] - self.times[indices[0]], delta=2 * CYCLE)
+            self.assertGreater(stroke['duration_s'], 0.1)
+
+    def test_feeds_are_those_of_the_flute(self):
+        for stroke, indices in zip(self.record['strokes'], self.strokes().values()):
+            feeds = [self.setpoints[i].feed for i in indices
+                     if self.setpoints[i].step == EVEN and 0 <= self.setpoints[i].position[X] <= 8 * MM]
+            self.assertAlmostEqual(stroke['feed_min_mm_min'], min(feeds) / MM_MIN, delta=1e-6)
+            self.assertAlmostEqual(stroke['feed_max_mm_min'], max(feeds) / MM_MIN, delta=1e-6)
+        # As the override says; the second was held.
+        first, held, _, last = self.record['strokes']
+        self.assertAlmostEqual(first['feed_max_mm_min'], 0.8 * 1200, delta=0.01)
+        self.assertEqual(held['feed_min_mm_min'], 0)
+        self.assertAlmostEqual(last['feed_max_mm_min'], 1.1 * 1200, delta=0.01)
+
+    def test_deviations_follow_from_the_curve(self):
+        for stroke, (pass_, indices) in zip(self.record['strokes'], self.strokes().items()):
+            largest = 0
+            for i in indices:
+                x, a = self.setpoints[i].position[X], self.setpoints[i].position[3] - 2.0 * pass_[0]
+                # LN((R0 + X tan C) / R0) tan S / tan C, at the angle of the tooth.
+                theory = math.tan(30 * DEG) / math.tan(8 * DEG) * math.log1p(x * math.tan(8 * DEG) / (5 * MM))
+                normal = math.cos(math.atan(math.tan(30 * DEG) * math.cos(8 * DEG)))
+                largest = max(largest, abs(theory - a) * (5 * MM + x * math.tan(8 * DEG)) * normal)
+            self.assertAlmostEqual(stroke['deviation_um'], largest / UM, delta=1e-5)
+            self.assertGreater(stroke['deviation_um'], 0)
+
+    def test_following_errors_are_those_of_the_positions_read(self):
+        for stroke, indices in zip(self.record['strokes'], self.strokes().values()):
+            for axis, (key, unit) in enumerate((('x_um', UM), ('y_um', UM), ('z_um', UM), ('a_mdeg', DEG / 1000))):
+                largest = max(abs(self.setpoints[i - 1].position[axis] - self.setpoints[i].actual[axis]) for i in indices)
+                self.assertAlmostEqual(stroke['following_error'][key], largest / unit, delta=1e-6)
+                self.assertGreater(stroke['following_error'][key], 0)
+
+    def test_hold_is_that_of_the_setpoints(self):
+        hold, = self.record['holds']
+        self.assertEqual((hold['reason'], hold['tooth'], hold['pass']), ('operator', 1, 2))
+        second = self.strokes()[(0, 1)]
+        # The feed falls for the first time, and stands.
+        speeds = [self.setpoints[i].feed for i in second]
+        steady = max(speeds)
+        falls = next(k for k in range(1, len(speeds)) if speeds[k] < speeds[k - 1] and speeds[k - 1] == steady)
+        begins = self.since(second[falls])
+        self.assertLess(begins - hold['at_s'], STAMP + 5 * CYCLE)
+        self.assertGreater(begins - hold['at_s'], -STAMP - CYCLE)
+        # The wheel comes back down from where it was lifted to.
+        lifted = [i for i in range(second[0], second[-1]) if self.setpoints[i].move != STROKE]
+        up = max(lifted, key=lambda i: (self.setpoints[i].position[Y], -i))
+        resumes = self.since(up + 1)
+        self.assertLess(abs(hold['at_s'] + hold['duration_s'] - resumes), STAMP + 5 * CYCLE)
+
+    def test_overrides(self):
+        start, change = self.record['overrides']
+        self.assertEqual((start['at_s'], start['percent'], start['tooth'], start['pass']), (0, 80, 1, 1))
+        self.assertAlmostEqual(change['percent'], 110, delta=1e-9)
+        self.assertEqual(change['tooth'], 2)
+        faster = next(i for i, s in enumerate(self.setpoints) if s.move == STROKE and s.feed > 0.801 * 1200 * MM_MIN)
+        self.assertEqual(change['pass'], self.setpoints[faster].pass_ + 1)
+        self.assertLess(self.since(faster) - change['at_s'], STAMP + 10 * CYCLE)
+        self.assertGreater(self.since(faster) - change['at_s'], -STAMP - CYCLE)
+
+    def test_late_cycles(self):
+        told = self.record['late_cycles']
+        periods = [s.cycle_period for s in self.setpoints]
+        # Those without a setpoint count too.
+        self.assertGreaterEqual(told['count'], sum(p > 1.5 * CYCLE for p in periods))
+        self.assertGreaterEqual(told['longest_ms'], 1000 * max(periods) - 1e-9)
+
+    def test_machine(self):
+        told, limits = self.record['machine'], self.grinder.limits()
+        message = rospy.wait_for_message('/kept/machine', Machine, gc.PATIENCE)
+        version = rospkg.RosPack().get_manifest('flute_grinder').version
+        self.assertEqual((told['name'], told['software'], told['drive'], told['period_ms']),
+                         ('grinder', version, 'flute_grinder/SimulatedDrive', 1))
+        self.assertEqual((message.name, message.version, message.drive, message.period),
+                         ('grinder', version, 'flute_grinder/SimulatedDrive', 0.001))
+        self.assertEqual(list(message.max_velocity), limits['max_velocity'])
+        self.assertEqual(list(message.max_acceleration), limits['max_acceleration'])
+        self.assertEqual(list(message.max_following_error), [0.001, 0.001, 0.001, 0.05])
+        for key, per, values in (('max_velocity', '_s', limits['max_velocity']),
+                                 ('max_acceleration', '_s2', limits['max_acceleration']),
+                                 ('max_following_error', '', message.max_following_error)):
+            self.assertEqual(list(told[key]), ['x_mm' + per, 'y_mm' + per, 'z_mm' + per, 'a_deg' + per])
+            for told_value, value, unit in zip(told[key].values(), values, (MM, MM, MM, DEG)):
+                self.assertAlmostEqual(told_value, value / unit, delta=1e-9)
+
+
+class TestRecords(Kept):
+    """Of every end of a job, and of no other goal."""
+
+    def setUp(self):
+        self.grinder.make_ready()
+
+    def restart(self, with_signal=signal.SIGTERM):
+        self.assertIn(self.node.end(with_signal), (0, -signal.SIGKILL))
+        self.grinder.close()
+        self.node.close()
+        type(self).start()
+
+    def check_broken_off(self, record, outcome, run):
+        self.assertEqual((record['outcome'], record['reason']), (outcome, run.text))
+        stroke, = record['strokes']
+        self.assertFalse(stroke['complete'])
+        self.assertLess(stroke['duration_s'], record['planned']['duration_s'])
+        self.assertEqual(record['setpoints'], {'written': run.result.setpoints_written, 'lost': 0})
+
+    def test_canceled(self):
+        def cancel():
+            run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
+            run.cancel()
+            return run.wait_complete()
+
+        record, run = self.record_of(cancel)
+        self.check_broken_off(record, 'canceled', run)
+        self.assertIn('canceled; stopped on the path', record['reason'])
+
+    def test_fault(self):
+        def fault():
+            run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
+            self.grinder.inject('emergency_stop')
+            return run.wait_complete()
+
+        record, run = self.record_of(fault)
+        self.check_broken_off(record, 'fault', run)
+        self.assertIn('emergency stop', record['reason'])
+
+    def test_interlock_is_the_reason_of_its_hold(self):
+        def dry():
+            run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
+            self.grinder.inject('coolant_lost')
+            self.grinder.wait_state(GrinderState.RETRACTED)
+            self.grinder.inject('none')
+            gc.poll(lambda: self.grinder.fresh_state().coolant_on and self.grinder.resume().success, 'the resume')
+            return run.wait_complete()
+
+        record, run = self.record_of(dry)
+        self.assertEqual(run.status, 'SUCCEEDED')
+        hold, = record['holds']
+        self.assertEqual((hold['reason'], hold['tooth'], hold['pass']), ('no coolant flows', 1, 1))
+        self.assertEqual(len(record['strokes']), 4)
+
+    def test_continued_job_tells_where_it_began(self):
+        record, _ = self.record_of(lambda: self.grinder.run(JOB, first_tooth=1, first_pass=1))
+        self.assertEqual(record['first'], {'tooth': 2, 'pass': 2})
+        self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(2, 2)])
+
+    def test_nothing_is_kept_of_what_did_not_move(self):
+        before = self.files()
+        self.assertEqual(self.grinder.send(JOB, dry_run=True).wait().status, 'SUCCEEDED')
+        run = self.grinder.send(JOB)
+        self.grinder.wait_state(GrinderState.STARTING)
+        run.cancel()
+        run.wait()
+        self.assertEqual(run.status, 'PREEMPTED')
+        if run.result.setpoints_written == 0:
+            # The next job's record is written after any of this.
+            self.record_of(lambda: self.grinder.run(gc.SHORT))
+            self.assertEqual(len(self.files()), len(before) + 1)
+
+    def test_end_of_the_node_keeps_the_record_and_a_restart_the_folder(self):
+        before = self.files()
+
+        def end():
+            run = self.grinder.send(JOB, job_name='broken off').wait_in_stroke(3 * MM)
+            self.restart()
+            return run
+
+        record, _ = self.record_of(end)
+        self.assertEqual((record['outcome'], record['job']['name']), ('canceled', 'broken off'))
+        self.assertIn('canceled; stopped on the path', record['reason'])
+        self.assertEqual(self.files()[:-1], before)
+        self.assertEqual(self.files()[-1], record['file'])
+
+    def test_kill_leaves_no_half_record(self):
+        before = self.files()
+        self.grinder.send(JOB).wait_in_stroke(3 * MM)
+        self.restart(signal.SIGKILL)
+        self.assertEqual(self.files(), before)
+
+
+class TestLimit(Kept):
+    limit = 6000
+
+    def test_oldest_go_first_and_what_is_not_ours_stays(self):
+        self.grinder.make_ready()
+        gc.poll(lambda: os.path.isdir(self.folder), 'the folder')
+        foreign = os.path.join(self.folder, 'notes.json')
+        with open(foreign, 'w') as file:
+            file.write('x' * 10000)
+        kept = []
+        for _ in range(4):
+            record, _ = self.record_of(lambda: self.grinder.run(gc.SHORT))
+            kept.append(record['file'])
+        size = os.path.getsize(os.path.join(self.folder, kept[-1]))
+        self.assertLess(4 * size, 4 * self.limit)
+        self.assertGreater(4 * size, self.limit, 'the limit is for fewer than these')
+        gc.poll(lambda: self.files() == kept[-(self.limit // size):] + ['notes.json'], 'the oldest gone')
+
+
+class TestBadFolder(unittest.TestCase):
+    """It is told, and the job does not mind."""
+
+    def test_is_told_and_the_job_is_ground(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        with open(os.path.join(folder, 'file'), 'w'):
+            pass
+        node = gc.NodeProcess('badly_kept', dict(gc.machine(), history=folder + '/file/history'))
+        self.addCleanup(node.close)
+        grinder = node.client()
+        self.addCleanup(grinder.close)
+        reports = Reports('badly_kept')
+        self.addCleanup(reports.subscriber.unregister)
+        told = reports.wait('History', DiagnosticStatus.WARN, 'history %s/file/history: ' % folder)
+        self.assertIn('Not a directory', told.message)
+        grinder.make_ready()
+        self.assertEqual(grinder.run(gc.SHORT).status, 'SUCCEEDED')
+        reports.wait('History', DiagnosticStatus.WARN, 'Not a directory')
+        reports.wait('Journal', DiagnosticStatus.OK)
+        self.assertRegex(node.output, r'(?s)WARN.*history %s/file/history: ' % folder)
+        # Well again as soon as a record can be kept.
+        os.remove(folder + '/file')
+        self.assertEqual(grinder.run(gc.SHORT).status, 'SUCCEEDED')
+        reports.wait('History', DiagnosticStatus.OK)
+        self.assertEqual(len(os.listdir(folder + '/file/history')), 1)
+
+
+class TestCommand(Kept):
+    """`grind history`, without a master."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.grinder.make_ready()
+        cls.first, _ = cls.record_of(lambda: cls.grinder.run(JOB, job_name='two.yaml'))
+
+        def cancel():
+            run = cls.grinder.send(JOB).wait_past(lambda s: s.move == STROKE and s.pass_ == 1, 'the second pass')
+            run.cancel()
+            return run.wait_complete()
+
+        cls.second, _ = cls.record_of(cancel)
+
+    def grind(self, *arguments, node=('--node', 'kept'), **environment):
+        return subprocess.run([gc.program('grind'), *node, 'history', *arguments], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE,
+                              env=dict(os.environ, HOME=self.home, ROS_MASTER_URI='http://localhost:1', TZ='UTC-1',
+                                       **environment))
+
+    def test_lists_the_newest_last(self):
+        done = self.grind()
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        head, *rows = [re.split('  +', line) for line in done.stdout.splitlines()]
+        self.assertEqual(head, ['start', 'job', 'tool', 'outcome', 'strokes', 'duration', 'holds'])
+        tool = 'D 10 mm, cone 8 deg, spiral 30 deg, rake 8 deg, 2 teeth'
+        for row, record, name, strokes in zip(rows, (self.first, self.second), ('two.yaml', '-'), ('4 of 4', '1 of 4')):
+            local = time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime(seconds(record['started']) + 3600))
+            lasted = seconds(record['ended']) - seconds(record['started'])
+            self.assertEqual(row[:3] + row[4:5] + row[6:], [local, name, tool, strokes, '0'])
+            self.assertAlmostEqual(float(row[5].split()[0]), lasted, delta=0.051)
+            self.assertEqual(row[3], record['outcome'])
+
+    def test_node_name_is_resolved(self):
+        self.assertEqual(self.grind(node=('--node', '/kept')).stdout, self.grind().stdout)
+        other = self.grind(node=())
+        self.assertEqual((other.returncode, other.stdout), (2, ''))
+        self.assertIn('.ros/flute_grinder/history/grinder: cannot be read: No such file', other.stderr)
+        self.assertIn('history/left/kept: cannot be read', self.grind(ROS_NAMESPACE='left').stderr)
+
+    def test_json(self):
+        done = self.grind('--json')
+        first, second = json.loads(done.stdout)
+        self.assertEqual(list(first), ['file', 'started', 'job', 'tool', 'outcome', 'reason', 'strokes', 'passes',
+                                       'duration_s', 'holds'])
+        self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))
+        self.assertEqual([first[key] for key in ('started', 'job', 'outcome', 'reason', 'strokes', 'passes', 'holds')],
+                         [self.first['started'], 'two.yaml', 'done', '', 4, 4, 0])
+        self.assertEqual([second['outcome'], second['reason'], second['strokes']], ['canceled', self.second['reason'], 1])
+
+    def test_what_cannot_be_read_is_named_and_the_rest_is_listed(self):
+        folder = os.path.join(self.home, 'other')
+        shutil.copytree(self.folder, folder)
+        with open(os.path.join(folder, self.first['file'])) as file:
+            whole = file.read()
+        broken = {'20200101T000000.000Z.json': whole[:len(whole) // 2], '20200101T000000.001Z.json': '',
+                  '20200101T000000.002Z.json': '{"record": 2}', '20200101T000000.003Z.json': '[]',
+                  '20200101T000000.004Z.json': whole.replace('"cutter"', '"knife"')}
+        for name, text in broken.items():
+            with open(os.path.join(folder, name), 'w') as file:
+                file.write(text)
+        with open(os.path.join(folder, 'notes.json'), 'w') as file:
+            file.write('not ours')
+        done = self.grind('--folder', folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertEqual(done.stdout, self.grind().stdout)
+        lines = done.stderr.splitlines()
+        for name in broken:
+            self.assertTrue(any(os.path.join(folder, name) in line for line in lines), (name, lines))
+        self.assertNotIn('notes', done.stderr)
+        done = self.grind('--folder', folder, '--json')
+        self.assertEqual((done.returncode, len(json.loads(done.stdout))), (2, 2))
+
+    def test_empty_folder(self):
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        done = self.grind('--folder', folder)
+        self.assertEqual((done.returncode, done.stdout), (0, 'no records in %s\n' % folder))
+        self.assertEqual(json.loads(self.grind('--folder', folder, '--json').stdout), [])
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_history')
+    rostest.rosrun('flute_grinder', 'history', '__main__')

@@ -1,0 +1,352 @@
+#include "flute_grinder/node/job_record.h"
+
+#include "control/fixtures.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/record_name.h"
+#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/node/job_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// @file
+/// The record of a job is made of its cycles. Here a job's own setpoints with readings, periods, holds and overrides made
+/// at random; each figure is computed once more from the list of all of them.
+
+namespace flute_grinder {
+namespace {
+
+constexpr double kStart = 1795367053.123;  ///< 2026-11-22 17:04:13.123 UTC
+const MachineInfo kMachine{"mill", "1.2.3", "some/Drive", 0.001, Axes(1, 2, 3, 4), Axes(5, 6, 7, 8), Axes(9, 10, 11, 12)};
+
+/// Two unequal teeth of a short cone in two passes.
+GrindJob shortJob() {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  job.cutter.flute_length = 2e-3;
+  job.process.overtravel_shank = 1e-3;
+  job.process.feed = 0.05;
+  job.process.depth = 1e-3;
+  job.process.depth_end = 0.8e-3;
+  job.process.infeed = 0.6e-3;
+  job.tooth_angles = {0, 3.1};
+  job.spiral_angles = {job.cutter.spiral_angle, job.cutter.spiral_angle * 0.9};
+  return job;
+}
+
+struct Cycle {
+  CycleRecord record;
+  bool has_setpoint = false;
+  Setpoint setpoint;  ///< that reaches the axes in this cycle
+};
+
+class JobRecordTest : public ::testing::Test {
+ protected:
+  JobRecordTest() {
+    plan_.program = std::make_shared<const GrindProgram>(job_, config_.machine, config_.machine.park);
+    plan_.statistics.setpoints = 4321;
+    plan_.statistics.duration = 4.32;
+    plan_.statistics.max_deviation = 0.5e-6;
+  }
+
+  double random(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine_); }
+  bool once(int in) { return std::uniform_int_distribution<>(1, in)(engine_) == 1; }
+
+  Cycle& cycle(MachineState state) {
+    Cycle cycle;
+    CycleRecord& r = cycle.record;
+    r.period = once(50) ? random(0.0015, 0.01) : random(0.0009, 0.0015);
+    time_ += r.period;
+    r.time = time_;
+    r.state = state;
+    r.feed_override = override_;
+    r.command_in_effect = command_;
+    for (int axis = 0; axis < kAxisCount; ++axis) r.position[axis] = command_[axis] + random(-1e-5, 1e-5);
+    cycles_.push_back(cycle);
+    return cycles_.back();
+  }
+
+  /// A hold of some cycles, which retracts as may be. @return the number of its cycles.
+  void hold(Interlock interlock) {
+    for (const MachineState state : {MachineState::kHolding, MachineState::kHeld, MachineState::kRetracting,
+                                     MachineState::kRetracted, MachineState::kJoggingRetracted}) {
+      for (int i = 0; i < 5; ++i) cycle(state).record.interlock = interlock;
+      if (once(3)) break;
+    }
+    cycle(MachineState::kResuming);
+  }
+
+  /// All cycles of the job.
+  void makeCycles() {
+    SetpointStream stream(plan_.program);
+    Setpoint setpoint;
+    for (int i = 0; i < 20; ++i) cycle(MachineState::kStarting);
+    while (stream.next(setpoint)) {
+      if (once(700)) hold(once(2) ? Interlock::kNone : Interlock::kCoolant);
+      if (once(300)) override_ = std::round(random(0, 120)) / 100;
+      stream.setFeedOverride(std::max(0.3, override_));
+      Cycle& c = cycle(MachineState::kRunning);
+      c.has_setpoint = true;
+      c.setpoint = setpoint;
+      command_ = setpoint.position;
+    }
+    cycle(MachineState::kReady);
+  }
+
+  Json recorded() {
+    JobRecord record(plan_, {0, 0}, "short.yaml");
+    for (const Cycle& c : cycles_) {
+      record.addCycle(c.record);
+      if (c.has_setpoint) record.addSetpoint(c.setpoint, c.record);
+    }
+    record.conclude({"done", "", 5});
+    return record.json("/grinder", kMachine);
+  }
+
+  /// The cycles of a stroke.
+  std::vector<Cycle> strokeCycles(int tooth, int pass) const {
+    std::vector<Cycle> stroke;
+    for (const Cycle& c : cycles_) {
+      const Setpoint& p = c.setpoint;
+      if (c.has_setpoint && p.move == MoveKind::kStroke && p.tooth == tooth && p.pass == pass) stroke.push_back(c);
+    }
+    return stroke;
+  }
+  double since(const CycleRecord& record) const { return record.time - cycles_.front().record.time; }
+
+  void expectStroke(const Json& told, int tooth, int pass) const;
+
+  const LoopConfig config_ = test_support::machineConfig();
+  const GrindJob job_ = shortJob();
+  JobPlan plan_;
+  std::mt19937 engine_{1};
+  std::vector<Cycle> cycles_;
+  double time_ = kStart;
+  double override_ = 1;
+  Axes command_ = config_.machine.park;
+};
+
+void JobRecordTest::expectStroke(const Json& told, int tooth, int pass) const {
+  const std::vector<Cycle> stroke = strokeCycles(tooth, pass);
+  EXPECT_EQ(told["tooth"], tooth + 1);
+  EXPECT_EQ(told["pass"], pass + 1);
+  EXPECT_TRUE(told["complete"]);
+  EXPECT_NEAR(told["started_s"], since(stroke.front().record), 1e-6);
+  EXPECT_NEAR(told["duration_s"], stroke.back().record.time - stroke.front().record.time, 1e-6);
+  double low = 1e9, high = 0, deviation = 0;
+  Axes following = Axes::Zero();
+  const double spiral = std::tan(job_.spiral_angles[static_cast<std::size_t>(tooth)]), cone = job_.cutter.cone_angle;
+  for (const Cycle& c : stroke) {
+    const double x = c.setpoint.position[kX];
+    const double normal = std::cos(std::atan(spiral * std::cos(cone)));
+    const double radius = job_.cutter.end_diameter / 2 + x * std::tan(cone);
+    deviation = std::max(deviation, std::abs(c.setpoint.path_error) * radius * normal);
+    following = following.max((c.record.command_in_effect - c.record.position).abs());
+    if (c.setpoint.step != StepKind::kEven || x < 0 || x > job_.cutter.flute_length) continue;
+    low = std::min(low, c.setpoint.feed);
+    high = std::max(high, c.setpoint.feed);
+  }
+  EXPECT_NEAR(told["feed_min_mm_min"], low * 60e3, 1e-6);
+  EXPECT_NEAR(told["feed_max_mm_min"], high * 60e3, 1e-6);
+  EXPECT_NEAR(told["deviation_um"], deviation * 1e6, 1e-9);
+  const Json& error = told["following_error"];
+  EXPECT_NEAR(error["x_um"], following[kX] * 1e6, 1e-9);
+  EXPECT_NEAR(error["y_um"], following[kY] * 1e6, 1e-9);
+  EXPECT_NEAR(error["z_um"], following[kZ] * 1e6, 1e-9);
+  EXPECT_NEAR(error["a_mdeg"], following[kA] * 180e3 / units::kPi, 1e-9);
+}
+
+TEST_F(JobRecordTest, StrokesAreThoseOfTheSetpoints) {
+  makeCycles();
+  const Json record = recorded();
+  ASSERT_EQ(record["strokes"].size(), 4U);
+  // 0.6 mm, then the rest, where the flute is deepest: at the small end.
+  const double depths[]{0.6, 1.0};
+  std::size_t i = 0;
+  for (const int tooth : {0, 1}) {
+    for (const int pass : {0, 1}) {
+      const Json& told = record["strokes"][i++];
+      expectStroke(told, tooth, pass);
+      EXPECT_NEAR(told["depth_mm"], depths[pass], 1e-12);
+    }
+  }
+}
+
+TEST_F(JobRecordTest, HoldsAndOverridesAreThoseOfTheCycles) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    engine_.seed(seed);
+    cycles_.clear();
+    override_ = once(2) ? 1 : 0.5;
+    makeCycles();
+    const Json record = recorded();
+    const Json& holds = record["holds"];
+    const Json& overrides = record["overrides"];
+    std::size_t hold = 0, change = 0;
+    double override = 1;
+    ToothPass pass;
+    for (std::size_t i = 0; i < cycles_.size(); ++i) {
+      const CycleRecord& r = cycles_[i].record;
+      if (r.feed_override != override) {
+        override = r.feed_override;
+        ASSERT_LT(change, overrides.size());
+        EXPECT_NEAR(overrides[change]["at_s"], since(r), 1e-6);
+        EXPECT_NEAR(overrides[change]["percent"], override * 100, 1e-12);
+        EXPECT_EQ(overrides[change]["tooth"], pass.tooth + 1);
+        EXPECT_EQ(overrides[change++]["pass"], pass.pass + 1);
+      }
+      if (r.state == MachineState::kHolding && cycles_[i - 1].record.state != MachineState::kHolding) {
+        std::size_t end = i;
+        while (cycles_[end].record.state != MachineState::kResuming) ++end;
+        ASSERT_LT(hold, holds.size());
+        EXPECT_NEAR(holds[hold]["at_s"], since(r), 1e-6);
+        EXPECT_NEAR(holds[hold]["duration_s"], cycles_[end].record.time - r.time, 1e-6);
+        EXPECT_EQ(holds[hold]["reason"], r.interlock == Interlock::kNone ? "operator" : "no coolant flows");
+        EXPECT_EQ(holds[hold]["tooth"], pass.tooth + 1);
+        EXPECT_EQ(holds[hold++]["pass"], pass.pass + 1);
+      }
+      if (cycles_[i].has_setpoint) pass = {cycles_[i].setpoint.tooth, cycles_[i].setpoint.pass};
+    }
+    EXPECT_EQ(hold, holds.size());
+    EXPECT_EQ(change, overrides.size());
+    EXPECT_GT(hold + change, 0U);
+  }
+}
+
+TEST_F(JobRecordTest, LateCyclesAreCounted) {
+  makeCycles();
+  double longest = 0;
+  int late = 0;
+  for (const Cycle& c : cycles_) {
+    longest = std::max(longest, c.record.period);
+    late += c.record.period > 0.0015;
+  }
+  const Json told = recorded()["late_cycles"];
+  EXPECT_EQ(told["count"], late);
+  EXPECT_GT(late, 0);
+  EXPECT_NEAR(told["longest_ms"], longest * 1000, 1e-9);
+}
+
+TEST_F(JobRecordTest, TellsJobMachineAndPlan) {
+  makeCycles();
+  const Json record = recorded();
+  EXPECT_EQ(record["record"], 1);
+  EXPECT_EQ(record["grinder"], "/grinder");
+  EXPECT_EQ(record["machine"]["name"], "mill");
+  EXPECT_EQ(record["machine"]["software"], "1.2.3");
+  EXPECT_EQ(record["machine"]["drive"], "some/Drive");
+  EXPECT_EQ(record["machine"]["period_ms"], 1);
+  EXPECT_EQ(record["machine"]["max_velocity"]["z_mm_s"], 3000);
+  EXPECT_EQ(record["machine"]["max_acceleration"]["x_mm_s2"], 5000);
+  EXPECT_NEAR(record["machine"]["max_following_error"]["a_deg"], 12 * 180 / units::kPi, 1e-9);
+  EXPECT_EQ(record["job"]["name"], "short.yaml");
+  EXPECT_EQ(record["job"]["digest"], jobDigest(job_));
+  EXPECT_EQ(jobDigest(parseJob(record["job"]["file"].dump(), "told")), jobDigest(job_));
+  EXPECT_EQ(record["planned"]["setpoints"], 4321);
+  EXPECT_EQ(record["planned"]["duration_s"], 4.32);
+  EXPECT_EQ(record["planned"]["max_deviation_um"], 0.5);
+  EXPECT_EQ(record["outcome"], "done");
+  EXPECT_EQ(record["started"], utcText(cycles_.front().record.time));
+  EXPECT_EQ(record["ended"], utcText(cycles_.back().record.time));
+  EXPECT_FALSE(record.contains("omitted"));
+}
+
+TEST_F(JobRecordTest, TellsWhatItLeavesOut) {
+  JobRecord record(plan_, {0, 0}, "");
+  for (int i = 0; i < 10004; ++i) {
+    override_ = i % 2 == 0 ? 0.5 : 1;
+    record.addCycle(cycle(MachineState::kRunning).record);
+    record.addCycle(cycle(MachineState::kHeld).record);
+    record.addCycle(cycle(MachineState::kHeld).record);
+  }
+  const Json told = record.json("/grinder", kMachine);
+  EXPECT_EQ(told["holds"].size(), 10000U);
+  EXPECT_EQ(told["overrides"].size(), 10000U);
+  EXPECT_EQ(told["omitted"], 8);
+  EXPECT_NEAR(told["holds"].back()["duration_s"], cycles_[29999].record.time - cycles_[29998].record.time, 0.01);
+}
+
+TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
+  makeCycles();
+  cycles_.resize(cycles_.size() / 3);
+  const std::string folder = std::filesystem::path(::testing::TempDir()) / "job_record_history";
+  std::filesystem::remove_all(folder);
+  {
+    History history(folder, 1 << 20);
+    JobRecorder recorder("/grinder", kMachine, history);
+    recorder.announce(7, plan_, {0, 0}, "short.yaml");
+    recorder.announce(8, plan_, {0, 0}, "has not moved.yaml");
+    for (const Cycle& c : cycles_) {
+      recorder.of(7).addCycle(c.record);
+      if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.record);
+    }
+  }
+  const std::vector<std::string> files = recordsIn(folder);
+  ASSERT_EQ(files.size(), 1U);
+  EXPECT_EQ(std::filesystem::path(files[0]).filename(), recordName(cycles_.front().record.time));
+  std::ifstream stream(files[0]);
+  const Json record = Json::parse(stream);
+  EXPECT_EQ(record["outcome"], "fault");
+  EXPECT_EQ(record["reason"], "the grinder's program ended before the job did");
+  EXPECT_FALSE(record["strokes"].back()["complete"]);
+  std::filesystem::remove_all(folder);
+}
+
+TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
+  const std::string folder = std::filesystem::path(::testing::TempDir()) / "job_record_order";
+  std::filesystem::remove_all(folder);
+  makeCycles();
+  for (const bool result_first : {true, false}) {
+    History history(folder, 1 << 20);
+    JobRecorder recorder("/grinder", kMachine, history);
+    recorder.announce(1, plan_, {0, 0}, "");
+    for (Cycle& c : cycles_) {
+      c.record.time += result_first ? 0 : 100;
+      recorder.of(1).addCycle(c.record);
+      if (c.has_setpoint) recorder.of(1).addSetpoint(c.setpoint, c.record);
+    }
+    if (result_first) recorder.conclude(1, {"canceled", "by hand", 9});
+    recorder.end(1);
+    if (!result_first) recorder.conclude(1, {"canceled", "by hand", 9});
+    recorder.conclude(1, {"fault", "too late", 0});
+  }
+  const std::vector<std::string> files = recordsIn(folder);
+  ASSERT_EQ(files.size(), 2U);
+  for (const std::string& file : files) {
+    std::ifstream stream(file);
+    EXPECT_EQ(Json::parse(stream)["reason"], "by hand");
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(RecordName, SortsByTimeAndReadsBack) {
+  EXPECT_EQ(utcText(kStart), "2026-11-22T17:04:13.123Z");
+  EXPECT_EQ(recordName(kStart), "20261122T170413.123Z.json");
+  EXPECT_NEAR(timeOf(utcText(kStart)), kStart, 1e-3);
+  std::mt19937 engine(1);
+  double time = kStart;
+  for (int i = 0; i < 10000; ++i) {
+    const double later = time + std::exp(std::uniform_real_distribution<>(-6, 15)(engine));
+    EXPECT_LT(recordName(time), recordName(later));
+    EXPECT_TRUE(isRecordName(recordName(later)));
+    EXPECT_NEAR(timeOf(utcText(later)), later, 1.001e-3);
+    time = std::uniform_real_distribution<>(0, 4e9)(engine);
+  }
+  for (const char* wrong : {"", "20261122T170413.123Z.jso", "20261122T170413.123Z.json.", "2026112xT170413.123Z.json"}) {
+    EXPECT_FALSE(isRecordName(wrong)) << wrong;
+  }
+  for (const char* wrong : {"", "2026-11-22", "2026-11-22T17:04:13.12Z", "2026-11-22T17:04:13.123+"}) {
+    EXPECT_THROW(timeOf(wrong), std::invalid_argument) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace flute_grinder

@@ -2,6 +2,7 @@
 keeps an index of all messages, of all topics, in memory: hundreds of MB for a day's job."""
 
 import bz2
+import os
 import struct
 
 import numpy as np
@@ -9,7 +10,9 @@ import roslz4
 
 from record import SourceError
 
-BAG_HEADER, INDEX, CHUNK, CONNECTION = 3, 4, 5, 7
+INDEX, CHUNK, CONNECTION = 4, 5, 7
+NOT_WHOLE = 'the bag was not closed, or is cut off; "rosbag reindex" saves what is in it'
+
 LENGTH = struct.Struct('<I')
 ENTRY = np.dtype([('time', '<u8'), ('offset', '<u4')])
 DECOMPRESS = {b'none': bytes, b'bz2': bz2.decompress, b'lz4': roslz4.decompress}
@@ -33,18 +36,18 @@ class BagFile:
         self._file = file
         if not file.readline().startswith(b'#ROSBAG V2.0'):
             raise SourceError('is a bag of another version; allowed: 2.0')
-        header, _ = self._record()
+        header, _ = self._record() or ({b'index_pos': bytes(8)}, b'')
         self._end, = struct.unpack('<Q', header[b'index_pos'])
         if self._end == 0:
-            raise SourceError('the bag was not closed, or is cut off; "rosbag reindex" saves what is in it')
+            raise SourceError(NOT_WHOLE)
         self._begin = file.tell()
         self._connections = {}  # topic, type and digest by number
+        if file.seek(0, os.SEEK_END) <= self._end:
+            raise SourceError(NOT_WHOLE)
         file.seek(self._end)
-        while True:
-            record = self._record()
-            if not record or record[0][b'op'][0] != CONNECTION:
-                break
-            self._add_connection(*record)
+        for header, data in iter(self._record, None):
+            if header[b'op'][0] == CONNECTION:
+                self._add_connection(header, data)
         self.kinds = {topic: (kind, digest) for topic, kind, digest in self._connections.values()}
 
     def _record(self):
@@ -52,6 +55,8 @@ class BagFile:
         length = self._file.read(4)
         if not length:
             return None
+        if len(length) < 4:
+            raise SourceError(NOT_WHOLE)
         header = self._exactly(LENGTH.unpack(length)[0])
         size, = LENGTH.unpack(self._exactly(4))
         return fields_of(header), self._exactly(size)
@@ -59,7 +64,7 @@ class BagFile:
     def _exactly(self, size):
         data = self._file.read(size)
         if len(data) < size:
-            raise SourceError('the bag is cut off; "rosbag reindex" saves what is in it')
+            raise SourceError(NOT_WHOLE)
         return data
 
     def _add_connection(self, header, data):

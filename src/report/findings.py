@@ -2,6 +2,7 @@
 jobs, with more."""
 
 import json
+from datetime import datetime
 
 from record import AXES, DEG, MM, MS, SourceError
 from verdict import criteria, verdict
@@ -12,6 +13,10 @@ KINDS = {'table': 'points of a curve, from "grind table"', 'setpoints': 'setpoin
          'run': 'setpoints, from "grind run"', 'bag': 'bag of the grinder', 'record': 'the grinder\'s own record'}
 
 LIMITS = ('max_velocity', 'max_acceleration', 'max_following_error')
+
+
+def time_of(stamp):
+    return datetime.fromisoformat(stamp.replace('Z', '+00:00'))
 
 
 def to_si(by_axis):
@@ -55,7 +60,7 @@ class Findings:
             data['note'] = note
         data.update(record.head)
         if job_file:
-            data.setdefault('job', {'name': '', 'file': job_file})
+            data.setdefault('job', {'name': data.pop('job_name', ''), 'file': job_file})
         if tool:
             data['tool'] = tool
         self.limits = {name: to_si(data['machine'][name]) for name in LIMITS} if 'machine' in data else given_limits
@@ -65,9 +70,11 @@ class Findings:
             data.update(self._setpoints(record, tool))
         if record.kind == 'bag':
             data.update(self._loop(record))
+        if record.kind == 'record':
+            data['duration_s'] = (time_of(data['ended']) - time_of(data['started'])).total_seconds()
         if job_file:
             data['criteria'] = criteria(data, tolerances)
-            data['verdict'] = verdict(data)
+            data['verdict'], data['verdict_because'] = verdict(data)
         data['left_out'] = self._left_out(record, no_tool)
 
     @staticmethod

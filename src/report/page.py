@@ -2,9 +2,9 @@
 
 import html
 import os
-from datetime import datetime
 
 from figures import QUANTITIES
+from findings import time_of
 
 PAGE = '''<!DOCTYPE html>
 <html lang="en">
@@ -68,7 +68,7 @@ def number(value, digits):
 
 def local(stamp):
     """A point in time on the clock of this computer."""
-    return datetime.fromisoformat(stamp.replace('Z', '+00:00')).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
+    return time_of(stamp).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
 
 
 def clock(seconds):
@@ -136,23 +136,27 @@ def outcome(data):
     return data['outcome'] + (': ' + data['reason'] if data.get('reason') else '')
 
 
+VERDICTS = {'passed': 'PASSED', 'failed': 'FAILED', 'incomplete': 'PASSED AS FAR AS MEASURED'}
+
+
 def verdict_line(data):
-    said = data['verdict']
-    kind = said if said in ('passed', 'failed') else 'unknown'
-    line = '<p><span class="verdict %s">%s</span></p>' % (kind, {'passed': 'PASSED', 'failed': 'FAILED'}.get(said, 'NOT COMPLETE'))
-    return line + ('<p>%s</p>' % text(said) if kind == 'unknown' else '')
+    said, because = data['verdict'], '; '.join(data['verdict_because'])
+    return '<p><span class="verdict %s">%s</span> %s</p>' % (said, VERDICTS[said], text(because))
+
+
+def shown(value, criterion, sign=''):
+    if value is None:
+        return None
+    digits = criterion['digits']
+    return '%s%s %s' % (sign, '%.3g' % value if digits is None else '%.*f' % (digits, value), criterion['unit'])
 
 
 def criteria_table(data):
     table = Table(['', 'asked', 'measured', 'tolerance', 'result', 'place'], (1, 2, 3))
     for c in data['criteria']:
-        unit, digits = ' ' + c['unit'], c['digits']
-        asked = None if c['asked'] is None else number(c['asked'], digits) + unit
-        if c['tolerance'] is None and asked:
-            asked = '≥ ' + asked
-        table.add(c['name'], asked, c['remark'] or (None if c['measured'] is None else number(c['measured'], digits) + unit),
-                  None if c['tolerance'] is None else '± ' + number(c['tolerance'], digits) + unit, c['result'], c['place'],
-                  classes={4: c['result'] if c['result'] in ('passed', 'failed') else 'unknown'})
+        table.add(c['name'], shown(c['asked'], c, '≥ ' if c['tolerance'] is None else ''),
+                  c['remark'] or shown(c['measured'], c), shown(c['tolerance'], c, '± '), c['result'], c['place'],
+                  classes={4: c['result'].replace(' ', '-')})
     return table.html()
 
 
@@ -257,7 +261,8 @@ def page(data, parts):
     if data.get('strokes'):
         body += ['<h2>Teeth and passes</h2>', stroke_table(data), events_between(data)]
     if parts.get('tool'):
-        body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
+        body += ['<h2>%s</h2>' % ('The tool that the job asks for' if data['kind'] == 'record' else 'The ground tool'),
+                 pictures(parts, 'tool')]
     if parts.get('feed'):
         body += ['<h2>Feed</h2>', pictures(parts, 'feed')]
     for name, title, *_ in QUANTITIES:

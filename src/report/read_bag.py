@@ -9,10 +9,10 @@ import numpy as np
 from actionlib_msgs.msg import GoalStatus
 from bag_file import BagFile
 from diagnostic_msgs.msg import DiagnosticArray
-from flute_grinder.msg import GrindActionResult, GrinderState, Machine, SetpointBatch, WorkOffsets
+from flute_grinder.msg import GrindActionGoal, GrindActionResult, GrinderState, Machine, SetpointBatch, WorkOffsets
 from record import BLOCK, DEG, MM, MS, ROW, UM, Record, SourceError
 
-KINDS = {kind._type: kind for kind in (SetpointBatch, GrinderState, GrindActionResult, Machine, WorkOffsets, DiagnosticArray)}
+KINDS = {kind._type: kind for kind in (SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, Machine, WorkOffsets, DiagnosticArray)}
 
 OUTCOMES = {GoalStatus.SUCCEEDED: 'done', GoalStatus.PREEMPTED: 'canceled', GoalStatus.ABORTED: 'fault'}
 
@@ -79,10 +79,11 @@ class BagReader:
         self._last_names, self._goal = b'?', ''  # frame and goal of the last batch, as on the wire
         self._last_state = None
         self._machine = None
-        self._results = {}
+        self._names, self._results = {}, {}  # of jobs by goal id
         self._diagnostics = {}
         self._record = Record('bag')
         self.take = {SetpointBatch._type: self._take_batch, GrinderState._type: self._take_state,
+                     GrindActionGoal._type: self._take_goal,
                      GrindActionResult._type: self._take_result, Machine._type: self._take_machine,
                      WorkOffsets._type: self._take_offsets, DiagnosticArray._type: self._take_diagnostics}
 
@@ -139,6 +140,10 @@ class BagReader:
         if not self._overrides or message.override != self._overrides[-1][1]:
             self._overrides.append((at[0], message.override, *at[1:]))
 
+    def _take_goal(self, data):
+        message = decoded(GrindActionGoal, data)
+        self._names[message.goal_id.id] = message.goal.job_name
+
     def _take_result(self, data):
         message = decoded(GrindActionResult, data)
         self._results[message.status.goal_id.id] = message
@@ -186,7 +191,7 @@ class BagReader:
     def _head(self, number):
         goal = self._jobs[number - 1]
         head = {'grinder': self._node.rstrip('/') if self._node.startswith('/') else '/' + self._node.rstrip('/'),
-                'in_bag': '%d of %d, goal %s' % (number, len(self._jobs), goal),
+                'job_name': self._names.get(goal, ''), 'in_bag': '%d of %d, goal %s' % (number, len(self._jobs), goal),
                 'started': iso(self._start), 'ended': iso(self._end)}
         if self._machine:
             head['machine'] = machine_head(self._machine)

@@ -37,12 +37,13 @@ def read_tolerances(path):
 
 class Criterion:
     """One line of the verdict. All in `unit`; asked, measured and place may be None. tolerance: largest difference from what
-    is asked; None: `asked` is the least allowed."""
+    is asked; None: `asked` is the least allowed. is_asked: whether the job asks for it at all. digits: behind the point, or
+    None: three in all."""
 
-    def __init__(self, name, unit, digits, asked, tolerance):
+    def __init__(self, name, unit, digits, asked, tolerance, is_asked=True):
         self.name, self.unit, self.digits, self.asked, self.tolerance = name, unit, digits, asked, tolerance
         self.measured, self.place, self.remark = None, '', ''
-        self._worst = -math.inf
+        self._is_asked, self._worst = is_asked, -math.inf
 
     def add(self, value, place, asked=None):
         """A measured value; the one that is farthest off remains. None: there is nothing to measure where there should be."""
@@ -54,13 +55,16 @@ class Criterion:
 
     @property
     def result(self):
+        if not self._is_asked:
+            return 'not asked'
         if self._worst == -math.inf:
             return 'not measured'
         return 'passed' if self._worst <= (self.tolerance or 0) else 'failed'
 
     def head(self):
-        return {'name': self.name, 'unit': self.unit, 'digits': self.digits, 'asked': self.asked, 'measured': self.measured,
-                'tolerance': self.tolerance, 'place': self.place, 'result': self.result, 'remark': self.remark}
+        asked, tolerance = (self.asked, self.tolerance) if self._is_asked else (None, None)
+        return {'name': self.name, 'unit': self.unit, 'digits': self.digits, 'asked': asked, 'measured': self.measured,
+                'tolerance': tolerance, 'place': self.place, 'result': self.result, 'remark': self.remark}
 
 
 def place_of(stroke, x=None):
@@ -68,7 +72,7 @@ def place_of(stroke, x=None):
 
 
 def of_strokes(job_file, strokes, tolerances):
-    deviation = Criterion('path deviation', 'µm', 3, 0, job_file['interpolation']['tolerance_um'])
+    deviation = Criterion('path deviation', 'µm', None, 0, job_file['interpolation']['tolerance_um'])
     following = Criterion('following error in strokes', 'µm', 2, 0, tolerances['following_error_um'])
     asked = job_file['process']['feed_mm_min']
     feed = Criterion('feed held', 'mm/min', 1, asked, asked * tolerances['feed_percent'] / 100)
@@ -87,19 +91,22 @@ def of_strokes(job_file, strokes, tolerances):
     return deviation, following, feed
 
 
-def of_tool(tool, tolerances):
-    sections = tool['sections'] if tool else []
-    first = sections[0]['teeth'][0] if sections else {}
-    rake = Criterion('rake', 'deg', 3, first.get('asked_rake_deg'), tool['rake_tolerance_deg'] if tool else None)
-    core = Criterion('core diameter', 'mm', 3, None, tolerances['core_diameter_mm'])
+def of_tool(job_file, tool, tolerances):
+    """tool: as ground, or None if it was not measured."""
+    cutter = job_file['cutter']
+    rake = Criterion('rake', 'deg', 3, cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])
+    # At the small end, where the job asks for it.
+    core = Criterion('core diameter', 'mm', 3, cutter.get('core_diameter_mm'), tolerances['core_diameter_mm'],
+                     bool(cutter.get('core_diameter_mm')))
     land = Criterion('land', 'mm', 3, tolerances['land_mm'], None)
     spiral = Criterion('spiral angle', 'deg', 3, None, tolerances['spiral_angle_deg'])
+    sections = tool['sections'] if tool else []
+    for section in sections[:1]:
+        core.add(section['core_diameter_mm'], 'X = 0.000 mm', section['asked_core_diameter_mm'])
     for section in sections:
-        at = 'X = %.3f mm' % section['x_mm']
-        core.add(section['core_diameter_mm'], at, section['asked_core_diameter_mm'])
         for i, tooth in enumerate(section['teeth'], 1):
-            place = 'tooth %d, %s' % (i, at)
-            rake.add(tooth['rake_deg'], place, tooth['asked_rake_deg'])
+            place = 'tooth %d, X = %.3f mm' % (i, section['x_mm'])
+            rake.add(tooth['rake_deg'], place)
             land.add(tooth['land_mm'], place)
             spiral.add(tooth['spiral_deg'], place, tooth['asked_spiral_deg'])
     return rake, core, land, spiral
@@ -114,18 +121,21 @@ def criteria(data, tolerances):
     if 'late_cycles' in data and cycles:
         count = data['late_cycles']['count']
         late.add(100 * count / cycles, '%d of %d cycles, the longest %.3f ms' % (count, cycles, data['late_cycles']['longest_ms']))
-    return [c.head() for c in (deviation, *of_tool(data.get('tool'), tolerances), following, feed, late)]
+    # A record of the grinder has no positions of which a tool could be computed: its tool is the one that the job asks for.
+    ground = None if data['kind'] == 'record' else data.get('tool')
+    return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), following, feed, late)]
 
 
 def verdict(data):
-    """passed, failed, or why neither can be told."""
-    results = [c['result'] for c in data['criteria']]
-    if data.get('outcome') not in (None, 'done') or 'failed' in results:
-        return 'failed'
-    unknown = []
+    """passed, failed, or incomplete; and why."""
+    failed = ['%s' % c['name'] for c in data['criteria'] if c['result'] == 'failed']
+    if data.get('outcome') not in (None, 'done'):
+        failed.insert(0, 'the job ended as %s' % data['outcome'])
+    if failed:
+        return 'failed', failed
+    unknown = ['%s: not measured' % c['name'] for c in data['criteria'] if c['result'] == 'not measured']
     if data.get('outcome') is None:
-        unknown.append('the end of the job is not in the record')
+        unknown.insert(0, 'the end of the job is not in the file')
     if data.get('setpoints', {}).get('lost'):
-        unknown.append('%d setpoints are missing' % data['setpoints']['lost'])
-    unknown += ['%s: not measured' % c['name'] for c in data['criteria'] if c['result'] == 'not measured']
-    return 'passed' if not unknown else 'not complete: ' + '; '.join(unknown)
+        unknown.insert(0, '%d setpoints are not in the file' % data['setpoints']['lost'])
+    return ('incomplete', unknown) if unknown else ('passed', [])

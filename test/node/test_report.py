@@ -2,27 +2,34 @@
 """Shows that `record:=true` writes a bag of all setpoints, which Ctrl-C closes, and that `grind report` makes of it, and of
 the CSV files, one HTML file whose figures are the job's and whose pictures show its points."""
 
-import base64
+import calendar
+import glob
 import html.parser
+import json
 import os
 import re
 import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree as xml
 import xmlrpc.client
 
+import pypdf
 import rosbag
 import rosgraph
 import rospy
 import rostest
+from PIL import Image
 
+import browser
 import grinder_client as gc
 import path_checks as checks
 from grinder_client import DEG, JOINTS, MM, ODD, STROKE, UM, X
 
+PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
 PAPER_JOB = gc.package_file('jobs/paper.yaml')
 SVG = '{http://www.w3.org/2000/svg}'
 HREF = '{http://www.w3.org/1999/xlink}href'
@@ -30,9 +37,9 @@ UNITS = [MM, MM, MM, DEG]
 
 # Pictures of each kind of file, in order.
 PATH = ['path', 'path-start', 'path-end', 'error']
-MOTION = ['feed', 'speed', 'acceleration']
-MEASURED = ['following', 'timing']
-TOOL = ['tool-sections', 'tool-figures']
+TOOL = ['tool', 'section-1', 'section-2', 'section-3', 'rake', 'core-diameter', 'land', 'spiral']
+COMMANDED = ['%s-%s' % (name, axis) for name in ('speed', 'acceleration') for axis in 'xyza']
+FOLLOWING = ['following-%s' % axis for axis in 'xyza']
 
 FILES = {}  # made once for all tests
 
@@ -46,14 +53,14 @@ class Recording:
         self.csv = os.path.join(folder, 'run.csv')
         launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=recorded', 'record:=true',
                                    'bag:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal'),
+                                   'history:=' + os.path.join(folder, '.ros/flute_grinder/history/'),
                                    'config:=' + gc.machine_file(os.path.join(folder, 'machine.yaml'))],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             self.node = gc.Grinder('recorded')
             self.wait_for_recorder()
             self.node.make_ready()
-            self.run = gc.grind('--node', 'recorded', 'run', PAPER_JOB, '--csv', self.csv)
-            assert self.run.returncode == 0, self.run.stderr
+            self.grind_with_hold_and_override()
             self.report_while_recording = gc.grind('report', self.bag + '.active', '-o', os.path.join(folder, 'no.html'))
             self.node.send(gc.PAPER).wait_in_stroke(10 * MM)
         finally:
@@ -63,6 +70,22 @@ class Recording:
         self.node.close()
         ids = list(dict.fromkeys(batch.goal_id for batch in self.node.batches))
         self.jobs = [[b for b in self.node.batches if b.goal_id == goal] for goal in ids]
+        records = glob.glob(os.path.join(folder, '.ros/flute_grinder/history/*/*.json'))
+        self.record = min(records)
+
+    def grind_with_hold_and_override(self):
+        """The job by the command line; in its stroke it is held, and then ground at half the feed."""
+        with subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--csv', self.csv],
+                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True) as run:
+            self.node.wait_for(lambda: any(s.position[X] > 4 * MM for b in self.node.batches for s in b.setpoints), 'the stroke')
+            self.node.hold()
+            self.node.wait_state('held')
+            self.node.set_feed_override(0.5)
+            self.node.resume()
+            self.node.wait_for(lambda: self.node.batches[-1].setpoints[-1].position[X] > 12 * MM, 'the way at half the feed')
+            self.node.set_feed_override(1)
+            error = run.communicate(timeout=gc.PATIENCE)[1]
+            assert run.returncode == 0, error
 
     def wait_for_recorder(self):
         """Waits until the recorder is connected to all that the grinder publishes."""
@@ -85,19 +108,26 @@ def setUpModule():
 
 
 class Page(html.parser.HTMLParser):
-    """A report: `rows` are its tables' rows by their first column, `pictures` the SVG trees by the figures' ids."""
+    """A report: `rows` are its tables' rows by their first column, `tables` the same by the heading before, `pictures` the SVG
+    trees by the figures' ids."""
 
-    EMPTY = ('meta', 'img')
+    EMPTY = ('meta',)
 
     def __init__(self, path):
         super().__init__()
         self.open, self.tags, self.links, self.text = [], [], [], ''
-        self.rows, self.pictures, self.captions = {}, {}, {}
+        self.rows, self.tables, self.pictures, self.captions, self.headings = {}, {}, {}, {}, []
         self._row, self._figure = [], None
         with open(path, encoding='utf-8') as file:
             self.source = file.read()
-        self.feed(self.source)
+        self.feed(re.sub(r'<figure id="([a-z0-9-]+)"[^>]*>\n(<svg.*?</svg>)', self._take_picture, self.source, flags=re.DOTALL))
         self.close()
+
+    def _take_picture(self, match):
+        name, svg = match.groups()
+        assert name not in self.pictures, 'twice the figure ' + name
+        self.pictures[name] = Picture(name, svg)
+        return '<figure id="%s">' % name
 
     def handle_starttag(self, tag, attributes):
         attributes = dict(attributes)
@@ -105,13 +135,9 @@ class Page(html.parser.HTMLParser):
         self.links += [attributes[name] for name in ('src', 'href', 'srcset', 'data', 'action') if name in attributes]
         if tag == 'figure':
             self._figure = attributes['id']
-            assert self._figure not in self.captions, 'twice the figure ' + self._figure
             self.captions[self._figure] = ''
-        if tag == 'img':
-            assert attributes['alt']
-            kind, data = attributes['src'].split(',')
-            assert kind == 'data:image/svg+xml;base64', kind
-            self.pictures[self._figure] = Picture(base64.b64decode(data, validate=True))
+        if tag in ('h1', 'h2', 'summary'):
+            self.headings.append('')
         if tag == 'tr':
             self._row = []
         if tag in ('td', 'th'):
@@ -123,11 +149,14 @@ class Page(html.parser.HTMLParser):
         assert self.open.pop() == tag, 'not nested: ' + tag
         if tag == 'tr':
             self.rows.setdefault(self._row[0], self._row[1:])
+            self.tables.setdefault(self.headings[-1], []).append(self._row)
 
     def handle_data(self, data):
         self.text += data
         if self.open and self.open[-1] in ('td', 'th'):
             self._row[-1] += data
+        if self.open and self.open[-1] in ('h1', 'h2', 'summary'):
+            self.headings[-1] += data
         if 'figcaption' in self.open:
             self.captions[self._figure] += data
 
@@ -135,28 +164,45 @@ class Page(html.parser.HTMLParser):
 class Picture:
     """An SVG that was drawn."""
 
-    def __init__(self, data):
-        self.root = xml.fromstring(data)
-        self.size = tuple(float(self.root.get(name).rstrip('pt')) for name in ('width', 'height'))
+    def __init__(self, name, svg):
+        self._name = name
+        self.root = xml.fromstring(svg)
+        self.label = self.root.get('aria-label')
+        self.size = tuple(float(size) for size in self.root.get('viewBox').split()[2:])
+        self.text = ' '.join(''.join(text.itertext()) for text in self.root.iter(SVG + 'text'))
 
     def panel(self, number):
-        return self.root.find(".//%sg[@id='axes_%d']" % (SVG, number))
+        return self.root.find(".//%sg[@id='%s-axes_%d']" % (SVG, self._name, number))
 
     def marks(self, number=1):
         """The marker points of each plot in a panel, in drawing order."""
         found = []
         for group in self.panel(number).findall(SVG + 'g'):
-            uses = group.findall('.//%suse' % SVG) if group.get('id').startswith('line2d') else []
+            uses = group.findall('.//%suse' % SVG) if group.get('id').startswith(self._name + '-line2d') else []
             if uses:
                 found.append([(float(use.get('x')), float(use.get('y'))) for use in uses])
         return found
+
+    def ticks(self, number, along='y'):
+        """The labels of a panel's axis, and where they stand."""
+        found = []
+        for group in self.panel(number).iter(SVG + 'g'):
+            if not re.search(r'-%stick_\d+$' % along, group.get('id', '')):
+                continue
+            use, text = group.find('.//%suse' % SVG), group.find('.//%stext' % SVG)
+            found.append((''.join(text.itertext()).strip(), float(use.get(along))))
+        return found
+
+    def title(self, number):
+        """Its last text."""
+        return ''.join(list(self.panel(number).iter(SVG + 'text'))[-1].itertext())
 
     def lines(self, number=1, dashed=False):
         """The vertices of each line in a panel."""
         found = []
         for group in self.panel(number).findall(SVG + 'g'):
             path = group.find(SVG + 'path')
-            if group.get('id').startswith('line2d') and path is not None:
+            if group.get('id').startswith(self._name + '-line2d') and path is not None:
                 if ('stroke-dasharray' in path.get('style')) == dashed:
                     numbers = [float(n) for n in re.findall(r'-?[\d.]+', path.get('d'))]
                     found.append(list(zip(numbers[::2], numbers[1::2])))
@@ -178,32 +224,37 @@ class ReportCase(unittest.TestCase):
         os.remove(output)
         return page
 
-    def figure(self, page, name):
-        """The number that a row begins with."""
-        return float(page.rows[name][0].split()[0])
+    def data(self, source, *arguments):
+        done = gc.grind('report', source, '--json', *arguments)
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        return json.loads(done.stdout)
 
     def assert_page(self, page, pictures):
         """It is whole, needs no other file, and has these pictures, each with something in it."""
         self.assertEqual(page.open, [])
         self.assertTrue(page.source.startswith('<!DOCTYPE html>'))
-        self.assertEqual([link for link in page.links if not link.startswith('data:image/svg+xml;base64,')], [])
-        self.assertEqual({'script', 'link', 'iframe', 'object', 'embed', 'base'} & set(page.tags), set())
-        self.assertNotRegex(page.source, r'@import|url\(|https?://')
+        self.assertEqual(page.links, [])
+        self.assertEqual({'script', 'link', 'iframe', 'object', 'embed', 'base', 'img'} & set(page.tags), set())
+        self.assertNotRegex(re.sub(r' xmlns(:xlink)?="[^"]+"', '', page.source), r'@import|url\((?!#)|https?://')
+        ids = re.findall(r'\bid="([^"]+)"', page.source)
+        self.assertEqual(len(ids), len(set(ids)))
         self.assertEqual(list(page.pictures), pictures)
         for name, picture in page.pictures.items():
-            self.assertGreater(min(picture.size), 200, name)
+            self.assertTrue(picture.label, name)
+            self.assertGreater(min(picture.size), 150, name)
             self.assertLess(picture.vertices(), 30000, name)
-            self.assertTrue(sum(len(m) for m in picture.marks()) > 5 or picture.vertices() > 200, name + ' is blank')
-            self.assertRegex(page.captions[name], r'\b(mm|ms)\b', name)
+            self.assertTrue(sum(len(m) for m in picture.marks()) > 5 or picture.vertices() > 100, name + ' is blank')
+            self.assertRegex(page.captions[name], r'\b(mm|ms|deg)\b', name)
             self.assert_nothing_outside(picture)
             for element in picture.root.iter():
-                self.assertTrue(element.get(HREF, '#').startswith('#'), name)
+                self.assertTrue(element.get(HREF, '#').startswith('#' + name), name)
 
     def assert_nothing_outside(self, picture):
-        for number in range(1, 5):
+        # A line beyond what a panel shows, such as a limit, is cut off by its clip path.
+        for number in range(1, 3):
             if picture.panel(number) is None:
                 continue
-            for x, y in sum(picture.marks(number) + picture.lines(number), []):
+            for x, y in sum(picture.marks(number), []):
                 self.assertTrue(0 <= x <= picture.size[0] and 0 <= y <= picture.size[1], (x, y))
 
     def assert_drawn(self, marks, data):
@@ -261,29 +312,47 @@ class TestPlan(ReportCase):
     @classmethod
     def setUpClass(cls):
         cls.page = cls.report(cls(), FILES['plan'])
+        cls.found = cls.data(cls(), FILES['plan'])
         cls.rows = read_csv(FILES['plan'])
 
     def test_page(self):
-        self.assert_page(self.page, PATH + MOTION)
+        self.assert_page(self.page, ['feed'] + COMMANDED + PATH)
         self.assertIn('Following error and loop timing: the CSV file of a plan has', self.page.text)
-        self.assertIn('Deviation at the cutter\'s surface: it depends', self.page.text)
+        self.assertIn('a CSV file does not have the job', self.page.text)
+        self.assertNotIn('PASSED', self.page.text)
 
     def test_figures_are_those_that_plan_prints(self):
-        printed = FILES['printed']
-        for name, row in (('setpoints', 'points'), ('duration', 'duration'), ('largest odd error', 'largest odd error'),
-                          ('largest even error', 'largest even error')):
-            self.assertEqual(self.page.rows[row][0].split()[0], re.search(r'(?m)^%s +(\S+)' % name, printed).group(1), name)
-        for column, name in ((0, 'largest velocity'), (2, 'largest acceleration')):
-            line = re.search(r'(?m)^%s +X (\S+) +Y (\S+) +Z (\S+) \S+ +A (\S+) ' % name, printed)
-            self.assertEqual([self.page.rows[axis][column].split()[0] for axis in 'XYZA'], list(line.groups()), name)
+        def printed(name):
+            return re.search(r'(?m)^%s +(.*)$' % name, FILES['printed']).group(1)
+        self.assertEqual(self.found['points'], int(printed('setpoints')))
+        self.assertEqual(float(printed('duration').split()[0]), round(self.found['duration_s'], 3))
+        for parity in ('odd', 'even'):
+            self.assertEqual(printed('largest %s error' % parity).split()[0], '%.4e' % self.found[parity + '_error_rad'])
+        for key, name in (('speed', 'velocity'), ('acceleration', 'acceleration')):
+            figures = re.match(r'X (\S+) +Y (\S+) +Z (\S+) \S+ +A (\S+) ', printed('largest ' + name)).groups()
+            found = ['%.5g' % max(axis[key]['stroke'], axis[key]['rapid']) for axis in self.found['axes']]
+            self.assertEqual(found, list(figures), name)
 
-    def test_largest_feed_is_the_jobs(self):
-        self.assertAlmostEqual(self.figure(self.page, 'largest feed'), 600, delta=600e-6)
+    def test_strokes_and_what_is_between_them_are_apart(self):
+        # From the CSV itself: the fastest cycle with and without an odd or even step.
+        for i, (axis, column) in enumerate(zip(self.found['axes'], ('x_mm', 'y_mm', 'z_mm', 'a_rad'))):
+            largest = {True: 0.0, False: 0.0}
+            for before, row in zip(self.rows, self.rows[1:]):
+                speed = abs(float(row[column]) - float(before[column])) / 1e-3
+                in_stroke = row['step'] != 'none'
+                largest[in_stroke] = max(largest[in_stroke], speed)
+            scale = 1 / DEG if i == 3 else 1
+            self.assertAlmostEqual(axis['speed']['stroke'], largest[True] * scale, delta=1e-6 * scale)
+            self.assertAlmostEqual(axis['speed']['rapid'], largest[False] * scale, delta=1e-6 * scale)
+
+    def test_feed_is_the_jobs(self):
+        stroke, = self.found['strokes']
+        self.assertAlmostEqual(stroke['feed_max_mm_min'], 600, delta=600e-6)
 
     def test_limits_are_the_machines(self):
         machine = gc.machine()['joint_limits']
-        for axis, joint, unit in zip('XYZA', JOINTS, UNITS):
-            self.assertEqual(self.page.rows[axis][3].split()[0], '%.5g' % (machine[joint]['max_acceleration'] / unit))
+        for axis, joint, unit in zip(self.found['axes'], JOINTS, UNITS):
+            self.assertAlmostEqual(axis['acceleration']['limit'], machine[joint]['max_acceleration'] / unit, delta=1e-6)
 
     def test_limits_are_those_of_another_machine(self):
         with open(gc.package_file('config/grinder.yaml')) as file:
@@ -291,20 +360,19 @@ class TestPlan(ReportCase):
         with open(self.path('machine.yaml'), 'w') as file:
             file.write(text)
         page = self.report(FILES['plan'], '--machine', self.path('machine.yaml'))
-        self.assertEqual([page.rows[axis][3] for axis in 'XYZ'], ['750 mm/s²'] * 3)
+        self.assertEqual([row[3] for row in page.tables['Acceleration of the axes'][1:4]], ['750 mm/s²'] * 3)
 
-    def test_speeds_are_drawn_between_their_limits(self):
-        for panel in range(1, 5):
+    def test_line_is_as_high_as_the_largest_value(self):
+        for axis, found in zip('xyza', self.found['axes']):
             for name in ('speed', 'acceleration'):
-                line, = self.page.pictures[name].lines(panel)
-                low, high = sorted(l[0][1] for l in self.page.pictures[name].lines(panel, dashed=True))
-                ys = [y for _, y in line]
-                self.assertTrue(low - 0.1 <= min(ys) <= max(ys) <= high + 0.1, (name, panel))
-                # How near it comes to a limit, which is above and below alike.
-                column = 0 if name == 'speed' else 2
-                largest, limit = (float(self.page.rows['XYZA'[panel - 1]][c].split()[0]) for c in (column, column + 1))
-                middle = (low + high) / 2
-                self.assertAlmostEqual(max(abs(y - middle) for y in ys) / (high - middle), largest / limit, delta=2e-3)
+                picture = self.page.pictures['%s-%s' % (name, axis)]
+                for panel, part in ((1, 'stroke'), (2, 'rapid')):
+                    ticks = {float(t.replace('−', '-')): y for t, y in picture.ticks(panel)}
+                    scale = (ticks[max(ticks)] - ticks[min(ticks)]) / (max(ticks) - min(ticks))
+                    ys = [y for line in picture.lines(panel) for _, y in line]
+                    told = float(re.search(r'largest (\S+) ', picture.title(panel)).group(1))
+                    self.assertAlmostEqual(max(abs(y - ticks[min(ticks)] + scale * min(ticks)) for y in ys) / abs(scale), told,
+                                           delta=0.01 * told + 1e-9, msg=(name, axis, part))
 
     def test_enlarged_points_are_the_strokes_first_and_last(self):
         stroke = [(float(r['x_mm']), float(r['a_rad']), r['step']) for r in self.rows if r['step'] != 'none']
@@ -333,13 +401,13 @@ class TestPlan(ReportCase):
 
     def test_no_point_is_lost_where_there_are_too_many_to_draw(self):
         self.assertEqual(len(self.rows) % 2, 1)
-        page = self.report(self.long_plan(spikes=[1e-3, -0.9e-3]))
-        self.assert_page(page, PATH + MOTION)
-        self.assertEqual(page.rows['points'], [str(30 * (len(self.rows) - 1))])
-        self.assertEqual(page.rows['strokes'], ['30'])
-        self.assertEqual(page.rows['largest odd error'], ['1.0000e-03 rad'])
-        for axis in 'XYZA':
-            self.assertEqual(page.rows[axis], self.page.rows[axis])
+        path = self.long_plan(spikes=[1e-3, -0.9e-3])
+        page, found = self.report(path), self.data(path)
+        self.assert_page(page, ['feed'] + COMMANDED + PATH)
+        self.assertEqual(found['points'], 30 * (len(self.rows) - 1))
+        self.assertEqual([(s['tooth'], s['pass']) for s in found['strokes']], [(1, n) for n in range(1, 31)])
+        self.assertEqual(found['odd_error_rad'], 1e-3)
+        self.assertEqual(found['axes'], self.found['axes'])
         line, = page.pictures['error'].lines(1)
         heights = sorted(y for _, y in line)
         # The spikes stand out by much of the panel, upward and downward.
@@ -355,13 +423,18 @@ class TestBag(ReportCase):
         cls.recording = FILES['recording']
         cls.batches = cls.recording.jobs[0]
         cls.setpoints = [s for b in cls.batches for s in b.setpoints]
-        cls.page = cls.report(cls(), cls.recording.bag, '--job', '1')
+        cls.page = cls.report(cls(), cls.recording.bag, '--job', '1', '--note', 'Blank 7 <of 9>')
+        cls.found = cls.data(cls(), cls.recording.bag, '--job', '1')
+        cls.start = cls.batches[0].header.stamp.to_sec()
+
+    def criterion(self, name, found=None):
+        return next(c for c in (found or self.found)['criteria'] if c['name'] == name)
 
     def test_bag_has_all_topics(self):
         with rosbag.Bag(self.recording.bag) as bag:
             topics = bag.get_type_and_topic_info().topics
-        self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states', 'recorded/grind/goal', 'recorded/grind/result',
-                                          'recorded/setpoints', 'recorded/state'])
+        self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states'] + ['recorded/' + name for name in (
+            'grind/goal', 'grind/result', 'machine', 'offsets', 'setpoints', 'state')])
         self.assertTrue(all(topic.message_count > 0 for topic in topics.values()))
 
     def test_bag_has_every_setpoint(self):
@@ -371,18 +444,37 @@ class TestBag(ReportCase):
         self.assertEqual(cycles, list(range(len(self.setpoints))))
 
     def test_page(self):
-        self.assert_page(self.page, PATH + MOTION + MEASURED + TOOL)
-        self.assertRegex(self.page.rows['job'][0], r'^1 of 2 in the bag')
+        self.assert_page(self.page, TOOL + ['feed'] + FOLLOWING + COMMANDED + ['timing'] + PATH)
+        self.assertRegex(self.page.rows['job in the bag'][0], r'^1 of 2, ')
         self.assertEqual(self.page.rows['outcome'], ['done'])
+        self.assertIn('Note: Blank 7 <of 9>', self.page.text)
         self.assertNotIn('missing', self.page.rows)
         self.assertNotIn('Left out', self.page.text)
 
+    def test_first_page_tells_job_wheel_setup_machine_and_software(self):
+        package = xml.parse(gc.package_file('package.xml'))
+        for row, told in (('end diameter', '10 mm'), ('flute length', '30 mm'), ('cone', '5 deg'), ('rake', '8 ± 0.5 deg'),
+                          ('shank', '16 mm'), ('set-up', 'swivel 31.769 deg, height 2.788 mm'), ('grinder', '/recorded'),
+                          ('wheel', 'straight, Ø 100 mm, 3 mm wide, corners 0 and 0 mm'),
+                          ('machine', 'grinder'), ('software', 'flute_grinder ' + package.findtext('version'))):
+            self.assertEqual(self.page.rows[row], [told])
+        self.assertEqual(self.page.headings[0], 'paper.yaml')
+        for dimension in ('Ø 10', 'Ø 16', '30', 'cone 5°'):
+            self.assertIn(dimension, self.page.pictures['tool'].text)
+
+    def test_when(self):
+        begun = calendar.timegm(time.strptime(self.found['started'].split('.')[0], '%Y-%m-%dT%H:%M:%S'))
+        self.assertAlmostEqual(begun, self.start, delta=1.01)
+        self.assertAlmostEqual(self.found['duration_s'], self.batches[-1].end_stamp.to_sec() - self.start, delta=1e-3)
+
     def test_figures_are_those_of_the_streamed_csv(self):
-        of_csv = self.report(self.recording.csv)
-        for name in ('points', 'duration', 'strokes', 'largest odd error', 'largest even error', 'largest feed'):
-            self.assertEqual(self.page.rows[name], of_csv.rows[name], name)
-        for axis in 'XYZA':
-            self.assertEqual(self.page.rows[axis], of_csv.rows[axis])
+        of_csv = self.data(self.recording.csv)
+        for name in ('points', 'odd_error_rad', 'even_error_rad'):
+            self.assertEqual(self.found[name], of_csv[name], name)
+        for mine, theirs in zip(self.found['axes'], of_csv['axes']):
+            for key in ('speed', 'acceleration', 'following'):
+                for part in ('stroke', 'rapid'):
+                    self.assertAlmostEqual(mine[key][part], theirs[key][part], delta=1e-9)
 
     def test_errors_are_the_setpoints(self):
         stroke = [s for s in self.setpoints if s.move == STROKE]
@@ -392,58 +484,289 @@ class TestBag(ReportCase):
 
     def test_deviation_is_that_at_the_surface(self):
         helix = checks.Helix(gc.PAPER)
-        largest = max(abs(s.path_error) * helix.radius(s.position[X]) * helix.normal for s in self.setpoints)
-        self.assertAlmostEqual(self.figure(self.page, 'largest deviation'), largest / UM, delta=0.01 * largest / UM)
+        at = max(self.setpoints, key=lambda s: abs(s.path_error) * helix.radius(s.position[X]))
+        largest = abs(at.path_error) * helix.radius(at.position[X]) * helix.normal
+        found = self.criterion('path deviation')
+        self.assertAlmostEqual(found['measured'], largest / UM, delta=1e-6 * largest / UM)
+        self.assertEqual((found['asked'], found['tolerance'], found['result']), (0, 1, 'passed'))
+        self.assertEqual(found['place'], 'tooth 1, pass 1, X = %.3f mm' % (at.position[X] / MM))
 
     def test_following_error_is_that_to_the_command_of_the_cycle_before(self):
         for axis, unit in enumerate(UNITS):
-            errors = [before.position[axis] - s.actual[axis] for before, s in zip(self.setpoints, self.setpoints[1:])]
-            largest = max(abs(e) for e in errors)
-            self.assertEqual(self.page.rows['XYZA'[axis]][4].split()[0], '%.5g' % (largest / unit))
-        limit = gc.machine()['constraints']['axis_x']['trajectory']
-        self.assertEqual(self.page.rows['X'][5], '%.5g mm' % (limit / MM))
+            errors = {True: 0.0, False: 0.0}
+            for before, s in zip(self.setpoints, self.setpoints[1:]):
+                errors[s.move == STROKE] = max(errors[s.move == STROKE], abs(before.position[axis] - s.actual[axis]))
+            found = self.found['axes'][axis]['following']
+            self.assertAlmostEqual(found['stroke'], errors[True] / unit, delta=1e-9)
+            self.assertAlmostEqual(found['rapid'], errors[False] / unit, delta=1e-9)
+            self.assertAlmostEqual(found['limit'], gc.machine()['constraints'][JOINTS[axis]]['trajectory'] / unit, delta=1e-9)
+        helix = checks.Helix(gc.PAPER)
+        axes = [axis['following']['stroke'] * 1e3 for axis in self.found['axes']]
+        axes[3] *= 1e-3 * DEG * helix.radius(30 * MM) / UM
+        self.assertAlmostEqual(self.criterion('following error in strokes')['measured'], max(axes), delta=1e-6)
+
+    def test_stroke_with_its_hold_and_override(self):
+        stroke, = self.found['strokes']
+        points = [(s, b) for b in self.batches for s in b.setpoints if s.move == STROKE]
+        inside = [s.feed for s, _ in points if 0 <= s.position[X] <= 30 * MM]
+        self.assertAlmostEqual(stroke['feed_max_mm_min'], max(inside) * 60 / MM, delta=1e-6)
+        self.assertAlmostEqual(stroke['feed_min_mm_min'], min(inside) * 60 / MM, delta=1e-6)
+        self.assertLess(stroke['feed_min_mm_min'], 1)
+        self.assertAlmostEqual(stroke['started_s'], points[0][1].header.stamp.to_sec() - self.start, delta=0.06)
+        self.assertAlmostEqual(stroke['started_s'] + stroke['duration_s'], points[-1][1].end_stamp.to_sec() - self.start, delta=0.06)
+        self.assertAlmostEqual(stroke['depth_mm'], 1.6, delta=1e-9)
+        hold, = self.found['holds']
+        self.assertEqual((hold['tooth'], hold['pass'], hold['reason']), (1, 1, 'operator'))
+        # Between two batches there is a gap as long as the hold, within the 50 ms between messages.
+        gaps = [(b.header.stamp - a.end_stamp).to_sec() for a, b in zip(self.batches, self.batches[1:])]
+        self.assertAlmostEqual(hold['duration_s'], max(gaps), delta=0.5)
+        self.assertEqual([o['percent'] for o in self.found['overrides']], [50, 100])
+        self.assertRegex(self.page.rows['1, 1'][-1], r'^held .* \(operator\); override 50 % at .*; override 100 % at ')
+
+    def test_one_time_axis(self):
+        last = self.batches[-1].end_stamp.to_sec() - self.start
+        for name in ['feed'] + FOLLOWING + COMMANDED:
+            picture = self.page.pictures[name]
+            lines = [x for panel in (1, 2) if picture.panel(panel) for line in picture.lines(panel) for x, _ in line]
+            times = picture.ticks(2 if picture.panel(2) else 1, along='x')
+            (first, at_first), (second, at_second) = [(float(t), x) for t, x in times][:2]
+            told = first + (max(lines) - at_first) * (second - first) / (at_second - at_first)
+            self.assertLessEqual(told, last + 0.1, name)
+            self.assertGreater(told, last - 6, name)
 
     def test_cycle_periods_add_up_to_the_time_that_went_by(self):
-        periods = [s.cycle_period for s in self.setpoints]
-        went_by = (self.batches[-1].end_stamp - self.batches[0].header.stamp).to_sec()
-        self.assertAlmostEqual(sum(periods[1:]), went_by, delta=1e-5)
+        periods = [s.cycle_period for s in self.recording.jobs[1] for s in s.setpoints]
+        batches = self.recording.jobs[1]
+        self.assertAlmostEqual(sum(periods[1:]), (batches[-1].end_stamp - batches[0].header.stamp).to_sec(), delta=1e-5)
 
     def test_loop_timing(self):
         periods = [s.cycle_period for s in self.setpoints]
-        self.assertEqual(self.page.rows['loop period'], ['%.3f to %.3f ms' % (min(periods) / 1e-3, max(periods) / 1e-3)])
-        self.assertAlmostEqual(self.figure(self.page, 'mean loop period'), sum(periods) / len(periods) / 1e-3, delta=2e-6)
+        loop = self.found['loop']
+        self.assertAlmostEqual(loop['shortest_ms'], min(periods) / 1e-3, delta=1e-9)
+        self.assertAlmostEqual(loop['longest_ms'], max(periods) / 1e-3, delta=1e-9)
+        self.assertAlmostEqual(loop['mean_ms'], sum(periods) / len(periods) / 1e-3, delta=2e-6)
         late = sum(period > 1.5 * self.batches[0].period for period in periods)
-        self.assertEqual(self.page.rows['late cycles'], ['%d over 1.5 periods' % late])
+        self.assertEqual(self.found['late_cycles']['count'], late)
+        self.assertAlmostEqual(self.criterion('late cycles')['measured'], 100 * late / len(periods), delta=1e-9)
 
     def test_states_of_the_job(self):
-        states = re.findall(r'(?m)^(-?\d+\.\d+) s(\w+)$', self.page.text)
-        self.assertEqual([name for _, name in states], ['starting', 'running', 'ready'])
-        times = [float(time) for time, _ in states]
-        self.assertLess(times[0], times[1])
+        states = [(s['state'], s['at_s']) for s in self.found['states']]
+        names = [name for name, _ in states]
+        self.assertEqual(names[:2] + names[-2:], ['starting', 'running', 'running', 'ready'])
+        self.assertIn('held', names)
+        self.assertEqual([at for _, at in states], sorted(at for _, at in states))
         # A loop that was late catches up, so that a job takes a few cycles more or less than it has.
-        self.assertLessEqual((self.batches[-1].end_stamp - self.batches[0].header.stamp).to_sec() - 0.001, times[2])
+        self.assertLessEqual(self.batches[-1].end_stamp.to_sec() - self.start - 0.001, states[-1][1])
 
     def test_diagnostics(self):
-        self.assertEqual(self.page.rows['recorded: Drive link'][0], 'OK')
+        worst = {row[0]: row[1] for row in self.page.tables['Diagnostics']}
+        self.assertEqual(worst['recorded: Drive link'], 'OK')
         # What a host that stalls makes of it is not the report's matter.
-        self.assertIn(self.page.rows['recorded: Control loop'][0], ('OK', 'WARN', 'ERROR'))
+        self.assertIn(worst['recorded: Control loop'], ('OK', 'WARN', 'ERROR'))
+
+    def test_diagnostics_are_the_worst_of_all_messages(self):
+        worst = {}
+        with rosbag.Bag(self.recording.bag) as bag:
+            for _, message, _ in bag.read_messages('/diagnostics'):
+                for status in message.status:
+                    level, _ = worst.get(status.name, (-1, ''))
+                    if status.level > level:
+                        worst[status.name] = status.level, status.message
+        self.assertEqual({s['name']: (s['level'], s['message']) for s in self.found['diagnostics']}, worst)
+
+
+class TestVerdict(ReportCase):
+    """What is asked, measured and allowed of the job with the hold."""
+
+    TOLERANCES = {'core_diameter_mm': 0.02, 'land_mm': 0.05, 'spiral_angle_deg': 5, 'following_error_um': 1000,
+                  'feed_percent': 100, 'late_cycles_percent': 100}
+
+    def judged(self, source=None, **changes):
+        tolerances = {**self.TOLERANCES, **changes}
+        with open(self.path('tolerances.yaml'), 'w') as file:
+            json.dump({key: value for key, value in tolerances.items() if value is not None}, file)
+        return self.data(source or FILES['recording'].bag, '--job', '1', '--tolerances', self.path('tolerances.yaml'))
+
+    def result(self, data, name):
+        return next(c['result'] for c in data['criteria'] if c['name'] == name)
+
+    def test_passed(self):
+        data = self.judged()
+        self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
+        self.assertEqual([(c['name'], c['result']) for c in data['criteria']], [
+            ('path deviation', 'passed'), ('rake', 'passed'), ('core diameter', 'not asked'), ('land', 'passed'),
+            ('spiral angle', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
+            ('late cycles', 'passed')])
+
+    def test_each_tolerance_fails_what_is_beyond_it(self):
+        data = self.judged()
+        figures = {c['name']: c for c in data['criteria']}
+        for key, name, percent in (('spiral_angle_deg', 'spiral angle', False), ('following_error_um', 'following error in strokes', False),
+                                   ('feed_percent', 'feed held', True)):
+            off = abs(figures[name]['measured'] - figures[name]['asked'])
+            off = 100 * off / figures[name]['asked'] if percent else off
+            for share, result in ((0.99, 'failed'), (1.01, 'passed')):
+                changed = self.judged(**{key: share * off})
+                self.assertEqual(self.result(changed, name), result, (key, share))
+                self.assertEqual(changed['verdict'], 'failed' if result == 'failed' else 'passed')
+        least = figures['land']['measured']
+        self.assertEqual(self.result(self.judged(land_mm=1.01 * least), 'land'), 'failed')
+        self.assertEqual(self.result(self.judged(land_mm=0.99 * least), 'land'), 'passed')
+
+    def test_measured_is_what_simulate_measures(self):
+        done = gc.grind('simulate', FILES['recording'].bag, '--run', '1', '--json', '--sections', '17')
+        sections = json.loads(done.stdout)['sections']
+        figures = {c['name']: c for c in self.judged()['criteria']}
+        for name, key in (('rake', 'rake_deg'), ('spiral angle', 'spiral_deg')):
+            worst = max((t for s in sections for t in s['teeth']), key=lambda t: abs(t[key] - t['asked_' + key]))
+            self.assertEqual(figures[name]['measured'], worst[key])
+        self.assertEqual(figures['land']['measured'], min(t['land_mm'] for s in sections for t in s['teeth']))
+
+    def test_job_that_did_not_end_has_failed(self):
+        data = self.data(FILES['recording'].bag)
+        self.assertNotEqual(data['verdict'], 'passed')
+        self.assertTrue(data['verdict_because'])
+
+    def test_bad_tolerances(self):
+        path = self.path('bad.yaml')
+        for text, reason in (('land_mm: 0.1', 'core_diameter_mm is missing'), ('land: 1', 'land: not known; allowed: core_.*'),
+                             ('land_mm: -1', r'land_mm = -1; allowed: a number from 0'), ('land_mm: .nan', 'land_mm = nan; .*'),
+                             ('', 'has no keys; .*'), ('a: [', '.*flow sequence.*')):
+            with open(path, 'w') as file:
+                file.write(text)
+            done = gc.grind('report', FILES['plan'], '--json', '--tolerances', path)
+            self.assertEqual((done.returncode, done.stdout), (2, ''))
+            self.assertRegex(done.stderr.rstrip('\n'), '^%s: %s$' % (re.escape(path), reason))
 
 
 class TestInterruptedJob(ReportCase):
     """The job in whose stroke Ctrl-C ended roslaunch: its bag is whole, and the report shows how far it came."""
 
     def test_last_job_is_reported_where_none_is_asked_for(self):
-        page = self.report(FILES['recording'].bag)
-        self.assert_page(page, PATH + MOTION + MEASURED + TOOL)
-        self.assertRegex(page.rows['job'][0], r'^2 of 2 in the bag')
+        page, found = self.report(FILES['recording'].bag), self.data(FILES['recording'].bag)
+        self.assert_page(page, TOOL + ['feed'] + FOLLOWING + COMMANDED + ['timing'] + PATH)
+        self.assertRegex(page.rows['job in the bag'][0], r'^2 of 2, ')
         received = [s for b in FILES['recording'].jobs[1] for s in b.setpoints]
         # The recorder was ended together with the grinder, and need not have got its last setpoints.
-        count = int(page.rows['points'][0])
+        count = found['points']
         self.assertTrue(1 < count <= len(received))
         stroke = [s for s in received[:count] if s.move == STROKE]
         self.assertGreater(stroke[-1].position[X], 5 * MM)
-        largest = max(abs(s.path_error) for s in stroke if s.step == ODD)
-        self.assertEqual(page.rows['largest odd error'], ['%.4e rad' % largest])
+        self.assertEqual(found['odd_error_rad'], max(abs(s.path_error) for s in stroke if s.step == ODD))
+
+
+class TestRecordOfTheGrinder(ReportCase):
+    """What the grinder keeps by itself, with the same figures as the bag."""
+
+    def test_same_figures_as_from_the_bag(self):
+        record, bag = self.data(FILES['recording'].record), self.data(FILES['recording'].bag, '--job', '1')
+        mine, theirs = record['strokes'][0], bag['strokes'][0]
+        for key in ('tooth', 'pass', 'depth_mm', 'feed_min_mm_min', 'feed_max_mm_min', 'deviation_um'):
+            self.assertAlmostEqual(mine[key], theirs[key], delta=1e-6, msg=key)
+        for key in ('started_s', 'duration_s'):
+            self.assertAlmostEqual(mine[key], theirs[key], delta=0.06, msg=key)
+        for key, value in theirs['following_error'].items():
+            self.assertAlmostEqual(mine['following_error'][key], value, delta=1e-6, msg=key)
+        self.assertEqual([o['percent'] for o in record['overrides']], [50, 100])
+        self.assertEqual([h['reason'] for h in record['holds']], ['operator'])
+        self.assertEqual((record['outcome'], record['setpoints']['written']), ('done', bag['points']))
+        self.assertEqual(record['machine'], bag['machine'])
+        self.assertEqual(record['job']['file'], bag['job']['file'])
+
+    def test_page(self):
+        page = self.report(FILES['recording'].record)
+        self.assert_page(page, TOOL)
+        self.assertIn('The tool that the job asks for', page.headings)
+        self.assertEqual(page.headings[0], 'paper.yaml')
+        self.assertIn('rake: not measured', page.text)
+
+    def test_last_is_the_newest(self):
+        environment = {**os.environ, 'HOME': FILES['folder']}
+        done = subprocess.run([gc.program('grind'), '--node', 'recorded', 'report', '--last', '--json'], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, env=environment)
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertEqual(json.loads(done.stdout)['outcome'], 'canceled')
+
+    def test_no_record(self):
+        done = gc.grind('--node', 'another', 'report', '--last', '--json')
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('/another', done.stderr)
+
+
+class TestLayout(ReportCase):
+    """On a phone, on a screen, in the dark and on paper."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.page = cls.report(cls(), FILES['recording'].bag, '--job', '1', '--pdf', os.path.join(FILES['folder'], 'report.pdf'))
+        cls.sheets = [page.extract_text() for page in pypdf.PdfReader(os.path.join(FILES['folder'], 'report.pdf')).pages]
+        cls.sizes = [page.mediabox for page in pypdf.PdfReader(os.path.join(FILES['folder'], 'report.pdf')).pages]
+
+    def test_nothing_sticks_out_and_pictures_can_be_read(self):
+        for width in (390, 1280):
+            told = browser.look_at(self.page.source, width)
+            self.assertEqual((told['width'], told['out']), (width, []))
+            self.assertLessEqual(told['scroll'], width)
+            self.assertGreater(told['smallest'], 6.5)  # px
+
+    def test_dark_and_light(self):
+        dark, light = browser.look_at(self.page.source, 1280, dark=True), browser.look_at(self.page.source, 1280)
+        for told, is_dark in ((dark, True), (light, False)):
+            ink, paper = browser.lightness(told['ink']), browser.lightness(told['background'])
+            self.assertGreater((ink - paper) * (1 if is_dark else -1), 0.6)
+            # Text in the pictures too.
+            for fill in told['inks']:
+                self.assertGreater(abs(browser.lightness(fill) - paper), 0.35)
+
+    def test_paper_is_a4(self):
+        for size in self.sizes:
+            self.assertAlmostEqual(float(size.width), 595, delta=1)
+            self.assertAlmostEqual(float(size.height), 842, delta=1)
+        self.assertEqual(len(self.sheets), int(re.search(r'1 / (\d+)', self.sheets[0]).group(1)))
+
+    def test_picture_for_the_documentation(self):
+        picture = os.path.join(PICTURES, 'report.png')
+        os.makedirs(PICTURES, exist_ok=True)
+        browser.take_picture(self.page.source, picture, 1000, 900)
+        with Image.open(picture) as image:
+            self.assertEqual(image.size, (1000, 900))
+            self.assertGreater(len(set(image.convert('L').getdata())), 50)
+
+    def flat(self, text):
+        return re.sub(r'\s+', '', text)
+
+    def test_a_picture_is_on_one_sheet_with_its_caption(self):
+        for name, picture in self.page.pictures.items():
+            caption = self.flat(self.page.captions[name])
+            sheets = [n for n, sheet in enumerate(self.sheets) if caption in self.flat(sheet)]
+            self.assertTrue(sheets, name)
+            words = [''.join(text.itertext()) for text in picture.root.iter(SVG + 'text')]
+            longest = self.flat(max(words, key=len))
+            # Other pictures may have the same text.
+            self.assertTrue(any(longest in self.flat(self.sheets[n]) for n in sheets), name)
+
+    def test_no_heading_is_the_last_on_a_sheet(self):
+        for heading in self.page.headings:
+            sheet = next(s for s in self.sheets if self.flat(heading) in self.flat(s))
+            behind = self.flat(sheet).rpartition(self.flat(heading))[2]
+            self.assertGreater(len(re.sub(r'\d+/\d+$', '', behind)), 20, heading)
+
+    def test_first_sheet_has_the_verdict(self):
+        for text in ('paper.yaml', 'FAILED', 'path deviation', 'spiral angle', 'late cycles', 'Ø 10'):
+            self.assertIn(self.flat(text), self.flat(self.sheets[0]))
+
+    def test_pdf_that_cannot_be_written(self):
+        path = self.path('no/such/folder.pdf')
+        done = gc.grind('report', FILES['plan'], '--pdf', path)
+        self.assertEqual((done.returncode, done.stderr), (2, path + ': cannot be written: No such file or directory\n'))
+
+    def test_without_a_browser(self):
+        environment = {**os.environ, 'PATH': self.path('nothing')}
+        done = subprocess.run([gc.program('grind'), 'report', FILES['plan'], '--pdf', self.path('none.pdf')], env=environment,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('cannot be printed without a browser; install chromium', done.stderr)
+        self.assertFalse(os.path.exists(self.path('none.pdf')))
 
 
 class TestMissingSetpoints(ReportCase):
@@ -453,13 +776,11 @@ class TestMissingSetpoints(ReportCase):
         # In a rapid: the difference over the gap would be far beyond the limit.
         with open(self.path('gap.csv'), 'w') as file:
             file.writelines(lines[:401] + lines[501:])
-        page = self.report(self.path('gap.csv'))
+        page, found = self.report(self.path('gap.csv')), self.data(self.path('gap.csv'))
         self.assertEqual(page.rows['missing'], ['100 setpoints are not in the file'])
-        for axis in 'XYZA':
-            speed, limit = (float(text.split()[0]) for text in page.rows[axis][:2])
-            self.assertLessEqual(speed, limit * (1 + 1e-4))
-            acceleration, limit = (float(text.split()[0]) for text in page.rows[axis][2:4])
-            self.assertLessEqual(acceleration, limit * (1 + 1e-4))
+        for axis in found['axes']:
+            for key in ('speed', 'acceleration'):
+                self.assertLessEqual(max(axis[key]['stroke'], axis[key]['rapid']), axis[key]['limit'] * (1 + 1e-4))
 
     def test_job_that_ended_ahead_of_its_stroke(self):
         with open(FILES['plan']) as file:
@@ -467,7 +788,7 @@ class TestMissingSetpoints(ReportCase):
         with open(self.path('early.csv'), 'w') as file:
             file.writelines(lines[:601])
         page = self.report(self.path('early.csv'))
-        self.assertEqual(list(page.pictures), ['speed', 'acceleration'])
+        self.assertEqual(list(page.pictures), COMMANDED)
         self.assertIn('the job ended before its first stroke', page.text)
         self.assertNotIn('largest odd error', page.rows)
 

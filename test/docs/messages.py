@@ -175,10 +175,12 @@ def missing_values(page):
         if kind not in kinds:
             yield 'the reason %s is in no row' % kind
     pairs = [codes(row['kind, code']) for row in table if row.get('kind, code')]
-    faults = [kind for kind in enumerators('loop_fault.h', 'FaultKind') if kind != 'LIMIT']  # has the reasons of the limits
-    for kind in faults:
-        if [kind, fault_codes()[kind]] not in pairs:
-            yield 'the fault %s, %s is in no row' % (kind, fault_codes()[kind])
+    codes_of_faults = fault_codes()
+    for kind in enumerators('loop_fault.h', 'FaultKind'):
+        if kind == 'LIMIT':  # its reasons are those of the limits
+            continue
+        if [kind, codes_of_faults.get(kind)] not in pairs:
+            yield 'the fault %s, %s is in no row' % (kind, codes_of_faults.get(kind))
     for name, number in re.findall(r'(?m)^int32 (\w+)=(-?\d+)$', read('action/Grind.action')):
         if not any(name in codes(row.get('code', '')) and number in row.get('number', '').split(', ') for row in table):
             yield 'the code %s = %s has no row' % (name, number)

@@ -19,6 +19,7 @@ QUOTING = ('message', 'held because', 'the panel says')
 MESSAGES = {
     'include/flute_grinder/cli/call.h': (),
     'include/flute_grinder/node/plain_name.h': (),
+    'src/cli/csv.cpp': (),
     'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'work position', 'of the machine'),
     'src/cli/probe.cpp': ('end face', 'work offset'),
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in'),
@@ -33,6 +34,8 @@ MESSAGES = {
     'src/drive/hal_fifo.cpp': (),
     'src/drive/hal_hardware.cpp': (),
     'src/drive/parameters.cpp': ('true or false', '; allowed: true or false'),
+    'src/geometry/rake_touch.cpp': ('the rake face', 'nothing of the flute', 'the cutting edge', "the flute's floor first",
+                                    "the flute's other wall first"),
     'src/geometry/touch_off.cpp': (),
     'src/messages/continue_job.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]',),
@@ -50,7 +53,8 @@ MESSAGES = {
     'src/panel/grind_panel.cpp': ('Replies from the grinder', 'the job is done',
                                   "Name of the grinder's node; relative to rviz's namespace without a slash in front"),
     'src/panel/grinder_link.cpp': (),
-    'src/panel/plain_words.cpp': ('The feed is never reached.', '; no axis limits it.', ', limited by', 'a job without a name', ', at tooth'),
+    'src/panel/plain_words.cpp': ('The feed is never reached.', '; no axis limits it.', ', limited by', 'a job without a name',
+                                  ', at tooth'),
     'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 % feed',
                               'Position in work coordinates.\\nMachine:', '\\nWork offset:'),
 }
@@ -104,7 +108,7 @@ def rows(page):
 
 
 def codes(text):
-    return re.findall(r'`([^`]+)`', text)
+    return re.findall(r'`([^`\n]+)`', text)
 
 
 def missing_messages(quoted):
@@ -136,11 +140,15 @@ def missing_sources(quoted):
                 yield 'no source says "%s", of `%s`' % (piece.strip(), quote)
 
 
+def capitals(name):
+    return re.sub(r'(?<!^)(?=[A-Z])', '_', name).upper()
+
+
 def enumerators(path, enum):
     """Of an enum class, in capitals; without the one for nothing."""
     body = re.search(r'enum class %s\b[^{]*\{(.*?)\};' % enum, read('include/flute_grinder/core/' + path), re.S).group(1)
     names = re.findall(r'(?m)^  k(\w+)', body)
-    return [re.sub(r'(?<!^)(?=[A-Z])', '_', name).upper() for name in names if name != 'None']
+    return [capitals(name) for name in names if name != 'None']
 
 
 def fault_codes():
@@ -148,42 +156,44 @@ def fault_codes():
     body = re.search(r'int errorCode\(FaultKind fault\) \{(.*?)\n\}', read('src/messages/error_codes.cpp'), re.S).group(1)
     found, kinds = {}, []
     for kind, code in re.findall(r'case FaultKind::k(\w+):|GrindResult::(\w+);', body):
-        kinds += [re.sub(r'(?<!^)(?=[A-Z])', '_', kind).upper()] if kind else []
+        kinds += [capitals(kind)] if kind else []
         if code:
             found.update({kind: code for kind in kinds})
             kinds = []
     return found
 
 
-def missing_values(page):
-    """Values of enums and of constants that are not where the page is to have them."""
-    table = list(rows(page))
+def missing_states(table):
     for name in re.findall(r'\{MachineState::k\w+, "(\w+)"\}', read('include/flute_grinder/core/machine_state.h')):
         if not any(row.get('state') == '*%s*' % name for row in table):
             yield 'the state %s has no row' % name
-    for state, text in re.findall(r'case MachineState::k(\w+): return "(.*)";', read('src/panel/plain_words.cpp')):
-        name = re.sub(r'(?<!^)(?=[A-Z])', '_', state).lower()
-        if text.startswith('The wheel is in the work'):
-            continue
-        if not any(row.get('state') == '*%s*' % name and text in row['the panel says'] for row in table):
+    sentences = re.search(r'const char\* sentence\(.*?\n}', read('src/panel/plain_words.cpp'), re.S).group()
+    for state, text in re.findall(r'case MachineState::k(\w+): return "(.*)";', sentences):
+        name = capitals(state).lower()
+        if not any(row.get('state') == '*%s*' % name and text in codes(row['the panel says']) for row in table):
             yield 'the row of the state %s lacks "%s"' % (name, text)
-    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/core/loop_fault.cpp')):
-        if not any(text in codes(row.get('held because', '')) for row in table):
-            yield 'the interlock "%s" has no row' % text
-    kinds = [code for row in table for head in ('kind', 'kind, code', 'code') for code in codes(row.get(head, ''))]
+
+
+def missing_kinds(table):
+    """Kinds of faults and reasons, interlocks, and the codes of results."""
+    kinds = [code for row in table for head in ('kind', 'kind, code') for code in codes(row.get(head, ''))]
     for kind in enumerators('reason.h', 'ReasonKind'):
         if kind not in kinds:
             yield 'the reason %s is in no row' % kind
     pairs = [codes(row['kind, code']) for row in table if row.get('kind, code')]
-    codes_of_faults = fault_codes()
     for kind in enumerators('loop_fault.h', 'FaultKind'):
-        if kind == 'LIMIT':  # its reasons are those of the limits
-            continue
-        if [kind, codes_of_faults.get(kind)] not in pairs:
-            yield 'the fault %s, %s is in no row' % (kind, codes_of_faults.get(kind))
+        pair = [kind, fault_codes().get(kind)]
+        if kind != 'LIMIT' and pair not in pairs:  # that has the reasons of the limits
+            yield 'the fault %s, %s is in no row' % tuple(pair)
+    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/core/loop_fault.cpp')):
+        if not any(text in codes(row.get('held because', '')) for row in table):
+            yield 'the interlock "%s" has no row' % text
     for name, number in re.findall(r'(?m)^int32 (\w+)=(-?\d+)$', read('action/Grind.action')):
         if not any(name in codes(row.get('code', '')) and number in row.get('number', '').split(', ') for row in table):
             yield 'the code %s = %s has no row' % (name, number)
+
+
+def missing_statuses(table):
     for status in re.findall(r'updater\.add\("([^"]+)"', read('src/node/diagnostics.cpp')):
         if not any(row.get('status') == '*%s*' % status for row in table):
             yield 'the diagnostic status %s has no row' % status
@@ -192,8 +202,10 @@ def missing_values(page):
 def wrong():
     """One text for each thing that is wrong."""
     page = read(PAGE)
-    quoted = [code for row in rows(page) for head in QUOTING for code in codes(row.get(head, ''))]
-    found = [*missing_messages(quoted + codes(page)), *missing_sources(quoted), *missing_values(page)]
+    table = list(rows(page))
+    quoted = [code for row in table for head in QUOTING for code in codes(row.get(head, ''))]
+    found = [*missing_messages(codes(page)), *missing_sources(quoted), *missing_states(table), *missing_kinds(table),
+             *missing_statuses(table)]
     return ['%s: %s' % (PAGE, text) for text in found]
 
 

@@ -60,7 +60,7 @@ MESSAGES = {
 }
 
 # A comment, a character, a raw string, or a string, which alone has a group.
-TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\])+'|R"\(.*?\)"|"((?:\\.|[^"\\])*)\"""", re.S)
+TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"\(.*?\)"|"((?:\\.|[^"\\])*)\"""", re.S)
 FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d')  # what printf or QString fill in
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Runs every command that README.md and docs/*.md tell a reader to type, writes the files that they tell him to write, and
-compares what is printed, and all tables of figures, with what stands there. How a page is read is in pages.py.
+compares what is printed, and all tables of figures, with what stands there. How a page is read is in pages.py. With all pages,
+links.py and messages.py check theirs too.
 
 test/rviz/on_screen test/docs/test_docs.py [PAGE...]: all pages unless some are named."""
 

@@ -1,0 +1,220 @@
+#!/usr/bin/env python3
+"""Compares docs/when-something-goes-wrong.md with the sources. Every message of the sources in MESSAGES, every state, kind of
+fault or reason, interlock, result code and diagnostic status must be on the page, and every message that the page quotes must be
+in a source. Prints what is not so; exits with 1 if there is something.
+
+On the page, a message is code in a column that is headed as in QUOTING. In it, `<...>` stands for what the program fills in."""
+
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = 'docs/when-something-goes-wrong.md'
+
+QUOTING = ('message', 'held because', 'the panel says')
+
+# Sources in which every text of two words or more is a message, or a part of one. What follows a file are its texts that tell
+# nobody of anything wrong: headings, labels, progress, the parts of other files.
+MESSAGES = {
+    'include/flute_grinder/cli/call.h': (),
+    'include/flute_grinder/node/plain_name.h': (),
+    'include/flute_grinder/node/yaml_fields.h': (),
+    'src/cli/csv.cpp': (),
+    'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'work position', 'of the machine'),
+    'src/cli/probe.cpp': ('end face', 'work offset'),
+    'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in'),
+    'src/cli/state_watch.cpp': (),
+    'src/collision/machine_shapes.cpp': (),
+    'src/connection/master_watch.cpp': (),
+    'src/control/loop_requests.cpp': (),
+    'src/control/loop_thread.cpp': (),
+    'src/control/machine_config.cpp': (),
+    'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
+    'src/control/swivel_range.cpp': (),
+    'src/core/loop_fault.cpp': (),
+    'src/core/reason.cpp': (),
+    'src/drive/hal_component.cpp': (),
+    'src/drive/hal_fifo.cpp': (),
+    'src/drive/hal_hardware.cpp': (),
+    'src/drive/parameters.cpp': ('true or false', '; allowed: true or false'),
+    'src/geometry/rake_touch.cpp': ('the rake face', 'nothing of the flute', 'the cutting edge', "the flute's floor first",
+                                    "the flute's other wall first"),
+    'src/geometry/touch_off.cpp': (),
+    'src/messages/continue_job.cpp': (),
+    'src/node/diagnostics.cpp': ('of the allowed [%]',),
+    'src/node/frames.cpp': (),
+    'src/node/goal_desk.cpp': ('planned and checked; nothing moved',),
+    'src/node/grinder_node.cpp': (),
+    'src/node/journal_writer.cpp': (),
+    'src/node/kept_file.cpp': (),
+    'src/node/offset_desk.cpp': ('(not printable)', ', set by'),
+    'src/node/offset_store.cpp': ("The grinder's work offsets: machine position - work position; .nan is unknown.",),
+    'src/node/plan_desk.cpp': (),
+    'src/node/probe_desk.cpp': (),
+    'src/node/progress_tracker.cpp': ('a job without a name',),
+    'src/node/request_desk.cpp': (),
+    'src/node/stop_desk.cpp': ('the job will be held before it moves',),
+    'src/panel/grind_panel.cpp': ('Replies from the grinder', 'the job is done',
+                                  "Name of the grinder's node; relative to rviz's namespace without a slash in front"),
+    'src/panel/grinder_link.cpp': (),
+    'src/panel/plain_words.cpp': ('The feed is never reached.', '; no axis limits it.', ', limited by', 'a job without a name',
+                                  ', at tooth'),
+    'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 % feed',
+                              'Position in work coordinates.\\nMachine:', '\\nWork offset:'),
+}
+
+# A comment, a character, a raw string, or a string, which alone has a group.
+TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"\(.*?\)"|"((?:\\.|[^"\\])*)\"""", re.S)
+FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d')  # what printf or QString fill in
+
+
+def read(path):
+    return (ROOT / path).read_text()
+
+
+def literals(text):
+    """The string literals of C++, each joined with those that follow it without anything between."""
+    found, end = [], 0
+    text = re.sub(r'(?m)^#include.*', '', text)
+    for token in TOKEN.finditer(text):
+        if token.group(1) is None:
+            continue
+        if found and not text[end:token.start()].strip():
+            found[-1] += token.group(1)
+        else:
+            found.append(token.group(1))
+        end = token.end()
+    return found
+
+
+def is_phrase(text):
+    return re.search(r'[A-Za-z]{2,}\W* \W*[A-Za-z]{2,}', text)
+
+
+def texts(path):
+    """What a source says to people, in pieces between what is filled in; what ends a line is a table or a list."""
+    text = re.sub(r'\.add\("[^"]*"', '', read(path))  # names of diagnostics and their values
+    pieces = [piece for literal in literals(text) if not literal.endswith('\\n') for piece in FORMAT.split(literal)]
+    return [piece.strip() for piece in pieces if is_phrase(piece)]
+
+
+def rows(page):
+    """The cells of every table's row as a dictionary, by the heads of their columns."""
+    head = []
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip('|').split(' |')] if line.startswith('|') else []
+        if not cells or set(line) <= set('|-'):
+            head = head if cells else []
+        elif head:
+            yield dict(zip(head, cells))
+        else:
+            head = cells
+
+
+def codes(text):
+    return re.findall(r'`([^`\n]+)`', text)
+
+
+def missing_messages(quoted):
+    page = '\n'.join(quoted)
+    for path, silent in MESSAGES.items():
+        said = texts(path)
+        for text in said:
+            if text not in page and text not in silent:
+                yield '%s: "%s" is not on the page' % (path, text)
+        for text in silent:
+            if text not in said:
+                yield '%s: "%s" is listed in vain' % (path, text)
+
+
+def is_said(text, sources, rest=False):
+    """Whether a text is part of a literal, or of several that are put together. @param sources literals, each in a line of its own.
+    @param rest whether the text begins with a literal."""
+    start = '\n' if rest else ''
+    return start + text in sources or any(start + text[:i] + '\n' in sources and is_said(text[i:], sources, True)
+                                          for i in range(1, len(text)))
+
+
+def missing_sources(quoted):
+    files = [path for folder in ('include', 'src') for path in sorted((ROOT / folder).rglob('*')) if path.suffix in ('.h', '.cpp')]
+    sources = '\n'.join(['', *(literal for path in files for literal in literals(path.read_text())), ''])
+    for quote in quoted:
+        for piece in re.split('<[^>]*>', quote):
+            if not is_said(piece.strip(), sources):
+                yield 'no source says "%s", of `%s`' % (piece.strip(), quote)
+
+
+def capitals(name):
+    return re.sub(r'(?<!^)(?=[A-Z])', '_', name).upper()
+
+
+def enumerators(path, enum):
+    """Of an enum class, in capitals; without the one for nothing."""
+    body = re.search(r'enum class %s\b[^{]*\{(.*?)\};' % enum, read('include/flute_grinder/core/' + path), re.S).group(1)
+    names = re.findall(r'(?m)^  k(\w+)', body)
+    return [capitals(name) for name in names if name != 'None']
+
+
+def fault_codes():
+    """The result's code of each kind of fault."""
+    body = re.search(r'int errorCode\(FaultKind fault\) \{(.*?)\n\}', read('src/messages/error_codes.cpp'), re.S).group(1)
+    found, kinds = {}, []
+    for kind, code in re.findall(r'case FaultKind::k(\w+):|GrindResult::(\w+);', body):
+        kinds += [capitals(kind)] if kind else []
+        if code:
+            found.update({kind: code for kind in kinds})
+            kinds = []
+    return found
+
+
+def missing_states(table):
+    for name in re.findall(r'\{MachineState::k\w+, "(\w+)"\}', read('include/flute_grinder/core/machine_state.h')):
+        if not any(row.get('state') == '*%s*' % name for row in table):
+            yield 'the state %s has no row' % name
+    sentences = re.search(r'const char\* sentence\(.*?\n}', read('src/panel/plain_words.cpp'), re.S).group()
+    for state, text in re.findall(r'case MachineState::k(\w+): return "(.*)";', sentences):
+        name = capitals(state).lower()
+        if not any(row.get('state') == '*%s*' % name and text in codes(row['the panel says']) for row in table):
+            yield 'the row of the state %s lacks "%s"' % (name, text)
+
+
+def missing_kinds(table):
+    """Kinds of faults and reasons, interlocks, and the codes of results."""
+    kinds = [code for row in table for head in ('kind', 'kind, code') for code in codes(row.get(head, ''))]
+    for kind in enumerators('reason.h', 'ReasonKind'):
+        if kind not in kinds:
+            yield 'the reason %s is in no row' % kind
+    pairs = [codes(row['kind, code']) for row in table if row.get('kind, code')]
+    for kind in enumerators('loop_fault.h', 'FaultKind'):
+        pair = [kind, fault_codes().get(kind)]
+        if kind != 'LIMIT' and pair not in pairs:  # that has the reasons of the limits
+            yield 'the fault %s, %s is in no row' % tuple(pair)
+    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/core/loop_fault.cpp')):
+        if not any(text in codes(row.get('held because', '')) for row in table):
+            yield 'the interlock "%s" has no row' % text
+    for name, number in re.findall(r'(?m)^int32 (\w+)=(-?\d+)$', read('action/Grind.action')):
+        if not any(name in codes(row.get('code', '')) and number in row.get('number', '').split(', ') for row in table):
+            yield 'the code %s = %s has no row' % (name, number)
+
+
+def missing_statuses(table):
+    for status in re.findall(r'updater\.add\("([^"]+)"', read('src/node/diagnostics.cpp')):
+        if not any(row.get('status') == '*%s*' % status for row in table):
+            yield 'the diagnostic status %s has no row' % status
+
+
+def wrong():
+    """One text for each thing that is wrong."""
+    page = read(PAGE)
+    table = list(rows(page))
+    quoted = [code for row in table for head in QUOTING for code in codes(row.get(head, ''))]
+    found = [*missing_messages(codes(page)), *missing_sources(quoted), *missing_states(table), *missing_kinds(table),
+             *missing_statuses(table)]
+    return ['%s: %s' % (PAGE, text) for text in found]
+
+
+if __name__ == '__main__':
+    problems = wrong()
+    print('\n'.join(problems) or 'every message is on the page')
+    sys.exit(bool(problems))

@@ -37,8 +37,10 @@ std::vector<double> evenAngles(std::size_t teeth) {
 
 template <typename Choice>
 Json choiceJson(Choice choice) {
-  if constexpr (std::is_enum_v<Choice>) return toString(choice);
-  else return choice;
+  if constexpr (std::is_enum_v<Choice>)
+    return toString(choice);
+  else
+    return choice;
 }
 
 void addTeeth(Json& file, const GrindJob& job) {

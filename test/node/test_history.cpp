@@ -90,7 +90,8 @@ TEST_F(HistoryTest, KeepsTheNewestWhateverItsSize) {
 
 TEST_F(HistoryTest, RemovesNothingThatIsNotItsOwn) {
   fs::create_directories(folder_ / "a" / "b");
-  const std::vector<std::string> foreign{"20261122T170413.123Z.json.bak", "20261122T170413.json", "a.json", "notes.txt"};
+  const std::vector<std::string> foreign{"20261122T170413.123Z.json.bak", "20261122T170413.json", "a.json",
+                                         "notes.txt"};
   for (const std::string& name : foreign) put(name, 1000);
   put("20261122T170413.000Z.json.aB3xY9", 1000);  // left by a power failure
   open(250);

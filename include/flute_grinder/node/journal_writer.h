@@ -21,8 +21,8 @@ class JournalWriter {
   };
 
   /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,
-  /// the file holds either its old contents or the last write, and the journal stays owned until the disk answers or the
-  /// process ends. Blocks on the disk.
+  /// the file holds either its old contents or the last write, and the journal stays owned until the disk answers or
+  /// the process ends. Blocks on the disk.
   /// @param path, owner as for Journal.
   /// @throw JournalOwned
   JournalWriter(std::string path, const std::string& owner);

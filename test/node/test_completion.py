@@ -52,7 +52,7 @@ class TestCompletion(unittest.TestCase):
         for words in (['grind'], ['rosrun', 'flute_grinder', 'grind'], ['grind', '--node', 'other'],
                       ['grind', '--node', '=', 'other']):
             self.assertEqual(self.offered(*words, ''), self.commands())
-        self.assertEqual(self.offered('grind', 'h'), {'home', 'hold'})
+        self.assertEqual(self.offered('grind', 'h'), {'history', 'home', 'hold'})
         self.assertEqual(self.offered('rosrun', 'flute_grinder', 'grind', 'ta'), {'table'})
 
     def test_options_are_those_of_the_help(self):

@@ -40,7 +40,9 @@ struct Entry {
 /// The passes of a job from a first one on, whose tooth and pass count from 1 here.
 std::size_t passesFrom(const GrindJob& job, const Json& first) {
   const std::vector<ToothPass> passes = passOrder(job);
-  const auto is_first = [&](const ToothPass& p) { return p.tooth + 1 == first.at("tooth") && p.pass + 1 == first.at("pass"); };
+  const auto is_first = [&](const ToothPass& p) {
+    return p.tooth + 1 == first.at("tooth") && p.pass + 1 == first.at("pass");
+  };
   const auto begin = std::find_if(passes.begin(), passes.end(), is_first);
   if (begin == passes.end()) throw std::runtime_error("first: no pass of the job");
   return static_cast<std::size_t>(passes.end() - begin);
@@ -70,9 +72,9 @@ Entry readEntry(const std::string& path) {
 }
 
 Json toJson(const Entry& entry) {
-  return {{"file", entry.file},        {"started", entry.started}, {"job", entry.job},
-          {"tool", entry.tool},        {"outcome", entry.outcome}, {"reason", entry.reason},
-          {"strokes", entry.strokes},  {"passes", entry.passes},   {"duration_s", entry.duration},
+  return {{"file", entry.file},       {"started", entry.started}, {"job", entry.job},
+          {"tool", entry.tool},       {"outcome", entry.outcome}, {"reason", entry.reason},
+          {"strokes", entry.strokes}, {"passes", entry.passes},   {"duration_s", entry.duration},
           {"holds", entry.holds}};
 }
 

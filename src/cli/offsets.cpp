@@ -59,11 +59,12 @@ Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
     const auto i = static_cast<std::size_t>(axis);
     const std::string unit = axis == kA ? "_deg" : "_mm";
     const bool set = !offsets.set_at[i].isZero();
-    axes[std::string(1, kAxisLetters[i])] = {{"offset" + unit, toShop(axis, offsets.values[i])},
-                                             {"machine" + unit, toShop(axis, state.position[i])},
-                                             {"work" + unit, toShop(axis, state.work_position[i])},
-                                             {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
-                                             {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)}};
+    axes[std::string(1, kAxisLetters[i])] = {
+        {"offset" + unit, toShop(axis, offsets.values[i])},
+        {"machine" + unit, toShop(axis, state.position[i])},
+        {"work" + unit, toShop(axis, state.work_position[i])},
+        {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
+        {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)}};
   }
   return {{"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }

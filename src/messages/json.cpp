@@ -3,6 +3,7 @@
 #include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/units.h"
 
+#include <algorithm>
 #include <type_traits>
 #include <vector>
 
@@ -22,23 +23,26 @@ Json& at(Json& file, const std::string& key) {
 }
 
 std::vector<double> degrees(const std::vector<double>& angles) {
-  std::vector<double> list;
-  for (const double angle : angles) list.push_back(shopNumber(angle, Unit::kRadian));
+  std::vector<double> list(angles.size());
+  std::transform(angles.begin(), angles.end(), list.begin(),
+                 [](double angle) { return shopNumber(angle, Unit::kRadian); });
   return list;
 }
 
 std::vector<double> evenAngles(std::size_t teeth) {
-  std::vector<double> angles;
+  std::vector<double> angles(teeth);
   for (std::size_t i = 0; i < teeth; ++i) {
-    angles.push_back(static_cast<double>(i) * 360.0 / static_cast<double>(teeth) * kDegree);
+    angles[i] = static_cast<double>(i) * 360.0 / static_cast<double>(teeth) * kDegree;
   }
   return angles;
 }
 
 template <typename Choice>
 Json choiceJson(Choice choice) {
-  if constexpr (std::is_enum_v<Choice>) return toString(choice);
-  else return choice;
+  if constexpr (std::is_enum_v<Choice>)
+    return toString(choice);
+  else
+    return choice;
 }
 
 void addTeeth(Json& file, const GrindJob& job) {

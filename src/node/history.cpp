@@ -70,13 +70,13 @@ void History::Folder::removeOldest() const {
   }
 }
 
-History::History(const std::string& folder, std::uint64_t limit)
-    : folder_(std::make_shared<Folder>(folder, limit)) {
+History::History(const std::string& folder, std::uint64_t limit) : folder_(std::make_shared<Folder>(folder, limit)) {
   thread_.post([at = folder_] { at->attempt([&] { fs::create_directories(at->path); }); });
 }
 
 void History::keep(const std::string& name, std::function<std::string()> text) {
-  if (folder_->waiting >= kMostWaiting) return folder_->note("history " + folder_->path.string() + ": the disk does not answer");
+  if (folder_->waiting >= kMostWaiting)
+    return folder_->note("history " + folder_->path.string() + ": the disk does not answer");
   ++folder_->waiting;
   thread_.post([at = folder_, name, text = std::move(text)] {
     at->attempt([&] {

@@ -136,7 +136,9 @@ Json JobRecord::strokesJson() const {
   Json list = Json::array();
   for (const Stroke& stroke : strokes_) {
     const double depth = depthLaw(program_->job(), depths_[static_cast<std::size_t>(stroke.pass.pass)]).at_end;
-    const auto feed = [&](double value) { return stroke.has_feed ? Json(value / kMillimetrePerMinute) : Json(nullptr); };
+    const auto feed = [&](double value) {
+      return stroke.has_feed ? Json(value / kMillimetrePerMinute) : Json(nullptr);
+    };
     Json json = placed(Json::object(), stroke.pass);
     json["depth_mm"] = depth / kMillimetre;
     json["started_s"] = stroke.from;

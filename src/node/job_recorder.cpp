@@ -13,8 +13,7 @@ JobRecorder::~JobRecorder() {
   for (const auto& entry : jobs_) keep(entry.second.record);
 }
 
-void JobRecorder::announce(std::uint64_t number, const JobPlan& plan, const ToothPass& first,
-                           const std::string& name) {
+void JobRecorder::announce(std::uint64_t number, const JobPlan& plan, const ToothPass& first, const std::string& name) {
   jobs_[number].record = std::make_shared<JobRecord>(plan, first, name);
 }
 

@@ -1,18 +1,10 @@
 #include "flute_grinder/node/journal_writer.h"
 
-#include <chrono>
-#include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 namespace flute_grinder {
-
-namespace {
-
-constexpr std::chrono::seconds kCloseTimeout(5);
-
-}  // namespace
 
 /// State shared with the thread.
 struct JournalWriter::Work {
@@ -24,33 +16,24 @@ struct JournalWriter::Work {
     }
   }
 
-  void run();
+  void storePending();
   void store(const Progress& progress, std::uint64_t number);
 
   const Journal journal;  ///< used by the thread only
 
   std::mutex mutex;  ///< guards everything below; held only to copy
-  std::condition_variable changed;
   Status status;
   std::uint64_t writes = 0;
   std::optional<Progress> pending;
-  bool closing = false, closed = false;
 };
 
-void JournalWriter::Work::run() {
+void JournalWriter::Work::storePending() {
   std::unique_lock<std::mutex> lock(mutex);
-  while (true) {
-    changed.wait(lock, [&] { return pending || closing; });
-    if (!pending) break;
-    const Progress progress = std::move(*pending);
-    pending.reset();
-    const std::uint64_t number = writes;
-    lock.unlock();
-    store(progress, number);
-    lock.lock();
-  }
-  closed = true;
-  changed.notify_all();
+  const Progress progress = std::move(*pending);
+  pending.reset();
+  const std::uint64_t number = writes;
+  lock.unlock();
+  store(progress, number);
 }
 
 void JournalWriter::Work::store(const Progress& progress, std::uint64_t number) {
@@ -67,25 +50,12 @@ void JournalWriter::Work::store(const Progress& progress, std::uint64_t number) 
 }
 
 JournalWriter::JournalWriter(std::string path, const std::string& owner)
-    : work_(std::make_shared<Work>(std::move(path), owner)), thread_([work = work_] { work->run(); }) {}
-
-JournalWriter::~JournalWriter() {
-  std::unique_lock<std::mutex> lock(work_->mutex);
-  work_->closing = true;
-  work_->changed.notify_all();
-  const bool closed = work_->changed.wait_for(lock, kCloseTimeout, [&] { return work_->closed; });
-  lock.unlock();
-  if (closed) {
-    thread_.join();
-  } else {
-    thread_.detach();
-  }
-}
+    : work_(std::make_shared<Work>(std::move(path), owner)) {}
 
 std::uint64_t JournalWriter::write(const Progress& progress) {
   const std::lock_guard<std::mutex> lock(work_->mutex);
+  if (!work_->pending) thread_.post([work = work_] { work->storePending(); });
   work_->pending = progress;
-  work_->changed.notify_all();
   return ++work_->writes;
 }
 

@@ -104,6 +104,27 @@ TEST(ControlLoopCancel, RestsOnTheHelix) {
   EXPECT_NEAR(rest[kA], a, 1e-6 / (radius * std::cos(30 * kDegree)) * 1.2);
 }
 
+TEST(ControlLoopCancel, LeavesTheWheelInTheWorkIfAHoldStopsItsLift) {
+  Rig<SimulatedDrive> rig;
+  rig.cycle();
+  rig.startPaper();
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+  rig.run(100);
+  ASSERT_TRUE(rig.ask(E::kCancel).accepted);
+  for (int i = 0; i < 1000 && rig.last().setpoint.move != MoveKind::kLift; ++i) rig.cycle();
+  ASSERT_EQ(rig.last().setpoint.move, MoveKind::kLift);
+  rig.run(10);
+  ASSERT_TRUE(rig.ask(E::kHold).accepted);
+  rig.runToEnd();
+  rig.run(100);
+  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_LT(rig.last().command[kY], kClearanceHeight);
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
 class CancelIn : public testing::TestWithParam<S> {
  protected:
   void SetUp() override {

@@ -72,7 +72,8 @@ TEST(JobJson, OfEveryWheel) {
   expectSameBits(job);
   job = paper();
   job.process.wheel_profile = WheelShape::kPoints;
-  job.wheel_points = {{-1.5 * kMillimetre, 49.7 * kMillimetre}, {0.2 * kMillimetre, 50 * kMillimetre},
+  job.wheel_points = {{-1.5 * kMillimetre, 49.7 * kMillimetre},
+                      {0.2 * kMillimetre, 50 * kMillimetre},
                       {1.5 * kMillimetre, 49 * kMillimetre}};
   expectSameBits(job);
 }
@@ -95,7 +96,8 @@ RC_GTEST_PROP(JobJson, OfAnyJobIsTheSameWithinRounding, ()) {
   for (int tooth = 1; tooth < *test_support::whole(1, 5); ++tooth) job.tooth_angles.push_back(tooth * 1.1);
   RC_PRE(validate(job).empty());
   const GrindJob back = readBack(job);
-  visitJobFields([&](const JobField&, auto of) { RC_ASSERT(std::abs(of(back) - of(job)) <= 1e-15 * std::abs(of(job))); });
+  visitJobFields(
+      [&](const JobField&, auto of) { RC_ASSERT(std::abs(of(back) - of(job)) <= 1e-15 * std::abs(of(job))); });
   visitJobChoices([&](const char*, int, auto of) { RC_ASSERT(of(back) == of(job)); });
   RC_ASSERT(back.tooth_angles.size() == job.tooth_angles.size());
 }

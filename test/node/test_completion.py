@@ -52,7 +52,7 @@ class TestCompletion(unittest.TestCase):
         for words in (['grind'], ['rosrun', 'flute_grinder', 'grind'], ['grind', '--node', 'other'],
                       ['grind', '--node', '=', 'other']):
             self.assertEqual(self.offered(*words, ''), self.commands())
-        self.assertEqual(self.offered('grind', 'h'), {'home', 'hold'})
+        self.assertEqual(self.offered('grind', 'h'), {'history', 'home', 'hold'})
         self.assertEqual(self.offered('rosrun', 'flute_grinder', 'grind', 'ta'), {'table'})
 
     def test_options_are_those_of_the_help(self):
@@ -85,6 +85,8 @@ class TestCompletion(unittest.TestCase):
         self.assertEqual(self.offered('grind', 'plan', 'a.yaml', '--csv', 'n'), {'notes.txt'})
         self.assertEqual(self.offered('grind', 'simulate', 'record.bag', '--job', ''), jobs)
         self.assertEqual(self.offered('grind', 'simulate', 'n'), {'notes.txt'})
+        self.assertEqual(self.offered('grind', 'history', '--folder', ''), {'jobs'})
+        self.assertEqual(self.offered('grind', 'history', ''), set())
 
     def test_choices_and_numbers(self):
         table = ['grind', 'table', 'a.yaml']

@@ -438,5 +438,14 @@ TEST_F(DiagnosticsTest, JournalTellsWhatIsAmiss) {
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
 }
 
+TEST_F(DiagnosticsTest, HistoryWarnsOfWhatIsAmiss) {
+  EXPECT_EQ(ask(&Diagnostics::reportHistory).level, DiagnosticStatus::OK);
+  diagnostics_.setHistoryError("history /x: No space left on device");
+  const auto status = ask(&Diagnostics::reportHistory);
+  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
+  EXPECT_EQ(status.message, "history /x: No space left on device");
+  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+}
+
 }  // namespace
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@ import grinder_client as gc
 from grinder_client import MM
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffer', 'Journal']
+NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffer', 'Journal', 'History']
 
 
 class Reports:
@@ -78,7 +78,8 @@ class TestDiagnostics(unittest.TestCase):
 
     def test_at_rest_all_is_well(self):
         for name, text in (('Drive link', 'enabled'), ('Following error', 'within'), ('Limit margin', 'no setpoints'),
-                           ('Buffer', 'the drive does not buffer'), ('Journal', 'kept')):
+                           ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'),
+                           ('History', 'kept')):
             self.assertEqual(self.reports.wait(name, OK, text).hardware_id, 'flute_grinder/SimulatedDrive')
 
     def test_control_loop_warns_where_it_must(self):

@@ -263,9 +263,9 @@ class TestRecordOfAJob(Kept):
         message = rospy.wait_for_message('/kept/machine', Machine, gc.PATIENCE)
         version = rospkg.RosPack().get_manifest('flute_grinder').version
         self.assertEqual((told['name'], told['software'], told['drive'], told['period_ms']),
-                         ('grinder', version, 'flute_grinder/SimulatedDrive', 1))
+                         ('flute_grinder', version, 'flute_grinder/SimulatedDrive', 1))
         self.assertEqual((message.name, message.version, message.drive, message.period),
-                         ('grinder', version, 'flute_grinder/SimulatedDrive', 0.001))
+                         ('flute_grinder', version, 'flute_grinder/SimulatedDrive', 0.001))
         self.assertEqual(list(message.max_velocity), limits['max_velocity'])
         self.assertEqual(list(message.max_acceleration), limits['max_acceleration'])
         self.assertEqual(list(message.max_following_error), [0.001, 0.001, 0.001, 0.05])

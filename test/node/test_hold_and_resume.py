@@ -393,6 +393,36 @@ def add_requests():
 add_requests()
 
 
+class TestFeedbackOfARetraction(unittest.TestCase):
+    """A wheel that is lifted off in the middle of a stroke has come as far in it as before."""
+
+    def test_fraction_of_the_stroke_stays(self):
+        g = grinder()
+        g.make_ready()
+        run = g.send(JOB).wait_in_stroke(10 * MM)
+        assert g.hold().success
+        g.wait_state(GrinderState.HELD)
+        g.wait_rest()
+        held = len(run.feedback)
+        g.wait_for(lambda: len(run.feedback) > held + 2, 'feedback')
+        reached = run.feedback[-1].stroke_fraction
+        self.assertAlmostEqual(reached, (run.setpoints[-1].position[X] + 1 * MM) / (END + 1 * MM), delta=1e-9)
+        assert g.retract().success
+        g.wait_state(GrinderState.RETRACTED)
+        lifted = len(run.feedback)
+        g.wait_for(lambda: len(run.feedback) > lifted + 2, 'feedback')
+        assert g.resume().success
+        g.wait_state(GrinderState.RUNNING)
+        after = [f.stroke_fraction for f in run.feedback[held + 2:] if f.state not in ('running', 'resuming')]
+        self.assertGreater(len(after), 3)
+        for fraction in after:
+            self.assertAlmostEqual(fraction, reached, delta=1e-4)
+        # On the way back it is never less than what is ground again after the re-entry.
+        self.assertGreater(min(f.stroke_fraction for f in run.feedback[held:]), reached - 0.2)
+        run.wait_complete()
+        self.assertEqual((run.status, run.feedback[-1].stroke_fraction), ('SUCCEEDED', 1))
+
+
 class CancelAtRest:
     """A cancel while the axes rest in the midst of a stroke: it leaves the wheel clear of the work."""
 

@@ -21,6 +21,7 @@ import rosgraph
 import rospy
 import rostest
 from flute_grinder.msg import GrinderState, GrindResult
+from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
 import path_checks as checks
@@ -114,6 +115,9 @@ BAD_PARAMETERS = [
     ('control_rate_flag', 'control_rate', True, 'allowed: a number'),
     ('journal_is_a_number', 'journal', 7, 'allowed: a text'),
     ('journal_empty', 'journal', '', 'allowed: a text'),
+    ('history_is_a_number', 'history', 7, 'allowed: a text'),
+    ('history_empty', 'history', '', 'allowed: a text'),
+    ('history_limit_negative', 'history_limit', -1, 'allowed: 0 to 1e+12'),
     ('offsets_is_a_number', 'offsets', 7, 'allowed: a text'),
     ('offsets_empty', 'offsets', '', 'allowed: a text'),
     ('feedback_timeout_missing', 'feedback_timeout', None, 'missing; allowed: a number'),
@@ -209,6 +213,9 @@ class TestStartFailsClosed(unittest.TestCase):
 
     def test_journal_missing(self):
         self.check(dict(gc.machine(), journal=None), 'parameter /doubtful/journal is missing; allowed: a text')
+
+    def test_history_missing(self):
+        self.check(dict(gc.machine(), history=None), 'parameter /doubtful/history is missing; allowed: a text')
 
     def test_offsets_missing(self):
         self.check(dict(gc.machine(), offsets=None), 'parameter /doubtful/offsets is missing; allowed: a text')
@@ -316,6 +323,47 @@ class TestInterrupt(OwnNode):
     def test_sigint_at_rest_ends_the_node(self):
         self.grinder.make_ready()
         self.assertEqual(self.node.end(signal.SIGINT), 0, self.node.output)
+
+
+class TestMarkersDoNotOutliveTheNode(OwnNode):
+    """What rviz was told of a job is taken back: at the node's end, or else when it is started again."""
+
+    TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
+
+    def setUp(self):
+        super().setUp()
+        self.shown = {topic: [] for topic in self.TOPICS}
+        for topic in self.TOPICS:
+            subscriber = rospy.Subscriber('/%s/%s' % (self.name, topic), MarkerArray, self.shown[topic].append)
+            self.addCleanup(subscriber.unregister)
+        self.grinder.make_ready()
+        self.grinder.send(gc.PAPER).wait_in_stroke(5 * MM)
+        gc.poll(lambda: all(self.markers(topic) for topic in self.TOPICS), 'the job in rviz')
+        gc.poll(lambda: any(m.text.startswith('running') for m in self.markers('executed_path')), 'the line of text')
+
+    def markers(self, topic):
+        """Those that the last message leaves; every message is complete."""
+        messages = self.shown[topic]
+        if not messages:
+            return []
+        self.assertEqual(messages[-1].markers[0].action, Marker.DELETEALL)
+        return messages[-1].markers[1:]
+
+    def check_taken_back(self):
+        gc.poll(lambda: not any(self.markers(topic) for topic in self.TOPICS), 'nothing in rviz')
+
+    def test_orderly_end(self):
+        self.assertEqual(self.node.end(signal.SIGTERM), 0, self.node.output)
+        self.check_taken_back()
+
+    def test_restart_after_a_kill(self):
+        self.node.end(signal.SIGKILL)
+        self.grinder.close()
+        self.node.close()
+        self.assertTrue(all(self.markers(topic) for topic in self.TOPICS))
+        again = gc.NodeProcess(self.name, self.parameters())
+        self.addCleanup(again.close)
+        self.check_taken_back()
 
 
 class TestDriveFaultOutsideOfAJob(OwnNode):

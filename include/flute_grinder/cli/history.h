@@ -11,8 +11,8 @@ struct HistoryOptions {
   bool json = false;
 };
 
-/// The folder in which a grinder keeps the records of its jobs by default, on the computer and for the user that run its
-/// node. @param node the grinder's name, as after --node; ros::init() must have been called.
+/// The folder in which a grinder keeps the records of its jobs by default, on the computer and for the user that run
+/// its node. @param node the grinder's name, as after --node; ros::init() must have been called.
 /// @throw std::runtime_error if there is no home directory.
 std::string historyFolder(const std::string& node);
 

@@ -43,8 +43,8 @@ std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int
 /// SI value divided by shop value, e.g. 0.001 for millimetres.
 double shopScale(Unit unit) noexcept;
 
-/// The number of shop units that stands for an SI value in a file: times shopScale() it is that value, to the last bit if
-/// any number is, and of those numbers it is one of the fewest digits.
+/// The number of shop units that stands for an SI value in a file: times shopScale() it is that value, to the last bit
+/// if any number is, and of those numbers it is one of the fewest digits.
 double shopNumber(double si, Unit unit);
 
 /// The unit of an axis position (derivative 0), velocity (1), acceleration (2) or jerk (3).

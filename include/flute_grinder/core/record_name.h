@@ -5,8 +5,8 @@
 #include <vector>
 
 /// @file
-/// The files in which a grinder keeps the records of its jobs: one folder for each grinder, one file for each job, named
-/// after the time at which the job started, so that the names sort by it.
+/// The files in which a grinder keeps the records of its jobs: one folder for each grinder, one file for each job,
+/// named after the time at which the job started, so that the names sort by it.
 namespace flute_grinder {
 
 /// A time as records tell it, e.g. "2026-11-22T17:04:13.123Z". @param time since the epoch [s].

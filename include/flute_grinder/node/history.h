@@ -9,8 +9,8 @@
 
 namespace flute_grinder {
 
-/// Keeps the records of the last jobs in a folder, one file for each, written in one step. A thread of its own waits for
-/// the disk. Thread safe; not for the control thread.
+/// Keeps the records of the last jobs in a folder, one file for each, written in one step. A thread of its own waits
+/// for the disk. Thread safe; not for the control thread.
 class History {
  public:
   /// Makes the folder, or notes why that is not possible; returns at once.

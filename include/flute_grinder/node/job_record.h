@@ -15,9 +15,9 @@ namespace flute_grinder {
 
 /// How a job ended.
 struct JobConclusion {
-  const char* outcome = "fault";           ///< "done", "canceled" or "fault"
-  std::string reason;                      ///< as in the goal's result; empty for "done"
-  std::uint64_t setpoints_written = 0;     ///< to the drive
+  const char* outcome = "fault";        ///< "done", "canceled" or "fault"
+  std::string reason;                   ///< as in the goal's result; empty for "done"
+  std::uint64_t setpoints_written = 0;  ///< to the drive
 };
 
 /// What happened to a job, gathered cycle by cycle: its strokes as they were ground, holds, changes of the feed

@@ -1,11 +1,11 @@
 #pragma once
 
+#include "flute_grinder/node/disk_thread.h"
 #include "flute_grinder/node/journal.h"
 
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <thread>
 
 namespace flute_grinder {
 
@@ -20,16 +20,12 @@ class JournalWriter {
     std::string error;         ///< of the last write, or of the initial read; empty if none
   };
 
-  /// Reads the journal and starts the thread. Blocks on the disk.
+  /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,
+  /// the file holds either its old contents or the last write, and the journal stays owned until the disk answers or
+  /// the process ends. Blocks on the disk.
   /// @param path, owner as for Journal.
   /// @throw JournalOwned
   JournalWriter(std::string path, const std::string& owner);
-
-  /// Waits up to 5 s for a pending write. After that the disk is presumed dead: the file holds either its old contents
-  /// or the last write, and the journal stays owned until the disk answers or the process ends.
-  ~JournalWriter();
-  JournalWriter(const JournalWriter&) = delete;
-  JournalWriter& operator=(const JournalWriter&) = delete;
 
   /// Queues the progress to be written, and returns at once. While the disk is busy, a new write replaces the pending
   /// one.
@@ -42,8 +38,8 @@ class JournalWriter {
  private:
   struct Work;
 
-  std::shared_ptr<Work> work_;  ///< shared with the thread, which outlives this object if the disk is dead
-  std::thread thread_;
+  std::shared_ptr<Work> work_;
+  DiskThread thread_;
 };
 
 }  // namespace flute_grinder

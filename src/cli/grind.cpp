@@ -1,5 +1,6 @@
 #include "flute_grinder/cli/commands.h"
 #include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/online.h"
 #include "flute_grinder/cli/state_watch.h"
 
 #include <ros/ros.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 namespace {
@@ -28,7 +30,8 @@ void addCompletion(Commands& commands) {
 }
 
 int run(int argc, char** argv) {
-  ros::init(argc, argv, "grind", ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  ros::init(argc, argv, "grind",
+            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   // If the master goes away during a call, wait for it as long as for one that is missing.
   ros::master::setRetryTimeout(kPatience);
   CLI::App app{"Plans jobs for conical end mills and operates the grinder.", "grind"};
@@ -67,10 +70,8 @@ int closeOutput(int status) {
   return status == 0 ? 1 : status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  occupyStandardStreams();
+/// @return the exit status, whatever happens.
+int runToTheEnd(int argc, char** argv) {
   try {
     return closeOutput(run(argc, argv));
   } catch (const std::exception& error) {
@@ -79,4 +80,13 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "unknown error\n");
   }
   return kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupyStandardStreams();
+  const int status = runToTheEnd(argc, argv);
+  leaveRos();
+  std::_Exit(status);  // at the end of main(), roscpp would wait for its threads
 }

@@ -40,7 +40,7 @@ std::string timeText(const ros::Time& time, bool utc) {
   return text.data();
 }
 
-/// Receives the work offsets; a spinner must be running.
+/// Receives the work offsets.
 class OffsetWatch {
  public:
   explicit OffsetWatch(ros::NodeHandle& nh) {
@@ -95,8 +95,6 @@ void printTable(const WorkOffsets& offsets, const GrinderState& state) {
 }
 
 int show(ros::NodeHandle& nh, bool json) {
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
@@ -159,8 +157,6 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job);
-    ros::AsyncSpinner spinner(1);
-    spinner.start();
     const StateWatch watch(nh);
     if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
     const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);

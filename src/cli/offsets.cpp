@@ -63,7 +63,8 @@ class OffsetWatch {
   ros::Subscriber subscriber_;
 };
 
-Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
+/// @param node resolved name.
+Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
   Json axes = Json::object();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -75,10 +76,12 @@ Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
                                              {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
                                              {"set_at", set ? Json(timeText(offsets.set_at[i], true)) : Json(nullptr)}};
   }
-  return {{"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
+  return {{"grinder", node}, {"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }
 
-void printTable(const WorkOffsets& offsets, const GrinderState& state) {
+/// @param node resolved name.
+void printTable(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
+  std::printf("work offsets of %s\n", node.c_str());
   std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -101,9 +104,9 @@ int show(ros::NodeHandle& nh, bool json) {
   // A state from before the last change would contradict the offsets.
   if (!watch.awaitNext()) return fail(kLinkLost);
   if (json) {
-    print(toJson(*offsets.newest(), watch.newest()));
+    print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
   } else {
-    printTable(*offsets.newest(), watch.newest());
+    printTable(nh.getNamespace(), *offsets.newest(), watch.newest());
   }
   return 0;
 }

@@ -52,7 +52,9 @@ std::string swivelText(const GrinderState& state) {
          (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
-void printState(const GrinderState& state) {
+/// @param node resolved name.
+void printState(const std::string& node, const GrinderState& state) {
+  std::printf("grinder         %s\n", node.c_str());
   std::printf("state           %s\n", state.state_name.c_str());
   std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
   std::printf("homed           %s\n", state.homed ? "yes" : "no");
@@ -123,9 +125,9 @@ int printStatus(const std::string& node, bool json) {
   const StateWatch watch(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   if (json) {
-    print(toJson(watch.newest()));
+    print(toJson(nh.getNamespace(), watch.newest()));
   } else {
-    printState(watch.newest());
+    printState(nh.getNamespace(), watch.newest());
   }
   return 0;
 }

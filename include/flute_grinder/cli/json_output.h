@@ -13,8 +13,8 @@ using Json = nlohmann::ordered_json;
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
 Json toJson(const JobPlan& plan);
 
-/// For `grind status`. Teeth and passes count from 1, as on the operator's screens.
-Json toJson(const GrinderState& state);
+/// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
+Json toJson(const std::string& node, const GrinderState& state);
 
 /// As it is printed; bytes that are not UTF-8 are replaced.
 std::string text(const Json& json);

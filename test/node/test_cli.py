@@ -218,7 +218,7 @@ class TestPlan(CommandLine):
                          '%s:%d: a second document begins here; allowed: one\n' % (machine, text.count('\n') + 1))
 
     def test_many_errors(self):
-        job = self.write('many.yaml', ''.join('key_%d: 1\n' % number for number in range(7000)))
+        job = self.write('many.yaml', ''.join('key_%d: 1\n' % number for number in range(5000)))
         lines = self.grind(2, 'plan', job).stderr.splitlines()
         self.assertEqual(len(lines), 21)
         self.assertRegex(lines[-1], r'^%s: and \d+ more$' % re.escape(job))

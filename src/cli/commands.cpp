@@ -25,7 +25,7 @@ CLI::App& Commands::addTo(CLI::App& command, const std::string& name, const std:
 }
 
 Action Commands::online(Action action) {
-  return [action = std::move(action)] { return awaitMaster() ? action() : 1; };
+  return [action = std::move(action)] { return joinRos() ? action() : 1; };
 }
 
 int Commands::carryOut() const {

@@ -47,7 +47,7 @@ void CsvFile::print(const char* format, ...) {
 void CsvFile::close() {
   begin();
   if (std::fclose(file_.release()) != 0 && error_ == 0) error_ = errno;
-  if (error_ != 0) throw FileError(path_ + ": write failed: " + std::strerror(error_));
+  if (error_ != 0) throw WriteError(path_ + ": write failed: " + std::strerror(error_));
 }
 
 void TableCsv::write(int number, const CurvePoint& point, double theory) {

@@ -1,13 +1,19 @@
 #include "flute_grinder/cli/commands.h"
 #include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/csv.h"
+#include "flute_grinder/cli/online.h"
 #include "flute_grinder/cli/state_watch.h"
+#include "flute_grinder/cli/usage.h"
 
 #include <ros/ros.h>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 
 namespace {
@@ -28,13 +34,15 @@ void addCompletion(Commands& commands) {
 }
 
 int run(int argc, char** argv) {
-  ros::init(argc, argv, "grind", ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  ros::init(argc, argv, "grind",
+            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   // If the master goes away during a call, wait for it as long as for one that is missing.
   ros::master::setRetryTimeout(kPatience);
   CLI::App app{"Plans jobs for conical end mills and operates the grinder.", "grind"};
   app.require_subcommand(1);
   app.footer("Example:\n  rosrun flute_grinder grind plan --help");
   Commands commands(app);
+  app.set_version_flag("--version", "flute_grinder " FLUTE_GRINDER_VERSION, "print the version and exit");
   app.add_option("--node", commands.node, "name of the grinder's node")->capture_default_str();
   addJobCommands(commands);
   addWheelCommands(commands);
@@ -44,7 +52,11 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kUsage;
+    // A word that nobody knows is told before what is missing, which it may have been meant for.
+    const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app);
+    if (unknown.empty()) return app.exit(error) == 0 ? 0 : kUsage;
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", unknown.c_str());
+    return kUsage;
   }
   return commands.carryOut();
 }
@@ -59,24 +71,40 @@ void occupyStandardStreams() {
   }
 }
 
+/// Whether stdout is a pipe that nobody reads any more, as of `| head -1`.
+bool isLeftPipe() {
+  pollfd output{STDOUT_FILENO, 0, 0};
+  return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
 /// @param status of the command. @return the exit status: failure if the output could not be written.
 int closeOutput(int status) {
   std::fflush(stdout);
   if (std::ferror(stdout) == 0) return status;
+  if (isLeftPipe()) return 128 + SIGPIPE;  // as a shell sees a program that the signal ends; roscpp ignores it
   std::fprintf(stderr, "standard output: write failed\n");
   return status == 0 ? 1 : status;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  occupyStandardStreams();
+/// @return the exit status, whatever happens.
+int runToTheEnd(int argc, char** argv) {
   try {
     return closeOutput(run(argc, argv));
+  } catch (const WriteError& error) {
+    return fail(error.what());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
   } catch (...) {
     std::fprintf(stderr, "unknown error\n");
   }
   return kUsage;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  occupyStandardStreams();
+  const int status = runToTheEnd(argc, argv);
+  leaveRos();
+  std::_Exit(status);  // at the end of main(), roscpp would wait for its threads
 }

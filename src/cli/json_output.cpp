@@ -79,9 +79,10 @@ Json toJson(const JobPlan& plan) {
           {"odd_even_ripple", toJson(s.ripple_acceleration, "_s2")}};
 }
 
-Json toJson(const GrinderState& state) {
+Json toJson(const std::string& node, const GrinderState& state) {
   const bool job = inJob(state);
-  return {{"state", state.state_name},
+  return {{"grinder", node},
+          {"state", state.state_name},
           {"enabled", state.enabled != 0},
           {"homed", state.homed != 0},
           {"spindle_at_speed", state.spindle_at_speed != 0},

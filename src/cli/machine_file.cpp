@@ -1,12 +1,7 @@
 #include "flute_grinder/cli/machine_file.h"
 
-#include "flute_grinder/cli/csv.h"
 #include "flute_grinder/control/machine_config.h"
-
-#include <yaml-cpp/yaml.h>
-
-#include <fstream>
-#include <sstream>
+#include "flute_grinder/core/yaml_text.h"
 
 namespace flute_grinder {
 
@@ -35,22 +30,9 @@ XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
 
 }  // namespace
 
-std::string readText(const std::string& path) {
-  std::ifstream stream(path);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw FileError(path + ": cannot be read");
-  return text.str();
-}
-
 LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf) {
-  YAML::Node root;
-  try {
-    root = YAML::Load(readText(parameters));
-  } catch (const YAML::Exception& error) {
-    throw FileError(parameters + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
-  }
-  return readMachineConfig(readText(urdf), ParameterReader(toXmlRpc(root), parameters));
+  const YAML::Node root = parseYaml(readTextFile(parameters), parameters);
+  return readMachineConfig(readTextFile(urdf, kMaxUrdfFile), ParameterReader(toXmlRpc(root), parameters));
 }
 
 }  // namespace flute_grinder

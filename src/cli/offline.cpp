@@ -115,7 +115,7 @@ int runPlan(const PlanOptions& options) {
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
   JobPlan plan = planGroundJob(job, machine, machine.park, {}, visit);
-  checkCollision(plan, MachineShapes(readText(options.urdf)));
+  checkCollision(plan, MachineShapes(readTextFile(options.urdf, kMaxUrdfFile)));
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));

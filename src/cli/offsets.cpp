@@ -30,7 +30,7 @@ int axisOf(const std::string& text) {
 
 double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
 
-/// Receives the work offsets; a spinner must be running.
+/// Receives the work offsets.
 class OffsetWatch {
  public:
   explicit OffsetWatch(ros::NodeHandle& nh) {
@@ -53,7 +53,8 @@ class OffsetWatch {
   ros::Subscriber subscriber_;
 };
 
-Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
+/// @param node resolved name.
+Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
   Json axes = Json::object();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -66,10 +67,12 @@ Json toJson(const WorkOffsets& offsets, const GrinderState& state) {
         {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
         {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)}};
   }
-  return {{"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
+  return {{"grinder", node}, {"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }
 
-void printTable(const WorkOffsets& offsets, const GrinderState& state) {
+/// @param node resolved name.
+void printTable(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
+  std::printf("work offsets of %s\n", node.c_str());
   std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -86,17 +89,15 @@ void printTable(const WorkOffsets& offsets, const GrinderState& state) {
 }
 
 int show(ros::NodeHandle& nh, bool json) {
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
   // A state from before the last change would contradict the offsets.
   if (!watch.awaitNext()) return fail(kLinkLost);
   if (json) {
-    print(toJson(*offsets.newest(), watch.newest()));
+    print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
   } else {
-    printTable(*offsets.newest(), watch.newest());
+    printTable(nh.getNamespace(), *offsets.newest(), watch.newest());
   }
   return 0;
 }
@@ -150,8 +151,6 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job);
-    ros::AsyncSpinner spinner(1);
-    spinner.start();
     const StateWatch watch(nh);
     if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
     const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);

@@ -16,6 +16,7 @@
 #include "flute_grinder/messages/reasons.h"
 
 #include <actionlib_msgs/GoalID.h>
+#include <ros/service_manager.h>
 #include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
 
@@ -51,7 +52,9 @@ std::string swivelText(const GrinderState& state) {
          (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
-void printState(const GrinderState& state) {
+/// @param node resolved name.
+void printState(const std::string& node, const GrinderState& state) {
+  std::printf("grinder         %s\n", node.c_str());
   std::printf("state           %s\n", state.state_name.c_str());
   std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
   std::printf("homed           %s\n", state.homed ? "yes" : "no");
@@ -99,22 +102,32 @@ int noGrinder(const ros::NodeHandle& nh) {
   return fail("no grinder answers as " + nh.getNamespace());
 }
 
-bool awaitMaster() {
-  if (await(kPatience, [] { return ros::master::check(); })) return true;
-  noMaster();
-  return false;
+bool joinRos() {
+  if (!await(kPatience, [] { return ros::master::check(); })) {
+    noMaster();
+    return false;
+  }
+  // By itself, so that the last NodeHandle does not end with ros::shutdown(), which takes 0.1 to 0.3 s.
+  ros::start();
+  // Never stopped, which would wait for its thread: the end of the process does it.
+  static ros::AsyncSpinner spinner(1);
+  spinner.start();
+  return true;
+}
+
+void leaveRos() {
+  // Topics are unregistered by whoever uses them. The services are those of every roscpp node.
+  if (ros::isStarted()) ros::ServiceManager::instance()->shutdown();
 }
 
 int printStatus(const std::string& node, bool json) {
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   if (json) {
-    print(toJson(watch.newest()));
+    print(toJson(nh.getNamespace(), watch.newest()));
   } else {
-    printState(watch.newest());
+    printState(nh.getNamespace(), watch.newest());
   }
   return 0;
 }
@@ -124,8 +137,6 @@ namespace {
 /// Waits until homing is over; Ctrl-C breaks it off by switching the power off.
 int home(const std::string& node) {
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   catchInterrupts();
@@ -146,8 +157,6 @@ int home(const std::string& node) {
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
 int lift(const std::string& node) {
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   StopKeys keys(nh, watch);
   if (!await(kPatience, [&] { return watch.begun() && keys.connected(); })) return noGrinder(nh);
@@ -167,8 +176,6 @@ int lift(const std::string& node) {
 /// Cancels the running job, whoever started it, and waits for the end.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
   if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
@@ -185,7 +192,7 @@ int cancelJob(const std::string& node) {
   return state.fault.empty() ? 0 : fail(state.fault);
 }
 
-/// Receives the position of an axis, 100 times a second; a spinner must be running.
+/// Receives the position of an axis, 100 times a second.
 class PositionWatch {
  public:
   /// @param nh the grinder's namespace.
@@ -232,8 +239,6 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   const bool rotary = axis == kA;
   const double unit = rotary ? units::kDegree : units::kMillimetre;
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
-  spinner.start();
   const StateWatch watch(nh);
   const PositionWatch position(nh, axis);
   StopKeys keys(nh, watch);

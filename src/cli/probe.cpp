@@ -41,8 +41,7 @@ struct Failed {
 class ProbedMachine {
  public:
   /// @throw Failed
-  explicit ProbedMachine(const std::string& node) : nh_(node), spinner_(1), watch_(nh_), keys_(nh_, watch_) {
-    spinner_.start();
+  explicit ProbedMachine(const std::string& node) : nh_(node), watch_(nh_), keys_(nh_, watch_) {
     if (!await(kPatience, [&] { return watch_.begun() && keys_.connected(); })) throw Failed{noGrinder(nh_)};
     geometry_ = geometryOf(nh_);
     if (!geometry_.probe) throw Failed{fail("parameter " + nh_.getNamespace() + "/geometry/probe is missing")};
@@ -114,7 +113,6 @@ class ProbedMachine {
   }
 
   ros::NodeHandle nh_;
-  ros::AsyncSpinner spinner_;
   StateWatch watch_;
   StopKeys keys_;
   MachineGeometry geometry_;

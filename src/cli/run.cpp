@@ -158,7 +158,6 @@ GrindGoal goalFor(const GrindJob& job, const RunOptions& options) {
 int runJob(const std::string& node, const RunOptions& options) {
   const GrindJob job = readJobFile(options.job);
   ros::NodeHandle nh(node);
-  ros::AsyncSpinner spinner(1);
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);
   // An action client would wait for a clock for ever.
@@ -166,7 +165,6 @@ int runJob(const std::string& node, const RunOptions& options) {
   GoalWatch watched;
   Client client(nh, "grind", false);
   StopKeys keys(nh, watch);
-  spinner.start();
   if (!await(kPatience,
              [&] { return watch.begun() && client.isServerConnected() && recorder.connected() && keys.connected(); })) {
     return noGrinder(nh);

@@ -66,7 +66,7 @@ void writeStlFile(const GroundTool& tool, const std::string& path) {
   if (!file) throw FileError(path + ": cannot be written: " + std::strerror(errno));
   writeStl(file, solid);
   file.close();
-  if (!file) throw FileError(path + ": write failed: " + std::strerror(errno));
+  if (!file) throw WriteError(path + ": write failed: " + std::strerror(errno));
 }
 
 /// What is simulated: the job alone, or a record of it.

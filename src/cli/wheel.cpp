@@ -137,7 +137,7 @@ int showWheel(const WheelOptions& options) {
 }
 
 int measureWheel(const WheelOptions& options) {
-  const std::string text = readText(options.file);
+  const std::string text = readTextFile(options.file);
   const WheelFile wheel = parseWheel(text, options.file);
   const double diameter = options.diameter_mm * kMillimetre;
   const double width = options.width_mm ? *options.width_mm * kMillimetre : wheel.process.wheel_width;
@@ -147,7 +147,7 @@ int measureWheel(const WheelOptions& options) {
 }
 
 int dressWheel(const WheelOptions& options) {
-  const std::string text = readText(options.file);
+  const std::string text = readTextFile(options.file);
   const WheelFile wheel = parseWheel(text, options.file);
   const double radial = options.radial_mm.value_or(0) * kMillimetre;
   const double face = options.face_mm.value_or(0) * kMillimetre;

@@ -42,8 +42,11 @@ void addZeros(Commands& commands) {
   addLength(command, "--stickout", options->stickout_mm, "from the collet's face to the cutter's small end", false)
       .required();
   addFlange(command, options->flange_mm);
-  command.add_flag("--set", options->set, "by the geometry of the running grinder, and set them as its work offsets");
+  auto* set_flag = command.add_flag("--set", options->set,
+                                    "by the geometry of the running grinder, and set them as its work offsets");
   addMachine(command, options->parameters, options->urdf);
+  // The machine is the one that runs.
+  for (const char* file : {"--machine", "--urdf"}) set_flag->excludes(command.get_option(file));
   addJson(command, options->json);
 }
 

@@ -1,37 +1,80 @@
 #include "flute_grinder/core/flat_file.h"
 
-#include <fstream>
+#include <cctype>
+#include <cstdlib>
 #include <set>
-#include <sstream>
 #include <utility>
 
 namespace flute_grinder {
 
 std::string element(const std::string& key, std::size_t i) { return key + "[" + std::to_string(i) + "]"; }
 
-std::string readYamlText(const std::string& path) {
-  std::ifstream stream(path);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream || !text) throw JobFileError(path + ": cannot be read");
-  return text.str();
+namespace {
+
+template <typename T>
+bool decode(const YAML::Node& node, T& value) {
+  return node.IsScalar() && YAML::convert<T>::decode(node, value);
+}
+
+/// Whether a text is a number, of whatever size.
+bool isNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0';
+}
+
+}  // namespace
+
+std::string readValue(const YAML::Node& node, double& value) {
+  if (decode(node, value)) return "";
+  return node.IsScalar() && isNumber(node.Scalar()) ? " is too large" : " is not a number";
+}
+
+std::string readValue(const YAML::Node& node, int& value) {
+  std::string digits = node.IsScalar() ? node.Scalar() : "";
+  if (!digits.empty() && (digits[0] == '-' || digits[0] == '+')) digits.erase(0, 1);
+  if (digits.size() > 1 && digits[0] == '0' && std::isalnum(static_cast<unsigned char>(digits[1])) != 0) {
+    return " is not decimal, as YAML takes a leading 0 for octal or hexadecimal";
+  }
+  if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return " is not a whole number";
+  return decode(node, value) ? "" : " is too large";
+}
+
+std::string readValue(const YAML::Node& node, bool& value) {
+  return decode(node, value) ? "" : " is neither true nor false";
+}
+
+std::string readValue(const YAML::Node& node, std::string& value) {
+  return decode(node, value) ? "" : " is not a word";
 }
 
 FlatFile::FlatFile(const std::string& text, std::string name, std::string kind, const std::string& content)
     : name_(std::move(name)), kind_(std::move(kind)) {
-  YAML::Node root;
-  try {
-    root = YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    fail(error.mark.line + 1, error.msg);
-    throwErrors();
-  }
+  const YAML::Node root = parseYaml(text, name_);
   if (root.IsMap()) {
     flatten(root, "", 1, 0);
   } else {
     fail(1, "not a map of " + content);
   }
   throwErrors();
+}
+
+void FlatFile::fail(int line, std::string what) {
+  for (char& c : what) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = '?';
+  }
+  if (what.size() > kLongestError) what.replace(kLongestError, std::string::npos, "...");
+  add(name_ + ":" + std::to_string(line) + ": " + what);
+}
+
+void FlatFile::add(const std::string& errors) {
+  if (error_count_++ < kMostTold) errors_ += (errors_.empty() ? "" : "\n") + errors;
+}
+
+void FlatFile::throwErrors() const {
+  if (error_count_ == 0) return;
+  const int untold = error_count_ - kMostTold;
+  throw JobFileError(errors_ + (untold > 0 ? "\n" + name_ + ": and " + std::to_string(untold) + " more" : ""));
 }
 
 void FlatFile::drop(const std::string& key) {
@@ -104,7 +147,6 @@ std::map<std::string, int>::const_iterator FlatFile::findLine(const std::string&
 }
 
 void FlatFile::flatten(const YAML::Node& node, const std::string& path, int line, int depth) {
-  // A YAML alias may contain itself.
   if (depth > kDeepest) return fail(line, path + " goes too deep");
   if (node.IsMap() && node.size() > 0) {
     flattenMap(node, path, depth);

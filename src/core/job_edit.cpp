@@ -33,15 +33,11 @@ class Outline : public YAML::EventHandler {
  public:
   Outline(const std::string& text, std::string name)
       : name_(std::move(name)), size_(text.size()), bom_(text.rfind(kBom, 0) == 0 ? 3 : 0) {
+    checkYaml(text, name_);
     std::istringstream stream(text);
-    try {
-      YAML::Parser parser(stream);
-      parser.HandleNextDocument(*this);
-      leave(text.size());
-      if (parser.HandleNextDocument(*this)) refuse(0, "has several documents");
-    } catch (const YAML::Exception& error) {
-      refuse(error.mark.line, error.msg);
-    }
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(*this);
+    leave(text.size());
   }
 
   const std::map<std::string, Scalar>& scalars() const { return scalars_; }
@@ -53,19 +49,17 @@ class Outline : public YAML::EventHandler {
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override { value(mark, "", "", anchor); }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                const std::string& text) override {
-    value(mark, text, tag, anchor);
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { value(mark, "", ""); }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& text) override {
+    value(mark, text, tag);
   }
-  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark.line, "has an alias"); }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    enter(mark, anchor, false);
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { value(mark, "", ""); }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    enter(mark, false);
   }
-  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
                   YAML::EmitterStyle::value style) override {
-    const std::string path = enter(mark, anchor, true);
+    const std::string path = enter(mark, true);
     maps_[path].flow = style == YAML::EmitterStyle::Flow;
   }
   void OnSequenceEnd() override { levels_.pop_back(); }
@@ -95,11 +89,6 @@ class Outline : public YAML::EventHandler {
     left_.clear();
   }
 
-  void begin(const YAML::Mark& mark, YAML::anchor_t anchor) {
-    if (anchor != 0) refuse(mark.line, "has an anchor");
-    leave(byte(mark));
-  }
-
   /// The path of the value that begins, whose key, if it needs one, was read.
   std::string nextPath(const YAML::Mark& mark) {
     if (levels_.empty()) return "";
@@ -110,14 +99,14 @@ class Outline : public YAML::EventHandler {
     return (level.path.empty() ? "" : level.path + ".") + level.key;
   }
 
-  std::string enter(const YAML::Mark& mark, YAML::anchor_t anchor, bool map) {
-    begin(mark, anchor);
+  std::string enter(const YAML::Mark& mark, bool map) {
+    leave(byte(mark));
     levels_.push_back({nextPath(mark), map, false, "", 0});
     return levels_.back().path;
   }
 
-  void value(const YAML::Mark& mark, const std::string& text, const std::string& tag, YAML::anchor_t anchor) {
-    begin(mark, anchor);
+  void value(const YAML::Mark& mark, const std::string& text, const std::string& tag) {
+    leave(byte(mark));
     if (!levels_.empty() && levels_.back().map && !levels_.back().has_key) {
       Level& level = levels_.back();
       if (level.count++ == 0) {

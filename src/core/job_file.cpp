@@ -71,7 +71,7 @@ void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job
   const std::string path = wheelPath(path_of_job, name);
   std::string text;
   try {
-    text = readYamlText(path);
+    text = readTextFile(path);
   } catch (const JobFileError& error) {
     return file.fail(file.line(key), key + " = " + name + ": " + error.what());
   }
@@ -155,11 +155,11 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
 }
 
 GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved) {
-  return parseJob(readYamlText(path), path, unsolved);
+  return parseJob(readTextFile(path), path, unsolved);
 }
 
 std::string wheelFileOf(const std::string& path) {
-  FlatFile file(readYamlText(path), path, kKind, kContent);
+  FlatFile file(readTextFile(path), path, kKind, kContent);
   std::string name;
   if (!file.has(kWheelFile) || !file.take(kWheelFile, "", name)) return "";
   return wheelPath(path, name);

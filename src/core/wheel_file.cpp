@@ -176,7 +176,7 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
   return wheel;
 }
 
-WheelFile readWheelFile(const std::string& path) { return parseWheel(readYamlText(path), path); }
+WheelFile readWheelFile(const std::string& path) { return parseWheel(readTextFile(path), path); }
 
 void mountWheel(const WheelFile& wheel, GrindJob& job) {
   GrindJob from;

@@ -1,23 +1,8 @@
 #include "flute_grinder/node/peer_limits.h"
 
-#include <dlfcn.h>
+#include "flute_grinder/connection/next_definition.h"
+
 #include <sys/socket.h>
-
-#include <cstdio>
-#include <cstdlib>
-
-namespace flute_grinder {
-
-void* nextDefinition(const char* symbol) {
-  void* definition = dlsym(RTLD_NEXT, symbol);
-  if (!definition) {
-    std::fprintf(stderr, "%s is in no library: another version of roscpp than the node was made for\n", symbol);
-    std::abort();
-  }
-  return definition;
-}
-
-}  // namespace flute_grinder
 
 /// Overrides the C library's accept: a connection over the limit is closed before anything is read from it. Its
 /// descriptor is returned all the same, since roscpp stops listening for a while after an error.

@@ -3,6 +3,7 @@
 /// the answer of a publisher, and divides by a UDPROS datagram size that the peer chooses. These definitions override
 /// the library's own in the node's program.
 
+#include "flute_grinder/connection/next_definition.h"
 #include "flute_grinder/node/peer_limits.h"
 
 #include <ros/connection.h>

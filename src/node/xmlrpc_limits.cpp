@@ -3,6 +3,7 @@
 /// parses nested values recursively until the stack overflows. These definitions override the library's own in the
 /// node's program.
 
+#include "flute_grinder/connection/next_definition.h"
 #include "flute_grinder/node/peer_limits.h"
 
 #include <unistd.h>

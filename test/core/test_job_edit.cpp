@@ -205,7 +205,7 @@ TEST(JobEdit, RefusesWhatItCannotEditWithoutRisk) {
   expectRefused("process:\n  setup: {swivel_deg: 1, height_mm: }\n",
                 "has a value that is not written as a plain number");
   expectRefused("process:\n  setup: {swivel_deg: \"\\x31\", height_mm: 2}\n", "has a value");
-  expectRefused("process:\n  setup: {swivel_deg: 1, height_mm: 2}\n---\na: 1\n", "has several documents");
+  expectRefused("process:\n  setup: {swivel_deg: 1, height_mm: 2}\n---\na: 1\n", "job.yaml:3: a second document");
   expectRefused("process:\n  setup: {}\n", "job.yaml: cannot be edited");
   expectRefused("process:\n  a: 1\n...\n", "job.yaml: cannot be edited");
   expectRefused("process: |\n  a: 1\n", "process is missing");

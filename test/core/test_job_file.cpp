@@ -4,9 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <fstream>
 #include <ostream>
+#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -281,17 +288,63 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"WrongTypeNumber",
                 "end_diameter_mm: 6",
                 "end_diameter_mm: six",
-                {"job.yaml:2", "cutter.end_diameter_mm", "six", "0.1 to 100 mm"}},
+                {"job.yaml:2", "cutter.end_diameter_mm = six is not a number; allowed: 0.1 to 100 mm"}},
         Mistake{"NumberWithUnit",
                 "feed_mm_min: 200",
                 "feed_mm_min: 200mm/min",
-                {"job.yaml:12", "process.feed_mm_min", "200mm/min", "0.1 to 10000 mm/min"}},
+                {"job.yaml:12", "process.feed_mm_min = 200mm/min is not a number", "0.1 to 10000 mm/min"}},
         Mistake{"NoValue",
                 "feed_mm_min: 200",
                 "feed_mm_min:",
                 {"job.yaml:12", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
-        Mistake{"WrongTypeTeeth", "teeth: 4", "teeth: four", {"job.yaml:7", "cutter.teeth", "four", "1 to 64"}},
-        Mistake{"BrokenTeeth", "teeth: 4", "teeth: 4.5", {"job.yaml:7", "cutter.teeth", "4.5", "1 to 64"}},
+        Mistake{"WrongTypeTeeth",
+                "teeth: 4",
+                "teeth: four",
+                {"job.yaml:7", "cutter.teeth = four is not a whole number", "1 to 64"}},
+        Mistake{"BrokenTeeth",
+                "teeth: 4",
+                "teeth: 4.5",
+                {"job.yaml:7", "cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"}},
+        Mistake{"DecimalComma",
+                "spiral_angle_deg: -45",
+                "spiral_angle_deg: 30,5",
+                {"job.yaml:4", "cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"}},
+        Mistake{"DegreeSign",
+                "spiral_angle_deg: -45",
+                "spiral_angle_deg: 30\u00b0",
+                {"job.yaml:4", "cutter.spiral_angle_deg = 30\u00b0 is not a number; allowed: -60 to 60 deg"}},
+        Mistake{"OctalTeeth", "teeth: 4", "teeth: 010", {"job.yaml:7", "cutter.teeth = 010", "octal", "1 to 64"}},
+        Mistake{"OctalZeroTeeth", "teeth: 4", "teeth: +04", {"job.yaml:7", "cutter.teeth = +04", "octal", "1 to 64"}},
+        Mistake{"OctalTeethOfYaml12", "teeth: 4", "teeth: 0o10", {"job.yaml:7", "cutter.teeth = 0o10", "octal"}},
+        Mistake{"HexadecimalTeeth", "teeth: 4", "teeth: 0x10", {"job.yaml:7", "cutter.teeth = 0x10", "hexadecimal"}},
+        Mistake{"OctalSparkOut",
+                "spark_out: 1",
+                "spark_out: 012",
+                {"job.yaml:16", "process.spark_out = 012", "octal", "0 to 100"}},
+        Mistake{"FractionOfATooth",
+                "teeth: 4",
+                "teeth: 0.5",
+                {"job.yaml:7", "cutter.teeth = 0.5 is not a whole number", "1 to 64"}},
+        Mistake{"TooManyTeethToCount",
+                "teeth: 4",
+                "teeth: 99999999999",
+                {"job.yaml:7", "cutter.teeth = 99999999999 is too large", "1 to 64"}},
+        Mistake{"HexadecimalFigure",
+                "depth_mm: 1.5",
+                "depth_mm: 0x1",
+                {"job.yaml:13", "process.depth_mm = 0x1", "0.001 to 50 mm"}},
+        Mistake{"SecondDocument",
+                "interpolation:",
+                "---\ninterpolation:",
+                {"job.yaml:30", "a second document begins here", "allowed: one"}},
+        Mistake{"EmptySecondDocument",
+                "rotary_scale_mm_per_rad: 1.5\n",
+                "rotary_scale_mm_per_rad: 1.5\n---\n",
+                {"job.yaml:34", "a second document begins here"}},
+        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", {"job.yaml:13", "anchor", "allowed: none"}},
+        Mistake{"AnchorOfASection", "cutter:", "cutter: &cutter", {"job.yaml:", "anchor", "allowed: none"}},
+        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", {"job.yaml:13", "anchor"}},
+        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", {"job.yaml:19", "process.order = pass?major"}},
         Mistake{"BrokenSparkOut",
                 "spark_out: 1",
                 "spark_out: 1.5",
@@ -539,20 +592,115 @@ std::string fileErrorOf(const std::string& path) {
   return "";
 }
 
-TEST(JobFile, NamesAFileThatIsMissing) {
-  const std::string path = SOURCE_DIR "/jobs/no_such_job.yaml";
-  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+/// A file of this test, removed at its end.
+class JobFileOnDisk : public ::testing::Test {
+ protected:
+  void SetUp() override { std::ofstream(path_) << kGood; }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  std::string path_ = ::testing::TempDir() + "flute_grinder_job_" + std::to_string(::getpid()) + ".yaml";
+};
+
+TEST_F(JobFileOnDisk, CanBeRead) { EXPECT_EQ(fileErrorOf(path_), ""); }
+
+TEST_F(JobFileOnDisk, ThatIsMissing) {
+  std::filesystem::remove(path_);
+  EXPECT_EQ(fileErrorOf(path_), path_ + ": cannot be read: No such file or directory");
 }
 
-TEST(JobFile, NamesADirectory) {
-  const std::string path = SOURCE_DIR "/jobs";
-  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+TEST_F(JobFileOnDisk, ThatIsAFolder) {
+  EXPECT_EQ(fileErrorOf(SOURCE_DIR "/jobs"), SOURCE_DIR "/jobs: cannot be read: Is a directory");
 }
 
-TEST(JobFile, NamesAnEmptyFile) {
-  const std::string path = ::testing::TempDir() + "flute_grinder_empty_job.yaml";
-  std::ofstream(path).close();
-  EXPECT_EQ(fileErrorOf(path).find(path), 0u);
+TEST_F(JobFileOnDisk, ThatIsEmpty) {
+  std::ofstream(path_).close();
+  EXPECT_EQ(fileErrorOf(path_), path_ + ": is empty");
+}
+
+TEST_F(JobFileOnDisk, ThatMayNotBeRead) {
+  std::filesystem::permissions(path_, std::filesystem::perms::none);
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    // root may read everything.
+    constexpr uid_t nobody = 65534;
+    const bool other = ::geteuid() != 0 || ::setuid(nobody) == 0;
+    const std::string error = other ? fileErrorOf(path_) : "cannot be another user than root";
+    ::_exit(::write(ends[1], error.data(), error.size()) < 0 ? 1 : 0);
+  }
+  ::close(ends[1]);
+  std::array<char, 1000> error{};
+  EXPECT_GE(::read(ends[0], error.data(), error.size() - 1), 0);
+  ::close(ends[0]);
+  EXPECT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(std::string(error.data()), path_ + ": cannot be read: Permission denied");
+}
+
+TEST_F(JobFileOnDisk, ThatIsTooLong) {
+  const std::string most = kGood + std::string(kMaxYamlFile - std::string(kGood).size(), '#');
+  std::ofstream(path_) << most;
+  EXPECT_EQ(fileErrorOf(path_), "");
+  std::ofstream(path_) << most << '#';
+  EXPECT_EQ(fileErrorOf(path_), path_ + ": is too long; allowed: 65536 bytes");
+}
+
+TEST(JobFile, TellsTheFirstOfManyErrorsAndHowManyMore) {
+  std::string text;
+  for (int i = 1; i <= 25; ++i) text += "key_" + std::to_string(i) + ": 1\n";
+  const std::string error = errorOf(kGood + text);
+  EXPECT_EQ(linesOf(error), 21) << error;
+  EXPECT_EQ(error.substr(error.rfind('\n') + 1), "job.yaml: and 5 more");
+}
+
+TEST(JobFile, CutsALongError) { EXPECT_LT(errorOf(with("pass_major", std::string(60000, 'x'))).size(), 3000u); }
+
+TEST(JobFile, RefusesALaughBeforeItIsBuilt) {
+  std::string text = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 60; ++i) {
+    const std::string last = "*a" + std::to_string(i - 1), name = "a" + std::to_string(i);
+    text += name + ": &" + name + " [" + last + ", " + last + ", " + last + "]\n";
+  }
+  EXPECT_EQ(errorOf(text), "job.yaml:1: has an anchor; allowed: none, and no aliases");
+}
+
+TEST(JobFile, RefusesTheDeepest) {
+  for (const std::size_t depth : {6U, 400U, 30000U}) {
+    const std::string error = errorOf("a: " + std::string(depth, '[') + std::string(depth, ']') + "\n");
+    EXPECT_EQ(error.rfind("job.yaml:1: ", 0), 0u) << depth;
+    EXPECT_EQ(linesOf(error), 1) << depth;
+  }
+}
+
+/// A text with some pieces of it replaced by what YAML knows.
+std::string spoiled(std::mt19937& dice) {
+  const std::vector<std::string> pieces{"\n",   ": ",     "- ",     "[",           "]",    "{",     "}",    "&a ",
+                                        "*a",   "!!int ", "---\n",  "...\n",       "\t",   "\"",    "'",    "|\n",
+                                        "? ",   "#",      "~",      "0x1",         "010",  "1e999", ".nan", "\0",
+                                        "\x1b", "\xff",   "\u00b0", "%YAML 1.2\n", "<<: ", "@"};
+  std::string text = kGood;
+  for (std::size_t i = 0, count = 1 + dice() % 2; i < count; ++i) {
+    text.replace(dice() % text.size(), dice() % 6, pieces[dice() % pieces.size()]);
+  }
+  return text;
+}
+
+TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
+  std::mt19937 dice(1);
+  int read = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const std::string text = spoiled(dice);
+    const std::string error = errorOf(text);
+    std::istringstream lines(error);
+    int told = 0;
+    for (std::string line; std::getline(lines, line); ++told)
+      EXPECT_EQ(line.rfind("job.yaml:", 0), 0u) << text << error;
+    EXPECT_LE(told, 21) << text;
+    read += told == 0 ? 1 : 0;
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_LT(read, 2000);
 }
 
 TEST(JobFile, NamesTheFileAndLineOfAnErrorInIt) {

@@ -219,7 +219,7 @@ TEST_F(WheelOfAJob, StandsAloneInTheJob) {
 TEST_F(WheelOfAJob, ThatIsNotThereIsToldAtTheJobsLine) {
   const std::string path = write("jobs/job.yaml", jobText("    file: ../wheels/none.yaml\n"));
   EXPECT_EQ(jobErrorOf(path), path + ":14: process.wheel.file = ../wheels/none.yaml: " + folder_ +
-                                  "/jobs/../wheels/none.yaml: cannot be read");
+                                  "/jobs/../wheels/none.yaml: cannot be read: No such file or directory");
   const std::string list = write("jobs/job.yaml", jobText("    file: [1, 2]\n"));
   EXPECT_EQ(jobErrorOf(list).find(list + ":14: process.wheel.file"), 0u) << jobErrorOf(list);
 }
@@ -229,8 +229,9 @@ TEST_F(WheelOfAJob, TellsItsMistakesBesideThoseOfTheJob) {
   std::string text = jobText("    file: ../wheels/wheel.yaml\n");
   text.replace(text.find("spark_out: 1"), 12, "spark_out: x");
   const std::string path = write("jobs/job.yaml", text);
-  EXPECT_EQ(jobErrorOf(path), folder_ + "/jobs/../wheels/wheel.yaml:3: diameter_mm = large; allowed: 1 to 500 mm\n" +
-                                  path + ":8: process.spark_out = x; allowed: 0 to 100");
+  EXPECT_EQ(jobErrorOf(path),
+            folder_ + "/jobs/../wheels/wheel.yaml:3: diameter_mm = large is not a number; allowed: 1 to 500 mm\n" +
+                path + ":8: process.spark_out = x is not a whole number; allowed: 0 to 100");
 }
 
 TEST_F(WheelOfAJob, IsHeldAgainstTheJob) {
@@ -312,7 +313,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MeasuredNothing", "99.4", "0.5",
                 "10: measured.diameter_mm = 0.5 mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
         Mistake{"MeasuredWord", "99.4", "small",
-                "10: measured.diameter_mm = small; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+                "10: measured.diameter_mm = small is not a number; allowed: 1 to 100 mm, the diameter to which Y = 0 "
+                "is set"},
         Mistake{"NoWidthLeft", "width_mm: 7.9", "width_mm: 0", "11: measured.width_mm = 0 mm; allowed: 0.1 to 100 mm"},
         Mistake{"NoRoomForTheCorners", "width_mm: 7.9", "width_mm: 0.25",
                 "7: corner_radius_mm[0] = 0.3 mm; allowed: up to the wheel's width for both corners together, 0.25 mm"},
@@ -320,7 +322,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             "ClosedByWear", "diameter_mm: 99.4", "diameter_mm: 5.6",
             "11: measured.width_mm = 7.9 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"},
-        Mistake{"NotAMap", "# 1V1\n", "--- 3\n---\n", "1: not a map of a wheel's keys"},
+        Mistake{"SecondDocument", "# 1V1\n", "--- 3\n---\n", "2: a second document begins here; allowed: one"},
         Mistake{"BrokenYaml", "[0.1, 0.2]", "[0.1, 0.2", "8: end of sequence flow not found"}),
     [](const auto& info) { return std::string(info.param.name); });
 

@@ -91,10 +91,10 @@ TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
 
 TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreTold) {
   std::string text = textOf(job_);
-  text.replace(text.find("swivel_deg: "), 12, "swivel_deg: &x ");
+  text.replace(text.find("swivel_deg: "), 12, "swivel_deg: !!float ");
   write(text);
   const std::string said = refusal(job_, setup());
-  EXPECT_NE(said.find(":28: has an anchor"), std::string::npos) << said;
+  EXPECT_NE(said.find(":28: has a value that is not written as a plain number"), std::string::npos) << said;
   EXPECT_NE(said.find("process.setup.height_mm: 2.78785"), std::string::npos) << said;
   EXPECT_EQ(textOf(job_), text);
   EXPECT_EQ(filesInFolder(), 1);

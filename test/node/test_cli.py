@@ -4,6 +4,7 @@ the job said no, 2 wrong usage or an unreadable file."""
 
 import os
 import re
+import signal
 import subprocess
 
 import rospy
@@ -191,10 +192,36 @@ class TestPlan(CommandLine):
 
     def test_missing_file(self):
         reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
-        self.assertIn(self.path('nothing.yaml') + ': cannot be read', reason)
+        self.assertEqual(reason, self.path('nothing.yaml') + ': cannot be read: No such file or directory\n')
 
     def test_folder_is_no_file(self):
-        self.assertIn(self.folder, self.grind(2, 'plan', self.folder).stderr)
+        self.assertEqual(self.grind(2, 'plan', self.folder).stderr, self.folder + ': cannot be read: Is a directory\n')
+
+    def test_empty_file(self):
+        job = self.write('empty.yaml', '')
+        self.assertEqual(self.grind(2, 'plan', job).stderr, job + ': is empty\n')
+
+    def test_bomb_of_aliases(self):
+        text = 'a: &a [x, x, x, x, x, x, x, x, x]\n'
+        for last, name in zip('abcdefgh', 'bcdefghi'):
+            text += '%s: &%s [%s]\n' % (name, name, ', '.join(['*' + last] * 9))
+        bomb = self.write('bomb.yaml', text)
+        for arguments in ([bomb], [PAPER_JOB, '--machine', bomb]):
+            self.assertEqual(self.grind(2, 'plan', *arguments).stderr,
+                             bomb + ':1: has an anchor; allowed: none, and no aliases\n')
+
+    def test_machine_file_of_two_documents(self):
+        with open(gc.package_file('config/grinder.yaml')) as file:
+            text = file.read()
+        machine = self.write('machine.yaml', text + '---\nperiod: 1\n')
+        self.assertEqual(self.grind(2, 'plan', PAPER_JOB, '--machine', machine).stderr,
+                         '%s:%d: a second document begins here; allowed: one\n' % (machine, text.count('\n') + 1))
+
+    def test_many_errors(self):
+        job = self.write('many.yaml', ''.join('key_%d: 1\n' % number for number in range(5000)))
+        lines = self.grind(2, 'plan', job).stderr.splitlines()
+        self.assertEqual(len(lines), 21)
+        self.assertRegex(lines[-1], r'^%s: and \d+ more$' % re.escape(job))
 
     def test_unknown_key(self):
         with open(PAPER_JOB) as file:
@@ -230,7 +257,57 @@ class TestPlan(CommandLine):
         self.assertIn(self.path('no/such/folder.csv'), reason)
 
 
+class TestOutput(CommandLine):
+    """A disk that is full, and a pipe that nobody reads."""
+
+    def test_file_on_a_full_disk(self):
+        for arguments in (['table', PAPER_JOB, '--step-length', '0.2', '--csv'], ['plan', PAPER_JOB, '--csv'],
+                          ['simulate', PAPER_JOB, '--at', '10', '--csv'], ['simulate', PAPER_JOB, '--at', '10', '--stl']):
+            self.assertEqual(self.grind(1, *arguments, '/dev/full').stderr,
+                             '/dev/full: write failed: No space left on device\n')
+
+    def test_pipe_that_is_left(self):
+        # More than a pipe holds; nobody reads it from the beginning.
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run([gc.program('grind'), 'table', PAPER_JOB, '--step-length', '0.01'], stdout=writer,
+                              stderr=subprocess.PIPE, timeout=gc.PATIENCE)
+        os.close(writer)
+        self.assertEqual((done.returncode, done.stderr), (128 + signal.SIGPIPE, b''))
+
+
 class TestUsage(CommandLine):
+    def check_unknown(self, arguments, said):
+        self.assertEqual(self.grind(2, *arguments).stderr, said + '\nRun with --help for more information.\n')
+
+    def test_unknown_command_is_named_with_the_nearest(self):
+        for word, near in (('frob', "'probe'"), ('stauts', "'status'"), ('hodl', "'hold'"), ('off', "'offsets'")):
+            self.check_unknown([word], "%s: no such command of 'grind'; did you mean %s?" % (word, near))
+        self.check_unknown(['polish'], "polish: no such command of 'grind'")
+        self.check_unknown(['wheel', 'shw', 'wheel.yaml'], "shw: no such command of 'grind wheel'; did you mean 'show'?")
+
+    def test_unknown_option_is_named_before_what_is_missing(self):
+        self.check_unknown(['report', '--ros-args'], "--ros-args: no such option of 'grind report'")
+        self.check_unknown(['plan', '--speed=9'], "--speed: no such option of 'grind plan'")
+        self.check_unknown(['plan', PAPER_JOB, '--cvs', 'x'], "--cvs: no such option of 'grind plan'; did you mean '--csv'?")
+        self.check_unknown(['jog', 'x', '1', '-x'], "-x: no such option of 'grind jog'")
+        self.check_unknown(['--nod', 'x', 'status'], "--nod: no such option of 'grind'; did you mean '--node'?")
+        self.check_unknown(['status', '--node', 'x'], '--node: stands before the command: grind --node ... status')
+
+    def test_argument_too_many_is_named(self):
+        self.check_unknown(['hold', 'now'], "now: no such argument of 'grind hold'")
+        self.check_unknown(['jog', 'x', '1', '2'], "2: no such argument of 'grind jog'")
+        self.check_unknown(['-'], "-: no such command of 'grind'")
+
+    def test_version_is_the_packages(self):
+        version = re.search('<version>(.*)</version>', open(gc.package_file('package.xml')).read()).group(1)
+        self.assertEqual(self.grind(0, '--version').stdout, 'flute_grinder %s\n' % version)
+
+    def test_zeros_of_the_running_machine_take_no_other(self):
+        for option in ('--machine', '--urdf'):
+            said = self.grind(2, 'zeros', PAPER_JOB, '--stickout', '60', '--flange', '2', '--set', option, 'other').stderr
+            self.assertIn('--set excludes ' + option, said)
+
     def test_wrong_usage(self):
         for arguments in ([], ['polish'], ['plan'], ['run'], ['table', PAPER_JOB], ['plan', PAPER_JOB, '--speed', '9'],
                           ['table', PAPER_JOB, '--step-length', '0'], ['table', PAPER_JOB, '--step-length', '-0.2'],

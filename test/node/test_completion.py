@@ -60,7 +60,7 @@ class TestCompletion(unittest.TestCase):
             options = set(re.findall(r'(?m)^  (?:-\w,)?(--[\w-]+)', gc.grind(command, '--help').stdout))
             self.assertIn('--help', options)
             self.assertEqual(self.offered('grind', command, '--'), options)
-        self.assertEqual(self.offered('grind', '--'), {'--help', '--node'})
+        self.assertEqual(self.offered('grind', '--'), {'--help', '--node', '--version'})
 
     def test_commands_of_a_command(self):
         wheel = ['grind', '--node', 'other', 'wheel']

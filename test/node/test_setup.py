@@ -186,10 +186,11 @@ class TestRefusals(TestSetup):
 
 class TestFile(TestSetup):
     def test_file_that_cannot_be_edited_stays_and_the_figures_are_told(self):
-        job = self.job('job.yaml', setup='&s {swivel_deg: 30, height_mm: 2}')
+        job = self.job('job.yaml', setup='{swivel_deg: !!float 30, height_mm: 2}')
         before = self.text(job)
         said = self.grind(2, 'setup', job, '--write').stderr
-        self.assertRegex(said, r'job\.yaml:28: has an anchor; nothing was written, write by hand:\n'
+        self.assertRegex(said, r'job\.yaml:28: has a value that is not written as a plain number; nothing was written, '
+                               r'write by hand:\n'
                                r'  process\.setup\.swivel_deg: 31\.76\d*\n  process\.setup\.height_mm: 2\.78\d*\n')
         self.assertEqual(self.text(job), before)
         self.assertEqual(os.listdir(self.folder), ['job.yaml'])

@@ -124,6 +124,12 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         self.assertEqual(other.returncode, 1)
         self.assertIn("the grinder's last job was another one", other.stderr)
 
+    def test_status_and_offsets_say_which_grinder(self):
+        for name in NAMES:
+            for command in ('status', 'offsets'):
+                done = gc.grind('--node', name, command)
+                self.assertIn('/' + name, done.stdout.splitlines()[0], done.stderr)
+
     def test_transforms_are_those_of_the_own_axes(self):
         for client in (self.left, self.right):
             # Of one time are the transforms and the positions from which they were made.

@@ -115,7 +115,7 @@ class TestWithoutMaster(RunTest):
         command = self.grind('run', PAPER_JOB, environment=self.master.environment)
         self.assertEqual(command.end(), 1)
         self.assertEqual(command.text, '/use_sim_time is set, but no time comes on /clock\n')
-        self.assertRegex(self.master.grind('status').stdout, r'^state +ready\n')
+        self.assertRegex(self.master.grind('status').stdout, r'(?m)^state +ready$')
         self.assertEqual(self.master.grind('disable').returncode, 0)
 
 

@@ -16,6 +16,12 @@ class FileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file that could be opened, but not written to its end.
+class WriteError : public FileError {
+ public:
+  using FileError::FileError;
+};
+
 /// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
 /// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
 /// is removed again.
@@ -29,7 +35,7 @@ class CsvFile {
   CsvFile& operator=(const CsvFile&) = delete;
   ~CsvFile();
 
-  /// Closes the file. @throw FileError if writing failed.
+  /// Closes the file. @throw WriteError if writing failed.
   void close();
 
  protected:

@@ -9,8 +9,8 @@ namespace flute_grinder {
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
 Json toJson(const JobPlan& plan);
 
-/// For `grind status`. Teeth and passes count from 1, as on the operator's screens.
-Json toJson(const GrinderState& state);
+/// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
+Json toJson(const std::string& node, const GrinderState& state);
 
 /// Prints it to stdout.
 void print(const Json& json);

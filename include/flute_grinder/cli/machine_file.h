@@ -6,14 +6,10 @@
 
 namespace flute_grinder {
 
-/// The text of a file.
-/// @throw FileError if it cannot be read.
-std::string readText(const std::string& path);
-
 /// Reads the machine from the files that roslaunch loads, without ROS running.
 /// @param parameters YAML, the node's parameters.
 /// @param urdf the robot description.
-/// @throw FileError if a file cannot be read; ParameterError if the machine cannot be used.
+/// @throw JobFileError if a file cannot be read; ParameterError if the machine cannot be used.
 LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf);
 
 }  // namespace flute_grinder

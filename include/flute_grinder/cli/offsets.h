@@ -32,7 +32,7 @@ struct TouchOffOptions {
 /// @param value [m], A [rad]. @return the exit status.
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value);
 
-/// The work offsets; nothing if the grinder does not tell them in time. A spinner must be running.
+/// The work offsets; nothing if the grinder does not tell them in time.
 std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.

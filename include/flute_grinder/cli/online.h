@@ -17,8 +17,12 @@ struct RunOptions {
   std::string csv;       ///< file for the streamed setpoints, or empty
 };
 
-/// Waits for the ROS master, which may still be starting. @return whether it answers.
-bool awaitMaster();
+/// Waits for the ROS master, which may still be starting, and makes this program a node, whose callbacks are
+/// called in a thread of their own. @return whether the master answers.
+bool joinRos();
+
+/// Ends this program's part in ROS. To be called last: no thread of roscpp's is awaited. @return at once
+void leaveRos();
 
 /// Prints an error. @return the exit status for it.
 int fail(const std::string& text);

@@ -24,7 +24,7 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
 
 const ros::WallDuration kPatience(10);  ///< with a node that is still starting
 
-/// Receives the grinder's state, 20 times a second; a spinner must be running.
+/// Receives the grinder's state, 20 times a second.
 class StateWatch {
  public:
   /// @param nh the grinder's namespace.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/core/enum_table.h"
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/yaml_text.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -14,8 +14,12 @@ namespace flute_grinder {
 /// The name of an element of a list, e.g. "points_mm[2]".
 std::string element(const std::string& key, std::size_t i);
 
-/// The text of a file. @throw JobFileError if it cannot be read.
-std::string readYamlText(const std::string& path);
+/// Reads a value. @return what is wrong with it, e.g. " is not a number"; empty if it was read. A whole number must be
+/// decimal: YAML would take 010 for 8.
+std::string readValue(const YAML::Node& node, double& value);
+std::string readValue(const YAML::Node& node, int& value);
+std::string readValue(const YAML::Node& node, bool& value);
+std::string readValue(const YAML::Node& node, std::string& value);
 
 /// A YAML file of known keys, flattened: "process.wheel.diameter_mm" or "process.overtravel_mm[0]" to value. Known keys
 /// are removed as they are read; the remaining ones are unknown. Errors are collected, each with file and line.
@@ -36,14 +40,11 @@ class FlatFile {
       return false;
     }
     const YAML::Node& node = entry.mapped();
-    try {
-      value = node.as<T>();
-      return true;
-    } catch (const YAML::Exception&) {
-      const std::string text = node.IsScalar() ? node.Scalar() : node.IsNull() ? "(nothing)" : "(not a value)";
-      fail(line(key), key + " = " + text + "; allowed: " + allowed);
-      return false;
-    }
+    const std::string wrong = readValue(node, value);
+    if (wrong.empty()) return true;
+    const std::string text = node.IsScalar() ? node.Scalar() : node.IsNull() ? "(nothing)" : "(not a value)";
+    fail(line(key), key + " = " + text + wrong + "; allowed: " + allowed);
+    return false;
   }
 
   /// Takes a value that must be one of an enum's names.
@@ -103,17 +104,19 @@ class FlatFile {
   /// The line of a key, or of its first element; 1 if it is not in the file.
   int line(const std::string& key) const;
 
-  void fail(int line, const std::string& what) { add(name_ + ":" + std::to_string(line) + ": " + what); }
+  /// Adds an error, in one line that a terminal can show, whatever the file has.
+  void fail(int line, std::string what);
 
   /// Adds errors that name their file and line themselves.
-  void add(const std::string& errors) { errors_ += (errors_.empty() ? "" : "\n") + errors; }
+  void add(const std::string& errors);
 
-  void throwErrors() const {
-    if (!errors_.empty()) throw JobFileError(errors_);
-  }
+  /// @throw JobFileError with the errors so far, if there are any: the first of them, and how many more.
+  void throwErrors() const;
 
  private:
   static constexpr int kDeepest = 5;
+  static constexpr int kMostTold = 20;                ///< errors
+  static constexpr std::size_t kLongestError = 2000;  ///< characters
 
   std::map<std::string, int>::const_iterator findLine(const std::string& key) const;
   void flatten(const YAML::Node& node, const std::string& path, int line, int depth);
@@ -125,7 +128,8 @@ class FlatFile {
   std::map<std::string, YAML::Node> entries_;
   std::map<std::string, int> lines_;
   std::vector<std::string> known_;
-  std::string errors_;
+  std::string errors_;  ///< the first ones
+  int error_count_ = 0;
 };
 
 }  // namespace flute_grinder

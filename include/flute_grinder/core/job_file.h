@@ -1,19 +1,12 @@
 #pragma once
 
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/yaml_text.h"
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace flute_grinder {
-
-/// A job file, or a wheel file, that cannot be read; what() has one line per error: file, line, key, value and the
-/// allowed values.
-class JobFileError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Reads and checks a job from a YAML file in the operator's units (mm, deg, mm/min), with its wheel from the wheel
 /// file that it may name, relative to the job file.

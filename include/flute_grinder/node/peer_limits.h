@@ -18,9 +18,4 @@ constexpr int kMaxPeerDescriptor = 512;
 /// From this one on the node opens no connection to a publisher, so that incoming connections find room.
 constexpr int kMaxAskedDescriptor = 256;
 
-/// Finds the shared library's definition of a function that the program overrides.
-/// Ends the program if there is none: the node must not run with a limit that has no effect.
-/// @param symbol its mangled name.
-void* nextDefinition(const char* symbol);
-
 }  // namespace flute_grinder

@@ -1,0 +1,10 @@
+#pragma once
+
+namespace flute_grinder {
+
+/// Finds the shared library's definition of a function that the program overrides. Ends the program if there is none:
+/// the override would have no effect.
+/// @param symbol its mangled name.
+void* nextDefinition(const char* symbol);
+
+}  // namespace flute_grinder

@@ -144,7 +144,12 @@ void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
   const ConicalCutter cutter(job.cutter);
   const double from = extentOf(job).to, end = std::max(kEnd, *shank), radius = job.cutter.shank_diameter / 2;
   appendSolid(array, ns, "cutter",
-              {{from, cutter.radius(from)}, {*shank, cutter.radius(*shank)}, {*shank, radius}, {end, radius}, {end, 0}},
+              {{from, 0},
+               {from, cutter.radius(from)},
+               {*shank, cutter.radius(*shank)},
+               {*shank, radius},
+               {end, radius},
+               {end, 0}},
               colourOf(SurfaceKind::kShank));
 }
 

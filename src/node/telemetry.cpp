@@ -137,7 +137,7 @@ void Telemetry::tick() {
     publishState();
     publishFeedback();
   }
-  if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update(toString(record_.state));
+  if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update();
   // By this thread's tick count: the system clock may be set back.
   if (ticks_ % ticks_per_diagnostics_ == 0) {
     diagnostics_.setJournalError(journal_.status().error);
@@ -204,7 +204,7 @@ void Telemetry::endJob(Job& job) {
   for (const Buffered& unplayed : job.buffered) addToBatch(job, unplayed);
   publishBatch();
   publishFeedback();
-  if (job.shown) scene_.end(toString(record_.state));
+  if (job.shown) scene_.end();
   const std::uint64_t number = job.number;
   recorder_.end(number);
   jobs_.pop_front();

@@ -6,6 +6,7 @@
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
 
+#include <rviz/panel_dock_widget.h>
 #include <QGridLayout>
 #include <QTime>
 #include <QVBoxLayout>
@@ -18,14 +19,45 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kRefreshInterval = 50;  ///< the rate of the grinder's state [ms]
-constexpr int kMessages = 200;        ///< that are kept
+constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
+constexpr int kMessages = 200;                  ///< that are kept
+constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
+constexpr int kSpacing = 4;  ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
+constexpr int kApart = 14;   ///< between the last column of buttons and the others [px]
 
 QString capitalized(const std::string& text) {
   QString words = QString::fromStdString(text);
   if (!words.isEmpty()) words[0] = words[0].toUpper();
   return words;
+}
+
+/// Whether a request asks for what is so already, or is on its way.
+bool isDone(MachineState state, MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kEnable: return state == MachineState::kReady;
+    case MachineEvent::kHold: return state == MachineState::kHolding || state == MachineState::kHeld;
+    case MachineEvent::kCancel: return state == MachineState::kCanceling;
+    default: return false;
+  }
+}
+
+/// Whether axes may move in a state.
+bool moves(MachineState state) {
+  switch (state) {
+    case MachineState::kDisabled:
+    case MachineState::kReady:
+    case MachineState::kStarting:
+    case MachineState::kHeld:
+    case MachineState::kRetracted:
+    case MachineState::kFault: return false;
+    default: return true;
+  }
+}
+
+/// Whether two cutters fill a view alike.
+bool isSameSize(const Cutter& a, const Cutter& b) {
+  return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
 }
 
 /// One for the process, however many panels there are.
@@ -46,11 +78,13 @@ GrindPanel::GrindPanel(QWidget* parent)
       section_(new SectionView),
       jog_(new JogBox),
       touch_off_(new TouchOffBox),
+      legend_(new LegendBox),
+      look_(new QPushButton("Look at the tool")),
       tabs_(new QTabWidget),
       override_(new OverrideBox),
       progress_(new ProgressBox),
       position_(new PositionBox),
-      messages_(textView("messages", 3)),
+      messages_(textView("messages", 2)),
       node_edit_(new QLineEdit) {
   messages_->setMaximumBlockCount(kMessages);
   messages_->setPlaceholderText("Replies from the grinder");
@@ -69,6 +103,7 @@ GrindPanel::GrindPanel(QWidget* parent)
     if (link_) link_->jog(axis, velocity);
   });
   connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::touchOff);
+  connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
     setNode(node_edit_->text());
@@ -90,33 +125,60 @@ void GrindPanel::layOut() {
   tabs_->addTab(job_, "Job");
   tabs_->addTab(section_, "Section");
   tabs_->addTab(by_hand, "Jog");
+  tabs_->addTab(viewTab(), "View");
   // Beyond its minimum it gets what the tabs leave.
   messages_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
 
-  auto* buttons = new QGridLayout;
-  int place = 0;
-  for (const EventRow& request : kMachineEvents) {
-    if (!isRequest(request.value) || request.value == MachineEvent::kJog) continue;
-    // What the hand finds in a hurry.
-    const bool large = request.value == MachineEvent::kStart || request.value == MachineEvent::kHold;
-    const int columns = large ? 2 : 1;
-    buttons->addWidget(addButton(request, large), place / kButtonColumns, place % kButtonColumns, 1, columns);
-    place += columns;
-  }
-
-  auto* node = new QHBoxLayout;
-  node->addWidget(new QLabel("Grinder's node"));
-  node->addWidget(node_edit_, 1);
-
   auto* layout = new QVBoxLayout(this);
+  layout->setSpacing(kSpacing);
   layout->addWidget(state_);
   layout->addWidget(tabs_, 5);
-  layout->addLayout(buttons);
+  layout->addLayout(layOutButtons());
   layout->addWidget(override_);
   layout->addWidget(progress_);
   layout->addWidget(position_);
   layout->addWidget(messages_, 1);
+}
+
+QLayout* GrindPanel::layOutButtons() {
+  auto* buttons = new QGridLayout;
+  buttons->setVerticalSpacing(kSpacing);
+  buttons->setColumnMinimumWidth(kButtonColumns - 1, kApart);
+  int place = 0;
+  const auto add = [&](const EventRow& request) {
+    // What the hand finds in a hurry.
+    const bool large = request.value == MachineEvent::kStart || request.value == MachineEvent::kHold;
+    const int first = place % kButtonColumns, last = first + (large ? 1 : 0);
+    // A column of the grid is the gap.
+    const auto column = [](int of) { return of < kButtonColumns - 1 ? of : of + 1; };
+    buttons->addWidget(addButton(request, large), place / kButtonColumns, column(first), 1,
+                       column(last) - column(first) + 1);
+    place += last - first + 1;
+  };
+  for (const EventRow& request : kMachineEvents) {
+    const bool offered = isRequest(request.value) && request.value != MachineEvent::kJog;
+    if (offered && request.value != MachineEvent::kCancel) add(request);
+  }
+  // Last, so that nobody who wants to resume hits it.
+  add(rowOf(MachineEvent::kCancel));
+  for (const int column : {0, 1, 2, kButtonColumns}) buttons->setColumnStretch(column, 1);
+  return buttons;
+}
+
+QWidget* GrindPanel::viewTab() {
+  look_->setObjectName("look_at_tool");
+  look_->setToolTip("Turn rviz's view back to the tool; it does so by itself when another tool is shown");
+  auto* node = new QHBoxLayout;
+  node->addWidget(new QLabel("Node"));
+  node->addWidget(node_edit_, 1);
+  node->addWidget(look_);
+  auto* tab = new QWidget;
+  auto* layout = new QVBoxLayout(tab);
+  layout->setContentsMargins(6, 6, 6, 6);
+  layout->addWidget(legend_);
+  layout->addStretch(1);
   layout->addLayout(node);
+  return tab;
 }
 
 QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
@@ -129,13 +191,15 @@ QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
     QFont bold = font();
     bold.setBold(true);
     button->setFont(bold);
-    button->setMinimumHeight(2 * fontMetrics().height() + 6);
+    button->setMinimumHeight(2 * fontMetrics().height() + 2);
   }
   const MachineEvent event = request.value;
   buttons_[event] = button;
   connect(button, &QPushButton::clicked, this, [this, event] { this->request(event); });
   return button;
 }
+
+void GrindPanel::onInitialize() { rviz_ = new RvizView(*vis_manager_, this); }
 
 void GrindPanel::load(const rviz::Config& config) {
   rviz::Panel::load(config);
@@ -162,7 +226,7 @@ void GrindPanel::setNode(const QString& node) {
   try {
     if (node.isEmpty()) throw ros::InvalidNameException("the name is empty");
     name_ = ros::names::resolve(node.toStdString());
-    job_->setDescription(ros::names::append(ros::names::parentNamespace(name_), "robot_description"));
+    job_->setGrinder(name_);
   } catch (const ros::InvalidNameException& error) {
     showMessage(std::string("grinder's node: ") + error.what());
   }
@@ -191,6 +255,7 @@ void GrindPanel::refresh() {
     sent_.reset();
     job_->discardPlan();
   }
+  nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
@@ -203,6 +268,34 @@ void GrindPanel::refresh() {
   progress_->show(view, job_runs);
   position_->show(view);
   section_->refresh(view, job_->job());
+  showLegend(view.legend);
+  if (rviz_) rviz_->keepPace(state && moves(*state));
+}
+
+/// With two grinders a window must say whose it is. rviz itself sets the title when it reads or writes a file.
+void GrindPanel::nameWindows() {
+  const QString name = QString::fromStdString(name_);
+  if (auto* dock = qobject_cast<rviz::PanelDockWidget*>(parentWidget())) {
+    const QString title = (getName() + " " + name).trimmed();
+    if (dock->windowTitle() != title) dock->setWindowTitle(title);
+  }
+  QStringList parts = window()->windowTitle().split(kTitleSeparator, Qt::SkipEmptyParts);
+  if (titled_ == name && (name.isEmpty() || parts.contains(name))) return;
+  if (titled_ != name) parts.removeAll(titled_);
+  if (!name.isEmpty()) parts.prepend(name);
+  window()->setWindowTitle(parts.join(kTitleSeparator));
+  titled_ = name;
+}
+
+void GrindPanel::showLegend(const std::optional<Legend>& legend) {
+  legend_->show(legend);
+  position_->setTolerance(legend ? std::optional<double>(legend->tolerance) : std::nullopt);
+  look_->setEnabled(rviz_ && looked_at_);
+  if (!rviz_ || !legend) return;
+  // Only at another tool, so that a view that the operator has chosen stays.
+  const bool other = !looked_at_ || !isSameSize(*looked_at_, legend->cutter);
+  looked_at_ = legend->cutter;
+  if (other) rviz_->lookAt(legend->cutter);
 }
 
 bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
@@ -212,7 +305,7 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   // A goal in planning or in transit can be canceled, or held before its first move.
   const bool planned = view.planned || (sent_ && !isInJob(state));
   const bool for_a_goal = event == MachineEvent::kCancel || event == MachineEvent::kHold;
-  if (!(planned && for_a_goal) && !after(state, event)) return false;
+  if (!(planned && for_a_goal) && (!after(state, event) || isDone(state, event))) return false;
   if (isStop(event)) return true;
   if (master_watch_->master() == Master::kMissing) return false;
   switch (event) {
@@ -278,7 +371,9 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
       return;
     }
   }
-  showMessage(good ? "the job is done" : "the job has ended: " + resultText(result));
+  if (!good) return showMessage("the job has ended: " + resultText(result));
+  // A dry run of somebody else has written none.
+  showMessage(result.setpoints_written > 0 ? "the job is done" : result.error_string);
 }
 
 void GrindPanel::setFeedOverride(double fraction) {

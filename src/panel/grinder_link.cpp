@@ -55,6 +55,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefus
   subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
   subscribers_.push_back(nh_.subscribe("jog_refusal", 10, &GrinderLink::onJogRefusal, this, hints));
   subscribers_.push_back(nh_.subscribe("offsets", 10, &GrinderLink::onOffsets, this, hints));
+  subscribers_.push_back(nh_.subscribe("legend", 10, &GrinderLink::onLegend, this, hints));
   subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
   goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
   stops_ = nh_.advertise<Stop>("stop", 10);
@@ -70,19 +71,22 @@ GrinderView GrinderLink::view() const {
   if (isFresh(state_)) {
     view.state = state_->message;
     view.offsets = offsets_;
+    view.legend = legend_;
+    if (feedback_) view.feedback = feedback_->message.feedback;
   }
   if (isFresh(position_)) view.position = position_->message;
   if (view.position && view.state) {
     const Axes offset = Axes(view.state->position.data()) - Axes(view.state->work_position.data());
     view.work_position = *view.position - offset;
   }
-  if (feedback_) view.feedback = feedback_->message.feedback;
-  if (isFresh(feedback_) && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
+  if (isFresh(feedback_) && view.feedback && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
   return view;
 }
 
 void GrinderLink::onState(const GrinderState::ConstPtr& state) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  // After a silence it may be another process, which knows nothing of the job before.
+  if (!isFresh(state_)) feedback_.reset();
   state_ = Received<GrinderState>{*state, ros::SteadyTime::now()};
 }
 
@@ -109,6 +113,12 @@ void GrinderLink::onJogRefusal(const std_msgs::String::ConstPtr& refusal) {
 void GrinderLink::onOffsets(const WorkOffsets::ConstPtr& offsets) {
   const std::lock_guard<std::mutex> lock(mutex_);
   offsets_ = *offsets;
+}
+
+void GrinderLink::onLegend(const Legend::ConstPtr& legend) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  legend_.reset();
+  if (legend->cutter.end_diameter > 0) legend_ = *legend;
 }
 
 void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) {

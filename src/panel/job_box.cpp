@@ -40,7 +40,7 @@ JobBox::JobBox(QWidget* parent)
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
-      verdict_(textView("verdict", 5)),
+      verdict_(textView("verdict", 4)),
       question_(new DiscardQuestion),
       swivel_question_(new SwivelQuestion),
       answer_(new QStackedWidget) {
@@ -86,7 +86,8 @@ JobBox::JobBox(QWidget* parent)
 void JobBox::choose() {
   const QString folder = file_.isEmpty() ? QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"
                                          : QFileInfo(file_).path();
-  auto* dialog = new QFileDialog(this, "Choose a job file", folder, "Jobs (*.yaml *.yml);;All files (*)");
+  auto* dialog = new QFileDialog(this, "Choose a job file for " + QString::fromStdString(grinder_), folder,
+                                 "Jobs (*.yaml *.yml);;All files (*)");
   dialog->setFileMode(QFileDialog::ExistingFile);
   dialog->setAttribute(Qt::WA_DeleteOnClose);
   connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
@@ -97,7 +98,7 @@ void JobBox::choose() {
 }
 
 void JobBox::openSetup() {
-  auto* dialog = new SetupDialog(file_, description_, this);
+  auto* dialog = new SetupDialog(file_, grinder_, this);
   connect(dialog, &SetupDialog::written, this, [this, file = file_] {
     if (file != file_) return;
     discardPlan();

@@ -22,7 +22,7 @@ const char* sentence(MachineState state) {
     case MachineState::kStarting: return "The job waits for spindle and coolant.";
     case MachineState::kRunning: return "The job moves the axes.";
     case MachineState::kHolding: return "The axes are stopping on the path.";
-    case MachineState::kHeld: return "The job is held. Resume continues; Retract lifts the wheel.";
+    case MachineState::kHeld: return "The job is held, with the wheel off the work. Resume continues.";
     case MachineState::kRetracting: return "The wheel is being lifted off the work.";
     case MachineState::kRetracted: return "The wheel is off the work. Resume continues the job.";
     case MachineState::kResuming: return "The wheel is returning to where it left the path.";
@@ -39,6 +39,9 @@ const char* wheelInWork(MachineState state) {
   switch (state) {
     case MachineState::kFault: return "The wheel is in the work: reset, enable, then lift it.";
     case MachineState::kDisabled: return "The wheel is in the work: enable, then lift it.";
+    case MachineState::kHeld: return "The job is held with the wheel in the work. Resume continues; Retract lifts it.";
+    case MachineState::kLifting: return "The wheel is in the work: it is being lifted, without a job.";
+    case MachineState::kJogging: return "The wheel is in the work: it is being jogged up.";
     default: return "The wheel is in the work: lift it.";
   }
 }
@@ -68,8 +71,8 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
-  const bool moves = machine == MachineState::kLifting || machine == MachineState::kJogging;
-  if (state.wheel_in_work && !isInJob(machine) && !moves) return text + wheelInWork(machine);
+  // In the other states of a job it belongs there.
+  if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)

@@ -45,20 +45,19 @@ const char* colourOf(const GrinderState& grinder) {
   return kGrey;
 }
 
+constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
+constexpr int kBarHeight = 8;  ///< [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-QProgressBar* bar(const char* name, const QString& format) {
-  auto* made = new QProgressBar;
-  made->setObjectName(name);
-  made->setRange(0, 1000);
-  made->setValue(0);
-  made->setFormat(format);
-  return made;
-}
+// Of positions [mm, deg]: micrometres, and no finer than encoders read.
+constexpr int kFewestDecimals = 3, kMostDecimals = 4;
 
-void setFraction(QProgressBar& bar, double fraction) {
-  bar.setValue(static_cast<int>(std::clamp(fraction, 0.0, 1.0) * bar.maximum()));
+/// mm/min with three digits, so that the feed of a small tool shows too.
+QString feedText(double feed) {
+  const double shown = feed / kMillimetrePerMinute;
+  const int decimals = shown == 0 || shown >= 99.95 ? 0 : shown >= 9.995 ? 1 : 2;
+  return QString("%1 mm/min").arg(shown, 0, 'f', decimals);
 }
 
 }  // namespace
@@ -70,7 +69,7 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(
   name_->setObjectName("state");
   name_->setAlignment(Qt::AlignCenter);
   QFont font = name_->font();
-  font.setPointSize(font.pointSize() * 2);
+  font.setPointSize(font.pointSize() * 3 / 2);
   font.setBold(true);
   name_->setFont(font);
   meaning_->setObjectName("meaning");
@@ -80,6 +79,7 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(
   meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setSpacing(3);
   layout->addWidget(node_);
   layout->addWidget(name_);
   layout->addWidget(meaning_);
@@ -117,56 +117,70 @@ ProgressBox::ProgressBox(QWidget* parent)
     : QWidget(parent),
       place_(new QLabel),
       feed_(new QLabel),
-      stroke_(bar("stroke", "Stroke %p %")),
-      job_(bar("job", kJobDone)) {
+      stroke_(makeBar("stroke", "stroke_text")),
+      job_(makeBar("job", "job_text")) {
   place_->setObjectName("place");
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(3);
   layout->setColumnStretch(0, 1);
+  layout->setColumnStretch(1, 2);
   layout->addWidget(place_, 0, 0);
   layout->addWidget(feed_, 0, 1);
-  layout->addWidget(stroke_, 1, 0, 1, 2);
-  layout->addWidget(job_, 2, 0, 1, 2);
+  layout->addWidget(stroke_.text, 1, 0);
+  layout->addWidget(job_.text, 1, 1);
+  layout->addWidget(stroke_.bar, 2, 0);
+  layout->addWidget(job_.bar, 2, 1);
+}
+
+ProgressBox::Bar ProgressBox::makeBar(const char* name, const char* text_name) {
+  const Bar made{new QProgressBar, new QLabel};
+  made.bar->setObjectName(name);
+  made.bar->setRange(0, 1000);
+  made.bar->setTextVisible(false);
+  made.bar->setFixedHeight(kBarHeight);
+  made.text->setObjectName(text_name);
+  return made;
+}
+
+void ProgressBox::set(const Bar& bar, const QString& format, double fraction, bool enabled) {
+  bar.bar->setFormat(format);
+  bar.bar->setValue(static_cast<int>(std::clamp(fraction, 0.0, 1.0) * bar.bar->maximum()));
+  bar.text->setText(bar.bar->text());
+  bar.bar->setEnabled(enabled);
+  bar.text->setEnabled(enabled);
 }
 
 void ProgressBox::show(const GrinderView& view, bool job_runs) {
   if (view.planned) return showPlanning(*view.planned);
-  stroke_->setEnabled(job_runs);
-  job_->setEnabled(job_runs);
-  if (view.feedback) {
-    setFraction(*stroke_, view.feedback->stroke_fraction);
-    setFraction(*job_, view.feedback->job_fraction);
-  }
+  const GrindFeedback f = view.feedback.value_or(GrindFeedback());
+  set(stroke_, kStrokeDone, f.stroke_fraction, job_runs);
   if (!view.feedback || !job_runs) {
     place_->setText(view.state ? "No job runs" : "");
     feed_->clear();
-    job_->setFormat(kJobDone);
-    return;
+    return set(job_, kJobDone, f.job_fraction, job_runs);
   }
-  const GrindFeedback& f = *view.feedback;
   place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
-  feed_->setText(QString("%1 mm/min").arg(f.feed / kMillimetrePerMinute, 0, 'f', 0));
+  feed_->setText(feedText(f.feed));
   // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
-  job_->setFormat(QString(kJobDone) + ", " + QString::fromStdString(duration(f.remaining_time)) +
-                  (at_feed ? " left" : " left at 100 % feed"));
+  const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 % feed");
+  set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
 }
 
 void ProgressBox::showPlanning(double planned) {
   place_->setText("A job is planned");
   feed_->clear();
-  stroke_->setEnabled(false);
-  setFraction(*stroke_, 0);
-  job_->setEnabled(true);
-  setFraction(*job_, planned);
-  job_->setFormat("Planning %p %");
+  set(stroke_, kStrokeDone, 0, false);
+  set(job_, "Planning %p %", planned, true);
 }
 
-PositionBox::PositionBox(QWidget* parent) : QWidget(parent) {
+PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDecimals) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(1);
   QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
   font.setPointSize(font.pointSize() + 2);
   for (int axis = 0; axis < kAxisCount; ++axis) {
@@ -178,16 +192,22 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent) {
   }
 }
 
+void PositionBox::setTolerance(std::optional<double> tolerance) {
+  const double millimetres = tolerance.value_or(kMicrometre) / kMillimetre;
+  decimals_ = std::clamp(static_cast<int>(std::ceil(-std::log10(millimetres) - 1e-9)), kFewestDecimals, kMostDecimals);
+}
+
 void PositionBox::show(const GrinderView& view) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const char* unit = axis == kA ? "deg" : "mm";
     const auto shown = [&](double si) {
-      return std::isfinite(si) ? QString::number(si / (axis == kA ? kDegree : kMillimetre), 'f', 3) : QString("-");
+      return std::isfinite(si) ? QString::number(si / (axis == kA ? kDegree : kMillimetre), 'f', decimals_)
+                               : QString("-");
     };
     QLabel& label = *values_[static_cast<std::size_t>(axis)];
     const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
-    label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), 9).arg(unit));
+    label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), decimals_ + 6).arg(unit));
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
                          .arg(shown(machine), shown(machine - work), unit));
   }

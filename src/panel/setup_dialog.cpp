@@ -7,6 +7,7 @@
 #include "flute_grinder/panel/text_view.h"
 
 #include <ros/master.h>
+#include <ros/names.h>
 #include <QFileInfo>
 #include <QFontDatabase>
 #include <QHBoxLayout>
@@ -26,15 +27,15 @@ constexpr int kLines = 24, kColumns = 100;
 
 }  // namespace
 
-SetupDialog::SetupDialog(const QString& file, const std::string& description, QWidget* parent)
+SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidget* parent)
     : QDialog(parent),
       file_(file.toStdString()),
-      description_(description),
+      description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
       sheet_(textView("setup_sheet", kLines)),
       keep_(new QComboBox),
       write_(new QPushButton("Write into the file")) {
   setObjectName("setup_dialog");
-  setWindowTitle("Set-up of " + QFileInfo(file).fileName());
+  setWindowTitle("Set-up of " + QFileInfo(file).fileName() + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   sheet_->setMinimumWidth(kColumns * sheet_->fontMetrics().horizontalAdvance('0'));
   keep_->setObjectName("keep_figure");

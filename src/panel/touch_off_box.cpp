@@ -41,7 +41,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // A long text must not make the panel grow.
   offset_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
-  offset_->setMinimumHeight(3 * offset_->fontMetrics().lineSpacing() + 4);
+  offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(axis_, 0, 0);

@@ -3,12 +3,10 @@
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/scene/board.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 namespace flute_grinder {
@@ -20,11 +18,12 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
 constexpr double kMostTriangles = 16000;  ///< of 72 bytes each, and what the cut adds
+constexpr double kLabelHeight = 0.03;     ///< of a text's letters, of the flute's length
 constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
 constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 /// Seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the flutes.
-constexpr Wedge kCutOut{55 * units::kDegree, 140 * units::kDegree};
+constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
 
 /// The strokes of each tooth: the deepest that is done, if any, and the one that runs.
 std::vector<std::vector<GrindStroke>> strokesSoFar(const GrindJob& job, const Reached& reached) {
@@ -61,9 +60,20 @@ bool isSame(const std::vector<GrindStroke>& a, const std::vector<GrindStroke>& b
                     [](const GrindStroke& s, const GrindStroke& t) { return s.to == t.to && s.y == t.y; });
 }
 
+/// X of the shank's begin; nothing if it is not known: then the flutes run out into the shank.
+std::optional<double> shankOf(const CutterGeometry& cutter) {
+  if (!(cutter.neck_length > 0)) return std::nullopt;
+  return cutter.flute_length + cutter.neck_length;
+}
+
+/// Of what the wheel may touch. A neck behind it, and the shank, are round.
 SolidExtent extentOf(const GrindJob& job) {
-  const double to = job.cutter.flute_length + job.process.overtravel_shank;
-  return {0, to, job.cutter.shank_diameter, std::max(kEnd, to)};
+  const auto& p = job.process;
+  const double stroke_end = job.cutter.flute_length + p.overtravel_shank;
+  const auto shank = shankOf(job.cutter);
+  if (!shank) return {0, stroke_end, job.cutter.shank_diameter, std::max(kEnd, stroke_end)};
+  const double run_out = std::sqrt(p.wheel_diameter * std::max(p.depth, p.depth_end));
+  return {0, std::min(*shank, stroke_end + run_out), job.cutter.shank_diameter, 0};
 }
 
 /// As fine as fits a message.
@@ -79,7 +89,8 @@ SolidResolution resolutionOf(const GrindJob& job) {
   const auto triangles = [&] {
     const auto rings = static_cast<double>(r.rings), around = std::max(teeth, static_cast<double>(r.around));
     const auto sections = static_cast<double>(r.sections);
-    const double layers = std::max(sections, turns * around) + sections * (extent.shank_to - extent.to) / extent.to;
+    const double shank = std::max(0.0, extent.shank_to - extent.to);
+    const double layers = std::max(sections, turns * around) + sections * shank / extent.to;
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
   while (triangles() > kMostTriangles && r.rings > 4) --r.rings;
@@ -125,6 +136,21 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
     case SurfaceKind::kCut: break;
   }
   return colour(0.80, 0.52, 0.30);
+}
+
+void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
+  const auto shank = shankOf(job.cutter);
+  if (!shank) return;
+  const ConicalCutter cutter(job.cutter);
+  const double from = extentOf(job).to, end = std::max(kEnd, *shank), radius = job.cutter.shank_diameter / 2;
+  appendSolid(array, ns, "cutter",
+              {{from, 0},
+               {from, cutter.radius(from)},
+               {*shank, cutter.radius(*shank)},
+               {*shank, radius},
+               {end, radius},
+               {end, 0}},
+              colourOf(SurfaceKind::kShank));
 }
 
 constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;
@@ -176,18 +202,16 @@ GroundCutter groundSoFar(const GrindJob& job, const Reached& reached) {
 
 MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns) {
   MarkerArray array = clearedArray();
-  char text[64];
   try {
     appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), RakeDeviation(cutter, job), ns);
+    appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();
-    board::appendTitle(array, board::Side::kMiddle, error.what());
-    return array;
+    Marker& label = append(array, "label", Marker::TEXT_VIEW_FACING, "cutter");
+    label.pose.position = point(job.cutter.flute_length / 2, 0, 0);
+    label.scale.z = kLabelHeight * job.cutter.flute_length;
+    label.text = error.what();
   }
-  std::snprintf(text, sizeof text, "%s: rake error, %.4g deg asked", ns, job.cutter.rake_angle / units::kDegree);
-  const std::string title = text;
-  std::snprintf(text, sizeof text, "%.3g deg", job.cutter.rake_tolerance / units::kDegree);
-  board::appendScale(array, board::Side::kMiddle, title, text);
   return array;
 }
 

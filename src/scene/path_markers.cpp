@@ -1,10 +1,7 @@
 #include "flute_grinder/scene/path_markers.h"
 
-#include "flute_grinder/scene/board.h"
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace flute_grinder {
 
@@ -54,18 +51,6 @@ double roundDown(double value) {
   const double decade = std::pow(10, std::floor(std::log10(value)));
   const double mantissa = value / decade;
   return (mantissa >= 5 ? 5 : mantissa >= 2 ? 2 : 1) * decade;
-}
-
-/// 1, 2 or 5 times a power of ten, as short as possible.
-std::string factorText(double factor) {
-  const int exponent = static_cast<int>(std::floor(std::log10(factor) + 1e-9));
-  char text[32];
-  if (exponent < 4) {
-    std::snprintf(text, sizeof text, "%g", factor);
-  } else {
-    std::snprintf(text, sizeof text, "%.0fe%d", factor / std::pow(10, exponent), exponent);
-  }
-  return text;
 }
 
 }  // namespace
@@ -144,10 +129,6 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
 MarkerArray ToolPath::markers() const {
   MarkerArray array = clearedArray();
   for (std::size_t tooth = 0; tooth < flutes_.size(); ++tooth) appendFlute(array, tooth);
-  const auto is_measured = [](const Flute& flute) { return !flute.errors.empty(); };
-  if (std::any_of(flutes_.begin(), flutes_.end(), is_measured)) {
-    board::appendScale(array, board::Side::kLeft, "measured error of the flutes", board::micrometres(tolerance_));
-  }
   return array;
 }
 
@@ -213,13 +194,16 @@ void PathErrorMarkers::thinOut() {
   every_ *= 2;
 }
 
+double PathErrorMarkers::scale() const {
+  if (points_.empty()) return 0;
+  // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
+  const double largest = std::max(largest_, kSmallestDrawn * tolerance_);
+  return roundDown(kLongestArrow * fineness(cutter_) / largest);
+}
+
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
-  const double largest = std::max(largest_, kSmallestDrawn * tolerance_);
-  const double factor = roundDown(kLongestArrow * fineness(cutter_) / largest);
-
   Marker& arrows = append(array, "path_error", Marker::LINE_LIST, kFrame);
   arrows.scale.x = kArrowWidth * fineness(cutter_);
   // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
@@ -227,6 +211,7 @@ MarkerArray PathErrorMarkers::markers() const {
   const double along = std::copysign(std::sqrt(1 - around * around), cutter_.tanSpiral());
   const double cos_cone = 1 / std::hypot(1, cutter_.tanCone());
   const double sin_cone = cutter_.tanCone() * cos_cone;
+  const double factor = scale();
   for (const Point& p : points_) {
     const double offset = factor * p.deviation;
     const geometry_msgs::Point from = atRadius(p.x, cutter_.radius(p.x), p.a);
@@ -237,8 +222,6 @@ MarkerArray PathErrorMarkers::markers() const {
     arrows.points.insert(arrows.points.end(), {from, to});
     arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / tolerance_));
   }
-  board::appendScale(array, board::Side::kRight, "path error, " + factorText(factor) + " times larger",
-                     board::micrometres(tolerance_));
   return array;
 }
 

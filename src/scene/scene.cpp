@@ -3,11 +3,9 @@
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/scene/board.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace flute_grinder {
 
@@ -44,15 +42,7 @@ void appendWheel(MarkerArray& array, const GrindJob& job) {
 MarkerArray sceneMarkers(const GrindJob& job) {
   MarkerArray array = clearedArray();
   appendWheel(array, job);
-  board::appendBoard(array);
   return array;
-}
-
-std::string plannedText(const GrindJob& job) {
-  char text[96];
-  std::snprintf(text, sizeof text, "planned   teeth %zu   passes %zu   feed %.4g mm/min", job.tooth_angles.size(),
-                passDepths(job.process).size(), job.process.feed / units::kMillimetrePerMinute);
-  return text;
 }
 
 }  // namespace
@@ -62,6 +52,7 @@ Scene::Scene(ros::NodeHandle private_nh)
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
       path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)),
+      legend_(private_nh.advertise<Legend>("legend", 1, true)),
       ground_(private_nh) {
   publishCleared();
 }
@@ -71,6 +62,7 @@ void Scene::publishCleared() {
   for (const ros::Publisher* publisher : {&scene_, &tool_path_, &executed_path_, &path_error_}) {
     publisher->publish(clearedArray());
   }
+  legend_.publish(Legend());
 }
 
 void Scene::show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned) {
@@ -78,20 +70,21 @@ void Scene::show(const GrindProgram& program, const ToothPass& first, const Path
   const std::string digest = jobDigest(job);
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
   ToolPath path = continued ? shown_->tool_path : ToolPath(program);
-  shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, passDepths(job.process).size(), std::move(path),
-                       ExecutedPath(program), planned});
+  shown_.emplace(
+      Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(program), planned, Legend()});
+  shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
+  shown_->legend.tolerance = job.interpolation.tolerance;
   scene_.publish(sceneMarkers(job));
   ground_.show(shown_->job, std::nullopt);
   tool_path_.publish(shown_->tool_path.markers());
-  path_error_.publish(planned.markers());
-  publishRun(plannedText(job));
+  publishPathError();
+  publishExecuted();
 }
 
 void Scene::add(const Setpoint& setpoint, const Axes& actual) {
   if (shown_->tool_path.add(setpoint, actual)) flutes_changed_ = true;
   shown_->executed.add(setpoint, actual);
   shown_->errors.add(setpoint);
-  shown_->last = setpoint;
   trackGround(setpoint, actual);
 }
 
@@ -116,20 +109,20 @@ void Scene::showGround() {
   ground_.show(shown_->job, shown_->reached);
 }
 
-void Scene::update(const char* state) {
+void Scene::update() {
   if (flutes_changed_) tool_path_.publish(shown_->tool_path.markers());
   flutes_changed_ = false;
-  if (++updates_ % kUpdatesPerPathError == 0) path_error_.publish(shown_->errors.markers());
-  publishRun(runText(state));
+  if (++updates_ % kUpdatesPerPathError == 0) publishPathError();
+  publishExecuted();
   showGround();
 }
 
-void Scene::end(const char* state) {
+void Scene::end() {
   shown_->tool_path.deactivate();
   tool_path_.publish(shown_->tool_path.markers());
   flutes_changed_ = false;
-  path_error_.publish(shown_->errors.markers());
-  publishRun(runText(state));
+  publishPathError();
+  publishExecuted();
   showGround();
 }
 
@@ -139,21 +132,18 @@ void Scene::clear() {
   ground_.clear();
 }
 
-void Scene::publishRun(const std::string& text) {
+void Scene::publishExecuted() {
   MarkerArray array = clearedArray();
   shown_->executed.append(array);
-  board::appendLine(array, text);
   executed_path_.publish(array);
 }
 
-std::string Scene::runText(const char* state) const {
-  const Setpoint& p = shown_->last;
-  char text[160];
-  // Teeth and passes count from 1 for the operator.
-  std::snprintf(text, sizeof text, "%s   tooth %d/%zu   pass %d/%zu   feed %.0f mm/min   largest error %s", state,
-                p.tooth + 1, shown_->job->tooth_angles.size(), p.pass + 1, shown_->passes,
-                p.feed / units::kMillimetrePerMinute, board::micrometres(shown_->tool_path.largestMeasured()).c_str());
-  return text;
+/// The arrows, with the figures that go with them.
+void Scene::publishPathError() {
+  path_error_.publish(shown_->errors.markers());
+  shown_->legend.arrow_scale = shown_->errors.scale();
+  shown_->legend.largest_error = shown_->tool_path.largestMeasured();
+  legend_.publish(shown_->legend);
 }
 
 }  // namespace flute_grinder

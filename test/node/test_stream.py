@@ -11,7 +11,7 @@ import unittest
 
 import rospy
 import rostest
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrinderState, Legend
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
@@ -387,6 +387,7 @@ class TestMarkers(unittest.TestCase):
         grinder().send(gc.MOTION, dry_run=True).wait()
         cls.path = rospy.wait_for_message('/grinder/tool_path', MarkerArray, gc.PATIENCE).markers
         cls.error = rospy.wait_for_message('/grinder/path_error', MarkerArray, gc.PATIENCE).markers
+        cls.legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
 
     def off_helix(self, point):
         radius = math.hypot(point.y, point.z)
@@ -425,9 +426,10 @@ class TestMarkers(unittest.TestCase):
         self.assertEqual(len(marker.colors), len(marker.points))
         return list(zip(marker.points[::2], marker.points[1::2]))
 
-    def test_path_error_states_its_factor(self):
-        texts = [m.text for m in self.error if m.type == Marker.TEXT_VIEW_FACING]
-        self.assertEqual(len([t for t in texts if 'times larger' in t]), 1, texts)
+    def test_legend_is_that_of_the_job(self):
+        self.assertEqual(self.legend.cutter, gc.goal_of(gc.MOTION).cutter)
+        self.assertEqual(self.legend.tolerance, gc.MOTION['interpolation.tolerance'])
+        self.assertEqual(self.legend.largest_error, 0)
 
     def test_path_error_lines_start_on_the_commanded_points(self):
         commanded = {s.position[X]: s.position[A] for s in self.setpoints if s.move == STROKE}
@@ -438,8 +440,7 @@ class TestMarkers(unittest.TestCase):
             self.assertAlmostEqual(math.hypot(start.y, start.z), self.helix.radius(start.x), delta=1e-9)
 
     def test_path_error_lines_are_the_errors_exaggerated_across_the_helix(self):
-        title, = [m.text for m in self.error if 'times larger' in m.text]
-        factor = float(title.split(' times')[0].split()[-1])
+        factor = self.legend.arrow_scale
         errors = {s.position[X]: s.path_error for s in self.setpoints if s.move == STROKE}
         lines = self.error_lines()
         self.assertGreaterEqual(len(lines), 90)

@@ -48,6 +48,8 @@ class Panel {
   std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
   std::string state() { return label("state"); }
+  /// Shows one of the tabs by a click.
+  void openTab(const QString& title);
   /// Those of the requests whose buttons are enabled.
   Names enabledRequests();
 

@@ -7,6 +7,7 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
+#include "flute_grinder/Legend.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/Stop.h"
@@ -33,6 +34,7 @@ class Stage {
     feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
     results_ = nh_.advertise<GrindActionResult>("grind/result", 10);
     offsets_ = nh_.advertise<WorkOffsets>("offsets", 10, true);
+    legend_ = nh_.advertise<Legend>("legend", 10, true);
     jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
@@ -78,6 +80,7 @@ class Stage {
     results_.publish(message);
   }
   void tellOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
+  void tellLegend(const Legend& legend) { legend_.publish(legend); }
   void refuseJog(const std::string& why) {
     std_msgs::String message;
     message.data = why;
@@ -90,6 +93,7 @@ class Stage {
   GrindFeedback progress;
   sensor_msgs::JointState joints;
   bool silent = false;
+  bool without_feedback = false;
   bool resume_hangs = false;
   int resumes = 0;
   int lifts = 0;
@@ -114,7 +118,7 @@ class Stage {
     GrindActionFeedback feedback;
     feedback.feedback = progress;
     feedback.status.goal_id.id = goal_id;
-    feedback_.publish(feedback);
+    if (!without_feedback) feedback_.publish(feedback);
     joint_states_.publish(joints);
   }
   bool onPlan(Plan::Request&, Plan::Response& response) {
@@ -173,7 +177,7 @@ class Stage {
 
   std::mutex mutex_;
   ros::NodeHandle nh_;
-  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, jog_refusals_;
+  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, legend_, jog_refusals_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;

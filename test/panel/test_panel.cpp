@@ -63,7 +63,7 @@ Reason feedOutOfRange() {
   return reason;
 }
 
-/// What the states allow, as docs/ros-interface.md draws them.
+/// What the states allow, as docs/ros-interface.md draws them, without what is so already.
 struct Row {
   std::uint8_t state;
   const char* name;
@@ -72,16 +72,16 @@ struct Row {
 };
 const std::vector<Row> kStates{
     {GrinderState::DISABLED, "disabled", {"enable", "disable", "reset"}, "power is off"},
-    {GrinderState::READY, "ready", {"enable", "disable", "home", "start"}, "power is on"},
+    {GrinderState::READY, "ready", {"disable", "home", "start"}, "power is on"},
     {GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
     {GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
     {GrinderState::RUNNING, "running", {"disable", "hold", "cancel"}, "moves the axes"},
-    {GrinderState::HOLDING, "holding", {"disable", "hold", "resume", "cancel"}, "stopping on the path"},
-    {GrinderState::HELD, "held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held"},
+    {GrinderState::HOLDING, "holding", {"disable", "resume", "cancel"}, "stopping on the path"},
+    {GrinderState::HELD, "held", {"disable", "resume", "retract", "cancel"}, "job is held"},
     {GrinderState::RETRACTING, "retracting", {"disable", "hold", "cancel"}, "being lifted"},
     {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
     {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
-    {GrinderState::CANCELING, "canceling", {"disable", "hold", "cancel"}, "the job ends"},
+    {GrinderState::CANCELING, "canceling", {"disable", "hold"}, "the job ends"},
     {GrinderState::FAULT, "fault", {"disable", "reset"}, "following error 1.2 mm"},
     {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
     {GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
@@ -162,6 +162,114 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
 }
 
+TEST_F(OnStage, AGrinderThatComesBackKnowsNoProgressOfBefore) {
+  Panel panel("cell/stage");
+  stage.change([&] { stage.progress.stroke_fraction = 0.43, stage.progress.job_fraction = 0.12; });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("job_text").find("Job 12 %") == 0);
+  EXPECT_EQ(panel.label("stroke_text"), "Stroke 43 %");
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(panel.state() == "No answer");
+  EXPECT_EQ(panel.label("stroke_text"), "Stroke 0 %");
+  EXPECT_EQ(panel.label("job_text"), "Job 0 %");
+  stage.change([&] { stage.silent = false, stage.without_feedback = true; });
+  stage.be(GrinderState::DISABLED, "disabled");
+  WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(panel.label("stroke_text"), "Stroke 0 %");
+  EXPECT_EQ(panel.label("job_text"), "Job 0 %");
+}
+
+TEST_F(OnStage, CancelStandsApart) {
+  Panel panel("cell/stage");
+  const auto place = [&](const char* name) { return panel.the<QPushButton>(name).geometry(); };
+  const QRect cancel = place("cancel").adjusted(-12, 0, 12, 0);
+  const QRect beside = place("cancel").adjusted(-40, 0, 40, 0);
+  for (const std::string& name : kRequests) {
+    if (name == "cancel") continue;
+    EXPECT_FALSE(cancel.intersects(place(name.c_str()))) << name;
+  }
+  for (const char* name : {"resume", "retract"}) {
+    EXPECT_FALSE(beside.intersects(place(name))) << name;
+  }
+}
+
+TEST_F(OnStage, TheWindowIsNamedAfterTheGrinder) {
+  Panel panel("cell/stage");
+  const auto title = [&] { return panel.widget().windowTitle().toStdString(); };
+  WAIT_FOR(title() == "/cell/stage");
+  // As rviz writes it when it has read a file.
+  panel.widget().setWindowTitle("my.rviz[*] - RViz");
+  WAIT_FOR(title() == "/cell/stage - my.rviz[*] - RViz");
+  panel.openTab("View");
+  auto& node = panel.the<QLineEdit>("node");
+  node.clear();
+  QTest::keyClicks(&node, "other");
+  QTest::keyClick(&node, Qt::Key_Return);
+  WAIT_FOR(title() == "/other - my.rviz[*] - RViz");
+}
+
+Legend legendOf(const QString& job) {
+  Legend legend;
+  legend.cutter = goalFromJob(readJobFile(job.toStdString())).cutter;
+  legend.tolerance = 0.5e-6;
+  legend.largest_error = 0.0698e-6;
+  legend.arrow_scale = 2e5;
+  return legend;
+}
+
+TEST_F(OnStage, WhatTheColoursMeanIsTold) {
+  Panel panel("cell/stage");
+  panel.openTab("View");
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(panel.label("shown_cutter"), "No job is shown.");
+  EXPECT_EQ(panel.label("largest_error"), "");
+  stage.tellLegend(legendOf(kPaper));
+  WAIT_FOR(panel.label("shown_cutter") == "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth");
+  EXPECT_EQ(panel.label("flutes") + ", " + panel.label("flutes_end"), "Measured error, 0.5 um");
+  EXPECT_EQ(panel.label("rake_faces") + ", " + panel.label("rake_faces_end"), "Rake error, off 8 deg, 0.5 deg");
+  EXPECT_EQ(panel.label("arrows") + ", " + panel.label("arrows_end"), "Path error x 2e5, 0.5 um");
+  EXPECT_EQ(panel.label("largest_error"), "Largest error measured: 0.0698 um");
+  panel.picture("view");
+  Legend other = legendOf(kPaper);
+  other.arrow_scale = 0;
+  stage.tellLegend(other);
+  WAIT_FOR(panel.label("arrows") == "Path error");
+  // A process that has just begun shows nothing.
+  stage.tellLegend(Legend());
+  WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
+  stage.tellLegend(legendOf(kPaper));
+  WAIT_FOR(panel.label("shown_cutter") != "No job is shown.");
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
+}
+
+TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
+  Panel panel("cell/stage");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {-0.1000004, 0.0123456, 0, -21 * M_PI};
+  });
+  WAIT_FOR(panel.label("position_x") == "X  -100.000 mm");
+  Legend legend = legendOf(kPaper);
+  for (const auto& [tolerance, x] : {std::pair{0.1e-6, "X  -100.0004 mm"},
+                                     {1e-6, "X  -100.000 mm"},
+                                     {0.5e-6, "X  -100.0004 mm"},
+                                     {10e-6, "X  -100.000 mm"},
+                                     {1e-9, "X  -100.0004 mm"}}) {
+    legend.tolerance = tolerance;
+    stage.tellLegend(legend);
+    WAIT_FOR(panel.label("position_x") == x);
+  }
+  EXPECT_EQ(panel.label("position_a"), "A -3780.0000 deg");
+  panel.picture("fine_readout");
+  stage.change([&] { stage.progress.feed = 0.6e-3 / 60; });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("feed") == "0.60 mm/min");
+  stage.change([&] { stage.progress.feed = 0; });
+  WAIT_FOR(panel.label("feed") == "0 mm/min");
+}
+
 TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsTold) {
   Panel panel("cell/stage");
   stage.change([&] { stage.resume_hangs = true; });
@@ -227,7 +335,7 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   EXPECT_FALSE(panel.enabled("lift"));
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(panel.enabled("lift"));
-  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "lift"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "lift"}));
   EXPECT_EQ(panel.label("meaning"), "The wheel is in the work: lift it.");
   panel.picture("wheel_in_work");
   panel.click("lift");
@@ -238,8 +346,24 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   stage.change([&] { stage.state.fault = ""; });
   stage.be(GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.label("meaning") == "The wheel is in the work: enable, then lift it.");
-  stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.label("meaning") == "The job moves the axes.");
+  const std::vector<std::pair<Row, const char*>> meanings{
+      {{GrinderState::HELD, "held", {}, ""},
+       "The job is held with the wheel in the work. Resume continues; Retract lifts it."},
+      {{GrinderState::LIFTING, "lifting", {}, ""}, "The wheel is in the work: it is being lifted, without a job."},
+      {{GrinderState::JOGGING, "jogging", {}, ""}, "The wheel is in the work: it is being jogged up."},
+      {{GrinderState::RUNNING, "running", {}, ""}, "The job moves the axes."}};
+  for (const auto& [row, meaning] : meanings) {
+    stage.be(row.state, row.name);
+    WAIT_FOR(panel.label("meaning") == meaning);
+  }
+  stage.change([&] { stage.state.wheel_in_work = 0; });
+  for (const Row& row : kStates) {
+    stage.be(row.state, row.name);
+    std::string name = row.name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    WAIT_FOR(QString::fromStdString(panel.state()).toLower().toStdString() == name);
+    EXPECT_EQ(panel.label("meaning").find("in the work"), std::string::npos) << panel.label("meaning");
+  }
 }
 
 TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
@@ -508,7 +632,7 @@ TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
             "Cannot be ground:\n"
             "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)\n"
             "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min");
-  WAIT_FOR(panel.enabledRequests() == (Names{"enable", "disable", "home"}));
+  WAIT_FOR(panel.enabledRequests() == (Names{"disable", "home"}));
   panel.picture("cannot_be_ground");
 }
 
@@ -576,6 +700,7 @@ TEST_F(OnStage, TheNodeCanBeChosen) {
   stage.be(GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_NE(panel.label("meaning").find("/nobody"), std::string::npos);
+  panel.openTab("View");
   auto& node = panel.the<QLineEdit>("node");
   for (const char* wrong : {"no name", ""}) {
     node.clear();

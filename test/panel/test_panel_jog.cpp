@@ -34,10 +34,7 @@ class Jogging : public ::testing::Test {
  protected:
   Jogging() {
     stage.be(GrinderState::READY, "ready");
-    auto& tabs = panel.the<QTabWidget>("tabs");
-    for (int i = 0; i < tabs.count(); ++i) {
-      if (tabs.tabText(i) == "Jog") tabs.setCurrentIndex(i);
-    }
+    panel.openTab("Jog");
   }
   Names enabledButtons() {
     Names names;

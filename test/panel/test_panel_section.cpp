@@ -9,8 +9,6 @@
 #include <QCheckBox>
 #include <QDoubleSpinBox>
 #include <QRegularExpression>
-#include <QTabBar>
-#include <QTabWidget>
 #include <QTemporaryDir>
 
 #include <algorithm>
@@ -53,10 +51,7 @@ class SectionOnStage : public ::testing::Test {
                        {"setup: {swivel_deg: 31.769, height_mm: 2.788}", straight(width)}});
   }
   static void openSection(Panel& panel) {
-    QTabBar& bar = *panel.the<QTabWidget>("tabs").tabBar();
-    for (int tab = 0; tab < bar.count(); ++tab) {
-      if (bar.tabText(tab) == "Section") QTest::mouseClick(&bar, Qt::LeftButton, {}, bar.tabRect(tab).center());
-    }
+    panel.openTab("Section");
     ASSERT_TRUE(panel.the<QWidget>("section_x").isVisible());
   }
   static double x(Panel& panel) { return panel.the<QDoubleSpinBox>("section_x").value(); }

@@ -40,6 +40,7 @@ class SetupSheet : public ::testing::Test {
 
 TEST_F(SetupSheet, IsShownAndWritten) {
   open({{kSetup, ""}});
+  EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
   EXPECT_NE(panel->text("verdict").find("'grind setup --write' finds it"), std::string::npos) << panel->text("verdict");
   EXPECT_NE(sheet().find("31.767 deg; the machine's range is -60 to 60 deg"), std::string::npos) << sheet();
   EXPECT_NE(sheet().find("reads D/2 - 1.288 mm"), std::string::npos) << sheet();

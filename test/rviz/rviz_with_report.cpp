@@ -1,17 +1,22 @@
 /// @file
-/// rviz as it is, and one service beside it: `~report` tells how many frames it has drawn, where its window and the
-/// screen are, and what its displays say of themselves.
+/// rviz as it is, and services beside it: `~report` tells how many frames it has drawn, where its window and the
+/// screen are, how small the window can be, its title, where its view looks, and what its displays say of themselves;
+/// `~next_tab` shows the next tab of the panel; `~look` turns the view as the parameter `~camera` says.
 
 #include <ros/ros.h>
 #include <rviz/display_group.h>
+#include <rviz/panel_dock_widget.h>
 #include <rviz/properties/status_property.h>
 #include <rviz/render_panel.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
 #include <rviz/visualization_frame.h>
 #include <rviz/visualization_manager.h>
 #include <rviz/visualizer_app.h>
 #include <std_srvs/Trigger.h>
 #include <QApplication>
 #include <QScreen>
+#include <QTabWidget>
 
 #include <algorithm>
 #include <sstream>
@@ -27,6 +32,18 @@ rviz::VisualizationFrame* window() {
 
 void writeRectangle(const char* name, const QRect& r, std::ostream& text) {
   text << name << " " << r.x() << " " << r.y() << " " << r.width() << " " << r.height() << "\n";
+}
+
+/// A line "camera yaw pitch distance x y z frame" of a view that orbits [rad, m].
+void writeCamera(rviz::ViewController& view, std::ostream& text) {
+  rviz::Property& focus = *view.subProp("Focal Point");
+  text << "camera";
+  for (rviz::Property* value :
+       {view.subProp("Yaw"), view.subProp("Pitch"), view.subProp("Distance"), focus.subProp("X"), focus.subProp("Y"),
+        focus.subProp("Z"), view.subProp("Target Frame")}) {
+    text << " " << value->getValue().toString().toStdString();
+  }
+  text << "\n";
 }
 
 /// A line "status level path: text" for each status at or below a property: level 0 is OK, 1 a warning, 2 an error.
@@ -51,9 +68,40 @@ bool report(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response
   text << "frames " << manager.getFrameCount() << "\n";
   writeRectangle("screen", QGuiApplication::primaryScreen()->geometry(), text);
   writeRectangle("window", frame->frameGeometry(), text);
+  writeRectangle("least", QRect(QPoint(0, 0), frame->minimumSizeHint()), text);
+  text << "title " << frame->windowTitle().toStdString() << "\n";
+  for (const rviz::PanelDockWidget* dock : frame->findChildren<rviz::PanelDockWidget*>()) {
+    text << "dock " << dock->windowTitle().toStdString() << "\n";
+  }
+  writeCamera(*manager.getViewManager()->getCurrent(), text);
   writeRectangle("view", QRect(view.mapToGlobal(QPoint(0, 0)), view.size()), text);
   writeStatus(*manager.getRootDisplayGroup(), "", text);
   response.message = text.str();
+  return true;
+}
+
+/// Turns the view to frame, yaw, pitch, distance, x, y, z.
+bool look(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
+  XmlRpc::XmlRpcValue camera;
+  if (window() == nullptr || !ros::param::get("~camera", camera)) return false;
+  rviz::ViewController& view = *window()->getManager()->getViewManager()->getCurrent();
+  rviz::Property& focus = *view.subProp("Focal Point");
+  view.subProp("Target Frame")->setValue(QString::fromStdString(static_cast<std::string>(camera[0])));
+  int i = 0;
+  for (rviz::Property* value : {view.subProp("Yaw"), view.subProp("Pitch"), view.subProp("Distance"),
+                                focus.subProp("X"), focus.subProp("Y"), focus.subProp("Z")}) {
+    value->setValue(static_cast<double>(camera[++i]));
+  }
+  response.success = 1;
+  return true;
+}
+
+bool nextTab(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
+  auto* tabs = window() ? window()->findChild<QTabWidget*>("tabs") : nullptr;
+  response.success = static_cast<std::uint8_t>(tabs != nullptr);
+  if (tabs == nullptr) return true;
+  tabs->setCurrentIndex((tabs->currentIndex() + 1) % tabs->count());
+  response.message = tabs->tabText(tabs->currentIndex()).toStdString();
   return true;
 }
 
@@ -66,5 +114,7 @@ int main(int argc, char** argv) {
   if (!rviz.init(argc, argv)) return 1;
   ros::NodeHandle private_nh("~");
   const ros::ServiceServer service = private_nh.advertiseService("report", &report);
+  const ros::ServiceServer look_service = private_nh.advertiseService("look", &look);
+  const ros::ServiceServer tab_service = private_nh.advertiseService("next_tab", &nextTab);
   return QApplication::exec();
 }

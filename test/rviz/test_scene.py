@@ -1,21 +1,21 @@
 #!/usr/bin/env python3
 """Shows what rviz shows: the machine, the job's cutter and wheel where the axes have them, its flutes as they are planned,
-ground and measured, the executed path and the texts. By the markers and frames, in figures, and by pictures of rviz's
+ground and measured, the executed path, and where the view looks. By the markers and frames, in figures, and by pictures of rviz's
 window ahead of a job, in its midst and after it, which are kept in build/screenshots."""
 
 import functools
 import io
 import math
 import os
-import re
 import sys
 import threading
+import time
 import unittest
 
 import numpy
 import rospy
 import rostest
-import yaml
+from flute_grinder.msg import Legend
 from PIL import ImageGrab
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
@@ -35,12 +35,10 @@ JOB = gc.paper(end_diameter=12 * MM, spiral_angle=38 * DEG, flute_length=26 * MM
                wheel_wear=0.02 * MM, wheel_wear_per_pass=0.001 * MM, even_step=1)
 HELIX = checks.Helix(JOB)
 DEPTHS = [0.3 * MM, 0.5 * MM]
+FIELD_OF_VIEW = 0.7853981  # [rad]
 HELD = 2  # the tooth in whose last pass the job is held
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
 TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
-
-BOARD = (13, 15, 20)
-
 
 class Rviz:
     """What rviz has got, and what it shows."""
@@ -52,23 +50,43 @@ class Rviz:
         self._subscribers = [rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
                              for topic in TOPICS]
         self._subscribers += [rospy.Subscriber(topic, TFMessage, self._on_frames) for topic in ('/tf', '/tf_static')]
+        self.legends = []
+        self._subscribers.append(rospy.Subscriber('/grinder/legend', Legend, self.legends.append))
         rospy.wait_for_service('/rviz/report', gc.PATIENCE)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
+        self._look = rospy.ServiceProxy('/rviz/look', Trigger)
 
     def _on_frames(self, message):
         for transform in message.transforms:
             self.frames[transform.child_frame_id] = (transform.header.frame_id, matrix(transform.transform))
 
     def report(self):
-        """What rviz says of itself: frames drawn, rectangles, and the displays' statuses that are not OK."""
+        """What rviz says of itself: frames drawn, rectangles, its camera, and the displays' statuses that are not OK."""
         lines = self._report().message.splitlines()
         words = [line.split() for line in lines]
-        report = {w[0]: [int(n) for n in w[1:]] for w in words if w[0] in ('screen', 'window', 'view')}
+        report = {w[0]: [int(n) for n in w[1:]] for w in words if w[0] in ('screen', 'window', 'least', 'view')}
+        report['title'] = next(line for line in lines if line.startswith('title '))[len('title '):]
+        report['docks'] = [line[len('dock '):] for line in lines if line.startswith('dock ')]
+        camera = next(w for w in words if w[0] == 'camera')
+        report['camera'] = [round(float(word), 6) for word in camera[1:7]]
+        report['target'] = camera[7]
         report['frames'] = int(words[0][1])
         statuses = [line for line in lines if line.startswith('status ')]
         report['statuses'] = len(statuses)
         report['not OK'] = [line for line in statuses if not line.startswith('status 0 ')]
         return report
+
+    def look(self, frame, yaw, pitch, distance, *focal):
+        """As an operator who turns the view."""
+        rospy.set_param('/rviz/camera', [frame, *map(float, (yaw, pitch, distance, *focal))])
+        assert self._look().success
+        self.settle()
+
+    def count_frames(self, seconds):
+        """Frames drawn, and within which time."""
+        frames, begin = self.report()['frames'], time.monotonic()
+        rospy.sleep(seconds)
+        return self.report()['frames'] - frames, time.monotonic() - begin
 
     def settle(self):
         """Waits until what was sent is shown: rviz takes messages before each frame."""
@@ -113,9 +131,6 @@ class Picture:
         os.makedirs(PICTURES, exist_ok=True)
         self.image.save(os.path.join(PICTURES, self.name + '.png'), optimize=True)
 
-    def has_board(self):
-        return (abs(self.pixels - numpy.array(BOARD)).max(axis=2) <= 3).sum() > 50000
-
     def share(self, places, looks):
         """At which share of some places (column, row) something looks so, or next to them."""
         found = 0
@@ -126,21 +141,18 @@ class Picture:
 
 
 class Camera:
-    """The view of rviz/grinder.rviz: where a point of the frame `table` is seen in the window."""
+    """Where a point of the frame `work` is seen in the window."""
 
-    def __init__(self, view):
-        with open(gc.package_file('rviz/grinder.rviz')) as text:
-            current = yaml.safe_load(text)['Visualization Manager']['Views']['Current']
-        assert (current['Class'], current['Target Frame']) == ('rviz/Orbit', 'table')
-        yaw, pitch = current['Yaw'], current['Pitch']
+    def __init__(self, report):
+        assert report['target'] == 'work'
+        yaw, pitch, distance, *focal = report['camera']
         self.toward = numpy.array([math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), math.sin(pitch)])
         self.right = numpy.array([-math.sin(yaw), math.cos(yaw), 0])
         self.up = numpy.cross(self.toward, self.right)
-        focal = current['Focal Point']
-        self.at = numpy.array([focal[axis] for axis in 'XYZ']) + current['Distance'] * self.toward
-        left, top, width, height = view
+        self.at = numpy.array(focal) + distance * self.toward
+        left, top, width, height = report['view']
         self.centre = numpy.array([left + width / 2, top + height / 2])
-        self.scale = height / 2 / math.tan(current['Field of View'] / 2)
+        self.scale = height / 2 / math.tan(FIELD_OF_VIEW / 2)
 
     def see(self, points):
         """Columns and rows of points."""
@@ -179,11 +191,6 @@ def of_namespace(markers, ns):
     return [m for m in markers if m.action == Marker.ADD and m.ns == ns]
 
 
-def text_line(markers):
-    line, = [m.text for m in of_namespace(markers, 'text')]
-    return re.sub(' +', ' ', line)
-
-
 def colours(marker):
     """Those of its points; of the whole marker if it has one."""
     return {(round(c.r, 3), round(c.g, 3), round(c.b, 3)) for c in marker.colors or [marker.color]}
@@ -216,11 +223,14 @@ class Story:
                                        for marker in message.markers)
                             for topic, messages in self.rviz.messages.items()}
         self.machine = self.rviz.picture('machine')
+        self.at_rest = self.rviz.count_frames(5)
+        self.take_other_views(g)
         self.planned = {}
         for path in ('left_hand_d8_t3', 'micro_d05_t2', 'finishing_d20_t8', 'roughing_d10_t4', 'unequal_d12_t4'):
             job = gc.job_from_file(gc.package_file('jobs/%s.yaml' % path))
-            assert g.send(job, dry_run=True).wait().status == 'SUCCEEDED'
-            self.planned[path] = self.rviz.picture('planned_' + path, Picture.has_board)
+            self.plan(g, job)
+            self.planned[path] = self.rviz.picture('planned_' + path)
+            self.planned[path].job = job
         self.plan_and_hold(g)
         g.resume()
         self.run.wait_complete()
@@ -228,19 +238,42 @@ class Story:
         self.after = self.snapshot('after')
         self.cancel_and_continue(g)
 
+    def plan(self, g, job):
+        """Plans a job, and waits until it is shown."""
+        legends = len(self.rviz.legends)
+        assert g.send(job, dry_run=True).wait().status == 'SUCCEEDED'
+        gc.poll(lambda: len(self.rviz.legends) > legends, 'the legend')
+        self.rviz.settle()
+
+    def take_other_views(self, g):
+        """The views of an operator, and what comes of them."""
+        self.rviz.look('base', 3.5, 0.5, 2, 0.05, 0.2, -0.3)
+        self.machine_view = self.rviz.report()['camera']
+        self.plan(g, JOB)
+        self.machine_view_with_a_job = self.rviz.report()['camera']
+        self.rviz.look('work', 3.5, 0.5, 0.05, 0.002, 0.001, 0)
+        self.turned = self.rviz.report()['camera']
+        self.plan(g, dict(JOB, **{'process.feed': 2000 * MM_MIN}))
+        self.same_tool = self.rviz.report()['camera']
+        self.plan(g, gc.PAPER)
+        self.other_tool = self.rviz.report()['camera']
+        self.rviz.look('work', *self.machine.report['camera'])
+
     def snapshot(self, name):
         """The picture with the markers, frames and positions that belong to it."""
         # It takes a moment longer than the others.
         ns = 'planned' if name == 'before' else 'ground'
         gc.poll(lambda: of_namespace(self.rviz.last('ground_cutter'), ns), 'the cutter')
-        picture = self.rviz.picture(name, Picture.has_board)
+        picture = self.rviz.picture(name)
+        picture.job = JOB
+        picture.legend = self.rviz.legends[-1]
         picture.markers = {topic: self.rviz.last(topic) for topic in TOPICS}
-        picture.to_base = {frame: self.rviz.in_frame(frame) for frame in ('cutter', 'wheel', 'table')}
+        picture.to_base = {frame: self.rviz.in_frame(frame) for frame in ('cutter', 'wheel', 'work')}
         picture.positions = grinder().positions()
         return picture
 
     def plan_and_hold(self, g):
-        assert g.send(JOB, dry_run=True).wait().status == 'SUCCEEDED'
+        self.plan(g, JOB)
         self.before = self.snapshot('before')
         self.run = g.send(JOB)
         self.run.wait_past(lambda s: (s.tooth, s.pass_, s.move) == (HELD, 1, STROKE) and s.position[X] > 3 * MM,
@@ -248,7 +281,8 @@ class Story:
         assert g.hold().success
         g.wait_for(lambda: g.states[-1].state_name == 'held', 'held')
         g.wait_rest()
-        gc.poll(lambda: text_line(self.rviz.last('executed_path')).startswith('held'), 'the text line')
+        largest = max(error for _, error in measured(self.run.setpoints))
+        gc.poll(lambda: self.rviz.legends[-1].largest_error > 0.99 * largest, 'the legend of what is measured')
         self.during = self.snapshot('during')
         self.setpoints_when_held = self.run.setpoints
         scenes = len(self.rviz.messages['scene'])
@@ -424,15 +458,10 @@ class TestFlutes(unittest.TestCase):
         """The largest error of a tooth's last pass, and where it was."""
         return max((error, x) for x, error in measured([s for s in setpoints if (s.tooth, s.pass_) == (tooth, 1)]))
 
-    def scale_end(self, markers):
-        texts = [m.text for m in of_namespace(markers, 'text')]
-        return float(next(text for text in texts if text.endswith(' um')).split()[0]) * UM
-
     def test_colours_are_those_of_the_measured_errors(self):
         markers = story().after.markers['tool_path']
         largest = [self.largest_of(story().run.setpoints, tooth) for tooth in range(4)]
-        end = JOB['interpolation.tolerance']
-        self.assertAlmostEqual(self.scale_end(markers), end, delta=1e-3 * end)
+        end = story().after.legend.tolerance
         for marker, (error, x) in zip(of_namespace(markers, 'tool_path'), largest):
             self.assertEqual(len(marker.colors), len(marker.points))
             colour = marker.colors[abs(points_of(marker)[:, 0] - x).argmin()]
@@ -441,16 +470,26 @@ class TestFlutes(unittest.TestCase):
             self.assertAlmostEqual(colour.r, max(0.1, min(4 * fraction - 1.5, 1)), delta=0.01)
             self.assertAlmostEqual(colour.g, max(0.1, min(1.6 - abs(4 * fraction - 2), 1)), delta=0.01)
 
-    def test_text_tells_tooth_pass_feed_and_largest_error(self):
-        line = text_line(story().during.markers['executed_path'])
-        largest = max(error for _, error in measured(story().setpoints_when_held))
-        match = re.fullmatch(r'held tooth 3/4 pass 2/2 feed (\d+) mm/min largest error (\S+) um', line)
-        self.assertTrue(match, line)
-        self.assertAlmostEqual(float(match.group(2)) * UM, largest, delta=0.01 * largest)
+    def test_legend_tells_the_cutter_and_where_the_colours_end(self):
+        for legend in (story().before.legend, story().during.legend, story().after.legend):
+            self.assertEqual(legend.cutter, gc.goal_of(JOB).cutter)
+            self.assertEqual(legend.tolerance, JOB['interpolation.tolerance'])
 
-    def test_text_tells_the_plan(self):
-        self.assertEqual(text_line(story().before.markers['executed_path']),
-                         'planned teeth 4 passes 2 feed 3000 mm/min')
+    def test_legend_tells_the_largest_error(self):
+        self.assertEqual(story().before.legend.largest_error, 0)
+        for moment, setpoints in ((story().during, story().setpoints_when_held), (story().after, story().run.setpoints)):
+            largest = max(error for _, error in measured(setpoints))
+            self.assertAlmostEqual(moment.legend.largest_error, largest, delta=0.01 * largest)
+
+    def test_legend_tells_how_long_the_arrows_are(self):
+        for moment in (story().before, story().during, story().after):
+            arrows, = of_namespace(moment.markers['path_error'], 'path_error')
+            points = points_of(arrows)
+            longest = numpy.linalg.norm(points[1::2] - points[::2], axis=1).max()
+            planned = max(abs(s.path_error) * HELIX.radius(s.position[X]) * HELIX.normal
+                          for s in story().run.setpoints if s.move == STROKE)
+            self.assertLessEqual(longest, moment.legend.arrow_scale * planned * (1 + 1e-6))
+            self.assertGreater(longest, 0.2 * moment.legend.arrow_scale * planned)
 
 
 class TestPictures(unittest.TestCase):
@@ -467,19 +506,21 @@ class TestPictures(unittest.TestCase):
     def test_window_fits_the_screen(self):
         for picture in self.all_pictures():
             left, top, width, height = picture.report['window']
-            self.assertEqual(picture.report['screen'], [0, 0, 1280, 900])
-            self.assertEqual(picture.image.size, (1280, 900))
-            self.assertTrue(left >= 0 and top >= 0 and left + width <= 1280 and top + height <= 900)
+            self.assertEqual(picture.report['screen'], [0, 0, 1280, 800])
+            self.assertEqual(picture.image.size, (1280, 800))
+            self.assertTrue(left >= 0 and top >= 0 and left + width <= 1280 and top + height <= 800)
+            # With room for the title of a window, and a task bar.
+            _, _, least_width, least_height = picture.report['least']
+            self.assertTrue(least_width <= 800 and least_height <= 760, picture.report['least'])
 
     def test_nothing_is_shown_of_a_job_before_a_plan(self):
         self.assertEqual(story().before_plan, dict.fromkeys(TOPICS, 0))
-        self.assertFalse(story().machine.has_board())
 
     def seen(self, moment, points, front_only=True):
         """Columns and rows of points of the frame `cutter`, and which of them are meant: those on the near side."""
-        camera = Camera(moment.report['view'])
-        to_table = numpy.linalg.inv(moment.to_base['table']) @ moment.to_base['cutter']
-        points = (to_table @ numpy.column_stack([points, numpy.ones(len(points))]).T).T[:, :3]
+        camera = Camera(moment.report)
+        to_work = numpy.linalg.inv(moment.to_base['work']) @ moment.to_base['cutter']
+        points = (to_work @ numpy.column_stack([points, numpy.ones(len(points))]).T).T[:, :3]
         near = (points[:, 1:] @ camera.toward[1:] > 2 * MM) & (points[:, 0] < 26 * MM) & (points[:, 0] > 0)
         chosen = numpy.nonzero(near | (not front_only))[0]
         return camera.see(points[chosen]), chosen
@@ -512,37 +553,48 @@ class TestPictures(unittest.TestCase):
             seen += len(places)
         self.assertGreater(seen, 100)
 
-    def test_board_is_whole_in_the_view(self):
-        board, = of_namespace(story().before.markers['scene'], 'board')
-        points = points_of(board)
-        middle = points.mean(axis=0)
+    def test_tool_is_in_the_view(self):
         for picture in self.all_pictures()[1:]:
             left, top, width, height = picture.report['view']
-            # Just within its corners, where the picture must have it, and so must the view.
-            for column, row in Camera(picture.report['view']).see(middle + 0.98 * (points - middle)):
-                self.assertTrue(left < column < left + width and top < row < top + height)
-                self.assertLessEqual(abs(picture.pixels[int(row), int(column)] - numpy.array(BOARD)).max(), 3)
+            length = picture.job['cutter.flute_length']
+            radius = picture.job['cutter.end_diameter'] / 2 + length * math.tan(picture.job['cutter.cone_angle'])
+            corners = [(x, side * radius, up * radius) for x in (0, length) for side in (-1, 1) for up in (-1, 1)]
+            places = Camera(picture.report).see(numpy.array(corners))
+            for column, row in places:
+                self.assertTrue(left < column < left + width and top < row < top + height, picture.name)
+            # Neither is it a needle.
+            self.assertGreater(max(places[:, 0]) - min(places[:, 0]), width / 5, picture.name)
 
-    def test_texts_lie_on_the_board_and_none_on_another(self):
-        for moment in (story().before, story().during, story().after):
-            board, = of_namespace(moment.markers['scene'], 'board')
-            corners = points_of(board)
-            origin, right, up = corners[0], corners[1] - corners[0], corners[2] - corners[1]
-            boxes = []
-            for marker in sum((of_namespace(markers, 'text') for markers in moment.markers.values()), []):
-                self.assertEqual(marker.header.frame_id, board.header.frame_id)
-                p = marker.pose.position
-                at = numpy.array([p.x, p.y, p.z]) - origin
-                middle = [at @ right / numpy.linalg.norm(right), at @ up / numpy.linalg.norm(up)]
-                # A letter is on the average less than 0.53 of its height wide.
-                half = [0.265 * marker.scale.z * len(marker.text), 0.5 * marker.scale.z]
-                boxes.append((marker.text, middle, half))
-            for i, (text, middle, half) in enumerate(boxes):
-                for k, size in enumerate((numpy.linalg.norm(right), numpy.linalg.norm(up))):
-                    self.assertTrue(half[k] <= middle[k] <= size - half[k], text)
-                for other, other_middle, other_half in boxes[:i]:
-                    apart = [abs(middle[k] - other_middle[k]) - half[k] - other_half[k] for k in (0, 1)]
-                    self.assertGreater(max(apart), 0, (text, other))
+    def test_view_looks_at_the_side_where_the_wheel_cuts(self):
+        camera = Camera(story().machine.report)
+        # The wheel is at +Y of the work: seen from above, and from before the end face.
+        self.assertGreater(camera.toward[2], 0.7)
+        self.assertLess(camera.toward[0], 0)
+
+    def test_view_of_the_operator_stays_until_another_tool_comes(self):
+        self.assertEqual(story().turned, [3.5, 0.5, 0.05, 0.002, 0.001, 0.0])
+        self.assertEqual(story().same_tool, story().turned)
+        yaw, pitch, *rest = story().other_tool
+        self.assertEqual([yaw, pitch], story().turned[:2])
+        length = gc.PAPER['cutter.flute_length']
+        for value, expected in zip(rest, [4 * length, length / 2, 0, 0]):
+            self.assertAlmostEqual(value, expected, delta=1e-6)
+
+    def test_view_of_the_machine_stays(self):
+        self.assertEqual(story().machine_view, story().machine_view_with_a_job)
+
+    def test_few_frames_are_drawn_while_nothing_moves(self):
+        frames, seconds = story().at_rest
+        self.assertLessEqual(frames, 11 * seconds)
+
+    def test_window_is_named_after_the_grinder(self):
+        self.assertEqual(story().machine.report['title'], '/grinder - grinder.rviz[*] - RViz')
+        self.assertIn('Grinder /grinder', story().machine.report['docks'])
+
+    def test_no_text_is_in_the_scene(self):
+        for messages in story().rviz.messages.values():
+            for message in messages:
+                self.assertEqual([m.text for m in message.markers if m.type == Marker.TEXT_VIEW_FACING], [])
 
     def test_no_message_is_larger_than_3_mb(self):
         for messages in story().rviz.messages.values():

@@ -145,9 +145,55 @@ TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
       EXPECT_NEAR(*level, expected, 0.1);
     }
     EXPECT_GT(coloured, 300u);
-    EXPECT_NE(textsOf(array).find("planned: rake error, "), std::string::npos);
-    EXPECT_NE(textsOf(array).find("\n0.5 deg\n"), std::string::npos);
   }
+}
+
+/// The largest radius of all points between two X [m]; 0 if there are none.
+double largestRadius(const std::vector<Marker>& solid, double from, double to) {
+  double largest = 0;
+  for (const Marker& m : solid) {
+    for (const geometry_msgs::Point& p : m.points) {
+      if (from < p.x && p.x < to) largest = std::max(largest, std::hypot(p.y, p.z));
+    }
+  }
+  return largest;
+}
+
+TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
+  GrindJob job = jobOf("micro_d05_t2");
+  for (const double shank : {3.0, 6.0}) {
+    for (const double neck : {4.0, 13.0}) {
+      SCOPED_TRACE(::testing::Message() << shank << " " << neck);
+      job.cutter.end_diameter = 0.2 * kMillimetre;
+      job.process.depth = 0.04 * kMillimetre;
+      job.cutter.shank_diameter = shank * kMillimetre;
+      job.cutter.neck_length = neck * kMillimetre;
+      for (const bool ground : {false, true}) {
+        const Reached reached{{0, 0}, PassPhase::kBefore, 0};
+        const std::vector<Marker> solid =
+            solidOf(groundMarkers(ground ? groundCutterOf(job) : groundSoFar(job, reached), job, "ground"), "ground");
+        const double begin = job.cutter.flute_length + job.cutter.neck_length, end = 66 * kMillimetre;
+        EXPECT_NEAR(largestRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
+        EXPECT_NEAR(largestRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
+        EXPECT_EQ(largestRadius(solid, end + 1e-9, 1), 0);
+        // On the cone all the way to the shank, flutes and neck.
+        for (int i = 1; i <= 8; ++i) {
+          const double x = begin * i / 8, cone = 0.1 * kMillimetre + x * std::tan(3 * kDegree);
+          EXPECT_LE(largestRadius(solid, begin * (i - 1) / 8, x - 1e-9), cone);
+        }
+      }
+    }
+  }
+}
+
+TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
+  GrindJob job = jobOf("paper");
+  job.cutter.shank_diameter = 20 * kMillimetre;
+  const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
+  const double stroke_end = 37 * kMillimetre;
+  EXPECT_LT(largestRadius(solid, 0, stroke_end - 1e-9), 9 * kMillimetre);
+  EXPECT_NEAR(largestRadius(solid, stroke_end - 1e-9, stroke_end + 1e-9), 10 * kMillimetre, 1e-9);
+  EXPECT_NEAR(largestRadius(solid, 60 * kMillimetre, 1), 10 * kMillimetre, 1e-9);
 }
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {

@@ -4,8 +4,10 @@
 #include "flute_grinder/panel/grinder_link.h"
 #include "flute_grinder/panel/job_box.h"
 #include "flute_grinder/panel/jog_box.h"
+#include "flute_grinder/panel/legend_box.h"
 #include "flute_grinder/panel/override_box.h"
 #include "flute_grinder/panel/readout.h"
+#include "flute_grinder/panel/rviz_view.h"
 #include "flute_grinder/panel/section_view.h"
 #include "flute_grinder/panel/touch_off_box.h"
 
@@ -24,9 +26,9 @@
 namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
-/// if the state table allows its request; Start also needs a plan without violations. Without messages from the
-/// grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the grinder or the master, and
-/// both are found again when they come back.
+/// if the state table allows its request and it would change something; Start also needs a plan without violations.
+/// Without messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the
+/// grinder or the master, and both are found again when they come back.
 ///
 /// Configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {
@@ -35,6 +37,7 @@ class GrindPanel : public rviz::Panel {
  public:
   explicit GrindPanel(QWidget* parent = nullptr);
 
+  void onInitialize() override;
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
 
@@ -46,10 +49,14 @@ class GrindPanel : public rviz::Panel {
   };
 
   void layOut();
+  QLayout* layOutButtons();
+  QWidget* viewTab();
   QPushButton* addButton(const EventRow& request, bool large);
   void setNode(const QString& node);
   void refresh();
   void connectLink();
+  void nameWindows();
+  void showLegend(const std::optional<Legend>& legend);
   bool allowed(MachineEvent event, const GrinderView& view) const;
   void request(MachineEvent event);
   void plan(const GrindGoal& goal);
@@ -67,6 +74,7 @@ class GrindPanel : public rviz::Panel {
   const std::shared_ptr<MasterWatch> master_watch_;
   QString node_;                       ///< as entered
   std::string name_;                   ///< resolved; empty if invalid
+  QString titled_;                     ///< the name that the window's title has from here
   std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
   bool planning_ = false;
   std::optional<Sent> sent_;
@@ -76,7 +84,11 @@ class GrindPanel : public rviz::Panel {
   SectionView* section_;
   JogBox* jog_;
   TouchOffBox* touch_off_;
-  QTabWidget* tabs_;  ///< of job, section and jog
+  LegendBox* legend_;
+  QPushButton* look_;         ///< at the tool
+  QTabWidget* tabs_;          ///< of job, section, jog and view
+  RvizView* rviz_ = nullptr;  ///< null without rviz
+  std::optional<Cutter> looked_at_;
   std::map<MachineEvent, QPushButton*> buttons_;
   OverrideBox* override_;
   ProgressBox* progress_;

@@ -3,6 +3,7 @@
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Legend.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/connection/service_call.h"
@@ -26,14 +27,16 @@ namespace flute_grinder {
 
 /// The known state of a grinder.
 struct GrinderView {
-  std::optional<GrinderState> state;      ///< nothing if none was received for a second
-  std::optional<GrindFeedback> feedback;  ///< of the running job, whoever sent it, or of the last one
+  std::optional<GrinderState> state;  ///< nothing if none was received for a second
+  /// Of the running job, whoever sent it, or of the last one; nothing without the state, and after it was missing.
+  std::optional<GrindFeedback> feedback;
   std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing if none is in planning
   /// Of the machine, as read by the drive [m], A [rad]; nothing if none was received for a second.
   std::optional<Axes> position;
   /// The same in work coordinates; NaN of an axis whose work offset is unknown. Nothing without the state.
   std::optional<Axes> work_position;
   std::optional<WorkOffsets> offsets;  ///< nothing without the state
+  std::optional<Legend> legend;        ///< of the job that rviz shows; nothing without one, and without the state
 };
 
 /// Client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. It uses the
@@ -110,6 +113,7 @@ class GrinderLink {
   void onResult(const GrindActionResult::ConstPtr& result);
   void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
   void onOffsets(const WorkOffsets::ConstPtr& offsets);
+  void onLegend(const Legend::ConstPtr& legend);
   void onJointState(const sensor_msgs::JointState::ConstPtr& joints);
   void post(std::function<void()> answer);
   template <typename Service, typename OnResponse>
@@ -127,6 +131,7 @@ class GrinderLink {
   std::optional<Received<GrinderState>> state_;
   std::optional<Received<Axes>> position_;
   std::optional<WorkOffsets> offsets_;
+  std::optional<Legend> legend_;
   std::optional<Received<GrindActionFeedback>> feedback_;
   std::string sent_;  ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;

@@ -36,8 +36,8 @@ class JobBox : public QWidget {
   /// @param idle whether the grinder can plan now.
   void refresh(const std::optional<GrinderState>& state, bool idle);
 
-  /// @param name resolved name of the parameter with the grinder's robot description.
-  void setDescription(const std::string& name) { description_ = name; }
+  /// @param name resolved name of the grinder's node, whose robot description counts and which the dialogs name.
+  void setGrinder(const std::string& name) { grinder_ = name; }
 
   /// Shows the result of a plan, if it is for the goal that would be started now.
   void setPlan(const GrindGoal& goal, const Plan::Response& plan);
@@ -80,7 +80,7 @@ class JobBox : public QWidget {
   void showVerdict(const QString& text, bool good);
 
   QString file_;
-  std::string description_;  ///< name of the parameter
+  std::string grinder_;  ///< name of its node
   std::shared_ptr<const GrindJob> job_;
   std::optional<GrindGoal> planned_;     ///< without violations
   std::optional<GrindGoal> where_left_;  ///< the job as it would be continued, if it can be

@@ -8,6 +8,7 @@
 #include <QWidget>
 
 #include <array>
+#include <optional>
 
 namespace flute_grinder {
 
@@ -42,10 +43,18 @@ class ProgressBox : public QWidget {
  private:
   void showPlanning(double planned);
 
+  /// A bar with its text above it, where it is legible whatever the bar's colours.
+  struct Bar {
+    QProgressBar* bar;
+    QLabel* text;
+  };
+
+  static Bar makeBar(const char* name, const char* text_name);
+  static void set(const Bar& bar, const QString& format, double fraction, bool enabled);
+
   QLabel* place_;
   QLabel* feed_;
-  QProgressBar* stroke_;
-  QProgressBar* job_;
+  Bar stroke_, job_;
 };
 
 /// Work position of the axes in mm and deg; the machine's and the work offset in the tool tip.
@@ -55,9 +64,12 @@ class PositionBox : public QWidget {
  public:
   explicit PositionBox(QWidget* parent = nullptr);
   void show(const GrinderView& view);
+  /// Chooses the decimals. @param tolerance of the job that is shown [m]; nothing without one.
+  void setTolerance(std::optional<double> tolerance);
 
  private:
   std::array<QLabel*, kAxisCount> values_{};
+  int decimals_;
 };
 
 }  // namespace flute_grinder

@@ -23,8 +23,8 @@ class SetupDialog : public QDialog {
 
  public:
   /// Begins to solve.
-  /// @param description resolved name of the parameter with the robot description, whose swivel's range counts.
-  SetupDialog(const QString& file, const std::string& description, QWidget* parent);
+  /// @param grinder resolved name of its node; the swivel's range is that of the robot description beside it.
+  SetupDialog(const QString& file, const std::string& grinder, QWidget* parent);
   ~SetupDialog() override;
 
  Q_SIGNALS:

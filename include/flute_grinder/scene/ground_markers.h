@@ -23,11 +23,11 @@ struct Reached {
 /// @param job as for groundCutterOf(). @throw as groundCutterOf().
 GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
 
-/// The ground cutter as a solid that is cut open, in the frame `cutter`, with the colour scale: the rake faces by how
-/// far they are from the rake that is asked. Below 3 MB.
-/// @param ns namespace of the solid's markers, also told with the scale.
+/// The ground cutter with its neck and shank as a solid that is cut open, in the frame `cutter`, its rake faces
+/// coloured by how far they are from the rake that is asked. Below 3 MB.
+/// @param ns namespace of the markers.
 /// @return markers; the first deletes what was shown before. Instead of a cutter that cannot be shown, as one with its
-///         core cut through, there is only the reason.
+///         core cut through, there is only the reason, as a label.
 visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns);
 
 }  // namespace flute_grinder

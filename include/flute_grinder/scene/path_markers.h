@@ -30,7 +30,6 @@ class ToolPath {
 
   /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes what was shown
   /// before.
-  ///         Once a pass is finished, the colour scale as well.
   visualization_msgs::MarkerArray markers() const;
 
  private:
@@ -77,15 +76,17 @@ class ExecutedPath {
   std::uint64_t every_ = 1;  ///< only every n-th position is kept
 };
 
-/// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up by
-/// a factor shown beside them and coloured by size, red at the job's tolerance, with the colour scale. Thinned out as
-/// setpoints are added.
+/// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up and
+/// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
   explicit PathErrorMarkers(const GrindJob& job) : cutter_(job.cutter), tolerance_(job.interpolation.tolerance) {}
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
+
+  /// How many times longer the arrows are than the deviations; 0 if there are none.
+  double scale() const;
 
   /// @return markers of namespace "path_error"; the first deletes what was shown before.
   visualization_msgs::MarkerArray markers() const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/Legend.h"
 #include "flute_grinder/core/grind_program.h"
 #include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
@@ -12,9 +13,9 @@
 
 namespace flute_grinder {
 
-/// The job in rviz: ground cutter, wheel, flutes, executed path, path errors and a line of text, on `~ground_cutter`,
-/// `~scene`, `~tool_path`, `~executed_path` and `~path_error`, each latched, every message complete. Shows nothing
-/// until there is a job. Not thread safe; not for the control thread.
+/// The job in rviz: ground cutter, wheel, flutes, executed path and path errors, on `~ground_cutter`, `~scene`,
+/// `~tool_path`, `~executed_path` and `~path_error`, and what they mean in figures on `~legend`; each latched, every
+/// message complete. Shows nothing until there is a job. Not thread safe; not for the control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
@@ -30,11 +31,10 @@ class Scene {
   void add(const Setpoint& setpoint, const Axes& actual);
 
   /// Publishes what has changed; to be called at 10 Hz while the job runs.
-  /// @param state of the machine, for the line of text.
-  void update(const char* state);
+  void update();
 
   /// Ends the job: publishes the final picture.
-  void end(const char* state);
+  void end();
 
   /// Takes back everything that is shown, so that it does not outlive the node in rviz.
   void clear();
@@ -43,23 +43,22 @@ class Scene {
   struct Shown {
     std::shared_ptr<const GrindJob> job;
     std::string digest;
-    std::size_t passes;  ///< of each tooth
     ToolPath tool_path;
     ExecutedPath executed;
     PathErrorMarkers errors;
-    Setpoint last{};
+    Legend legend;
     Reached reached{};
     Reached ground{};  ///< what was shown last
   };
 
   void trackGround(const Setpoint& setpoint, const Axes& actual);
   void showGround();
-  void publishRun(const std::string& text);
-  std::string runText(const char* state) const;
+  void publishExecuted();
+  void publishPathError();
 
   void publishCleared();
 
-  ros::Publisher scene_, tool_path_, executed_path_, path_error_;
+  ros::Publisher scene_, tool_path_, executed_path_, path_error_, legend_;
   std::optional<Shown> shown_;
   GroundView ground_;
   bool flutes_changed_ = false;

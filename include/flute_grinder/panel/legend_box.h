@@ -1,0 +1,33 @@
+#pragma once
+
+#include "flute_grinder/Legend.h"
+
+#include <QLabel>
+#include <QWidget>
+
+#include <array>
+#include <optional>
+
+namespace flute_grinder {
+
+/// What the colours in rviz mean: where each scale ends, and the largest error measured.
+class LegendBox : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit LegendBox(QWidget* parent = nullptr);
+  /// @param legend nothing if no job is shown, or if the grinder does not answer.
+  void show(const std::optional<Legend>& legend);
+
+ private:
+  struct Scale {
+    QLabel* title;
+    QLabel* end;
+  };
+
+  QLabel* cutter_;
+  std::array<Scale, 3> scales_{};
+  QLabel* largest_;
+};
+
+}  // namespace flute_grinder

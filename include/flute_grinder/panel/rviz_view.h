@@ -1,0 +1,43 @@
+#pragma once
+
+#include "flute_grinder/Cutter.h"
+
+#include <rviz/visualization_manager.h>
+#include <QObject>
+#include <QTimer>
+
+#include <chrono>
+
+namespace flute_grinder {
+
+/// Where rviz's view looks, and how often it is drawn.
+class RvizView : public QObject {
+  Q_OBJECT
+
+ public:
+  /// @param manager outlives this.
+  explicit RvizView(rviz::VisualizationManager& manager, QObject* parent);
+
+  /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. A view in
+  /// another frame does not look at the work, and stays.
+  void lookAt(const Cutter& cutter);
+
+  /// Has rviz draw at its own frame rate while something moves or the mouse turns the view, and ten times a second
+  /// otherwise: without a graphics card each frame costs. To be called often.
+  void keepPace(bool moves);
+
+ protected:
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void beginFrame();
+  void resume();
+
+  rviz::VisualizationManager& manager_;
+  Clock::time_point last_motion_ = Clock::now();
+  QTimer pause_;  ///< between two frames
+};
+
+}  // namespace flute_grinder

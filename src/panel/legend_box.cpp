@@ -1,0 +1,108 @@
+#include "flute_grinder/panel/legend_box.h"
+
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/scene/markers.h"
+
+#include <QGridLayout>
+#include <QPainter>
+#include <QRegularExpression>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+constexpr int kDigits = 3;  ///< of a figure
+constexpr int kStops = 16;  ///< of the gradient
+
+/// The colours from 0 to a scale's end.
+class Gradient : public QWidget {
+ public:
+  Gradient() { setFixedHeight(fontMetrics().ascent()); }
+
+ protected:
+  void paintEvent(QPaintEvent* /*event*/) override {
+    QLinearGradient gradient(0, 0, width(), 0);
+    for (int i = 0; i <= kStops; ++i) {
+      const double at = static_cast<double>(i) / kStops;
+      const std_msgs::ColorRGBA c = heat(at);
+      gradient.setColorAt(at, QColor::fromRgbF(c.r, c.g, c.b));
+    }
+    QPainter(this).fillRect(rect(), gradient);
+  }
+};
+
+QString micrometres(double length) { return QString("%1 um").arg(length / kMicrometre, 0, 'g', kDigits); }
+QString degrees(double angle) { return QString("%1 deg").arg(angle / kDegree, 0, 'g', kDigits); }
+
+/// How much longer arrows are, e.g. " x 500" or " x 5e6"; empty without arrows.
+QString timesText(double scale) {
+  if (!(scale > 0)) return "";
+  return " x " + QString::number(scale, 'g', 3).replace(QRegularExpression("e\\+0*"), "e");
+}
+
+QLabel* label(const char* name) {
+  auto* made = new QLabel;
+  made->setObjectName(name);
+  return made;
+}
+
+}  // namespace
+
+LegendBox::LegendBox(QWidget* parent)
+    : QWidget(parent), cutter_(label("shown_cutter")), largest_(label("largest_error")) {
+  auto* layout = new QGridLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(4);
+  layout->setColumnStretch(1, 1);
+  cutter_->setWordWrap(true);
+  cutter_->setMinimumHeight(2 * cutter_->fontMetrics().lineSpacing());
+  layout->addWidget(cutter_, 0, 0, 1, 3);
+  constexpr std::array<std::array<const char*, 2>, 3> names{
+      {{"flutes", "flutes_end"}, {"rake_faces", "rake_faces_end"}, {"arrows", "arrows_end"}}};
+  constexpr std::array<const char*, 3> hints{
+      "Lines along the flutes: the largest error measured in the last finished pass",
+      "Faces of the ground cutter: how far their rake is from the one asked",
+      "Arrows across the flute: path error of the setpoints, drawn this many times longer"};
+  for (std::size_t i = 0; i < scales_.size(); ++i) {
+    scales_[i] = {label(names[i][0]), label(names[i][1])};
+    scales_[i].title->setToolTip(hints[i]);
+    const int row = static_cast<int>(i) + 1;
+    layout->addWidget(scales_[i].title, row, 0);
+    layout->addWidget(new Gradient, row, 1);
+    layout->addWidget(scales_[i].end, row, 2);
+  }
+  largest_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
+  layout->addWidget(largest_, 4, 0, 1, 3);
+  auto* lines = label("line_colours");
+  lines->setText("Flutes: grey planned, magenta being ground. Cyan: the wheel's path.");
+  lines->setWordWrap(true);
+  layout->addWidget(lines, 5, 0, 1, 3);
+  show(std::nullopt);
+}
+
+void LegendBox::show(const std::optional<Legend>& legend) {
+  setEnabled(legend.has_value());
+  const auto set = [&](std::size_t i, const QString& title, const QString& end) {
+    scales_[i].title->setText(title);
+    scales_[i].end->setText(legend ? end : "-");
+  };
+  if (!legend) {
+    cutter_->setText("No job is shown.");
+    set(0, "Measured error", "");
+    set(1, "Rake error", "");
+    set(2, "Path error", "");
+    largest_->clear();
+    return;
+  }
+  const Cutter& cutter = legend->cutter;
+  cutter_->setText(QString::fromStdString(toolText(fromMessage(cutter), cutter.tooth_angles.size())));
+  set(0, "Measured error", micrometres(legend->tolerance));
+  set(1, "Rake error, off " + degrees(cutter.rake_angle), degrees(cutter.rake_tolerance));
+  set(2, "Path error" + timesText(legend->arrow_scale), micrometres(legend->tolerance));
+  largest_->setText("Largest error measured: " + micrometres(legend->largest_error));
+}
+
+}  // namespace flute_grinder

@@ -179,7 +179,7 @@ def stroke_table(data):
         least, largest = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
         cells = ['%d, %d' % (stroke['tooth'], stroke['pass']), number(stroke['depth_mm'], 4), number(stroke['started_s'], 1),
                  number(stroke['duration_s'], 1), None if least is None else '%s to %s' % (least, largest),
-                 number(stroke['deviation_um'], 3)]
+                 None if stroke['deviation_um'] is None else '%.3g' % stroke['deviation_um']]
         if has_following:
             errors = stroke['following_error']
             cells += [', '.join(number(errors[key], 2) for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]

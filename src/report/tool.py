@@ -124,7 +124,7 @@ def tool_pictures(tool):
         draw_curve(axes, tool, key, asked, title)
         name = title.split(' [')[0]
         pictures.append(picture(key.rsplit('_', 1)[0].replace('_', '-'), name[0].upper() + name[1:],
-                                'Of the ground tool, over X in mm' + ('; dashed: as asked' if asked else '') +
+                                'Over X in mm' + ('; dashed: as asked' if asked else '') +
                                 ('; shaded: the tolerance.' if key == 'rake_deg' else '.'), figure))
     return pictures
 

@@ -1,5 +1,6 @@
 """Looks at a page in Chromium without a window."""
 
+import html
 import json
 import os
 import re
@@ -10,13 +11,18 @@ import tempfile
 SCRIPT = '''<script>
 const width = document.documentElement.clientWidth, style = getComputedStyle(document.body);
 const out = [...document.querySelectorAll('body *')].filter(e => e.getBoundingClientRect().right > width + 1);
-const sizes = [...document.querySelectorAll('figure svg text')].map(
-  t => parseFloat(getComputedStyle(t).fontSize) * t.ownerSVGElement.getScreenCTM().a);
-const inks = [...document.querySelectorAll('figure svg text')].map(t => getComputedStyle(t).fill);
-document.body.innerHTML = '<pre id="told">' + JSON.stringify({
+const texts = [...document.querySelectorAll('figure svg text')];
+const sizes = texts.map(t => parseFloat(getComputedStyle(t).fontSize) * t.ownerSVGElement.getScreenCTM().a);
+parent.postMessage(JSON.stringify({
   width, scroll: document.documentElement.scrollWidth, out: out.map(e => e.tagName + ' ' + e.textContent.slice(0, 40)),
-  smallest: Math.min(...sizes), background: style.backgroundColor, ink: style.color, inks: [...new Set(inks)]}) + '</pre>';
+  smallest: Math.min(...sizes.filter(size => size > 0)), background: style.backgroundColor, ink: style.color,
+  inks: [...new Set(texts.map(t => getComputedStyle(t).fill))]}), '*');
 </script></body>'''
+
+# A window is no narrower than 500 px; a frame in it can be.
+FRAME = '''<!DOCTYPE html><html><body style="margin: 0"><pre id="told"></pre>
+<iframe src="%s" style="border: 0; width: %dpx; height: 2000px"></iframe>
+<script>onmessage = message => { document.getElementById('told').textContent = message.data; };</script></body></html>'''
 
 
 def chromium(*arguments):
@@ -37,13 +43,16 @@ def take_picture(source, path, width, height):
 
 
 def look_at(source, width, dark=False):
-    """What a page (HTML) is like in a window of a width in px."""
-    with tempfile.NamedTemporaryFile('w', suffix='.html') as page:
-        page.write(source.replace('</body>', SCRIPT))
-        page.flush()
-        dom = chromium('--dump-dom', '--window-size=%d,2000' % width,
-                       '--blink-settings=preferredColorScheme=%d' % (0 if dark else 1), 'file://' + page.name)
-    return json.loads(re.search(r'<pre id="told">(.*)</pre>', dom).group(1))
+    """What a page (HTML) is like at a width in px."""
+    with tempfile.TemporaryDirectory() as folder:
+        page, frame = os.path.join(folder, 'page.html'), os.path.join(folder, 'frame.html')
+        for path, text in ((page, source.replace('</body>', SCRIPT)), (frame, FRAME % ('page.html', width))):
+            with open(path, 'w') as file:
+                file.write(text)
+        # Virtual time, so that the message has come.
+        dom = chromium('--dump-dom', '--window-size=1400,2000', '--virtual-time-budget=10000',
+                       '--blink-settings=preferredColorScheme=%d' % (0 if dark else 1), 'file://' + frame)
+    return json.loads(html.unescape(re.search(r'<pre id="told">(.*)</pre>', dom).group(1)))
 
 
 def lightness(colour):

@@ -362,7 +362,7 @@ class TestBag(ReportCase):
         with rosbag.Bag(self.recording.bag) as bag:
             topics = bag.get_type_and_topic_info().topics
         self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states', 'recorded/grind/goal', 'recorded/grind/result',
-                                          'recorded/setpoints', 'recorded/state'])
+                                          'recorded/machine', 'recorded/offsets', 'recorded/setpoints', 'recorded/state'])
         self.assertTrue(all(topic.message_count > 0 for topic in topics.values()))
 
     def test_bag_has_every_setpoint(self):

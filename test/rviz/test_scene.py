@@ -515,6 +515,7 @@ class TestPictures(unittest.TestCase):
 
     def test_nothing_is_shown_of_a_job_before_a_plan(self):
         self.assertEqual(story().before_plan, dict.fromkeys(TOPICS, 0))
+        self.assertEqual(story().rviz.legends[0], Legend())
 
     def seen(self, moment, points, front_only=True):
         """Columns and rows of points of the frame `cutter`, and which of them are meant: those on the near side."""

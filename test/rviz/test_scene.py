@@ -390,6 +390,8 @@ class TestFrames(unittest.TestCase):
         self.assertEqual({m.header.frame_id for m in self.wheel}, {'wheel'})
         self.assertAlmostEqual(self.wheel_radius, 50 * MM - 0.02 * MM, delta=1e-9)
         self.assertAlmostEqual(self.half_width, JOB['process.wheel_width'] / 2, delta=1e-9)
+        # Two faces, a straight rim and the hub's two faces: each point costs time in every frame.
+        self.assertLess(sum(len(m.points) for m in self.wheel), 5000)
 
     def test_wheel_touches_the_cutter_where_the_path_says(self):
         x, y, z, _ = self.in_wheel(self.place)[0]

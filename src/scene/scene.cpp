@@ -15,8 +15,21 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kHub = 0.84;                      ///< radius of the wheel's body, of the rim's
+constexpr double kStraight = 1e-7;                 ///< a point that is nearer to a line is on it [m]
 constexpr int kProfileSteps = 48;                  ///< of the rim's outline
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
+
+/// Appends a point to an outline. Where the outline goes straight on, the point before it is not needed: each costs
+/// time in every frame.
+void append(std::vector<OutlinePoint>& outline, const OutlinePoint& next) {
+  if (outline.size() >= 2) {
+    const OutlinePoint &a = outline[outline.size() - 2], &b = outline.back();
+    const double dx = next.x - a.x, dr = next.radius - a.radius;
+    const double off = std::abs((b.x - a.x) * dr - (b.radius - a.radius) * dx);
+    if (off <= kStraight * std::hypot(dx, dr)) outline.pop_back();
+  }
+  outline.push_back(next);
+}
 
 /// The wheel as it is at the start of the job; its axis is the frame's Z.
 void appendWheel(MarkerArray& array, const GrindJob& job) {
@@ -31,7 +44,7 @@ void appendWheel(MarkerArray& array, const GrindJob& job) {
   std::vector<OutlinePoint> rim{{lower, hub}};
   for (int i = 0; i <= kProfileSteps; ++i) {
     const double w = lower + (upper - lower) * i / kProfileSteps;
-    rim.push_back({w, std::max(hub, wheel.radius(w))});
+    append(rim, {w, std::max(hub, wheel.radius(w))});
   }
   rim.push_back({upper, hub});
   add(rim, colour(0.66, 0.45, 0.30));

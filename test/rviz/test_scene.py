@@ -390,6 +390,8 @@ class TestFrames(unittest.TestCase):
         self.assertEqual({m.header.frame_id for m in self.wheel}, {'wheel'})
         self.assertAlmostEqual(self.wheel_radius, 50 * MM - 0.02 * MM, delta=1e-9)
         self.assertAlmostEqual(self.half_width, JOB['process.wheel_width'] / 2, delta=1e-9)
+        # Two faces, a straight rim and the hub's two faces: each point costs time in every frame.
+        self.assertLess(sum(len(m.points) for m in self.wheel), 5000)
 
     def test_wheel_touches_the_cutter_where_the_path_says(self):
         x, y, z, _ = self.in_wheel(self.place)[0]
@@ -515,6 +517,7 @@ class TestPictures(unittest.TestCase):
 
     def test_nothing_is_shown_of_a_job_before_a_plan(self):
         self.assertEqual(story().before_plan, dict.fromkeys(TOPICS, 0))
+        self.assertEqual(story().rviz.legends[0], Legend())
 
     def seen(self, moment, points, front_only=True):
         """Columns and rows of points of the frame `cutter`, and which of them are meant: those on the near side."""

@@ -11,7 +11,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -81,8 +80,7 @@ bool isLeftPipe() {
 int closeOutput(int status) {
   std::fflush(stdout);
   if (std::ferror(stdout) == 0) return status;
-  if (isLeftPipe()) return 128 + SIGPIPE;  // as a shell sees a program that the signal ends; roscpp ignores it
-  std::fprintf(stderr, "standard output: write failed\n");
+  if (!isLeftPipe()) std::fprintf(stderr, "standard output: write failed\n");
   return status == 0 ? 1 : status;
 }
 

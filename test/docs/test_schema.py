@@ -61,6 +61,13 @@ def grind_plan(*arguments):
     return done.returncode, done.stderr.splitlines()
 
 
+def wrong(entry):
+    """What is said of a word in the place of a value; nothing where it might be a choice or a date."""
+    if 'range' in entry:
+        return ' is not a whole number' if entry.get('integer') else ' is not a number'
+    return ' is neither true nor false' if entry.get('choices') == ['true', 'false'] else ''
+
+
 class TestJobFile(unittest.TestCase):
     job = yaml.safe_load((ROOT / 'jobs/paper.yaml').read_text())
     # With every key but the lists.
@@ -106,7 +113,7 @@ class TestJobFile(unittest.TestCase):
                 continue
             with self.subTest(key):
                 self.assertEqual(self.refusal(changed(self.job, key, 'fast')),
-                                 ['%s = fast; allowed: %s' % (key, self.allowed(entry))])
+                                 ['%s = fast%s; allowed: %s' % (key, wrong(entry), self.allowed(entry))])
 
     def test_numbers_beyond_the_range_are_refused(self):
         for key, entry in self.numbers():
@@ -193,7 +200,7 @@ class TestWheelFile(unittest.TestCase):
                 continue
             with self.subTest(key):
                 self.assertEqual(self.show(changed(self.wheel, key, 'fast')),
-                                 (2, ['%s = fast; allowed: %s' % (key, self.allowed(key, entry))]))
+                                 (2, ['%s = fast%s; allowed: %s' % (key, wrong(entry), self.allowed(key, entry))]))
 
     def test_numbers_beyond_the_range_are_refused(self):
         for key, entry in SCHEMA['wheel'].items():

@@ -160,7 +160,7 @@ class TestStandIn(RunTest):
         self.assertIs(told['wheel_in_work'], True)
         command = self.grind('lift')
         gc.poll(lambda: self.node.state.state == GrinderState.LIFTING, 'the lift')
-        self.assertRegex(self.status()[0], r'^state           lifting\n')
+        self.assertRegex(self.status()[0], r'(?m)^state           lifting$')
         self.assertIsNone(command.process.poll())
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=False)
         self.assertEqual((command.end(), command.text), (0, ''))

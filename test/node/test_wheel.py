@@ -66,7 +66,7 @@ class TestShow(WheelTest):
     def test_wrong_file(self):
         path = self.write('bad.yaml', 'profile: straight\ndiameter_mm: 100\nwidth_mm: wide\n')
         self.assertEqual(self.grind(2, 'wheel', 'show', path).stderr,
-                         path + ':3: width_mm = wide; allowed: 0.1 to 100 mm\n')
+                         path + ':3: width_mm = wide is not a number; allowed: 0.1 to 100 mm\n')
         self.assertIn('cannot be read', self.grind(2, 'wheel', 'show', self.path('none.yaml')).stderr)
 
 

@@ -1,7 +1,7 @@
-"""Draws a report; `grind report` starts it and gives it the machine's limits, in SI units, for files that do not tell them. Exit
-status 2 for a file that cannot be read or written."""
+"""Draws a report; `grind report` starts it and gives it the machine's limits, in SI units, for files that do not tell them."""
 
 import argparse
+import errno
 import json
 import os
 import signal
@@ -105,8 +105,12 @@ def survey(record, job_file, with_plots):
 
 
 def write(path, text):
-    with open(path, 'w', encoding='utf-8') as file:
-        file.write(text)
+    try:
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text)
+    except OSError as error:
+        # A write does not name its file.
+        raise OSError(error.errno, error.strerror, path)
 
 
 def make(given, tolerances, record, tool, no_tool):
@@ -130,29 +134,49 @@ def make(given, tolerances, record, tool, no_tool):
         print(json.dumps(findings.data, indent=2, ensure_ascii=False))
 
 
-def main():
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    given = arguments()
+class Failure(Exception):
+    """What to tell, and the exit status: 2 for a file that cannot be used, 1 for a write that failed."""
+
+    def __init__(self, text, status):
+        super().__init__(text)
+        self.status = status
+
+
+def run(given):
+    """@raise Failure"""
     path = given.tolerances
     try:
         tolerances = read_tolerances(path)
         path = given.file
         record, tool, no_tool = read(given)
     except SourceError as error:
-        return '%s: %s' % (path, error)
+        raise Failure('%s: %s' % (path, error), 2)
     except OSError as error:
-        return '%s: cannot be read: %s' % (path, error.strerror or error)
+        raise Failure('%s: cannot be read: %s' % (path, error.strerror or error), 2)
     try:
         make(given, tolerances, record, tool, no_tool)
+        sys.stdout.flush()
     except SourceError as error:
-        return '%s: %s' % (given.file, error)
+        raise Failure('%s: %s' % (given.file, error), 2)
+    except BrokenPipeError:
+        raise Failure('', 1)
     except OSError as error:
-        return '%s: cannot be written: %s' % (error.filename or 'standard output', error.strerror or error)
-    return None
+        name, reason = error.filename or 'standard output', error.strerror or error
+        if error.errno == errno.ENOSPC:
+            raise Failure('%s: write failed: %s' % (name, reason), 1)
+        raise Failure('%s: cannot be written: %s' % (name, reason), 2)
+
+
+def main():
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        run(arguments())
+    except Failure as failure:
+        if str(failure):
+            print(failure, file=sys.stderr)
+        # Not by sys.exit(), which would write what is left of the output once more.
+        os._exit(failure.status)
 
 
 if __name__ == '__main__':
-    reason = main()
-    if reason:
-        print(reason, file=sys.stderr)
-        sys.exit(2)
+    main()

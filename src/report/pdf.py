@@ -29,4 +29,7 @@ def print_pdf(text, path):
                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
         if not os.path.exists(made):
             raise SourceError('%s printed nothing: %s' % (browser, done.stderr.strip()[-500:]))
-        shutil.copyfile(made, path)
+        try:
+            shutil.copyfile(made, path)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, path)

@@ -908,6 +908,28 @@ class TestBadFiles(ReportCase):
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stderr, output + ': cannot be written: No such file or directory\n')
 
+    def test_full_disk(self):
+        for arguments in (('-o', '/dev/full'), ('--pdf', '/dev/full')):
+            done = gc.grind('report', FILES['plan'], *arguments)
+            self.assertEqual((done.returncode, done.stderr), (1, '/dev/full: write failed: No space left on device\n'))
+        with open('/dev/full', 'w') as full:
+            done = subprocess.run([gc.program('grind'), 'report', FILES['plan'], '--json'], stdout=full, stderr=subprocess.PIPE,
+                                  universal_newlines=True)
+        self.assertEqual((done.returncode, done.stderr), (1, 'standard output: write failed: No space left on device\n'))
+
+    def test_reader_of_the_data_that_has_ended(self):
+        run = subprocess.Popen([gc.program('grind'), 'report', FILES['plan'], '--json'], stdout=subprocess.PIPE,
+                               stderr=subprocess.PIPE)
+        run.stdout.close()
+        self.assertEqual((run.stderr.read(), run.wait(gc.PATIENCE)), (b'', 1))
+        run.stderr.close()
+
+    def test_nothing_to_report_on_and_nothing_to_write(self):
+        done = gc.grind('report', '-o', self.path('none.html'))
+        self.assertEqual((done.returncode, done.stderr), (2, 'FILE is missing; allowed: a file, or --last\n'))
+        done = gc.grind('report', FILES['plan'])
+        self.assertEqual((done.returncode, done.stderr), (2, 'nothing to write; allowed: --output, --pdf, --json\n'))
+
     def test_machine_that_cannot_be_read(self):
         done = gc.grind('report', FILES['plan'], '-o', self.path('no.html'), '--machine', self.path('nothing.yaml'))
         self.assertEqual(done.returncode, 2)

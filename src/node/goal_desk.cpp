@@ -69,6 +69,7 @@ GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate
       thread_(kPollPeriod, [this] { poll(); }) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
+  job_ = nh.advertise<GrindActionGoal>("job", 1, true);
   server_ = std::make_unique<Server>(
       nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
       [this](const GoalHandle& handle) { onCancel(handle); }, false);
@@ -213,6 +214,7 @@ void GoalDesk::startWhenJournaled() {
   if (!tracker_.upToDate()) return;
   const std::string error = tracker_.error();
   if (!error.empty()) return abortGoal(error);
+  publishJob();
   telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview, goal_->handle.getGoal()->job_name);
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;
@@ -223,6 +225,14 @@ void GoalDesk::startWhenJournaled() {
   goal_->phase = Phase::kStarting;
   if (!started) return cancelBeforeStart();
   if (!posted) abortGoal("the control loop has not answered the start of the job before");
+}
+
+void GoalDesk::publishJob() {
+  GrindActionGoal job;
+  job.header.stamp = ros::Time::now();
+  job.goal_id = goal_->handle.getGoalID();
+  job.goal = *goal_->handle.getGoal();
+  job_.publish(job);
 }
 
 void GoalDesk::checkStartReply() {

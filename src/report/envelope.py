@@ -18,10 +18,12 @@ class Envelope:
 
     def add(self, x, y):
         """Adds points; y has a column for each curve."""
+        if not len(x):
+            return
         y = y.reshape(len(x), -1)
         if self.is_exact:
             self._points.append((x, y))
-        elif len(x):
+        else:
             column = np.clip(((x - self._low) / self._width).astype('i2'), 0, COLUMNS - 1)
             if (np.diff(column) < 0).any():
                 order = np.argsort(column, kind='stable')

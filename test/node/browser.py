@@ -21,7 +21,7 @@ parent.postMessage(JSON.stringify({
 
 # A window is no narrower than 500 px; a frame in it can be.
 FRAME = '''<!DOCTYPE html><html><body style="margin: 0"><pre id="told"></pre>
-<iframe src="%s" style="border: 0; width: %dpx; height: 2000px"></iframe>
+<iframe src="%s" scrolling="no" style="border: 0; width: %dpx; height: 2000px"></iframe>
 <script>onmessage = message => { document.getElementById('told').textContent = message.data; };</script></body></html>'''
 
 

@@ -96,7 +96,7 @@ class Recording:
     def wait_for_recorder(self):
         """Waits until the recorder is connected to all that the grinder publishes."""
         api = xmlrpc.client.ServerProxy(rosgraph.Master('/test_report').lookupNode('/recorded'))
-        wanted = {'/recorded/setpoints', '/recorded/state', '/recorded/machine', '/recorded/offsets', '/recorded/grind/result',
+        wanted = {'/recorded/setpoints', '/recorded/state', '/recorded/machine', '/recorded/offsets', '/recorded/grind/result', '/recorded/job',
                   '/joint_states', '/diagnostics'}
         gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == '/recorded_record'},
                 'the recorder')
@@ -445,7 +445,7 @@ class TestBag(ReportCase):
         with rosbag.Bag(self.recording.bag) as bag:
             topics = bag.get_type_and_topic_info().topics
         self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states'] + ['recorded/' + name for name in (
-            'grind/goal', 'grind/result', 'machine', 'offsets', 'setpoints', 'state')])
+            'grind/result', 'job', 'machine', 'offsets', 'setpoints', 'state')])
         self.assertTrue(all(topic.message_count > 0 for topic in topics.values()))
 
     def test_bag_has_every_setpoint(self):

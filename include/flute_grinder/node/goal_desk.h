@@ -18,9 +18,9 @@
 
 namespace flute_grinder {
 
-/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it and reports its end. Runs in its
-/// own thread, which never blocks: results from other threads arrive as callbacks or are polled every millisecond. One
-/// goal at a time; any other is rejected at once.
+/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, tells it on `~job`, and reports
+/// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled
+/// every millisecond. One goal at a time; any other is rejected at once.
 class GoalDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -60,6 +60,7 @@ class GoalDesk {
   void poll();
   void publishPlanningFeedback();
   void startWhenJournaled();
+  void publishJob();
   void checkStartReply();
   void endWhenPublished();
   void endJob();
@@ -82,6 +83,7 @@ class GoalDesk {
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
   ServedQueue thread_;
+  ros::Publisher job_;  ///< the goal whose job starts; a recorder has no time to connect to its sender
   std::unique_ptr<Server> server_;
 };
 

@@ -96,8 +96,8 @@ class Recording:
     def wait_for_recorder(self):
         """Waits until the recorder is connected to all that the grinder publishes."""
         api = xmlrpc.client.ServerProxy(rosgraph.Master('/test_report').lookupNode('/recorded'))
-        wanted = {'/recorded/setpoints', '/recorded/state', '/recorded/machine', '/recorded/offsets', '/recorded/grind/result', '/recorded/job',
-                  '/joint_states', '/diagnostics'}
+        wanted = {'/joint_states', '/diagnostics'} | {'/recorded/' + name for name in (
+            'setpoints', 'state', 'machine', 'offsets', 'job', 'grind/result')}
         gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == '/recorded_record'},
                 'the recorder')
 

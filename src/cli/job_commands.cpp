@@ -95,19 +95,20 @@ void addRun(Commands& commands) {
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
   auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
-                               "record.bag -o report.html", [&commands, options]() -> int {
-                                 writeReport(commands.node, *options);
-                               });
-  auto* file = command.add_option("FILE", options->file,
-                                  "bag of 'roslaunch ... record:=true', record of 'grind history', or CSV file of table, "
-                                  "plan or run");
+                               "record.bag -o report.html",
+                               [&commands, options]() -> int { writeReport(commands.node, *options); });
+  auto* file =
+      command.add_option("FILE", options->file,
+                         "bag of 'roslaunch ... record:=true', record of 'grind history', or CSV file of table, "
+                         "plan or run");
   file->type_name(kAnyFile);
   command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself")->excludes(file);
   command.add_option("-o,--output", options->html, "HTML file to write")->type_name(kAnyFile);
   command.add_option("--pdf", options->pdf, "PDF file to write, by Chromium")->type_name(kAnyFile);
   addJson(command, options->json);
   command.add_option("--note", options->note, "the operator's words for the first page")->type_name("TEXT");
-  command.add_option("--tolerances", options->tolerances, "what the tool is passed by (default: config/tolerances.yaml)")
+  command
+      .add_option("--tolerances", options->tolerances, "what the tool is passed by (default: config/tolerances.yaml)")
       ->type_name(kYamlFile);
   addCountedJob(command, "--job", options->job);
   addMachine(command, options->parameters, options->urdf);

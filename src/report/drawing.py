@@ -78,7 +78,8 @@ def tool_drawing(cutter):
     dimension(axes, (left, -outline.end), (left, outline.end), 'Ø %g' % cutter['end_diameter_mm'], (-0.4 * step, 0), ha='right',
               va='center')
     right = outline.total - 0.25 * (outline.total - outline.shank_at)
-    dimension(axes, (right, -outline.shank), (right, outline.shank), ' Ø %g' % cutter['shank_diameter_mm'], ha='left', va='bottom')
+    dimension(axes, (right, -outline.shank), (right, outline.shank), ' Ø %g' % cutter['shank_diameter_mm'],
+              (0, 0.5 * outline.shank), ha='left', va='center')
     above = half + 0.6 * step
     spirals = sorted(set(cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']]))
     count = len(teeth_of(cutter))

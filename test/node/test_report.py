@@ -742,9 +742,9 @@ class TestLayout(ReportCase):
     def test_picture_for_the_documentation(self):
         picture = os.path.join(PICTURES, 'report.png')
         os.makedirs(PICTURES, exist_ok=True)
-        browser.take_picture(self.page.source, picture, 1000, 900)
+        browser.take_picture(self.page.source, picture, 1000, 1130)
         with Image.open(picture) as image:
-            self.assertEqual(image.size, (1000, 900))
+            self.assertEqual(image.size, (1000, 1130))
             self.assertGreater(len(set(image.convert('L').getdata())), 50)
 
     def flat(self, text):

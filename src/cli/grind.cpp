@@ -87,7 +87,7 @@ int closeOutput(int status) {
 /// @return the exit status, whatever happens.
 int runToTheEnd(int argc, char** argv) {
   try {
-    return closeOutput(run(argc, argv));
+    return run(argc, argv);
   } catch (const WriteError& error) {
     return fail(error.what());
   } catch (const std::exception& error) {
@@ -102,7 +102,7 @@ int runToTheEnd(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   occupyStandardStreams();
-  const int status = runToTheEnd(argc, argv);
+  const int status = closeOutput(runToTheEnd(argc, argv));
   leaveRos();
   std::_Exit(status);  // at the end of main(), roscpp would wait for its threads
 }

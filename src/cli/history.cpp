@@ -107,7 +107,8 @@ std::vector<std::string> pathsIn(const std::string& folder) {
   try {
     return recordsIn(folder);
   } catch (const std::filesystem::filesystem_error& error) {
-    throw FileError(folder + ": cannot be read: " + error.code().message());
+    throw FileError(folder + ": cannot be read: " + error.code().message() +
+                    "; allowed: --folder, if the grinder keeps its records elsewhere");
   }
 }
 
@@ -133,7 +134,8 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
     try {
       entries.push_back(readEntry(path));
     } catch (const std::exception& error) {
-      std::fprintf(stderr, "%s: %s\n", path.c_str(), error.what());
+      const std::string reason = error.what();
+      std::fprintf(stderr, "%s: no record of a job: %s\n", path.c_str(), reason.substr(0, reason.find('\n')).c_str());
       status = 2;
     }
   }
@@ -141,7 +143,7 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
     Json list = Json::array();
     for (const Entry& entry : entries) list.push_back(toJson(entry));
     print(list);
-  } else if (entries.empty()) {
+  } else if (entries.empty() && status == 0) {
     std::printf("no records in %s\n", folder.c_str());
   } else {
     printTable(entries);

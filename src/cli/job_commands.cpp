@@ -95,14 +95,18 @@ void addRun(Commands& commands) {
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
   auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
-                               "record.bag -o report.html",
+                               "setpoints.csv -o report.html",
                                [&commands, options]() -> int { writeReport(commands.node, *options); });
   auto* file =
       command.add_option("FILE", options->file,
                          "bag of 'roslaunch ... record:=true', record of 'grind history', or CSV file of table, "
                          "plan or run");
   file->type_name(kAnyFile);
-  command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself")->excludes(file);
+  auto* last = command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself");
+  last->excludes(file);
+  command.add_option("--folder", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
+      ->needs(last)
+      ->type_name(kFolder);
   command.add_option("-o,--output", options->html, "HTML file to write")->type_name(kAnyFile);
   command.add_option("--pdf", options->pdf, "PDF file to write, by Chromium")->type_name(kAnyFile);
   addJson(command, options->json);

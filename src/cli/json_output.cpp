@@ -20,15 +20,6 @@ Json moveDurations(const core::PathStatistics& statistics) {
   return json;
 }
 
-Json feedLimits(const core::PathStatistics& statistics) {
-  Json json = Json::array();
-  for (const core::FeedLimit& limit : statistics.feed_limits) {
-    json.push_back(
-        {{"cause", limit.cause}, {"from_x_mm", limit.from_x / kMillimetre}, {"to_x_mm", limit.to_x / kMillimetre}});
-  }
-  return json;
-}
-
 Json lastJob(const JobProgress& progress) {
   if (progress.job_digest.empty()) return nullptr;
   const Cutter& cutter = progress.cutter;
@@ -72,7 +63,7 @@ Json toJson(const JobPlan& plan) {
           {"largest_deviation_um", s.max_deviation / kMicrometre},
           {"smallest_feed_mm_min", s.min_feed / kMillimetrePerMinute},
           {"largest_feed_mm_min", s.max_feed / kMillimetrePerMinute},
-          {"feed_limits", feedLimits(s)},
+          {"feed_limits", toJson(s.feed_limits)},
           {"largest_velocity", toJson(s.max_velocity, "_s")},
           {"largest_acceleration", toJson(s.max_acceleration, "_s2")},
           {"largest_jerk", toJson(s.max_jerk, "_s3")},

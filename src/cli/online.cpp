@@ -116,6 +116,7 @@ bool joinRos() {
 }
 
 void leaveRos() {
+  for (const int signal : {SIGINT, SIGTSTP}) std::signal(signal, SIG_DFL);  // a master may hang
   // Topics are unregistered by whoever uses them. The services are those of every roscpp node.
   if (ros::isStarted()) ros::ServiceManager::instance()->shutdown();
 }

@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 namespace flute_grinder {
@@ -46,9 +47,8 @@ void append(std::vector<std::string>& arguments, const char* option, const Axes&
   for (int axis = 0; axis < kAxisCount; ++axis) arguments.push_back(format("%.17g", values[axis]));
 }
 
-/// The newest record of a grinder. @throw FileError if there is none.
-std::string lastRecord(const std::string& node) {
-  const std::string folder = historyFolder(node);
+/// The newest record in a folder. @throw FileError if there is none.
+std::string lastRecord(const std::string& folder) {
   const std::optional<std::string> newest = newestRecord(folder);
   if (!newest) throw FileError(folder + ": has no record of a job");
   return *newest;
@@ -57,9 +57,9 @@ std::string lastRecord(const std::string& node) {
 }  // namespace
 
 void writeReport(const std::string& node, const ReportOptions& options) {
-  if (options.file.empty() && !options.last) throw FileError("FILE is missing; allowed: a file, or --last");
+  if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
   if (options.html.empty() && options.pdf.empty() && !options.json)
-    throw FileError("nothing to write; allowed: --output, --pdf, --json");
+    throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
   const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
   const std::string own_tolerances = ros::package::getPath("flute_grinder") + "/config/tolerances.yaml";
   std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath(), "--grind", ownPath()};
@@ -76,7 +76,9 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   append(arguments, "--max-velocity", config.machine.limits.max_velocity);
   append(arguments, "--max-acceleration", config.machine.limits.max_acceleration);
   append(arguments, "--max-following-error", config.following_error);
-  arguments.insert(arguments.end(), {"--", options.last ? lastRecord(node) : options.file});
+  arguments.insert(
+      arguments.end(),
+      {"--", options.last ? lastRecord(options.folder.empty() ? historyFolder(node) : options.folder) : options.file});
   std::vector<char*> argv = pointersTo(arguments);
   execv(argv[0], argv.data());
   throw FileError(arguments[0] + ": cannot be started: " + std::strerror(errno));

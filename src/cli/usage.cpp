@@ -63,7 +63,8 @@ std::string refusal(const CLI::App& app, const CLI::App& command, const std::str
   if (name.size() > 1 && name[0] == '-') {
     const std::vector<std::string> before = optionsOf(app);
     if (std::find(before.begin(), before.end(), name) != before.end()) {
-      return name + ": stands before the command: grind " + name + " ... " + command.get_name();
+      const std::string words = path.substr(app.get_name().size() + 1);
+      return name + ": goes before the command: grind " + name + " ... " + words;
     }
     return name + ": no such option of '" + path + "'" + nearest(name, optionsOf(command));
   }

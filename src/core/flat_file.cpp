@@ -16,28 +16,28 @@ bool decode(const YAML::Node& node, T& value) {
   return node.IsScalar() && YAML::convert<T>::decode(node, value);
 }
 
-/// Whether a text is a number, of whatever size.
+/// Whether a text is a decimal number, of whatever size.
 bool isNumber(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
-  return !text.empty() && *end == '\0';
+  return !text.empty() && *end == '\0' && text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 
 }  // namespace
 
 std::string readValue(const YAML::Node& node, double& value) {
   if (decode(node, value)) return "";
-  return node.IsScalar() && isNumber(node.Scalar()) ? " is too large" : " is not a number";
+  return node.IsScalar() && isNumber(node.Scalar()) ? " is out of range" : " is not a number";
 }
 
 std::string readValue(const YAML::Node& node, int& value) {
   std::string digits = node.IsScalar() ? node.Scalar() : "";
   if (!digits.empty() && (digits[0] == '-' || digits[0] == '+')) digits.erase(0, 1);
   if (digits.size() > 1 && digits[0] == '0' && std::isalnum(static_cast<unsigned char>(digits[1])) != 0) {
-    return " is not decimal, as YAML takes a leading 0 for octal or hexadecimal";
+    return " has a leading 0, which YAML reads as octal or hexadecimal";
   }
   if (digits.empty() || digits.find_first_not_of("0123456789") != std::string::npos) return " is not a whole number";
-  return decode(node, value) ? "" : " is too large";
+  return decode(node, value) ? "" : " is out of range";
 }
 
 std::string readValue(const YAML::Node& node, bool& value) {

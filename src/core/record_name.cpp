@@ -15,7 +15,7 @@ namespace {
 // 0 stands for any digit.
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
-constexpr std::size_t kSuffix = 7;  ///< characters that replaceFile() appends while it writes
+constexpr std::size_t kSuffix = 7;  ///< characters that writeFile() appends while it writes, a dot and six of mkstemp()
 
 bool hasForm(std::string_view text, std::string_view form) {
   return std::equal(text.begin(), text.end(), form.begin(), form.end(),
@@ -45,7 +45,10 @@ double timeOf(const std::string& utc) {
   t.tm_hour = number(11, 2);
   t.tm_min = number(14, 2);
   t.tm_sec = number(17, 2);
-  return static_cast<double>(timegm(&t)) + number(20, 3) / 1000.0;
+  const double time = static_cast<double>(timegm(&t)) + number(20, 3) / 1000.0;
+  // timegm() takes the 31st of a short month for a day of the next.
+  if (utcText(time) != utc) throw std::invalid_argument("time = " + utc + "; allowed: a time that there is");
+  return time;
 }
 
 std::string recordName(double start) {

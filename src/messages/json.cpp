@@ -72,6 +72,15 @@ Json toJson(const Axes& value, const std::string& per_time) {
           {"a_deg" + per_time, value[kA] / kDegree}};
 }
 
+Json toJson(const std::vector<core::FeedLimit>& limits) {
+  Json json = Json::array();
+  for (const core::FeedLimit& limit : limits) {
+    json.push_back(
+        {{"cause", limit.cause}, {"from_x_mm", limit.from_x / kMillimetre}, {"to_x_mm", limit.to_x / kMillimetre}});
+  }
+  return json;
+}
+
 Json toJson(const GrindJob& job) {
   Json file = Json::object();
   visitJobFields([&](const JobField& field, auto of) { at(file, field.file_key) = shopNumber(of(job), field.unit); });

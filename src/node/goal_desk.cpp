@@ -295,7 +295,7 @@ void GoalDesk::endJob() {
     r = result(GrindResult::CANCELED, {endReason(status, at, program)}, statistics);
   }
   r.setpoints_written = status.setpoints_written;
-  telemetry_.concludeJob(number, {outcomeOf(status.end), r.error_string, r.setpoints_written});
+  telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
   switch (status.end) {
     case JobEnd::kFault:
       ROS_ERROR_STREAM("goal aborted: " << r.error_string);

@@ -6,7 +6,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <atomic>
 #include <exception>
 #include <filesystem>
 #include <mutex>
@@ -23,67 +22,75 @@ constexpr int kMostWaiting = 16;  ///< records, while the disk does not answer
 
 }  // namespace
 
-/// Used by the thread, but for what it tells.
+/// Used only by the disk thread, except what the mutex guards.
 struct History::Folder {
   Folder(fs::path folder_path, std::uint64_t size_limit) : path(std::move(folder_path)), limit(size_limit) {}
 
-  /// Carries out an action on the disk, and notes its error.
+  /// Carries out an action on the disk, and notes its error. @param drops when the action was queued.
   template <typename Action>
-  void attempt(const Action& action) {
+  void attempt(std::uint64_t drops, const Action& action) {
     std::string failure;
     try {
       action();
     } catch (const std::exception& caught) {
       failure = "history " + path.string() + ": " + caught.what();
     }
-    note(failure);
-  }
-
-  void note(const std::string& failure) {
     if (!failure.empty()) ROS_WARN_STREAM(failure);
     const std::lock_guard<std::mutex> lock(mutex);
-    error = failure;
+    if (!failure.empty() || drops == dropped) error = failure;
   }
 
-  void removeOldest() const;
+  void removeOldest(const fs::path& but) const;
 
   const fs::path path;
   const std::uint64_t limit;
-  std::atomic<int> waiting{0};
-  mutable std::mutex mutex;  ///< guards `error`; held only to copy
+  mutable std::mutex mutex;  ///< guards everything below; held only to copy
+  int waiting = 0;
+  std::uint64_t dropped = 0;  ///< records given up, since too many waited
   std::string error;
 };
 
-void History::Folder::removeOldest() const {
+/// @param but the record just written: the clock may have been set back, so that it looks the oldest.
+void History::Folder::removeOldest(const fs::path& but) const {
   std::vector<fs::path> files;
   std::uint64_t size = 0;
   for (const auto& entry : fs::directory_iterator(path)) {
     const std::string name = entry.path().filename().string();
     if (!isRecordName(name) && !isUnfinishedRecordName(name)) continue;
-    files.push_back(entry.path());
     size += entry.file_size();
+    if (entry.path() != but) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i + 1 < files.size() && size > limit; ++i) {
+  for (std::size_t i = 0; i < files.size() && size > limit; ++i) {
     size -= fs::file_size(files[i]);
     fs::remove(files[i]);
   }
 }
 
 History::History(const std::string& folder, std::uint64_t limit) : folder_(std::make_shared<Folder>(folder, limit)) {
-  thread_.post([at = folder_] { at->attempt([&] { fs::create_directories(at->path); }); });
+  thread_.post([at = folder_] { at->attempt(0, [&] { fs::create_directories(at->path); }); });
 }
 
 void History::keep(const std::string& name, std::function<std::string()> text) {
-  if (folder_->waiting >= kMostWaiting)
-    return folder_->note("history " + folder_->path.string() + ": the disk does not answer");
-  ++folder_->waiting;
-  thread_.post([at = folder_, name, text = std::move(text)] {
-    at->attempt([&] {
+  std::uint64_t drops = 0;
+  {
+    const std::lock_guard<std::mutex> lock(folder_->mutex);
+    if (folder_->waiting >= kMostWaiting) {
+      // Not logged: the output may be a file on the same disk.
+      folder_->error = "history " + folder_->path.string() + ": the disk does not answer";
+      ++folder_->dropped;
+      return;
+    }
+    ++folder_->waiting;
+    drops = folder_->dropped;
+  }
+  thread_.post([at = folder_, drops, name, text = std::move(text)] {
+    at->attempt(drops, [&] {
       fs::create_directories(at->path);
       writeFile(at->path / name, text());
-      at->removeOldest();
+      at->removeOldest(at->path / name);
     });
+    const std::lock_guard<std::mutex> lock(at->mutex);
     --at->waiting;
   });
 }

@@ -40,7 +40,7 @@ void JournalWriter::Work::store(const Progress& progress, std::uint64_t number) 
   std::string error;
   try {
     journal.write(progress);
-  } catch (const JournalError& failure) {
+  } catch (const std::exception& failure) {
     error = failure.what();
   }
   const std::lock_guard<std::mutex> lock(mutex);

@@ -193,8 +193,11 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDe
 }
 
 void PositionBox::setTolerance(std::optional<double> tolerance) {
-  const double millimetres = tolerance.value_or(kMicrometre) / kMillimetre;
-  decimals_ = std::clamp(static_cast<int>(std::ceil(-std::log10(millimetres) - 1e-9)), kFewestDecimals, kMostDecimals);
+  const double decimals = std::ceil(-std::log10(tolerance.value_or(kMicrometre) / kMillimetre) - 1e-9);
+  // 0 and NaN, of a legend that nobody should send, have no logarithm to count by.
+  decimals_ = !(decimals <= kMostDecimals)     ? kMostDecimals
+              : !(decimals >= kFewestDecimals) ? kFewestDecimals
+                                               : static_cast<int>(decimals);
 }
 
 void PositionBox::show(const GrinderView& view) {

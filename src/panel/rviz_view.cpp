@@ -45,6 +45,8 @@ void RvizView::lookAt(const Cutter& cutter) {
   resume();
 }
 
+RvizView::~RvizView() { resume(); }
+
 void RvizView::keepPace(bool moves) {
   if (moves) resume();
 }

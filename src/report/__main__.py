@@ -34,13 +34,18 @@ class Simulation:
     """Runs `grind simulate` beside this program."""
 
     def __init__(self, grind, path, *more):
+        self._path = path
         self._process = subprocess.Popen([grind, 'simulate', path, '--json', '--sections', str(SECTIONS), *more],
                                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
 
     def result(self):
         """The tool, or None, and why there is none."""
         out, error = self._process.communicate()
-        return (json.loads(out), '') if out else (None, error.strip())
+        if out:
+            return json.loads(out), ''
+        # There, --job names a file.
+        reason = error.strip().replace(self._path + ': ', '').replace('; give its job file with --job', '')
+        return None, reason or 'grind simulate ended without an answer'
 
     def give_up(self):
         self._process.kill()
@@ -80,6 +85,8 @@ def read(given):
     # ROS and matplotlib are slow to load.
     if head == b'#ROSBAG ':
         return read_bag_and_tool(given)
+    if given.job:
+        raise SourceError('--job %d: only a bag has several jobs' % given.job)
     if head.lstrip().startswith(b'{'):
         return read_record_and_tool(given)
     from read_csv import read_csv
@@ -90,12 +97,12 @@ def survey(record, job_file, with_plots):
     """Figures and plots of the rows, which are gone through once."""
     from figures import Plots, TablePlots
     from motion import motions
-    from strokes import Cutter, Figures
+    from strokes import Figures
     if record.kind == 'record':
         return None, None
     if record.kind == 'table':
         return None, TablePlots(record) if with_plots else None
-    figures = Figures(record.period, Cutter(job_file) if job_file else None)
+    figures = Figures(record.period, job_file['cutter'] if job_file else None)
     plots = Plots(record) if with_plots else None
     for motion in motions(record):
         figures.add(motion)

@@ -1,4 +1,4 @@
-"""Reads the messages of a bag in the order in which they were recorded (http://wiki.ros.org/Bags/Format/2.0). The rosbag library
+"""Reads the messages of a bag, of each topic in the order in which they were recorded (http://wiki.ros.org/Bags/Format/2.0). The rosbag library
 keeps an index of all messages, of all topics, in memory: hundreds of MB for a day's job."""
 
 import bz2

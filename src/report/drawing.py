@@ -1,9 +1,11 @@
 """The drawing of the tool that was asked, with the dimensions of its job file."""
 
 import math
+from itertools import cycle
 
 import numpy as np
 
+from cutter import largest_radius, radius, spiral_angles, tooth_angles
 from style import CURVE, INK, METAL, THEORY, new_figure, picture
 
 SHANK_SHOWN = 0.9  # of its diameter
@@ -16,7 +18,7 @@ class Outline:
         self.end = cutter['end_diameter_mm'] / 2
         self.length = cutter['flute_length_mm']
         self.slope = math.tan(math.radians(cutter['cone_angle_deg']))
-        self.large = self.radius(self.length)
+        self.large = radius(cutter, self.length)
         self.neck = cutter.get('neck_length_mm') or 0
         self.shank = cutter['shank_diameter_mm'] / 2
         # Where the neck's length is not known, a shoulder of 45 deg, as the machine's model has it.
@@ -24,30 +26,22 @@ class Outline:
         self.shank_at = self.shoulder + (0 if self.neck else abs(self.shank - self.large))
         self.total = self.shank_at + max(2 * self.shank * SHANK_SHOWN, 0.15 * self.length)
 
-    def radius(self, x):
-        return self.end + x * self.slope
-
     def points(self):
         return [(0, self.end), (self.length, self.large), (self.shoulder, self.large), (self.shank_at, self.shank),
                 (self.total, self.shank)]
 
 
-def teeth_of(cutter):
-    """Their angles [deg]."""
-    return cutter.get('tooth_angles_deg') or [360 / cutter['teeth'] * i for i in range(cutter['teeth'])]
-
-
 def edges(cutter, outline):
     """The cutting edges on the near side, as lines of X and height."""
     x = np.linspace(0, outline.length, 400)
-    spirals = cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']] * len(teeth_of(cutter))
-    for degrees, spiral in zip(teeth_of(cutter), spirals):
+    angles, r = tooth_angles(cutter), radius(cutter, x)
+    for degrees, spiral in zip(angles, cycle(spiral_angles(cutter))):
         if abs(outline.slope) > 1e-9:
-            turn = math.tan(math.radians(spiral)) / outline.slope * np.log(outline.radius(x) / outline.end)
+            turn = math.tan(math.radians(spiral)) / outline.slope * np.log(r / outline.end)
         else:
             turn = math.tan(math.radians(spiral)) * x / outline.end
         angle = math.radians(degrees) + turn
-        yield x, np.where(np.sin(angle) >= 0, outline.radius(x) * np.cos(angle), np.nan)
+        yield x, np.where(np.sin(angle) >= 0, r * np.cos(angle), np.nan)
 
 
 def dimension(axes, begin, end, text, offset=(0, 0), **how):
@@ -59,7 +53,7 @@ def dimension(axes, begin, end, text, offset=(0, 0), **how):
 def tool_drawing(cutter):
     """@param cutter of a job file."""
     outline = Outline(cutter)
-    half = max(outline.large, outline.shank, outline.end)
+    half = max(largest_radius(cutter), outline.shank)
     x, r = np.array(outline.points()).T
     figure = new_figure(2.7)
     axes = figure.add_subplot()
@@ -81,8 +75,8 @@ def tool_drawing(cutter):
     dimension(axes, (right, -outline.shank), (right, outline.shank), ' Ø %g' % cutter['shank_diameter_mm'],
               (0, 0.5 * outline.shank), ha='left', va='center')
     above = half + 0.6 * step
-    spirals = sorted(set(cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']]))
-    count = len(teeth_of(cutter))
+    spirals = sorted(set(spiral_angles(cutter)))
+    count = len(tooth_angles(cutter))
     axes.text(0, above, 'cone %g°, spiral %s, rake %g°, %d %s' % (
         cutter['cone_angle_deg'], ', '.join('%g°' % s for s in spirals), cutter['rake_angle_deg'], count,
         'tooth' if count == 1 else 'teeth'), va='bottom')

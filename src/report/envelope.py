@@ -47,4 +47,4 @@ class Envelope:
             return np.concatenate([x for x, _ in self._points]), np.concatenate([y for _, y in self._points])
         full = np.flatnonzero(np.isfinite(self._least[:, 0]))
         x = self._low + (np.repeat(full, 2) + 0.5) * self._width
-        return x, np.stack([self._least[full], self._largest[full]], axis=1).reshape(len(x), -1)
+        return x, np.stack([self._least[full], self._largest[full]], axis=1).reshape(len(x), self._least.shape[1])

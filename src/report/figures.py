@@ -12,7 +12,7 @@ from style import CURVE, EVEN_STYLE, HELD, LIMIT, ODD_STYLE, THEORY, new_figure,
 ENLARGED = 10  # points at either end, like the rows of the paper's Table 1
 SHOWN = 200  # points of the whole curve
 
-# Of the axes: key in Motion and Figures, title, of what, per, key of the limits, whether only measured.
+# Of the axes: key in Motion and Figures, title, per, key of the limits, caption.
 QUANTITIES = [
     ('following', 'Following error', '', 'max_following_error',
      'Command of the cycle before less the position read; dashed: where the machine stops.'),
@@ -184,7 +184,7 @@ class AxisPictures:
             axes.plot(time, values[:, axis] / scale, color=CURVE)
             share = ''
             if limit is not None:
-                share = ', %.2g %% of the limit' % (100 * top / limit)
+                share = ', %.3g %% of the limit' % (100 * top / limit)
                 for sign in (-1, 1):
                     axes.axhline(sign * limit / scale, color=LIMIT, linestyle='--')
             # Following errors in a stroke are a small part of the limit, which would hide them.
@@ -218,7 +218,10 @@ class Timing:
         shown = int(max(2 * self._period, longest) / self._width) + 1
         each = -(-shown // self.COLUMNS)
         columns = -(-shown // each)
-        counts = np.resize(self._counts, columns * each).reshape(columns, each).sum(axis=1)
+        counts = np.zeros(columns * each, 'i8')
+        known = min(len(counts), len(self._counts))
+        counts[:known] = self._counts[:known]
+        counts = counts.reshape(columns, each).sum(axis=1)
         axes.stairs(counts, np.arange(columns + 1) * each * self._width / MS, fill=True, color=CURVE)
         axes.axvline(self._period / MS, color=THEORY, linestyle=':', label='nominal')
         axes.axvline(LATE * self._period / MS, color=LIMIT, linestyle='--', label='late from here on')

@@ -4,10 +4,8 @@ jobs, with more."""
 import json
 from datetime import datetime
 
-from record import AXES, DEG, MM, MS, SourceError
-from verdict import criteria, verdict
-
-STILL = ('holding', 'held', 'retracting', 'retracted', 'resuming', 'jogging_retracted')  # states of a job that is held
+from record import AXES, DEG, MM, MS, STILL, SourceError
+from verdict import all_teeth_ground, criteria, verdict
 
 KINDS = {'table': 'points of a curve, from "grind table"', 'setpoints': 'setpoints, from "grind plan"',
          'run': 'setpoints, from "grind run"', 'bag': 'bag of the grinder', 'record': 'the grinder\'s own record'}
@@ -89,7 +87,7 @@ class Findings:
                 'period_ms': record.period / MS,
                 'duration_s': record.end - record.begin,
                 'strokes': [stroke.head(record.has_actual, depths) for stroke in self.figures.strokes.values()],
-                'holds': holds(record.states, record.end),
+                'holds': holds(record.states, max([record.end] + [state[0] for state in record.states])),
                 'overrides': overrides(record.overrides),
                 'axes': [self._axis(record, axis) for axis in range(len(AXES))]}
 
@@ -131,6 +129,9 @@ class Findings:
             reasons.append('The tool and its tolerances: a CSV file does not have the job; a bag or a record of the grinder does.')
         elif no_tool:
             reasons.append('The ground tool: %s' % no_tool)
+        elif record.kind == 'bag' and not all_teeth_ground(self.data['tool']):
+            reasons.append('The tolerances of the ground tool: not all of its teeth were ground in this job; the others are not in '
+                           'the file.')
         return reasons
 
 
@@ -143,4 +144,7 @@ def read_record(path):
             raise SourceError('is no record of a job: %s' % error)
     if not isinstance(head, dict) or head.get('record') != 1:
         raise SourceError('is no record of a job that this program knows; allowed: "record": 1')
+    for key in ('machine', 'job', 'started', 'ended', 'outcome', 'setpoints', 'late_cycles', 'strokes', 'holds', 'overrides'):
+        if key not in head:
+            raise SourceError('is no complete record of a job: %s is missing' % key)
     return head

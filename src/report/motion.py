@@ -10,14 +10,16 @@ LEAD = 4  # rows before
 
 
 class Motion:
-    """A part of a record: `rows` at the times `time` [s], which of them are points of a `stroke`, and for each row `speed`, `acceleration` and `following`: whether it is known, and its value, a
-    column for each axis [m, A rad; per s, per s^2].
+    """A part of a record.
+
+    rows, time: the rows, and when they were [s]. stroke: which of them are points of a stroke. speed, acceleration, following:
+    for each row whether it is known, and its value, a column for each axis [m, A rad; per s, per s^2].
 
     Speeds are differences from cycle to cycle. Accelerations are differences between the ends of odd-even pairs, over two
     cycles each, as the plan checks them: within a pair the steps themselves alternate. Where cycles are missing there is
     none of either."""
 
-    def __init__(self, rows, time, period, has_actual):
+    def __init__(self, rows, time, period):
         cycle, position = rows['cycle'].astype('i8'), rows['position']
         self.rows, self.time = rows[LEAD:], time
         self.stroke = self.rows['step'] != 0
@@ -26,7 +28,7 @@ class Motion:
         pairs = (cycle[4:] % 2 == 0) & (cycle[4:] - cycle[:-4] == 4)
         self.acceleration = pairs, (position[4:] - 2 * position[2:-2] + position[:-4]) / (2 * period) ** 2
         # `actual` is one cycle older than its setpoint.
-        self.following = follows, position[3:-1] - self.rows['actual'] if has_actual else position[4:] * 0
+        self.following = follows & np.isfinite(self.rows['actual']).all(axis=1), position[3:-1] - self.rows['actual']
 
 
 def motions(record):
@@ -36,5 +38,5 @@ def motions(record):
     lead['cycle'] = np.arange(-LEAD, 0).astype('u8') if record.first['cycle'] == 0 else UNKNOWN
     for block, time in record.blocks():
         rows = np.concatenate([lead, block])
-        yield Motion(rows, time, record.period, record.has_actual)
+        yield Motion(rows, time, record.period)
         lead = rows[-LEAD:]

@@ -3,6 +3,7 @@
 import html
 import os
 
+from cutter import spiral_angles, tooth_angles
 from figures import QUANTITIES
 from findings import time_of
 
@@ -66,13 +67,18 @@ def number(value, digits):
     return None if value is None else '%.*f' % (digits, value)
 
 
+def three_digits(value):
+    """At least three digits, never with an exponent for large ones."""
+    return None if value is None else '%.3g' % value if abs(value) < 1000 else '%.0f' % value
+
+
 def local(stamp):
     """A point in time on the clock of this computer."""
     return time_of(stamp).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
 
 
 def clock(seconds):
-    minutes, rest = divmod(seconds, 60)
+    minutes, rest = divmod(round(seconds, 1), 60)
     hours, minutes = divmod(int(minutes), 60)
     return '%d:%02d:%04.1f h' % (hours, minutes, rest) if hours else '%d:%04.1f min' % (minutes, rest)
 
@@ -89,11 +95,10 @@ def pictures(parts, name):
 
 
 def tool_facts(cutter):
-    spirals = cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']]
     angles = cutter.get('tooth_angles_deg')
-    teeth = len(angles) if angles else cutter['teeth']
+    teeth = len(tooth_angles(cutter))
     return [('end diameter', '%g mm' % cutter['end_diameter_mm']), ('flute length', '%g mm' % cutter['flute_length_mm']),
-            ('cone', '%g deg' % cutter['cone_angle_deg']), ('spiral angle', ', '.join('%g' % s for s in spirals) + ' deg'),
+            ('cone', '%g deg' % cutter['cone_angle_deg']), ('spiral angle', ', '.join('%g' % s for s in spiral_angles(cutter)) + ' deg'),
             ('rake', '%g ± %g deg' % (cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])),
             ('teeth', '%d%s' % (teeth, ' at ' + ', '.join('%g' % a for a in angles) + ' deg' if angles else '')),
             ('cut', cutter['cut'].replace('_', ' ')), ('shank', '%g mm' % cutter['shank_diameter_mm'])]
@@ -108,7 +113,9 @@ def process_facts(job_file):
                 ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')),
             ('wear', '%g mm of the radius' % wheel['wear_mm']),
             ('set-up', 'swivel %g deg, height %g mm' % (setup['swivel_deg'], setup['height_mm'])),
-            ('depth', '%g mm, infeed %g mm' % (process['depth_mm'], process['infeed_mm'])),
+            ('depth', '%g mm%s, infeed %g mm' % (
+                process['depth_mm'], ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '',
+                process['infeed_mm'])),
             ('feed', '%g mm/min' % process['feed_mm_min']),
             ('interpolation', job_file['interpolation']['even_step'].replace('_', ' '))]
 
@@ -136,7 +143,8 @@ def outcome(data):
     return data['outcome'] + (': ' + data['reason'] if data.get('reason') else '')
 
 
-VERDICTS = {'passed': 'PASSED', 'failed': 'FAILED', 'incomplete': 'PASSED AS FAR AS MEASURED'}
+VERDICTS = {'passed': 'PASSED', 'failed': 'FAILED', 'unfinished': 'NOT SHOWN TO BE FINISHED',
+            'incomplete': 'PASSED AS FAR AS MEASURED'}
 
 
 def verdict_line(data):
@@ -148,7 +156,7 @@ def shown(value, criterion, sign=''):
     if value is None:
         return None
     digits = criterion['digits']
-    return '%s%s %s' % (sign, '%.3g' % value if digits is None else '%.*f' % (digits, value), criterion['unit'])
+    return '%s%s %s' % (sign, three_digits(value) if digits is None else '%.*f' % (digits, value), criterion['unit'])
 
 
 def criteria_table(data):
@@ -179,10 +187,10 @@ def stroke_table(data):
         least, largest = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
         cells = ['%d, %d' % (stroke['tooth'], stroke['pass']), number(stroke['depth_mm'], 4), number(stroke['started_s'], 1),
                  number(stroke['duration_s'], 1), None if least is None else '%s to %s' % (least, largest),
-                 None if stroke['deviation_um'] is None else '%.3g' % stroke['deviation_um']]
+                 three_digits(stroke['deviation_um'])]
         if has_following:
             errors = stroke['following_error']
-            cells += [', '.join(number(errors[key], 2) for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]
+            cells += [', '.join(number(errors[key], 2) or '-' for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]
         table.add(*cells, events_of(data, stroke))
     return table.html()
 
@@ -194,7 +202,7 @@ def events_between(data):
               if 'held %.1f s at %.1f s' % (h['duration_s'], h['at_s']) not in inside]
     events += ['Override %g %% at %.1f s.' % (o['percent'], o['at_s']) for o in data['overrides']
                if 'override %g %% at %.1f s' % (o['percent'], o['at_s']) not in inside]
-    return '<p>Between the strokes: %s</p>' % text(' '.join(events)) if events else ''
+    return '<p>Apart from the strokes: %s</p>' % text(' '.join(events)) if events else ''
 
 
 def axis_table(data, name):
@@ -258,8 +266,8 @@ def appendix(data, parts):
 def page(data, parts):
     """@param data of Findings. @param parts of draw()."""
     body = first_page(data, parts)
-    if data.get('strokes'):
-        body += ['<h2>Teeth and passes</h2>', stroke_table(data), events_between(data)]
+    if data.get('strokes') or data.get('holds') or data.get('overrides'):
+        body += ['<h2>Teeth and passes</h2>', stroke_table(data) if data['strokes'] else '', events_between(data)]
     if parts.get('tool'):
         body += ['<h2>%s</h2>' % ('The tool that the job asks for' if data['kind'] == 'record' else 'The ground tool'),
                  pictures(parts, 'tool')]

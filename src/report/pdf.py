@@ -7,6 +7,7 @@ import tempfile
 
 from record import SourceError
 
+TIMEOUT = 300  # [s]
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
@@ -16,17 +17,31 @@ def print_pdf(text, path):
     if not browser:
         raise SourceError('cannot be printed without a browser; install chromium, or print the HTML file with another')
     # Fail before the browser does, which tells less.
+    was_there = os.path.exists(path)
     with open(path, 'ab'):
         pass
+    try:
+        print_page(browser, text, path)
+    except SourceError:
+        if not was_there:
+            os.remove(path)
+        raise
+
+
+def print_page(browser, text, path):
     with tempfile.TemporaryDirectory() as folder:
         page, made = os.path.join(folder, 'report.html'), os.path.join(folder, 'report.pdf')
         with open(page, 'w', encoding='utf-8') as file:
             file.write(text)
         # The page is our own file and loads nothing; root, as in a container, has no sandbox.
         sandbox = ['--no-sandbox'] if os.geteuid() == 0 else []
-        done = subprocess.run([browser, '--headless=new', '--disable-gpu', *sandbox, '--no-pdf-header-footer',
-                               '--user-data-dir=' + os.path.join(folder, 'profile'), '--print-to-pdf=' + made, page],
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        command = [browser, '--headless=new', '--disable-gpu', *sandbox, '--no-pdf-header-footer',
+                   '--user-data-dir=' + os.path.join(folder, 'profile'), '--print-to-pdf=' + made, page]
+        try:
+            done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True,
+                                  timeout=TIMEOUT)
+        except subprocess.TimeoutExpired:
+            raise SourceError('%s does not end within %d s' % (browser, TIMEOUT))
         if not os.path.exists(made):
             raise SourceError('%s printed nothing: %s' % (browser, done.stderr.strip()[-500:]))
         try:

@@ -10,7 +10,7 @@ from actionlib_msgs.msg import GoalStatus
 from bag_file import BagFile
 from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrindActionGoal, GrindActionResult, GrinderState, Machine, SetpointBatch, WorkOffsets
-from record import BLOCK, DEG, MM, MS, ROW, UM, Record, SourceError
+from record import BLOCK, DEG, MM, MS, ROW, STILL, UM, Record, SourceError
 
 KINDS = {kind._type: kind for kind in (SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, Machine, WorkOffsets, DiagnosticArray)}
 
@@ -184,7 +184,7 @@ class BagReader:
         number = self._job or len(jobs)
         record.head = self._head(number)
         record.states = [(stamp - self._start, *rest) for stamp, *rest in self._span(self._states)]
-        record.overrides = [(stamp - self._start, *rest) for stamp, *rest in self._span(self._overrides)]
+        record.overrides = [(stamp - self._start, *rest) for stamp, *rest in self._span(self._overrides) if stamp < self._end]
         record.diagnostics = [(name, *self._diagnostics[name]) for name in sorted(self._diagnostics)]
         return record
 
@@ -204,15 +204,19 @@ class BagReader:
             head['outcome'] = OUTCOMES.get(result.status.status, 'rejected')
             head['reason'] = result.result.error_string
             head['planned'] = {'setpoints': statistics.setpoints, 'duration_s': statistics.duration,
-                               'max_deviation_um': statistics.max_deviation / UM}
+                               'max_deviation_um': statistics.max_deviation / UM,
+                               'feed_limits': [{'cause': l.cause, 'from_x_mm': l.from_x / MM, 'to_x_mm': l.to_x / MM}
+                                               for l in statistics.feed_limits]}
         return head
 
     def _span(self, events):
-        """The events from that which was in force when the job began to the first after its end."""
+        """The events from that which was in force when the job began to the first after its end, and of states to the first in
+        which it is not held any more."""
         before = [e for e in events if e[0] <= self._start]
         during = [e for e in events if self._start < e[0] < self._end]
         after = [e for e in events if e[0] >= self._end]
-        return before[-1:] + during + after[:1]
+        still = next((i for i, e in enumerate(after) if e[1] not in STILL), len(after))
+        return before[-1:] + during + after[:still + 1]
 
 
 def machine_head(machine):

@@ -35,6 +35,8 @@ ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 ROW = np.dtype([('cycle', '<u8'), ('position', '<f8', 4), ('velocity', '<f8', 4), ('actual', '<f8', 4), ('cycle_period', '<f8'),
                 ('error', '<f8'), ('feed', '<f8'), ('move', 'u1'), ('step', 'u1'), ('tooth', '<u2'), ('pass', '<u2')])
 
+STILL = ('holding', 'held', 'retracting', 'retracted', 'jogging_retracted')  # states of a job that is held
+
 BLOCK = 1 << 17  # rows processed at once
 
 
@@ -46,7 +48,7 @@ class Record:
     """The rows of a file, with what else the file contains.
 
     kind: 'table', 'setpoints' (CSV of a plan), 'run' (CSV) or 'bag'; `actual` is in the latter two, `cycle_period` in a bag
-    alone. period: of the control cycle [s], 0 for a table. head: what the file tells of the job as a whole, in the keys of
+    alone; or 'record' of the grinder, which has no rows. period: of the control cycle [s], 0 for a table. head: what the file tells of the job as a whole, in the keys of
     the grinder's own records of jobs (docs/ros-interface.md). states: (time [s], state, reason, tooth, pass), overrides:
     (time [s], fraction, tooth, pass), teeth and passes from 0. diagnostics: (name, level, message, count). missing: number of
     setpoints that the file lacks. odd_error, even_error: largest at the points of the curve [rad]. worst: tooth and pass of the
@@ -85,7 +87,8 @@ class Record:
             bad = np.argmax(steps <= 0)
             raise SourceError('cycle %d follows cycle %d; allowed: ascending cycles'
                               % (cycles[bad], cycles[bad] - steps[bad]))
-        for name in ('position', 'error', 'feed', 'actual', 'cycle_period'):
+        # A faulty drive may read NaN: the report of its job is wanted most.
+        for name in ('position', 'error', 'feed', 'cycle_period'):
             finite = np.isfinite(rows[name])
             if not finite.all():
                 bad = np.argmin(finite.reshape(len(rows), -1).all(axis=1))

@@ -4,29 +4,19 @@ import math
 
 import numpy as np
 
+from cutter import radius, spiral_angles
 from motion import LATE
 from record import AXES, DEG, MM, MM_MIN, UM, X
 
 MDEG = DEG / 1000
 
 
-class Cutter:
-    """What the figures need of the job's cutter, from its job file."""
-
-    def __init__(self, job_file):
-        cutter = job_file['cutter']
-        self.length = cutter['flute_length_mm'] * MM
-        self._end = cutter['end_diameter_mm'] / 2 * MM
-        self._cone = cutter['cone_angle_deg'] * DEG
-        self._spirals = cutter.get('spiral_angles_deg') or [cutter.get('spiral_angle_deg')]
-
-    def radius(self, x):
-        return self._end + x * math.tan(self._cone)
-
-    def deviation(self, tooth, x, error):
-        """Of the path at the surface, normal to the helix [m]: the arc, by the cosine of its angle against the generatrix."""
-        spiral = self._spirals[tooth if tooth < len(self._spirals) else 0] * DEG
-        return np.abs(error) * self.radius(x) * math.cos(math.atan(math.tan(spiral) * math.cos(self._cone)))
+def deviation(cutter, tooth, x, error):
+    """Of the path at the surface, normal to the helix [m]: the arc, by the cosine of its angle against the generatrix.
+    cutter: of a job file."""
+    spirals = spiral_angles(cutter)
+    to_generatrix = math.atan(math.tan(spirals[tooth % len(spirals)] * DEG) * math.cos(cutter['cone_angle_deg'] * DEG))
+    return np.abs(error) * radius(cutter, x / MM) * MM * math.cos(to_generatrix)
 
 
 class Largest:
@@ -55,16 +45,16 @@ class Stroke:
             self.begin = float(time[0])
         self.end = float(time[-1])
         x = rows['position'][:, X]
-        in_flute = (x >= 0) & (x <= cutter.length) if cutter else np.ones(len(x), bool)
+        in_flute = (x >= 0) & (x <= cutter['flute_length_mm'] * MM) if cutter else np.ones(len(x), bool)
         if in_flute.any():
             feed = rows['feed'][in_flute]
             if feed.min() < self.least_feed:
                 self.least_feed, self.least_feed_x = float(feed.min()), float(x[in_flute][np.argmin(feed)])
             self.largest_feed = max(self.largest_feed, float(feed.max()))
         if cutter:
-            deviation = cutter.deviation(self.tooth, x, rows['error'])
-            if deviation.max() >= self.deviation:
-                self.deviation, self.deviation_x = float(deviation.max()), float(x[np.argmax(deviation)])
+            off = deviation(cutter, self.tooth, x, rows['error'])
+            if off.max() >= self.deviation:
+                self.deviation, self.deviation_x = float(off.max()), float(x[np.argmax(off)])
         self.following.add(known, following)
 
     def head(self, has_actual, depths):

@@ -4,6 +4,7 @@ import math
 
 import yaml
 
+from cutter import largest_radius
 from record import DEG, SourceError
 
 ALLOWED = {
@@ -71,21 +72,25 @@ def place_of(stroke, x=None):
     return 'tooth %d, pass %d' % (stroke['tooth'], stroke['pass']) + ('' if x is None else ', X = %.3f mm' % x)
 
 
-def of_strokes(job_file, strokes, tolerances):
+def of_strokes(job_file, strokes, feed_limits, tolerances):
     deviation = Criterion('path deviation', 'µm', None, 0, job_file['interpolation']['tolerance_um'])
     following = Criterion('following error in strokes', 'µm', 2, 0, tolerances['following_error_um'])
     asked = job_file['process']['feed_mm_min']
     feed = Criterion('feed held', 'mm/min', 1, asked, asked * tolerances['feed_percent'] / 100)
     cutter = job_file['cutter']
-    length, half = cutter['flute_length_mm'], cutter['end_diameter_mm'] / 2
-    radius = max(half, half + length * math.tan(cutter['cone_angle_deg'] * DEG))
+    slowed = [limit for limit in feed_limits if limit['from_x_mm'] < cutter['flute_length_mm'] and limit['to_x_mm'] > 0
+              or limit['to_x_mm'] < cutter['flute_length_mm'] and limit['from_x_mm'] > 0]
+    for limit in slowed[:1]:
+        feed.remark = 'the plan slows down: %(cause)s, X %(from_x_mm).3f to %(to_x_mm).3f mm' % limit
     for stroke in strokes:
         if stroke['deviation_um'] is not None:
             deviation.add(stroke['deviation_um'], place_of(stroke, stroke.get('deviation_x_mm')))
         for name, value in stroke.get('following_error', {}).items():
-            at_surface = value * 1e-3 * DEG * radius * 1e3 if name == 'a_mdeg' else value
+            if value is None:  # a faulty drive read NaN
+                continue
+            at_surface = value * DEG * largest_radius(cutter) if name == 'a_mdeg' else value  # thousandths of deg and of mm
             following.add(at_surface, '%s, %s' % (name[0].upper(), place_of(stroke)))
-        if stroke['feed_min_mm_min'] is not None:
+        if stroke['feed_min_mm_min'] is not None and not slowed:
             feed.add(stroke['feed_min_mm_min'], place_of(stroke, stroke.get('feed_min_x_mm')))
             feed.add(stroke['feed_max_mm_min'], place_of(stroke))
     return deviation, following, feed
@@ -106,36 +111,52 @@ def of_tool(job_file, tool, tolerances):
     for section in sections:
         for i, tooth in enumerate(section['teeth'], 1):
             place = 'tooth %d, X = %.3f mm' % (i, section['x_mm'])
-            rake.add(tooth['rake_deg'], place)
+            # A job may allow an incomplete flute, which has no rake face at its end.
+            if tooth['complete'] or not job_file['process'].get('incomplete_ok'):
+                rake.add(tooth['rake_deg'], place)
             land.add(tooth['land_mm'], place)
             spiral.add(tooth['spiral_deg'], place, tooth['asked_spiral_deg'])
     return rake, core, land, spiral
 
 
+def all_teeth_ground(tool):
+    """Whether the record has a stroke of each tooth: of a job that was continued it has not."""
+    return len({stroke['tooth'] for stroke in tool['strokes'] or []}) == tool['teeth']
+
+
+def cycles_of(data):
+    """Control cycles in which late ones were counted: in a record of the grinder also those in which the job was held."""
+    if data['kind'] == 'record':
+        return round(1000 * data['duration_s'] / data['machine']['period_ms'])
+    return data.get('setpoints', {}).get('written')
+
+
 def criteria(data, tolerances):
     """The lines of the verdict, in the order of the report."""
     job_file = data['job']['file']
-    deviation, following, feed = of_strokes(job_file, data['strokes'], tolerances)
+    deviation, following, feed = of_strokes(job_file, data['strokes'], data.get('planned', {}).get('feed_limits', []), tolerances)
     late = Criterion('late cycles', '%', 3, 0, tolerances['late_cycles_percent'])
-    cycles = data.get('setpoints', {}).get('written')
+    cycles = cycles_of(data)
     if 'late_cycles' in data and cycles:
-        count = data['late_cycles']['count']
-        late.add(100 * count / cycles, '%d of %d cycles, the longest %.3f ms' % (count, cycles, data['late_cycles']['longest_ms']))
+        count, longest = data['late_cycles']['count'], data['late_cycles']['longest_ms']
+        late.add(100 * count / cycles, '%d of %d cycles%s' % (count, cycles, ', the longest %.3f ms' % longest if longest else ''))
     # A record of the grinder has no positions of which a tool could be computed: its tool is the one that the job asks for.
-    ground = None if data['kind'] == 'record' else data.get('tool')
+    ground = data.get('tool')
+    if data['kind'] == 'record' or ground and not all_teeth_ground(ground):
+        ground = None
     return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), following, feed, late)]
 
 
 def verdict(data):
-    """passed, failed, or incomplete; and why."""
-    failed = ['%s' % c['name'] for c in data['criteria'] if c['result'] == 'failed']
+    """passed, failed, unfinished or incomplete; and why."""
+    failed = [c['name'] for c in data['criteria'] if c['result'] == 'failed']
     if data.get('outcome') not in (None, 'done'):
         failed.insert(0, 'the job ended as %s' % data['outcome'])
     if failed:
         return 'failed', failed
     unknown = ['%s: not measured' % c['name'] for c in data['criteria'] if c['result'] == 'not measured']
     if data.get('outcome') is None:
-        unknown.insert(0, 'the end of the job is not in the file')
+        return 'unfinished', ['the end of the job is not in the file', *unknown]
     if data.get('setpoints', {}).get('lost'):
         unknown.insert(0, '%d setpoints are not in the file' % data['setpoints']['lost'])
     return ('incomplete', unknown) if unknown else ('passed', [])

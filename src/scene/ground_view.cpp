@@ -61,7 +61,9 @@ std::optional<GroundView::Request> GroundView::next(Clock::time_point earliest) 
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait_until(lock, earliest, [this] { return ended_ || (request_ && !request_->reached); });
   changed_.wait(lock, [this] { return ended_ || request_; });
-  if (ended_) return std::nullopt;
+  // What is shown is still taken back at the end.
+  const bool clears = request_ && !request_->job;
+  if (ended_ && !clears) return std::nullopt;
   return std::exchange(request_, std::nullopt);
 }
 

@@ -328,7 +328,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"TooManyTeethToCount",
                 "teeth: 4",
                 "teeth: 99999999999",
-                {"job.yaml:7", "cutter.teeth = 99999999999 is too large", "1 to 64"}},
+                {"job.yaml:7", "cutter.teeth = 99999999999 is out of range", "1 to 64"}},
         Mistake{"HexadecimalFigure",
                 "depth_mm: 1.5",
                 "depth_mm: 0x1",

@@ -291,7 +291,8 @@ class TestUsage(CommandLine):
         self.check_unknown(['plan', PAPER_JOB, '--cvs', 'x'], "--cvs: no such option of 'grind plan'; did you mean '--csv'?")
         self.check_unknown(['jog', 'x', '1', '-x'], "-x: no such option of 'grind jog'")
         self.check_unknown(['--nod', 'x', 'status'], "--nod: no such option of 'grind'; did you mean '--node'?")
-        self.check_unknown(['status', '--node', 'x'], '--node: stands before the command: grind --node ... status')
+        self.check_unknown(['status', '--node', 'x'], '--node: goes before the command: grind --node ... status')
+        self.check_unknown(['probe', 'tooth', '--node', 'x'], '--node: goes before the command: grind --node ... probe tooth')
 
     def test_argument_too_many_is_named(self):
         self.check_unknown(['hold', 'now'], "now: no such argument of 'grind hold'")

@@ -21,7 +21,8 @@ struct RunOptions {
 /// called in a thread of their own. @return whether the master answers.
 bool joinRos();
 
-/// Ends this program's part in ROS. To be called last: no thread of roscpp's is awaited. @return at once
+/// Ends this program's part in ROS. To be called last: no thread of roscpp's is awaited, only the master, once for each
+/// service. From then on Ctrl-C ends the program.
 void leaveRos();
 
 /// Prints an error. @return the exit status for it.

@@ -8,6 +8,7 @@ namespace flute_grinder {
 struct ReportOptions {
   std::string file;        ///< a bag, a record of the grinder, or points or setpoints (CSV)
   bool last = false;       ///< the newest record of the grinder instead
+  std::string folder;      ///< of these records; empty for the default folder of the grinder
   std::string html;        ///< file to write; empty for none
   std::string pdf;         ///< file to write; empty for none
   bool json = false;       ///< print the data
@@ -20,8 +21,9 @@ struct ReportOptions {
 
 /// Writes a report: replaces this process by the Python program that draws it.
 /// @param node the grinder's name, as for historyFolder().
-/// @throw FileError or ParameterError if the machine cannot be read, FileError if there is no record, if the program is
-///        missing, or if nothing is asked for.
+/// @throw JobFileError or ParameterError if the machine cannot be read, FileError if there is no record or if the
+/// program is
+///        missing, std::invalid_argument if nothing is asked for.
 [[noreturn]] void writeReport(const std::string& node, const ReportOptions& options);
 
 /// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return whether that succeeded; the

@@ -3,7 +3,7 @@
 namespace flute_grinder {
 
 /// Finds the shared library's definition of a function that the program overrides. Ends the program if there is none:
-/// the override would have no effect.
+/// the override has nothing to call.
 /// @param symbol its mangled name.
 void* nextDefinition(const char* symbol);
 

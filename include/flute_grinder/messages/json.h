@@ -2,19 +2,24 @@
 
 #include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/job_plan.h"
 
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace flute_grinder {
 
-/// What is told in JSON: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
+/// JSON output: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
 using Json = nlohmann::ordered_json;
 
 /// One number per axis, in mm and deg, with the units in the names.
 /// @param per_time what the names end in, e.g. "_s" for velocities.
 Json toJson(const Axes& value, const std::string& per_time);
+
+/// What keeps the feed of a plan below the programmed one, and where.
+Json toJson(const std::vector<core::FeedLimit>& limits);
 
 /// A job in the keys and units of a job file: as YAML it is one, and read as one it is the same job, to the last bit if
 /// the job has come from a file. A wheel that has a file of its own is told by its figures.

@@ -16,7 +16,8 @@ class DiskThread {
   /// itself with what its tasks hold.
   ~DiskThread();
 
-  /// Queues a task and returns at once. @param task must hold all it uses, since it may outlive everything else.
+  /// Queues a task and returns at once. @param task must not throw, and must hold all it uses, since it may outlive
+  /// everything else.
   void post(std::function<void()> task);
 
  private:

@@ -18,7 +18,7 @@
 
 namespace flute_grinder {
 
-/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, tells it on `~job`, and reports
+/// Serves the action `~grind`: has a goal planned, enters it in the journal, tells it on `~job`, starts it, and reports
 /// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled
 /// every millisecond. One goal at a time; any other is rejected at once.
 class GoalDesk {
@@ -83,7 +83,7 @@ class GoalDesk {
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
   ServedQueue thread_;
-  ros::Publisher job_;  ///< the goal whose job starts; a recorder has no time to connect to its sender
+  ros::Publisher job_;  ///< the goal about to start; a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;
 };
 

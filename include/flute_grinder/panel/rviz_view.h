@@ -17,6 +17,10 @@ class RvizView : public QObject {
  public:
   /// @param manager outlives this.
   explicit RvizView(rviz::VisualizationManager& manager, QObject* parent);
+  /// rviz draws at its own rate again.
+  ~RvizView() override;
+  RvizView(const RvizView&) = delete;
+  RvizView& operator=(const RvizView&) = delete;
 
   /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. A view in
   /// another frame does not look at the work, and stays.

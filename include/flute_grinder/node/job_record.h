@@ -16,7 +16,7 @@ namespace flute_grinder {
 /// How a job ended.
 struct JobConclusion {
   const char* outcome = "fault";        ///< "done", "canceled" or "fault"
-  std::string reason;                   ///< as in the goal's result; empty for "done"
+  std::string reason;                   ///< of the goal's result, for the operator; empty for "done"
   std::uint64_t setpoints_written = 0;  ///< to the drive
 };
 

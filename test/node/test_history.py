@@ -292,7 +292,8 @@ class TestRecords(Kept):
     def check_broken_off(self, record, outcome, run):
         self.assertEqual(record['outcome'], outcome)
         # The result is in SI; the record is for the operator.
-        told, place = (re.split(r'X = (\S+) (mm|m)\b', text) for text in (record['reason'], run.text))
+        told, place = (re.split(r'X = (\S+) (mm|m)\b', text) for text in (
+            record['reason'], run.text.replace('at stroke of tooth', 'stroke, tooth')))
         self.assertEqual((told[0], told[3], told[2]), (place[0], place[3], 'mm'))
         self.assertAlmostEqual(float(told[1]), float(place[1]) / MM, delta=0.01)
         stroke, = record['strokes']

@@ -671,7 +671,7 @@ class TestVerdict(ReportCase):
         record['strokes'][0]['following_error'] = dict.fromkeys(('x_um', 'y_um', 'z_um', 'a_mdeg'))
         record['late_cycles']['longest_ms'] = None
         self.assertEqual(self.result(self.data_of(record), 'following error in strokes'), 'not measured')
-        self.assertEqual(self.report(self.path('changed.json')).rows['1, 1'][6], '-, -, -')
+        self.assertEqual(self.report(self.path('changed.json')).rows['1, 1'][5], '-, -, -')
 
     def test_late_cycles_of_a_record_are_of_all_its_cycles(self):
         with open(FILES['recording'].record) as file:

@@ -349,7 +349,7 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   const std::vector<std::pair<Row, const char*>> meanings{
       {{GrinderState::HELD, "held", {}, ""},
        "The job is held with the wheel in the work. Resume continues; Retract lifts it."},
-      {{GrinderState::LIFTING, "lifting", {}, ""}, "The wheel is in the work: it is being lifted, without a job."},
+      {{GrinderState::LIFTING, "lifting", {}, ""}, "The wheel is in the work: it is being lifted; no job runs."},
       {{GrinderState::JOGGING, "jogging", {}, ""}, "The wheel is in the work: it is being jogged up."},
       {{GrinderState::RUNNING, "running", {}, ""}, "The job moves the axes."}};
   for (const auto& [row, meaning] : meanings) {

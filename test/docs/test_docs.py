@@ -31,6 +31,7 @@ NOT_RUN = {
     'sudo apt-get install linux-image-rt-amd64': 'installs a kernel',
     'uname -v': 'tells of the kernel that was booted',
     'latency-histogram': 'is a window to look at for an hour',
+    'scripts/bench_commands': 'measures for minutes',
     'scripts/bench_hal': 'measures for minutes',
     'scripts/bench_rviz': 'measures for minutes',
     'scripts/bench_stop': 'measures for minutes',

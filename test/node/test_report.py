@@ -486,7 +486,7 @@ class TestBag(ReportCase):
         for mine, theirs in zip(self.found['axes'], of_csv['axes']):
             for key in ('speed', 'acceleration', 'following'):
                 for part in ('stroke', 'rapid'):
-                    self.assertAlmostEqual(mine[key][part], theirs[key][part], delta=1e-9)
+                    self.assertAlmostEqual(mine[key][part], theirs[key][part], delta=1e-9 * max(1, theirs[key][part]))
 
     def test_errors_are_the_setpoints(self):
         stroke = [s for s in self.setpoints if s.move == STROKE]

@@ -426,12 +426,12 @@ class TestRecord(TestSimulate):
         self.grind(0, 'report', bag, '-o', self.path('report.html'))
         with open(self.path('report.html'), encoding='utf-8') as file:
             page = file.read()
-        for name in ('tool-sections', 'tool-figures'):
-            self.assertIn('<figure id="%s">' % name, page)
+        for name in ('section-1', 'rake'):
+            self.assertIn('<figure id="%s"' % name, page)
         self.grind(0, 'report', self.bag(self.plan(PAPER_JOB), goal=False), '-o', self.path('report.html'))
         with open(self.path('report.html'), encoding='utf-8') as file:
             page = file.read()
-        self.assertNotIn('tool-sections', page)
+        self.assertNotIn('section-1', page)
         self.assertIn('<li>The ground tool: ', page)
 
     def test_bag_without_its_goal_needs_the_job(self):

@@ -25,7 +25,7 @@ bool hasForm(std::string_view text, std::string_view form) {
 }  // namespace
 
 std::string utcText(double time) {
-  const auto milliseconds = static_cast<long long>(std::floor(time * 1000));
+  const auto milliseconds = std::llround(time * 1000);
   const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
   std::tm t{};
   gmtime_r(&seconds, &t);

@@ -73,11 +73,28 @@ void FeedLaw::advance(double dt) noexcept {
     return rest();
   }
   while (segment_ + 1 < segment_count_ && time_ >= segments_[segment_ + 1].start_time) ++segment_;
-  const Segment& s = segments_[segment_];
+  follow(segment_);
+}
+
+void FeedLaw::follow(int segment) noexcept {
+  const Segment& s = segments_[segment];
   const State state = after(s.start, s.jerk, time_ - s.start_time);
   position_ = std::min(state.position, distance_);
   speed_ = state.speed;
   acceleration_ = state.acceleration;
+}
+
+std::uint64_t FeedLaw::skipCruise(double dt, double margin) noexcept {
+  if (!cruising() || time_ < segments_[segment_].start_time + margin) return 0;
+  const double end = segment_ + 1 < segment_count_ ? segments_[segment_ + 1].start_time : end_time_;
+  std::uint64_t count = 0;
+  for (; time_ + 2 * dt < end - 2 * margin; count += 2) {
+    // One by one, to round as advance() does.
+    time_ += dt;
+    time_ += dt;
+  }
+  follow(segment_);
+  return count;
 }
 
 FeedLaw::State FeedLaw::after(const State& s, double jerk, double t) noexcept {

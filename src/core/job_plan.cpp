@@ -1,133 +1,16 @@
 #include "flute_grinder/core/job_plan.h"
 
+#include "flute_grinder/core/plan_checks.h"
+
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
+#include <utility>
 
 namespace flute_grinder {
 
 namespace {
-
-/// Computes the statistics of a stream of setpoints.
-class StatisticsAccumulator {
- public:
-  StatisticsAccumulator(const GrindProgram& program, core::PathStatistics& statistics)
-      : program_(program), period_(program.machine().period), s_(statistics) {}
-
-  void add(const Setpoint& p, const LimitCheck& check) {
-    if (s_.setpoints++ == 0) return;  // the first setpoint is the start of the job: nothing has moved yet
-    ++cycles_[static_cast<std::size_t>(p.move)];
-    s_.max_velocity = s_.max_velocity.max(check.velocity().abs());
-    largest_change_ = largest_change_.max((check.velocity() - last_velocity_).abs());
-    last_velocity_ = check.velocity();
-    if (p.cycle % 2 == 0) {
-      s_.max_acceleration = s_.max_acceleration.max(check.acceleration().abs());
-      s_.max_jerk = s_.max_jerk.max(check.jerk().abs());
-    }
-    if (p.step != StepKind::kNone) addStroke(p);
-    if (p.cycle % 2 == 0) end_x_ = p.position[kX];
-  }
-
-  double deviation() const { return deviation_; }
-
-  void finish() {
-    for (std::size_t i = 0; i < cycles_.size(); ++i) s_.move_duration[i] = static_cast<double>(cycles_[i]) * period_;
-    s_.duration = static_cast<double>(s_.setpoints - 1) * period_;
-    s_.ripple_acceleration = largest_change_ / period_;
-  }
-
- private:
-  void addStroke(const Setpoint& p) {
-    const ConicalCutter& cutter = program_.cutter(p.tooth);
-    const double error = std::abs(p.path_error);
-    double& max_error = p.step == StepKind::kOdd ? s_.max_odd_error : s_.max_even_error;
-    max_error = std::max(max_error, error);
-    deviation_ = error * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
-    s_.max_deviation = std::max(s_.max_deviation, deviation_);
-    if (p.step == StepKind::kEven && p.at_feed) {
-      const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * cutter.edgePerTravel();
-      s_.max_feed = std::max(s_.max_feed, feed);
-      s_.min_feed = s_.min_feed == 0 ? feed : std::min(s_.min_feed, feed);
-    }
-  }
-
-  const GrindProgram& program_;
-  double period_;
-  core::PathStatistics& s_;
-  std::array<std::uint64_t, kMoveKindCount> cycles_{};
-  Axes last_velocity_ = Axes::Zero();
-  Axes largest_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
-  double end_x_ = 0;
-  double deviation_ = 0;
-};
-
-/// Collects the violations of a plan: the worst of each kind, and the number of its setpoints.
-class ViolationCollector {
- public:
-  ViolationCollector(double tolerance, JobPlan& plan) : plan_(plan) {
-    deviation_.kind = core::ReasonKind::kTolerance;
-    deviation_.unit = Unit::kDeviationMetre;
-    deviation_.limit = tolerance;
-    deviation_.has_place = true;
-  }
-
-  void add(const LimitViolation& v) {
-    if (plan_.good()) plan_.fault = PlanFault::kLimit;
-    const auto excess = [](const LimitViolation& w) {
-      return w.quantity == LimitedQuantity::kPosition ? std::abs(w.value - w.limit) : std::abs(w.value);
-    };
-    const auto same = [&](const Limit& l) {
-      return l.worst.axis == v.axis && l.worst.quantity == v.quantity && l.worst.move == v.move;
-    };
-    auto it = std::find_if(limits_.begin(), limits_.end(), same);
-    if (it == limits_.end()) it = limits_.insert(it, {v, 0});
-    if (excess(v) > excess(it->worst)) it->worst = v;
-    ++it->count;
-  }
-
-  void addDeviation(const Setpoint& p, double deviation) {
-    if (plan_.good()) plan_.fault = PlanFault::kTolerance;
-    ++deviation_.count;
-    if (deviation <= deviation_.value) return;
-    deviation_.value = deviation;
-    deviation_.move = p.move;
-    deviation_.tooth = p.tooth;
-    deviation_.pass = p.pass;
-    deviation_.x = p.position[kX];
-    deviation_.cycle = p.cycle;
-  }
-
-  void write() {
-    for (const Limit& l : limits_) {
-      plan_.reasons.push_back(reasonOf(l.worst));
-      plan_.reasons.back().count = l.count;
-    }
-    if (deviation_.count > 0) plan_.reasons.push_back(deviation_);
-  }
-
- private:
-  struct Limit {
-    LimitViolation worst;
-    std::uint64_t count;
-  };
-
-  JobPlan& plan_;
-  std::vector<Limit> limits_;
-  core::Reason deviation_;  ///< the largest, if there is one
-};
-
-/// The factor by which the feed override may increase the deviations over those at the job's feed. They grow with the
-/// square of the step length. The schedule keeps them within the tolerance at any override, except with the published
-/// rule, whose even points drift.
-double overrideFactor(const GrindProgram& program) {
-  double factor = 1;
-  if (program.job().interpolation.even_step != EvenStepRule::kPublished) return factor;
-  for (const Helix& helix : program.helices()) {
-    factor = std::max(factor, std::pow(helix.schedule.limits().velocity / helix.schedule.feedSpeed(), 2));
-  }
-  return factor;
-}
 
 void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
   plan.fault = fault;
@@ -169,19 +52,19 @@ class Supervisor {
         last_(static_cast<std::uint64_t>(plan.program->machine().max_job_duration / plan.program->machine().period)) {}
 
   /// @return whether to continue after a setpoint.
-  bool goOn(const Setpoint& p) { return p.cycle < next_look_ || look(p); }
+  bool goOn(const Setpoint& p) {
+    if (p.cycle > last_) {
+      refuseAsTooLong(plan_, plan_.program->job(), plan_.program->machine(), 0);
+      return false;
+    }
+    return setpoints_++ % kSetpointsPerLook != 0 || isWanted(p);
+  }
 
  private:
   static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< a few tenths of a millisecond
 
-  bool look(const Setpoint& p) {
-    const GrindProgram& program = *plan_.program;
-    if (p.cycle > last_) {
-      refuseAsTooLong(plan_, program.job(), program.machine(), 0);
-      return false;
-    }
-    next_look_ = std::min(p.cycle + kSetpointsPerLook, last_ + 1);
-    const double done = (p.move_index + p.move_fraction) / static_cast<double>(program.moves().size());
+  bool isWanted(const Setpoint& p) {
+    const double done = (p.move_index + p.move_fraction) / static_cast<double>(plan_.program->moves().size());
     if (!watch_ || watch_(done)) return true;
     core::Reason reason;
     reason.kind = core::ReasonKind::kGivenUp;
@@ -192,37 +75,124 @@ class Supervisor {
   const PlanWatch& watch_;
   JobPlan& plan_;
   std::uint64_t last_;  ///< longest allowed job in cycles
-  std::uint64_t next_look_ = 0;
+  std::uint64_t setpoints_ = 0;
 };
 
-void runThrough(SetpointStream& stream, JobPlan& plan, const std::function<void(const Setpoint&)>& visit,
-                Supervisor& supervisor) {
-  const GrindProgram& program = stream.program();
-  const double tolerance = program.job().interpolation.tolerance;
-  const double factor = overrideFactor(program);
-  LimitCheck check(program.machine().limits, program.machine().period);
-  StatisticsAccumulator accumulator(program, plan.statistics);
-  ViolationCollector violations(tolerance, plan);
-  plan.move_ends.assign(program.moves().size(), 0);
+/// Generates and checks every setpoint of a plan's program.
+void planAllSetpoints(JobPlan& plan, const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  SetpointStream stream(plan.program);
+  PlanChecks checks(plan);
+  Supervisor supervisor(watch, plan);
   Setpoint p;
-  while (stream.next(p)) {
-    if (check.check(p, program.machine().work_offset)) {
-      std::for_each(check.begin(), check.end(), [&](const auto& v) { violations.add(v); });
-      if (!p.position.isFinite().all()) break;
-    }
-    accumulator.add(p, check);
-    plan.move_ends[p.move_index] = p.cycle;
+  while (stream.next(p) && checks.add(p)) {
     if (visit) visit(p);
-    const double deviation = accumulator.deviation() * factor;
-    if (p.step != StepKind::kNone && !(deviation <= tolerance)) violations.addDeviation(p, deviation);
     if (!supervisor.goOn(p)) break;
   }
-  // A move of zero length has no setpoints of its own.
-  for (std::size_t i = 1; i < plan.move_ends.size(); ++i) {
-    plan.move_ends[i] = std::max(plan.move_ends[i], plan.move_ends[i - 1]);
+  checks.finish();
+}
+
+/// Generates and checks the moves of a plan's program, of each shape only the first as a whole. Of every other move it
+/// generates the beginning and the end with the move's own offsets; in between, the move differs from the first by
+/// constant offsets alone. They leave velocity, acceleration, jerk and the errors as they are, and no position there is
+/// farther out than at the ends: all axes move one way, but for Z in a stroke, which has no offset.
+class ShapePlanner {
+ public:
+  ShapePlanner(JobPlan& plan, const PlanWatch& watch)
+      : plan_(plan), stream_(plan.program), checks_(plan), supervisor_(watch, plan) {}
+
+  /// @return whether the plan is now as planAllSetpoints() would make it, up to rounding of the statistics. It is not
+  /// if
+  ///         something was found that is not allowed: every setpoint is needed to tell all of that.
+  bool run() {
+    Setpoint p;
+    while (stream_.next(p)) {
+      if (p.cycle == 1 || p.move_index != move_) beginMove(p);
+      ++cycles_;
+      if (to_recall_ > 0) {
+        --to_recall_;
+        checks_.recall(p);
+      } else if (!checks_.add(p)) {
+        return false;
+      }
+      if (!plan_.good()) return false;
+      if (!supervisor_.goOn(p)) return plan_.fault == PlanFault::kGivenUp;
+      if (p.cycle % 2 == 1) continue;
+      if (known_) {
+        skipToEnd(p);
+      } else {
+        skipCruise(p);
+        keep();
+      }
+    }
+    checks_.finish();
+    return true;
   }
-  accumulator.finish();
-  violations.write();
+
+ private:
+  /// The first move of a shape.
+  struct Known {
+    SetpointStream near_end;
+    std::uint64_t cycles;  ///< of the move, up to there
+  };
+
+  /// The jerk at a setpoint comes from the three pairs before it too.
+  static constexpr std::uint64_t kReach = 6;
+  /// What is generated of the end of a move: setpoints to compare with, and as many to check [cycles].
+  static constexpr double kEnd = 2 * kReach;
+
+  void beginMove(const Setpoint& p) {
+    move_ = p.move_index;
+    cycles_ = 0;
+    shape_ = stream_.shape();
+    const auto found = moves_.find(shape_);
+    known_ = found == moves_.end() ? nullptr : &found->second;
+  }
+
+  /// Goes on near the end of a known move, once the setpoints are past the reach of the move before.
+  void skipToEnd(const Setpoint& p) {
+    if (cycles_ != kReach) return;
+    stream_.skip(known_->near_end, known_->cycles - cycles_);
+    skipped(p, known_->cycles - cycles_);
+  }
+
+  void skipCruise(const Setpoint& p) {
+    if (cycles_ <= kReach || to_recall_ > 0) return;
+    const std::uint64_t count = stream_.skipCruise(kReach);
+    if (count > 0) skipped(p, count);
+  }
+
+  void skipped(const Setpoint& p, std::uint64_t count) {
+    checks_.skip(p.move, count);
+    cycles_ += count;
+    to_recall_ = kReach;
+  }
+
+  void keep() {
+    const double left = stream_.timeLeft() / plan_.program->machine().period;
+    if (cycles_ > kReach && left > kEnd && left <= kEnd + 2) moves_.emplace(shape_, Known{stream_, cycles_});
+  }
+
+  JobPlan& plan_;
+  SetpointStream stream_;
+  PlanChecks checks_;
+  Supervisor supervisor_;
+  std::map<MoveShape, Known> moves_;
+  std::uint32_t move_ = 0;
+  std::uint64_t cycles_ = 0;  ///< of the move so far
+  MoveShape shape_;           ///< of the move
+  const Known* known_ = nullptr;
+  std::uint64_t to_recall_ = 0;  ///< setpoints
+};
+
+/// Generates and checks the setpoints of a plan's program, if possible only those of each shape.
+void planSetpoints(JobPlan& plan, const PlanWatch& watch) {
+  JobPlan by_shapes = plan;
+  const bool done = ShapePlanner(by_shapes, watch).run();
+  if (done) {
+    plan = std::move(by_shapes);
+  } else {
+    planAllSetpoints(plan, {}, watch);
+  }
 }
 
 }  // namespace
@@ -256,9 +226,11 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     const std::vector<core::FeedLimit>& limits = helix.schedule.feedLimits();
     plan.statistics.feed_limits.insert(plan.statistics.feed_limits.end(), limits.begin(), limits.end());
   }
-  SetpointStream stream(plan.program);
-  Supervisor supervisor(watch, plan);
-  runThrough(stream, plan, visit, supervisor);
+  if (visit) {
+    planAllSetpoints(plan, visit, watch);
+  } else {
+    planSetpoints(plan, watch);
+  }
   return plan;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace flute_grinder {
@@ -20,6 +21,11 @@ MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
 }
 
 }  // namespace
+
+bool MoveShape::operator<(const MoveShape& o) const noexcept {
+  return std::tie(kind, helix, taper, way[kX], way[kY], way[kZ], way[kA]) <
+         std::tie(o.kind, o.helix, o.taper, o.way[kX], o.way[kY], o.way[kZ], o.way[kA]);
+}
 
 SetpointStream::SetpointStream(GrindProgram program)
     : SetpointStream(std::make_shared<const GrindProgram>(std::move(program))) {}
@@ -96,6 +102,39 @@ void SetpointStream::adopt(Setpoint& setpoint) noexcept {
   current_.move = setpoint.move;
   ++current_.cycle;
   setpoint = current_;
+}
+
+MoveShape SetpointStream::shape() const noexcept {
+  MoveShape shape;
+  shape.kind = current_.move;
+  if (shape.kind == MoveKind::kStroke) {
+    shape.helix = static_cast<std::size_t>(helix_ - program_->helices().data());
+    shape.taper = taper_;
+  } else {
+    shape.way = way_;
+  }
+  return shape;
+}
+
+void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noexcept {
+  law_ = later.law_;
+  interpolator_ = later.interpolator_;
+  even_point_ = later.even_point_;
+  current_.cycle += cycles;
+  if (current_.move == MoveKind::kStroke) {
+    strokePoint(even_point_, StepKind::kEven);
+  } else {
+    current_.position = from_ + way_ * law_.position();
+  }
+}
+
+std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles) noexcept {
+  if (current_.move == MoveKind::kStroke) return 0;
+  const std::uint64_t count = law_.skipCruise(period_, static_cast<double>(cycles) * period_);
+  if (count == 0) return 0;
+  current_.cycle += count;
+  current_.position = from_ + way_ * law_.position();
+  return count;
 }
 
 bool SetpointStream::finished() const noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 namespace flute_grinder {
 
@@ -46,6 +47,11 @@ class FeedLaw {
   /// Advances by `dt` [s], not negative.
   void advance(double dt) noexcept;
 
+  /// Where the motion has run at the target speed for `margin` [s], and does so for longer than twice that: advances in
+  /// pairs of `dt` [s] for as long as it is more than twice `margin` to the end of the target speed.
+  /// @return the number of times that it advanced by `dt`.
+  std::uint64_t skipCruise(double dt, double margin) noexcept;
+
   double position() const noexcept { return position_; }  ///< from the start of the motion
   double speed() const noexcept { return speed_; }        ///< never negative, except by rounding
   double acceleration() const noexcept { return acceleration_; }
@@ -81,6 +87,7 @@ class FeedLaw {
   double cruiseSpeed(double left) const noexcept;
   void plan() noexcept;
   void rest() noexcept;
+  void follow(int segment) noexcept;
   void append(const Phase& phase, State& state) noexcept;
   void append(const SpeedChange& change, double end_speed, State& state) noexcept;
 

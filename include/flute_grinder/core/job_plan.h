@@ -71,13 +71,17 @@ struct JobPlan {
   bool good() const { return fault == PlanFault::kNone; }
 };
 
-/// Generates and checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
+/// Checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
 /// max_job_duration. For any job and machine, the result is either a good plan or one with reasons.
+///
+/// Moves that differ only by constant offsets of their axes, as the strokes of all teeth and passes do, are generated
+/// as a whole only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
+/// differ from those of all setpoints by rounding; nothing else differs.
 /// @param job the job; its numbers are checked too.
 /// @param machine the machine that runs the job, with the job's work offset.
 /// @param start the position of the axes at the start, in work coordinates [m], A [rad].
 /// @param first first pass to grind.
-/// @param visit if given, called with every setpoint; all of them are finite.
+/// @param visit if given, every setpoint is generated, and this is called with it; all of them are finite.
 /// @param watch if given, may make the planner give up.
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});

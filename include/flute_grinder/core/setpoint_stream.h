@@ -9,6 +9,16 @@
 
 namespace flute_grinder {
 
+/// What the setpoints of a move depend on, but for constant offsets of the axes.
+struct MoveShape {
+  MoveKind kind = MoveKind::kLift;
+  std::size_t helix = 0;    ///< of a stroke: which of the program's
+  double taper = 0;         ///< of a stroke, see Move
+  Axes way = Axes::Zero();  ///< of a straight move [m], A [rad]
+
+  bool operator<(const MoveShape& other) const noexcept;
+};
+
 /// The only source of setpoints: planning, dry runs and the machine all use it, so the previewed and the streamed
 /// setpoints are bit-identical. Every move takes an even number of cycles, so even cycles always end a pair. The motion
 /// can be held anywhere, slowed down, lifted off the workpiece and brought back; each request takes effect at the next
@@ -70,6 +80,22 @@ class SetpointStream {
   bool onPath() const noexcept { return leg_ == Leg::kPath; }
 
   const GrindProgram& program() const noexcept { return *program_; }
+
+  /// The shape of the current move, which must be one of the program's.
+  MoveShape shape() const noexcept;
+
+  /// Time to the end of the current move, or to a stop before [s].
+  double timeLeft() const noexcept { return law_.timeLeft(); }
+
+  /// Continues where another stream stands, as if the setpoints up to there had been taken. Both must be between two
+  /// pairs of a move of the same shape, of the same program, neither held nor slowed down.
+  /// @param cycles by which the other is further on in its move.
+  void skip(const SetpointStream& later, std::uint64_t cycles) noexcept;
+
+  /// Between two pairs of a straight move that runs at its speed, and has done so for some cycles: leaves out the
+  /// setpoints up to twice as many cycles before the end of that.
+  /// @return the number of setpoints left out; 0 at any other time.
+  std::uint64_t skipCruise(std::uint64_t cycles) noexcept;
 
  private:
   /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.

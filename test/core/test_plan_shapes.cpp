@@ -1,0 +1,160 @@
+#include "plans.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+/// @file
+/// A plan generates only what its moves have not in common. It is held against one of every setpoint, which a visitor
+/// makes planJob() generate.
+namespace flute_grinder {
+namespace {
+
+using namespace test_support;
+
+JobPlan planOfAllSetpoints(const Work& work, const ToothPass& first = {}) {
+  return planJob(work.job, work.machine, work.start, first, [](const Setpoint&) {});
+}
+
+/// Some teeth in some passes, in a stroke of some hundred cycles.
+rc::Gen<Work> wholeTool() {
+  return rc::gen::exec([] {
+    Work w = *work(600);
+    GrindJob& j = w.job;
+    const int teeth = *whole(1, 6);
+    j.tooth_angles.clear();
+    for (int i = 0; i < teeth; ++i)
+      j.tooth_angles.push_back(2 * units::kPi / teeth * (i + (i > 0 ? *uniform(0, 0.5) : 0)));
+    if (*whole(0, 3) == 0) {
+      for (int i = 0; i < teeth; ++i) j.spiral_angles.push_back(j.cutter.spiral_angle * (i % 2 == 0 ? 1 : 0.9));
+    }
+    j.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
+    j.process.infeed = j.process.depth / *uniform(1, 4);
+    j.process.finish_infeed = *whole(0, 1) * j.process.depth * 0.1;
+    j.process.wheel_wear_per_pass = *whole(0, 1) * 1e-6;
+    if (*whole(0, 3) == 0) j.process.depth_end = j.process.depth * *uniform(0.6, 1.2);
+    if (*whole(0, 3) == 0) {
+      j.process.z_law = ZLaw::kConstantRake;
+      j.z_corrections.assign(j.tooth_angles.size(), *zCorrection(j));
+    }
+    return w;
+  });
+}
+
+/// The largest of the positions of a work's moves, by axis.
+Axes largestPosition(const JobPlan& plan) {
+  Axes largest = plan.program->start().abs();
+  for (const Move& move : plan.program->moves()) largest = largest.max(move.to.abs());
+  return largest;
+}
+
+/// Equal but for the rounding of differences between `largest` positions, over a time to the power of `order`.
+void requireNear(const Axes& a, const Axes& b, const Axes& largest, double time, int order) {
+  const double epsilon = std::numeric_limits<double>::epsilon();
+  const Axes rounding = 8 * epsilon * largest * std::pow(2 / time, order) + 1e-12 * b;
+  RC_ASSERT(((a - b).abs() <= rounding).all());
+}
+
+void requireSame(const JobPlan& plan, const JobPlan& all) {
+  RC_ASSERT(plan.fault == all.fault);
+  RC_ASSERT(textOf(plan) == textOf(all));
+  RC_ASSERT(plan.move_ends == all.move_ends);
+  const core::PathStatistics &s = plan.statistics, &t = all.statistics;
+  RC_ASSERT(s.setpoints == t.setpoints);
+  RC_ASSERT(s.duration == t.duration);
+  RC_ASSERT(s.move_duration == t.move_duration);
+  RC_ASSERT(s.max_odd_error == t.max_odd_error);
+  RC_ASSERT(s.max_even_error == t.max_even_error);
+  RC_ASSERT(s.max_deviation == t.max_deviation);
+  RC_ASSERT(s.min_feed == t.min_feed);
+  RC_ASSERT(s.max_feed == t.max_feed);
+  RC_ASSERT(causesOf(plan) == causesOf(all));
+  if (!plan.program) return;
+  const Axes largest = largestPosition(all);
+  const double period = plan.program->machine().period;
+  requireNear(s.max_velocity, t.max_velocity, largest, period, 1);
+  requireNear(s.ripple_acceleration, t.ripple_acceleration, largest, period, 2);
+  requireNear(s.max_acceleration, t.max_acceleration, largest, 2 * period, 2);
+  requireNear(s.max_jerk, t.max_jerk, largest, 2 * period, 3);
+}
+
+RC_GTEST_PROP(PlanShapes, GiveWhatAllSetpointsGive, ()) {
+  const Work work = *wholeTool();
+  const JobPlan all = planOfAllSetpoints(work);
+  RC_CLASSIFY(all.good());
+  requireSame(planJob(work.job, work.machine, work.start), all);
+}
+
+/// One limit is moved to somewhere about what the job asks for: a little less, a little more, or just that.
+RC_GTEST_PROP(PlanShapes, AreRefusedAsAllSetpointsAre, ()) {
+  Work work = *wholeTool();
+  const JobPlan free = planOfAllSetpoints(work);
+  RC_PRE(free.good());
+  const int axis = *whole(0, kAxisCount - 1);
+  const double factor = *rc::gen::element(0.7, 0.999, 1.0, 1.001);
+  Axes lowest = work.start, highest = work.start;
+  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
+    lowest = lowest.min(p.position);
+    highest = highest.max(p.position);
+  });
+  switch (*whole(0, 3)) {
+    case 0: work.machine.limits.max_position[axis] = lowest[axis] + (highest[axis] - lowest[axis]) * factor; break;
+    case 1: work.machine.limits.min_position[axis] = highest[axis] - (highest[axis] - lowest[axis]) * factor; break;
+    case 2: work.job.interpolation.tolerance = std::max(1e-9, free.statistics.max_deviation * factor); break;
+    case 3: work.machine.max_job_duration = free.statistics.duration * factor; break;
+  }
+  RC_PRE((work.machine.limits.min_position < work.machine.limits.max_position).all());
+  const JobPlan all = planOfAllSetpoints(work);
+  RC_CLASSIFY(all.good());
+  requireSame(planJob(work.job, work.machine, work.start), all);
+}
+
+RC_GTEST_PROP(PlanShapes, BeginWithAnyPass, ()) {
+  const Work work = *wholeTool();
+  const std::vector<ToothPass> order = passOrder(work.job);
+  const ToothPass first = order[static_cast<std::size_t>(*whole(0, static_cast<int>(order.size()) - 1))];
+  requireSame(planJob(work.job, work.machine, work.start, first), planOfAllSetpoints(work, first));
+}
+
+/// How often a planner asks its watch, which it does after every so many setpoints.
+int looksAt(const Work& work, const std::function<void(const Setpoint&)>& visit) {
+  int looks = 0;
+  planJob(work.job, work.machine, work.start, {}, visit, [&](double) { return ++looks > 0; });
+  return looks;
+}
+
+// The paper's tool as a whole, with strokes of thousands of setpoints and infeeds at constant speed. A hundred
+// strokes are generated in little more than the time of one.
+TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
+  for (const EvenStepRule rule : {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
+    Work work{paperJob(), plainMachine(), plainMachine().park};
+    work.job.interpolation.even_step = rule;
+    work.job.tooth_angles = {0, 1.1, 2.5, 4};
+    work.job.process.infeed = work.job.process.depth / 5;
+    work.job.process.spark_out = 20;
+    const JobPlan all = planOfAllSetpoints(work);
+    ASSERT_TRUE(all.good()) << textOf(all);
+    requireSame(planJob(work.job, work.machine, work.start), all);
+    EXPECT_LE(looksAt(work, {}) * 10, looksAt(work, [](const Setpoint&) {}));
+  }
+}
+
+// A plan that is not of all setpoints is watched too.
+TEST(PlanShapes, AreGivenUp) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.job.process.feed /= 3;
+  int looks = 0;
+  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, {}, [&](double) { return ++looks < 2; });
+  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(looks, 2);
+  EXPECT_EQ(textOf(plan), "given up while it was planned\n");
+}
+
+}  // namespace
+}  // namespace flute_grinder

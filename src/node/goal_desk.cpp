@@ -12,6 +12,8 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kPollPeriod = 0.001;             ///< [s]
+constexpr double kIdlePollPeriod = 0.02;          ///< without a goal [s]
+constexpr double kJournalPollPeriod = 0.0001;     ///< while a job waits for its entry [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
 const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
 /// How long the result waits for the last setpoints to be published and the journal to be written.
@@ -66,7 +68,7 @@ GoalDesk::GoalDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate
       telemetry_(telemetry),
       offsets_(offsets),
       tracker_(journal),
-      thread_(kPollPeriod, [this] { poll(); }) {
+      thread_(kIdlePollPeriod, [this] { poll(); }) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
   job_ = nh.advertise<GrindActionGoal>("job", 1, true);
@@ -156,6 +158,7 @@ void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, cons
   }
   goal_ = Goal{handle, digest, control};
   busy_ = true;
+  thread_.setPeriod(kPollPeriod);
   publishPlanningFeedback();
 }
 
@@ -180,6 +183,7 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
     return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
   }
   goal_->phase = Phase::kJournaling;
+  thread_.setPeriod(kJournalPollPeriod);
   goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
   tracker_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
@@ -214,7 +218,6 @@ void GoalDesk::startWhenJournaled() {
   if (!tracker_.upToDate()) return;
   const std::string error = tracker_.error();
   if (!error.empty()) return abortGoal(error);
-  publishJob();
   telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview, goal_->handle.getGoal()->job_name);
   SetpointStream* stream = goal_->preview->stream.get();
   bool posted = false;
@@ -223,8 +226,10 @@ void GoalDesk::startWhenJournaled() {
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   goal_->phase = Phase::kStarting;
+  thread_.setPeriod(kPollPeriod);
   if (!started) return cancelBeforeStart();
-  if (!posted) abortGoal("the control loop has not answered the start of the job before");
+  if (!posted) return abortGoal("the control loop has not answered the start of the job before");
+  publishJob();
 }
 
 void GoalDesk::publishJob() {
@@ -310,6 +315,7 @@ void GoalDesk::release() {
   gate_.close();
   goal_.reset();
   busy_ = false;
+  thread_.setPeriod(kIdlePollPeriod);
 }
 
 }  // namespace flute_grinder

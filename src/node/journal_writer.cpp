@@ -1,10 +1,25 @@
 #include "flute_grinder/node/journal_writer.h"
 
+#include <exception>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 namespace flute_grinder {
+
+namespace {
+
+template <typename Task>
+std::string errorOf(const Task& task) {
+  try {
+    task();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
 
 /// State shared with the thread.
 struct JournalWriter::Work {
@@ -17,7 +32,7 @@ struct JournalWriter::Work {
   }
 
   void storePending();
-  void store(const Progress& progress, std::uint64_t number);
+  void settle();
 
   const Journal journal;  ///< used by the thread only
 
@@ -33,20 +48,20 @@ void JournalWriter::Work::storePending() {
   pending.reset();
   const std::uint64_t number = writes;
   lock.unlock();
-  store(progress, number);
-}
-
-void JournalWriter::Work::store(const Progress& progress, std::uint64_t number) {
-  std::string error;
-  try {
-    journal.write(progress);
-  } catch (const std::exception& failure) {
-    error = failure.what();
-  }
-  const std::lock_guard<std::mutex> lock(mutex);
+  const std::string error = errorOf([&] { journal.write(progress); });
+  lock.lock();
   if (error.empty()) status.on_disk = progress;
   status.number = number;
-  status.error = std::move(error);
+  status.error = error;
+  lock.unlock();
+  if (error.empty()) settle();
+}
+
+void JournalWriter::Work::settle() {
+  const std::string error = errorOf([&] { journal.settle(); });
+  if (error.empty()) return;
+  const std::lock_guard<std::mutex> lock(mutex);
+  status.error = error;
 }
 
 JournalWriter::JournalWriter(std::string path, const std::string& owner)

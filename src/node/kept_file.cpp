@@ -153,7 +153,12 @@ void KeptFile::write(const std::string& text) const {
       file.sync();
     }
     std::filesystem::rename(fresh, file_);
-    // The rename is safe only once the folder is synced too.
+  });
+}
+
+void KeptFile::settle() const {
+  named([&] {
+    acquire();
     File(std::filesystem::path(file_).parent_path().string(), O_RDONLY | O_DIRECTORY).sync();
   });
 }

@@ -85,6 +85,7 @@ void OffsetStore::set(int axis, const core::WorkOffset& offset) {
   core::WorkOffsets changed = offsets();
   changed.axes[static_cast<std::size_t>(axis)] = offset;
   file_.named([&] { file_.write(toText(changed)); });
+  file_.settle();
   const std::lock_guard<std::mutex> lock(mutex_);
   offsets_ = changed;
 }

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/messages/conversions.h"
 
 #include <utility>
 
@@ -49,24 +50,32 @@ std::optional<Planner::Request> Planner::next() {
   return request_;
 }
 
-std::unique_ptr<Preview> Planner::plan(const Request& request) const {
+std::unique_ptr<Preview> Planner::plan(const Request& request) {
+  const std::string digest = jobDigest(request.job);
+  const auto is_kept = [&] {
+    return kept_ && kept_->digest == digest && (kept_->start == request.start).all() &&
+           (kept_->offset == request.offset).all() && kept_->first.tooth == request.first.tooth &&
+           kept_->first.pass == request.first.pass;
+  };
   auto preview = std::make_unique<Preview>();
   preview->first = request.first;
-  if (validate(request.job).empty()) preview->errors.emplace(request.job);
-  // Every stroke of a job has the same errors.
-  const auto visit = [&](const Setpoint& p) {
-    if (p.tooth == request.first.tooth && p.pass == request.first.pass) preview->errors->add(p);
-  };
+  preview->plan = is_kept() ? kept_->plan : makePlan(request);
+  if (!preview->plan.good()) return preview;
+  preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
+  kept_ = Kept{digest, request.start, request.offset, request.first, preview->plan};
+  return preview;
+}
+
+JobPlan Planner::makePlan(const Request& request) const {
   const auto watch = [&](double done) {
     request.control->done = done;
     return !request.control->give_up;
   };
   Machine machine = machine_;
   machine.work_offset = request.offset;
-  preview->plan = planGroundJob(request.job, machine, request.start - request.offset, request.first, visit, watch);
-  checkCollision(preview->plan, shapes_);
-  if (preview->plan.good()) preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
-  return preview;
+  JobPlan plan = planGroundJob(request.job, machine, request.start - request.offset, request.first, {}, watch);
+  checkCollision(plan, shapes_);
+  return plan;
 }
 
 }  // namespace flute_grinder

@@ -119,7 +119,7 @@ void Telemetry::clearScene() {
 
 void Telemetry::showJob(const Preview& preview) {
   frames_.show(preview.plan.program);
-  scene_.show(*preview.plan.program, preview.first, *preview.errors);
+  scene_.show(preview.plan.program, preview.first);
 }
 
 void Telemetry::tick() {

@@ -1,5 +1,6 @@
 #include "flute_grinder/scene/scene.h"
 
+#include "flute_grinder/core/setpoint_stream.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/messages/conversions.h"
@@ -52,6 +53,18 @@ void appendWheel(MarkerArray& array, const GrindJob& job) {
   add({{upper, hub}, {upper, 0}}, colour(0.74, 0.75, 0.77));
 }
 
+/// All strokes of a job have the same errors.
+PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& program) {
+  PathErrorMarkers errors(program->job());
+  SetpointStream stream(program);
+  bool in_stroke = false;
+  for (Setpoint p; stream.next(p) && !(in_stroke && p.move != MoveKind::kStroke);) {
+    in_stroke = p.move == MoveKind::kStroke;
+    errors.add(p);
+  }
+  return errors;
+}
+
 MarkerArray sceneMarkers(const GrindJob& job) {
   MarkerArray array = clearedArray();
   appendWheel(array, job);
@@ -78,13 +91,13 @@ void Scene::publishCleared() {
   legend_.publish(Legend());
 }
 
-void Scene::show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned) {
-  const GrindJob& job = program.job();
+void Scene::show(const std::shared_ptr<const GrindProgram>& program, const ToothPass& first) {
+  const GrindJob& job = program->job();
   const std::string digest = jobDigest(job);
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
-  ToolPath path = continued ? shown_->tool_path : ToolPath(program);
-  shown_.emplace(
-      Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(program), planned, Legend()});
+  ToolPath path = continued ? shown_->tool_path : ToolPath(*program);
+  shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(*program),
+                       errorsOfFirstStroke(program), Legend()});
   shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
   shown_->legend.tolerance = job.interpolation.tolerance;
   scene_.publish(sceneMarkers(job));

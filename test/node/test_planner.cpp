@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <future>
+#include <vector>
 
 namespace flute_grinder {
 namespace {
@@ -61,10 +63,41 @@ TEST(Planner, PlansWhatPlanJobPlans) {
   const JobPlan expected = planJob(paper(), machine(), machine().park);
   EXPECT_EQ(preview->plan.statistics.setpoints, expected.statistics.setpoints);
   EXPECT_EQ(preview->plan.move_ends, expected.move_ends);
-  ASSERT_TRUE(preview->errors);
   std::uint64_t streamed = 0;
   for (Setpoint p; preview->stream->next(p);) ++streamed;
   EXPECT_EQ(streamed, expected.statistics.setpoints);
+}
+
+TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
+  Planner planner(machine(), kShapes);
+  const auto programOf = [&](const std::function<void(Planner::Request&)>& change) {
+    Asked asked(paper());
+    change(asked.request);
+    EXPECT_TRUE(planner.submit(asked.request));
+    const auto preview = asked.wait();
+    EXPECT_TRUE(preview->plan.good());
+    EXPECT_TRUE(preview->stream && !preview->stream->finished());
+    return preview->plan.program;
+  };
+  const auto unchanged = [](Planner::Request&) {};
+  const auto program = programOf(unchanged);
+  EXPECT_EQ(programOf(unchanged), program);
+  const std::vector<std::function<void(Planner::Request&)>> changes{
+      [](Planner::Request& r) { r.job.process.feed *= 0.9; },
+      [](Planner::Request& r) { r.job.process.spark_out = 1; },
+      [](Planner::Request& r) { r.start[kX] += 1e-9; },
+      [](Planner::Request& r) { r.offset[kA] += 1e-9; },
+  };
+  for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
+  GrindJob two_passes = paper();
+  two_passes.process.spark_out = 1;
+  const auto withFirstPass = [&](int pass) {
+    return programOf([&](Planner::Request& r) {
+      r.job = two_passes;
+      r.first = {0, pass};
+    });
+  };
+  EXPECT_NE(withFirstPass(1), withFirstPass(0));
 }
 
 TEST(Planner, PlansAJobWithItsLawOfZ) {

@@ -18,9 +18,9 @@
 
 namespace flute_grinder {
 
-/// Serves the action `~grind`: has a goal planned, enters it in the journal, tells it on `~job`, starts it, and reports
-/// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled
-/// every millisecond. One goal at a time; any other is rejected at once.
+/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, tells it on `~job`, and reports
+/// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled.
+/// One goal at a time; any other is rejected at once.
 class GoalDesk {
  public:
   /// @param private_nh the node's own namespace.

@@ -40,9 +40,10 @@ class Journal {
   /// @throw JournalError if the file is not a complete journal.
   std::optional<Progress> read() const;
 
-  /// Returns once the progress is safe on the disk.
-  /// @throw JournalError also if a value is not finite or out of range.
+  /// As KeptFile::write(). @throw JournalError also if a value is not finite or out of range.
   void write(const Progress& progress) const;
+  /// As KeptFile::settle().
+  void settle() const { file_.settle(); }
 
  private:
   KeptFile file_;

@@ -17,7 +17,7 @@ class JournalWriter {
   struct Status {
     Progress on_disk;          ///< what a restart would find
     std::uint64_t number = 0;  ///< of the last write that succeeded or failed; 0 before the first
-    std::string error;         ///< of the last write, or of the initial read; empty if none
+    std::string error;         ///< of the last write or its settling, or of the initial read; empty if none
   };
 
   /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,
@@ -32,7 +32,9 @@ class JournalWriter {
   /// @return the number of this write, from 1.
   std::uint64_t write(const Progress& progress);
 
-  /// The current outcome. Never waits for the disk.
+  /// The current outcome. Never waits for the disk. A write counts once KeptFile::write() has returned: the file is
+  /// settled behind it, since no axis reaches the work within the time of that, and a disk that fails then shows as the
+  /// error.
   Status status() const;
 
  private:

@@ -38,9 +38,13 @@ class KeptFile {
   /// @throw KeptFileError if the file is not complete, as write() wrote it.
   std::optional<std::string> read() const;
 
-  /// Returns once the text is safe on the disk.
+  /// Returns once the text is on the disk. After a power failure the file holds the new or the old text, and the new
+  /// one for certain once settle() has returned.
   /// @throw KeptFileError
   void write(const std::string& text) const;
+  /// Returns once the file's name on the disk stands for the text written last.
+  /// @throw KeptFileError
+  void settle() const;
 
   /// Rethrows any other error of an action as a KeptFileError that names the file.
   template <typename Action>

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/collision/machine_shapes.h"
 #include "flute_grinder/core/job_plan.h"
-#include "flute_grinder/scene/path_markers.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -10,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 namespace flute_grinder {
@@ -18,7 +18,6 @@ namespace flute_grinder {
 struct Preview {
   JobPlan plan;
   ToothPass first;                         ///< to grind
-  std::optional<PathErrorMarkers> errors;  ///< of its first stroke; absent if the job's parameters are invalid
   std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is valid
 };
 
@@ -28,7 +27,8 @@ struct PlanControl {
   std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
 };
 
-/// Plans one job at a time in its own thread.
+/// Plans one job at a time in its own thread. The last good plan is kept: the same job from the same place needs no
+/// other, as after a dry run, and for one tool after the other.
 class Planner {
  public:
   struct Request {
@@ -54,7 +54,8 @@ class Planner {
  private:
   void run();
   std::optional<Request> next();
-  std::unique_ptr<Preview> plan(const Request& request) const;
+  std::unique_ptr<Preview> plan(const Request& request);
+  JobPlan makePlan(const Request& request) const;
 
   const Machine machine_;
   const MachineShapes shapes_;
@@ -62,6 +63,15 @@ class Planner {
   std::condition_variable changed_;
   std::optional<Request> request_;  ///< until it is done
   bool ended_ = false;
+
+  /// The last good plan, with what it depends on. Used by the thread only.
+  struct Kept {
+    std::string digest;
+    Axes start, offset;
+    ToothPass first;
+    JobPlan plan;
+  };
+  std::optional<Kept> kept_;
   std::thread thread_;
 };
 

@@ -21,10 +21,10 @@ class Scene {
   /// @param private_nh the node's own namespace.
   explicit Scene(ros::NodeHandle private_nh);
 
-  /// Shows a job before its first setpoint. If the same job is continued, its measurements are kept.
-  /// @param first first pass to grind.
-  /// @param planned path errors of its first stroke.
-  void show(const GrindProgram& program, const ToothPass& first, const PathErrorMarkers& planned);
+  /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
+  /// measurements are kept.
+  /// @param program not null. @param first first pass to grind.
+  void show(const std::shared_ptr<const GrindProgram>& program, const ToothPass& first);
 
   /// Adds a setpoint of the job shown.
   /// @param actual position of the axes in work coordinates [m], A [rad].

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+
+/// @file
+/// The jobs that the benchmarks measure.
+namespace flute_grinder {
+
+/// The paper's cutter, as in jobs/paper.yaml, at a feed of its own.
+inline GrindJob paperJob(double feed_mm_min, EvenStepRule rule = EvenStepRule::kPublished) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  job.process.feed = feed_mm_min * units::kMillimetrePerMinute;
+  job.interpolation.even_step = rule;
+  return job;
+}
+
+/// The same with ten teeth in twenty passes: some twelve million setpoints.
+inline GrindJob wholeToolJob() {
+  GrindJob job = paperJob(52);
+  for (int tooth = 1; tooth < 10; ++tooth) job.tooth_angles.push_back(tooth * 36 * units::kDegree);
+  job.process.infeed = job.process.depth / 20;
+  // A wheel that leaves land between ten flutes, whatever rake it grinds. The motion is the same with any wheel.
+  job.process.wheel_width = 1.5 * units::kMillimetre;
+  job.cutter.rake_tolerance = 180 * units::kDegree;
+  return job;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Shows what bench/figures.py makes of samples and of runs: medians, p99, ratios against floors, tables, and the comparison of
+two runs. Nothing is measured here."""
+
+import pathlib
+import re
+import sys
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / 'bench'))
+import figures  # noqa: E402
+
+RUN = {
+    'commit': 'abc1234', 'date': '2020-01-02 03:04 UTC', 'cpu': 'Some CPU', 'cores': 4, 'kernel': '6.1', 'realtime': True,
+    'figures': {
+        'wake_up': {'label': 'wake-up', 'unit': 'us', 'median': 50.0, 'p99': 80.0, 'count': 1000},
+        'motion': {'label': 'goal to motion', 'unit': 'ms', 'median': 2.0, 'p99': 3.25, 'count': 100, 'floor': 'wake_up'},
+        'memory': {'label': 'memory', 'unit': 'MB', 'median': 159.0},
+    },
+}
+
+
+def with_changes(run, **changes):
+    return dict(run, **changes)
+
+
+def cells(line):
+    return re.split(r'  +', line.strip())
+
+
+class FiguresTest(unittest.TestCase):
+    def test_median_and_p99_of_times_are_in_the_unit_asked_for(self):
+        figure = figures.of_times('x', 'us', [i * 1e-6 for i in range(100, 0, -1)])
+        self.assertAlmostEqual(figure['median'], 50.5)
+        self.assertAlmostEqual(figure['p99'], 99)
+        self.assertEqual(figure['count'], 100)
+        self.assertEqual(figure['unit'], 'us')
+
+    def test_p99_of_fewer_than_a_hundred_is_the_longest(self):
+        self.assertEqual(figures.of_times('x', 's', [3, 1, 2])['p99'], 3)
+        self.assertEqual(figures.of_times('x', 's', [7])['p99'], 7)
+
+    def test_p99_leaves_out_no_more_than_a_hundredth(self):
+        self.assertEqual(figures.percentile(range(1000), 0.99), 989)
+        self.assertEqual(figures.percentile(range(101), 0.99), 99)
+
+    def test_ratio_is_that_of_the_times_whatever_their_units(self):
+        self.assertAlmostEqual(figures.ratio(RUN['figures'], 'motion'), 2e-3 / 50e-6)
+
+    def test_no_ratio_without_a_floor(self):
+        self.assertIsNone(figures.ratio(RUN['figures'], 'memory'))
+        of_another = {'a': {'unit': 'ms', 'median': 1, 'floor': 'not measured'}}
+        self.assertIsNone(figures.ratio(of_another, 'a'))
+
+    def test_numbers_have_three_digits(self):
+        shown = {0: '0', 0.0123456: '0.0123', 1.23456: '1.23', 12.3456: '12.3', 123.456: '123', 1234.56: '1235', 7.735e-8: '7.74e-08',
+                 None: '-'}
+        self.assertEqual({value: figures.number(value) for value in shown}, shown)
+
+    def test_table_of_a_run(self):
+        lines = figures.text(RUN).splitlines()
+        self.assertEqual(lines[0], 'abc1234 of 2020-01-02 03:04 UTC, Some CPU, 4 cores, 6.1, real-time scheduling')
+        self.assertEqual([cells(line) for line in lines[2:]], [
+            ['unit', 'median', 'p99', 'samples', 'floor', 'ratio'],
+            ['wake-up', 'us', '50.0', '80.0', '1000', '-', '-'],
+            ['goal to motion', 'ms', '2.00', '3.25', '100', 'wake-up', '40.0'],
+            ['memory', 'MB', '159', '-', '-', '-', '-'],
+        ])
+
+    def test_table_of_two_runs(self):
+        before = with_changes(RUN, commit='0000000', figures={
+            'motion': dict(RUN['figures']['motion'], median=8.0, p99=13.0),
+            'memory': dict(RUN['figures']['memory'], unit='kB', median=159e3),
+            'gone': {'label': 'what is no more', 'unit': 'ns', 'median': 5.0},
+        })
+        lines = figures.text(RUN, before).splitlines()
+        self.assertTrue(lines[0].startswith('before: 0000000 of '))
+        self.assertTrue(lines[1].startswith('now:    abc1234 of '))
+        self.assertEqual([cells(line) for line in lines[4:]], [
+            ['wake-up', 'us', '-', '50.0', '-', '80.0', '-', '-'],
+            ['goal to motion', 'ms', '8.00', '2.00', '13.0', '3.25', '0.250', '0.250'],
+            ['memory', 'MB', '-', '159', '-', '-', '-', '-'],  # in another unit
+            ['what is no more', 'ns', '5.00', '-', '-', '-', '-', '-'],
+        ])
+
+    def test_runs_on_different_machines_are_told_apart(self):
+        self.assertNotIn('not the same', figures.text(RUN, RUN))
+        other = with_changes(RUN, cpu='Another', realtime=False)
+        self.assertIn('not the same cpu: Another, then Some CPU', figures.text(RUN, other))
+        self.assertIn('not the same realtime: False, then True', figures.text(RUN, other))
+
+    def test_page_gets_the_table_between_its_marks(self):
+        page = 'above\n\n%s\nold\n%s\n\nbelow\n' % (figures.BEGIN, figures.END)
+        written = figures.with_table(page, RUN)
+        self.assertTrue(written.startswith('above\n\n' + figures.BEGIN + '\n'))
+        self.assertTrue(written.endswith('\n' + figures.END + '\n\nbelow\n'))
+        self.assertNotIn('old', written)
+        self.assertIn('\n| goal to motion | ms | 2.00 | 3.25 | 100 | wake-up | 40.0 |\n', written)
+        self.assertEqual(figures.with_table(written, RUN), written)
+
+    def test_page_without_marks_is_refused(self):
+        for page in '', figures.BEGIN, figures.END + figures.BEGIN:
+            with self.assertRaises(ValueError):
+                figures.with_table(page, RUN)
+
+    def test_documentation_has_a_table_of_all_columns(self):
+        page = (ROOT / 'docs/performance.md').read_text()
+        table = page.partition(figures.BEGIN)[2].partition(figures.END)[0]
+        heads = [line for line in table.splitlines() if line.startswith('|')]
+        self.assertEqual(heads[0], '| %s |' % ' | '.join(next(figures.rows(RUN))))
+        self.assertGreater(len(heads), 3)
+
+
+if __name__ == '__main__':
+    unittest.main()

@@ -28,8 +28,11 @@ bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
 
 }  // namespace
 
-LimitCheck::LimitCheck(const AxisLimits& limits, double period) noexcept
-    : limits_(limits), inverse_period_(1 / period), ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
+LimitCheck::LimitCheck(const AxisLimits& limits, double period, double roundings) noexcept
+    : limits_(limits),
+      inverse_period_(1 / period),
+      roundings_(roundings),
+      ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
 
 std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const Axes& offset) noexcept {
   const Axes& p = setpoint.position;
@@ -105,7 +108,7 @@ void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, c
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     // A position is the sum of a few numbers no larger than the largest so far, each rounded to half an epsilon.
-    const double noise = 2 * kEpsilon * largest_[axis] * rounding;
+    const double noise = roundings_ * 2 * kEpsilon * largest_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);
     }

@@ -340,6 +340,26 @@ TEST(LimitCheck, HasEveryKindOfEveryAxisAtOnce) {
   }
 }
 
+// At 16 rad a position is exact to 3.6e-15 rad at best, which over a period makes 3.6e-12 rad/s; the limit of 1e-3
+// rad/s lets 1e-12 rad/s of its own pass.
+TEST(LimitCheck, LetsAsManyRoundingsPassAsItIsTold) {
+  AxisLimits l = plainLimits();
+  l.max_velocity[kA] = 1.0 / 1024;
+  const auto passes = [&](double roundings, int epsilons) {
+    LimitCheck check(l, kPeriod, roundings);
+    Setpoint p;
+    p.position[kA] = 16;
+    check.check(p);
+    p.cycle = 1;
+    p.position[kA] += l.max_velocity[kA] * kPeriod + epsilons * 16 * std::numeric_limits<double>::epsilon();
+    return !check.check(p);
+  };
+  EXPECT_TRUE(passes(1, 2));
+  EXPECT_FALSE(passes(1, 4));
+  EXPECT_TRUE(passes(LimitCheck::kUnplannedRoundings, 6));
+  EXPECT_FALSE(passes(LimitCheck::kUnplannedRoundings, 8));
+}
+
 TEST(LimitCheck, ForgetsThoseOfTheSetpointBefore) {
   AxisLimits l = plainLimits();
   l.max_velocity.setConstant(1e9);

@@ -35,7 +35,14 @@ class LimitCheck {
  public:
   /// @param limits the axes' limits.
   /// @param period control cycle [s].
-  LimitCheck(const AxisLimits& limits, double period) noexcept;
+  /// @param roundings how many times the rounding of a position is let pass in velocity, acceleration and jerk; 1 where
+  /// a
+  ///        motion is planned, kUnplannedRoundings where it is made.
+  LimitCheck(const AxisLimits& limits, double period, double roundings = 1) noexcept;
+
+  /// A plan generates and checks only the first of moves that differ by constant offsets, see planJob(). What passes
+  /// there may be above the limit by one rounding, thus the true motion by two, and another move's by three.
+  static constexpr double kUnplannedRoundings = 3;
 
   /// Discards the history: the axes are assumed to be at rest before the next setpoint.
   void restart() noexcept {
@@ -74,6 +81,7 @@ class LimitCheck {
 
   AxisLimits limits_;
   double inverse_period_;
+  double roundings_;
   std::uint64_t seen_ = 0;
   double slow_down_ = 1;  ///< for the next pair
   Axes last_ = Axes::Zero();

@@ -176,10 +176,10 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
     release();
     return reject(handle, result(errorCode(plan.fault), plan.reasons));
   }
-  handle.setAccepted();
   if (handle.getGoal()->dry_run) {
     release();
     telemetry_.show(preview);
+    handle.setAccepted();
     return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
   }
   goal_->phase = Phase::kJournaling;
@@ -187,6 +187,7 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
   goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
   tracker_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
+  handle.setAccepted();  // while the disk writes
 }
 
 void GoalDesk::poll() {

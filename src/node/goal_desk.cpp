@@ -177,9 +177,9 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
     return reject(handle, result(errorCode(plan.fault), plan.reasons));
   }
   if (handle.getGoal()->dry_run) {
+    handle.setAccepted();
     release();
     telemetry_.show(preview);
-    handle.setAccepted();
     return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
   }
   goal_->phase = Phase::kJournaling;

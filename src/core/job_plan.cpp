@@ -100,7 +100,8 @@ class ShapePlanner {
   ShapePlanner(JobPlan& plan, const PlanWatch& watch)
       : plan_(plan), stream_(plan.program), checks_(plan), supervisor_(watch, plan) {}
 
-  /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics. It is not
+  /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics. It is
+  /// not
   ///         if something is not allowed: every setpoint is needed to tell all of that.
   bool run() {
     Setpoint p;

@@ -14,7 +14,7 @@ import path_checks as checks
 
 RECORDER = hal_bench.Recorder()
 # Long, so that a host that stalls does not decide the test.
-BUFFER = 0.2
+BUFFER = 1.0
 # Of the bench's streamer.
 DEPTH = 4096
 

@@ -26,8 +26,9 @@ import path_checks as checks
 from grinder_client import DEG, EVEN, MM, MM_MIN, STROKE, UM, X, Y
 from test_diagnostics import Reports
 
-# Two unequal teeth of a cone in two passes; with time to interfere, and over soon.
-JOB = gc.paper(flute_length=8 * MM, feed=1200 * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 2.0], infeed=0.3 * MM,
+# Two unequal teeth of a cone in two passes; with time to interfere in a stroke, even on a host that stalls.
+FEED = 400  # mm/min
+JOB = gc.paper(flute_length=8 * MM, feed=FEED * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 2.0], infeed=0.3 * MM,
                cone_angle=8 * DEG)
 NAME = r'\d{8}T\d{6}\.\d{3}Z\.json'
 CYCLE = 0.001
@@ -125,6 +126,11 @@ class TestRecordOfAJob(Kept):
         """When a setpoint was written, in the record's time."""
         return self.times[i] - self.started
 
+    def check_at(self, told, first, last):
+        """That a time lies from one setpoint to another; a cycle may be late."""
+        self.assertGreaterEqual(told, self.since(first) - STAMP)
+        self.assertLessEqual(told, self.since(last) + STAMP)
+
     def strokes(self):
         """The numbers of the setpoints of each stroke, by tooth and pass."""
         strokes = {}
@@ -189,8 +195,10 @@ class TestRecordOfAJob(Kept):
         for stroke, indices in zip(told, strokes.values()):
             self.assertTrue(stroke['complete'])
             self.assertAlmostEqual(stroke['depth_mm'], {1: 0.3, 2: 0.5}[stroke['pass']], delta=1e-9)
-            self.assertAlmostEqual(stroke['started_s'], self.since(indices[0]), delta=STAMP + 2 * CYCLE)
-            self.assertAlmostEqual(stroke['duration_s'], self.times[indices[-1]] - self.times[indices[0]], delta=2 * CYCLE)
+            begin, end = indices[0], indices[-1]
+            self.check_at(stroke['started_s'], begin - 2, begin + 2)
+            self.assertGreaterEqual(stroke['duration_s'], self.times[end - 1] - self.times[begin + 1])
+            self.assertLessEqual(stroke['duration_s'], self.times[end + 1] - self.times[begin - 1])
             self.assertGreater(stroke['duration_s'], 0.1)
 
     def test_feeds_are_those_of_the_flute(self):
@@ -201,9 +209,9 @@ class TestRecordOfAJob(Kept):
             self.assertAlmostEqual(stroke['feed_max_mm_min'], max(feeds) / MM_MIN, delta=1e-6)
         # As the override says; the second was held.
         first, held, _, last = self.record['strokes']
-        self.assertAlmostEqual(first['feed_max_mm_min'], 0.8 * 1200, delta=0.01)
+        self.assertAlmostEqual(first['feed_max_mm_min'], 0.8 * FEED, delta=0.01)
         self.assertEqual(held['feed_min_mm_min'], 0)
-        self.assertAlmostEqual(last['feed_max_mm_min'], 1.1 * 1200, delta=0.01)
+        self.assertAlmostEqual(last['feed_max_mm_min'], 1.1 * FEED, delta=0.01)
 
     def test_deviations_follow_from_the_curve(self):
         for stroke, (pass_, indices) in zip(self.record['strokes'], self.strokes().items()):
@@ -232,24 +240,20 @@ class TestRecordOfAJob(Kept):
         speeds = [self.setpoints[i].feed for i in second]
         steady = max(speeds)
         falls = next(k for k in range(1, len(speeds)) if speeds[k] < speeds[k - 1] and speeds[k - 1] == steady)
-        begins = self.since(second[falls])
-        self.assertLess(begins - hold['at_s'], STAMP + 5 * CYCLE)
-        self.assertGreater(begins - hold['at_s'], -STAMP - CYCLE)
+        self.check_at(hold['at_s'], second[falls] - 5, second[falls] + 1)
         # The wheel comes back down from where it was lifted to.
         lifted = [i for i in range(second[0], second[-1]) if self.setpoints[i].move != STROKE]
         up = max(lifted, key=lambda i: (self.setpoints[i].position[Y], -i))
-        resumes = self.since(up + 1)
-        self.assertLess(abs(hold['at_s'] + hold['duration_s'] - resumes), STAMP + 5 * CYCLE)
+        self.check_at(hold['at_s'] + hold['duration_s'], up + 1 - 5, up + 1 + 5)
 
     def test_overrides(self):
         start, change = self.record['overrides']
         self.assertEqual((start['at_s'], start['percent'], start['tooth'], start['pass']), (0, 80, 1, 1))
         self.assertAlmostEqual(change['percent'], 110, delta=1e-9)
         self.assertEqual(change['tooth'], 2)
-        faster = next(i for i, s in enumerate(self.setpoints) if s.move == STROKE and s.feed > 0.801 * 1200 * MM_MIN)
+        faster = next(i for i, s in enumerate(self.setpoints) if s.move == STROKE and s.feed > 0.801 * FEED * MM_MIN)
         self.assertEqual(change['pass'], self.setpoints[faster].pass_ + 1)
-        self.assertLess(self.since(faster) - change['at_s'], STAMP + 10 * CYCLE)
-        self.assertGreater(self.since(faster) - change['at_s'], -STAMP - CYCLE)
+        self.check_at(change['at_s'], faster - 10, faster + 1)
 
     def test_late_cycles(self):
         told = self.record['late_cycles']

@@ -12,6 +12,10 @@ namespace {
 
 constexpr double kIdlePeriod = 0.1;  ///< [s]
 
+std::chrono::steady_clock::duration toDuration(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+}
+
 class Task : public ros::CallbackInterface {
  public:
   explicit Task(std::function<void()> task) : task_(std::move(task)) {}
@@ -26,7 +30,8 @@ class Task : public ros::CallbackInterface {
 
 }  // namespace
 
-ServedQueue::ServedQueue(double period, std::function<void()> poll) : period_(period), poll_(std::move(poll)) {}
+ServedQueue::ServedQueue(double period, std::function<void()> poll)
+    : period_(toDuration(period)), poll_(std::move(poll)) {}
 
 ServedQueue::ServedQueue() : ServedQueue(kIdlePeriod, [] {}) {}
 
@@ -47,17 +52,21 @@ void ServedQueue::stop() {
 
 void ServedQueue::post(std::function<void()> task) { queue_.addCallback(boost::make_shared<Task>(std::move(task))); }
 
+void ServedQueue::setPeriod(double period) {
+  period_ = toDuration(period);
+  next_poll_ = std::min(next_poll_, Clock::now() + period_);
+}
+
 void ServedQueue::run() {
-  using Clock = std::chrono::steady_clock;
-  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_));
-  for (Clock::time_point next = Clock::now() + period; running_;) {
-    const std::chrono::duration<double> left = next - Clock::now();
+  next_poll_ = Clock::now() + period_;
+  while (running_) {
+    const std::chrono::duration<double> left = next_poll_ - Clock::now();
     queue_.callOne(ros::WallDuration(std::max(0.0, left.count())));
     const Clock::time_point now = Clock::now();
-    if (now < next) continue;
+    if (now < next_poll_) continue;
     poll_();
     // Skip polls that were missed.
-    next = std::max(next + period, now);
+    next_poll_ = std::max(next_poll_ + period_, now);
   }
 }
 

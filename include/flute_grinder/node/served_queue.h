@@ -3,6 +3,7 @@
 #include <ros/callback_queue.h>
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <thread>
 
@@ -28,10 +29,18 @@ class ServedQueue {
   /// Queues a task for the thread. Thread safe; never blocks.
   void post(std::function<void()> task);
 
+  /// Changes how often `poll` is called. A shorter period counts from now, a longer one from the next call on. Only for
+  /// the thread itself: its callbacks, its tasks and `poll`.
+  /// @param period [s].
+  void setPeriod(double period);
+
  private:
+  using Clock = std::chrono::steady_clock;
+
   void run();
 
-  const double period_;
+  Clock::duration period_;
+  Clock::time_point next_poll_;
   const std::function<void()> poll_;
   ros::CallbackQueue queue_;
   std::atomic<bool> running_{false};

@@ -194,7 +194,7 @@ int cancelJob(const std::string& node) {
   return state.fault.empty() ? 0 : fail(state.fault);
 }
 
-/// Receives the position of an axis, 100 times a second.
+/// Receives the position of an axis, 100 times a second, and 10 times while the machine is at rest.
 class PositionWatch {
  public:
   /// @param nh the grinder's namespace.

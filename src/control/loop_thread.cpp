@@ -2,6 +2,8 @@
 
 #include "flute_grinder/control/realtime.h"
 
+#include <pthread.h>
+
 #include <chrono>
 #include <string>
 
@@ -51,6 +53,7 @@ void ControlLoop::stopThread() {
 }
 
 void ControlLoop::run() {
+  pthread_setname_np(pthread_self(), "control_loop");
   realtime_scheduling_ = becomeRealtime();
   using Clock = std::chrono::steady_clock;
   const ros::Duration nominal(config_.machine.period);

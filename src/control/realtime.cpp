@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstddef>
+#include <system_error>
 
 namespace flute_grinder {
 
@@ -17,6 +18,8 @@ constexpr int kRealtimePriority = 80;
 
 /// Far more than the loop uses.
 constexpr std::size_t kStack = std::size_t{256} * 1024;
+/// Far more than any thread of the node uses.
+constexpr std::size_t kThreadStack = std::size_t{512} * 1024;
 constexpr std::size_t kPage = 4096;
 
 /// With memory that is locked on first access, the stack must be accessed before the first cycle.
@@ -27,6 +30,15 @@ __attribute__((noinline)) void touchStack() {
 }
 
 }  // namespace
+
+void boundThreadStacks() {
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kThreadStack);
+  const int error = pthread_setattr_default_np(&attributes);
+  pthread_attr_destroy(&attributes);
+  if (error != 0) throw std::system_error(error, std::generic_category(), "the size of threads' stacks");
+}
 
 bool lockMemory() {
   rlimit limit{};

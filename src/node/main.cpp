@@ -1,4 +1,5 @@
 #include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/control/realtime.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/node/grinder_node.h"
 #include "flute_grinder/node/output.h"
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   flute_grinder::dropBlockedOutput();
+  flute_grinder::boundThreadStacks();
 
   ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
   // Keeps ROS running to the end, so that errors are still logged.

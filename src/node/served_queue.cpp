@@ -10,7 +10,11 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kIdlePeriod = 0.1;  ///< [s]
+constexpr double kIdlePeriod = 1;  ///< [s]
+
+std::chrono::steady_clock::duration toDuration(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+}
 
 std::chrono::steady_clock::duration toDuration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));

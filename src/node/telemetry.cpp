@@ -1,7 +1,6 @@
 #include "flute_grinder/node/telemetry.h"
 
 #include "flute_grinder/GrindActionFeedback.h"
-#include "flute_grinder/GrinderState.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
@@ -9,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace flute_grinder {
@@ -16,7 +16,9 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kTickPeriod = 0.01;          ///< between joint states [s]
-constexpr std::uint64_t kTicksPerBatch = 5;   ///< of setpoints, state and feedback
+constexpr double kRestPeriod = 0.02;          ///< between looks for a change, at rest [s]
+const ros::WallDuration kRestDelay(1);        ///< without a change, until less is published
+constexpr std::uint64_t kTicksPerBatch = 5;   ///< of setpoints, state and feedback; at rest, of joint states too
 constexpr std::uint64_t kTicksPerScene = 10;  ///< between updates of the job in rviz
 
 double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
@@ -77,8 +79,8 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
   feedback_ = own.advertise<GrindActionFeedback>("grind/feedback", 50);
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
-  ticks_per_diagnostics_ =
-      static_cast<std::uint64_t>(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0) / kTickPeriod);
+  diagnostics_period_ = ros::WallDuration(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0));
+  next_diagnostics_ = ros::SteadyTime::now() + diagnostics_period_;
   batch_.period = loop.config().machine.period;
 }
 
@@ -118,6 +120,7 @@ void Telemetry::clearScene() {
 }
 
 void Telemetry::showJob(const Preview& preview) {
+  last_change_ = ros::SteadyTime::now();
   frames_.show(preview.plan.program);
   scene_.show(preview.plan.program, preview.first);
 }
@@ -130,20 +133,44 @@ void Telemetry::tick() {
     showJob(*job->preview);
     job->shown = true;
   }
-  publishJointStates();
-  frames_.publish(record_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(record_.time));
-  if (++ticks_ % kTicksPerBatch == 0) {
+  const bool begins = setPace();
+  const bool batch_due = ++ticks_ % kTicksPerBatch == 0 || begins;
+  if (batch_due || !resting_) {
+    publishJointStates();
+    frames_.publish(record_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(record_.time));
+  }
+  if (batch_due) {
     publishBatch();
     publishState();
     publishFeedback();
   }
   if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update();
-  // By this thread's tick count: the system clock may be set back.
-  if (ticks_ % ticks_per_diagnostics_ == 0) {
-    diagnostics_.setJournalError(journal_.status().error);
-    diagnostics_.setHistoryError(history_.error());
-    diagnostic_updater_.force_update();
-  }
+  publishDiagnostics();
+}
+
+/// Looks for changes. While there are none, and no job, the pace is slower.
+/// @return whether a change ends the rest.
+bool Telemetry::setPace() {
+  const ros::SerializedMessage state = ros::serialization::serializeMessage(stateMessage());
+  const bool changed = !last_state_.buf || state.num_bytes != last_state_.num_bytes ||
+                       std::memcmp(state.buf.get(), last_state_.buf.get(), state.num_bytes) != 0;
+  last_state_ = state;
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (changed || !jobs_.empty()) last_change_ = now;
+  const bool rested = resting_;
+  resting_ = now - last_change_ > kRestDelay;
+  thread_.setPeriod(resting_ ? kRestPeriod : kTickPeriod);
+  return rested && !resting_;
+}
+
+void Telemetry::publishDiagnostics() {
+  // The system clock may be set back.
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (now < next_diagnostics_) return;
+  next_diagnostics_ = std::max(next_diagnostics_ + diagnostics_period_, now);
+  diagnostics_.setJournalError(journal_.status().error);
+  diagnostics_.setHistoryError(history_.error());
+  diagnostic_updater_.force_update();
 }
 
 Telemetry::Job* Telemetry::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
@@ -230,8 +257,14 @@ void Telemetry::publishBatch() {
 }
 
 void Telemetry::publishState() {
-  GrinderState message;
+  GrinderState message = stateMessage();
   message.header.stamp = ros::Time(record_.time);
+  state_.publish(message);
+}
+
+/// Without a stamp.
+GrinderState Telemetry::stateMessage() const {
+  GrinderState message;
   message.state = static_cast<std::uint8_t>(record_.state);
   message.state_name = toString(record_.state);
   message.enabled = record_.drive.enabled;
@@ -249,17 +282,18 @@ void Telemetry::publishState() {
     message.position[static_cast<std::size_t>(axis)] = record_.position[axis];
     message.work_position[static_cast<std::size_t>(axis)] = record_.position[axis] - offset[axis];
   }
-  if (const Job* job = running()) {
-    message.feed = job->last.feed;
-    message.tooth = job->last.tooth;
-    message.pass = job->last.pass;
+  if (!jobs_.empty()) {
+    const Setpoint& last = jobs_.front().last;
+    message.feed = last.feed;
+    message.tooth = last.tooth;
+    message.pass = last.pass;
   }
   const core::Reason fault = reasonOf(record_.fault);
   message.fault = text(fault, UnitSystem::kSi);
   message.fault_reason = flute_grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
   message.progress = toMessage(journal_.status().on_disk);
-  state_.publish(message);
+  return message;
 }
 
 void Telemetry::publishFeedback() {

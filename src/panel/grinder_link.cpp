@@ -18,7 +18,7 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kStale(1);  ///< state and positions arrive at 20 Hz or more
+const ros::WallDuration kStale(1);  ///< state and positions arrive at 10 Hz or more
 
 constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
 

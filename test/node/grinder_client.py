@@ -469,12 +469,15 @@ class Grinder:
     def wait_rest(self):
         """Waits until the positions told no longer change, and returns them."""
 
-        def resting():
-            last = self.joints[-10:]
-            return len(last) == 10 and len({tuple(j.position) for j in last}) == 1
-
         seen = len(self.joints)
-        self.wait_for(lambda: len(self.joints) >= seen + 10 and resting(), 'the axes at rest')
+
+        def resting():
+            new = self.joints[seen:]
+            moved = [i for i, joint in enumerate(new) if joint.position != new[-1].position]
+            still = new[moved[-1] + 1 if moved else 0:]
+            return len(still) > 1 and (still[-1].header.stamp - still[0].header.stamp).to_sec() >= 0.1
+
+        self.wait_for(resting, 'the axes at rest')
         return self.positions()
 
     def positions_over(self, seconds):

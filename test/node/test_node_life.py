@@ -7,6 +7,7 @@ import glob
 import ipaddress
 import math
 import os
+import re
 import shutil
 import signal
 import socket
@@ -21,11 +22,12 @@ import rosgraph
 import rospy
 import rostest
 from flute_grinder.msg import GrinderState, GrindResult
+from flute_grinder.srv import JogStep
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
 import path_checks as checks
-from grinder_client import LIFT, MM, STROKE, X
+from grinder_client import DEG, LIFT, MM, STROKE, X, Y
 
 
 def set_path(tree, path, value):
@@ -417,6 +419,61 @@ class TestParametersAreObeyed(OwnNode):
         fastest = max(abs(b - a) for a, b in zip(positions, positions[1:])) / 0.002
         # The rapid is long enough to reach the limit.
         self.assertAlmostEqual(fastest, 0.03, delta=1e-9)
+
+
+class TestMemory(OwnNode):
+    """All that the control loop touches is resident and locked, whatever the machine does; and it does not take much."""
+
+    # 10 teeth in 20 passes, and one with which a test is over soon.
+    TOOL = gc.paper(tooth_angles=[i * 36 * DEG for i in range(10)], infeed=0.025 * MM)
+    SHORT_TOOL = gc.paper(tooth_angles=[0.0, 170 * DEG], flute_length=5 * MM, feed=1000 * gc.MM_MIN, clearance=1 * MM)
+
+    def setUp(self):
+        super().setUp()
+        if not self.memory('VmLck'):
+            self.skipTest('the system does not grant locked memory')
+
+    def memory(self, kind):
+        """In bytes."""
+        with open('/proc/%d/status' % self.node.process.pid) as status:
+            return 1024 * int(re.search(r'(?m)^%s:\s*(\d+) kB' % kind, status.read()).group(1))
+
+    def page_faults(self):
+        """Of the loop's thread: those served from memory, and those that waited for a disk."""
+        for stat in glob.glob('/proc/%d/task/*/stat' % self.node.process.pid):
+            with open(stat) as file:
+                _, name, fields = re.split(r'\((.*)\)', file.read())
+            if name == 'control_loop':
+                return [int(fields.split()[i]) for i in (7, 9)]
+        raise AssertionError('no thread control_loop')
+
+    def test_loop_meets_no_page_fault(self):
+        g = self.grinder
+        before = self.page_faults()
+        g.make_ready()
+        self.assertEqual(g.send(self.TOOL, dry_run=True).wait().status, 'SUCCEEDED')
+        run = g.send(self.SHORT_TOOL).wait_in_stroke(1 * MM)
+        self.assertTrue(g.hold().success)
+        g.wait_state(GrinderState.HELD)
+        self.assertTrue(g.retract().success)
+        g.wait_state(GrinderState.RETRACTED)
+        self.assertTrue(g.resume().success)
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        run = g.send(self.TOOL).wait_in_stroke(1 * MM)
+        run.cancel()
+        run.wait_complete()
+        g.wait_state(GrinderState.READY)
+        self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01, 0).success)
+        g.wait_rest()
+        g.inject('emergency_stop')
+        g.wait_state(GrinderState.FAULT)
+        self.assertEqual(self.page_faults(), before)
+
+    def test_resident_memory(self):
+        self.grinder.make_ready()
+        self.grinder.send(self.TOOL).wait_in_stroke(1 * MM)
+        self.assertLess(self.memory('VmHWM'), 100e6)
 
 
 class TestLatency(OwnNode):

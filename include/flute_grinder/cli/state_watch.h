@@ -24,7 +24,7 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
 
 const ros::WallDuration kPatience(10);  ///< with a node that is still starting
 
-/// Receives the grinder's state, 20 times a second.
+/// Receives the grinder's state, 20 times a second, and 10 times while the machine is at rest.
 class StateWatch {
  public:
   /// @param nh the grinder's namespace.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/GrinderState.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/node/diagnostics.h"
@@ -25,7 +26,8 @@ namespace flute_grinder {
 
 /// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the frames and
 /// markers for rviz, and diagnostics; and gathers the records of jobs for the history. Its own thread reads the loop's
-/// records; nothing blocks on it. If it falls too far behind, records are lost, and it reports how many.
+/// records; nothing blocks on it. If it falls too far behind, records are lost, and it reports how many. While nothing
+/// changes, it publishes less often.
 class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
@@ -76,6 +78,8 @@ class Telemetry {
 
   void showJob(const Preview& preview);
   void tick();
+  bool setPace();
+  GrinderState stateMessage() const;
   void readRecords();
   void processRecord();
   void trackJob(Job& job);
@@ -83,6 +87,7 @@ class Telemetry {
   Axes workPosition(const Job& job) const;
   void endJob(Job& job);
   void publishJointStates();
+  void publishDiagnostics();
   void publishBatch();
   void publishState();
   void publishFeedback();
@@ -106,7 +111,11 @@ class Telemetry {
   bool scene_cleared_ = false;
   SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
-  std::uint64_t ticks_per_diagnostics_ = 1;
+  ros::SerializedMessage last_state_;  ///< without its stamp
+  ros::SteadyTime last_change_;        ///< of anything that is told
+  bool resting_ = false;
+  ros::WallDuration diagnostics_period_;
+  ros::SteadyTime next_diagnostics_;
   std::atomic<std::uint64_t> jobs_published_{0};
 
   ServedQueue thread_;  ///< last member, so that it stops before the others are destroyed

@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Shows how often the node tells positions and state: seldom while nothing changes, at the full rate while an axis moves, and at
+once when the rest ends. All times are the messages' stamps, by the loop's clock."""
+
+import statistics
+import unittest
+
+import rospy
+import rostest
+from flute_grinder.msg import GrinderState
+from flute_grinder.srv import JogStep
+
+import grinder_client as gc
+from grinder_client import MM, MM_MIN, Y, grinder
+
+REST = 0.1  # between messages [s]
+TICK = 0.02  # between looks for a change [s]
+
+
+def intervals(messages):
+    stamps = [message.header.stamp.to_sec() for message in messages]
+    return [b - a for a, b in zip(stamps, stamps[1:])]
+
+
+def wait_less_told(messages):
+    """Waits until messages come as seldom as at rest."""
+    seen = len(messages)
+    grinder().wait_for(lambda: len(messages) > seen + 2 and min(intervals(messages[-3:])) > REST - TICK, 'the rest')
+
+
+def change_emergency_stop(pressed):
+    """Presses or releases it, and returns how long after the state before it the first one tells of it."""
+    g = grinder()
+    wait_less_told(g.states)
+    seen = len(g.states)
+    g.inject('emergency_stop' if pressed else 'none')
+    g.wait_for(lambda: g.states[-1].emergency_stop == pressed, 'the emergency stop')
+    first = next(i for i in range(seen, len(g.states)) if g.states[i].emergency_stop == pressed)
+    return intervals(g.states[first - 1:first + 1])[0]
+
+
+class TestRest(unittest.TestCase):
+    def tearDown(self):
+        grinder().take_faults_back()
+
+    def test_nothing_changes(self):
+        g = grinder()
+        at = g.make_ready()
+        for messages in (g.joints, g.states):
+            wait_less_told(messages)
+            seen = len(messages)
+            g.wait_for(lambda: len(messages) >= seen + 10, 'what is told at rest')
+            # A message may come late, and the next one in time.
+            self.assertGreater(statistics.mean(intervals(messages[seen:])), REST - TICK / 2)
+        self.assertEqual(g.positions(), at)
+
+    def test_a_change_is_told_at_once(self):
+        g = grinder()
+        g.make_ready()
+        self.assertTrue(g.disable().success)
+        # By the next looks, and not with the next message that is due; on a host that stalls, at least once.
+        self.assertLess(min(change_emergency_stop(pressed) for pressed in 3 * (True, False)), REST / 2)
+
+    def test_axis_moves(self):
+        g = grinder()
+        g.make_ready()
+        wait_less_told(g.joints)
+        seen = len(g.joints)
+        step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN, 0)
+        self.assertTrue(step.success, step.message)
+        g.wait_state(GrinderState.READY)
+        moving = [j for j in g.joints[seen:] if j.velocity[Y] != 0]
+        self.assertLess(statistics.median(intervals(moving)), REST / 4)
+        states = [s for s in g.states if s.state == GrinderState.JOGGING]
+        self.assertLess(statistics.median(intervals(states)), 3 * REST / 4)
+
+    def test_goal_is_worked_on(self):
+        """Though the axes do not move yet, as while the spindle runs up."""
+        g = grinder()
+        g.make_ready()
+        wait_less_told(g.joints)
+        seen = len(g.joints)
+        run = g.send(gc.SHORT).wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertLess(statistics.median(intervals(g.joints[seen:])), REST / 4)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_rest')
+    rostest.rosrun('flute_grinder', 'rest', '__main__')

@@ -16,10 +16,6 @@ std::chrono::steady_clock::duration toDuration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-std::chrono::steady_clock::duration toDuration(double seconds) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
-}
-
 class Task : public ros::CallbackInterface {
  public:
   explicit Task(std::function<void()> task) : task_(std::move(task)) {}

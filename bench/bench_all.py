@@ -205,8 +205,15 @@ def measure(goals, seconds):
 
 
 def read(path):
-    with open(path) as file:
-        return json.load(file)
+    """A run from a file; ends the program if it has none."""
+    try:
+        with open(path) as file:
+            run = json.load(file)
+    except (OSError, ValueError) as error:
+        sys.exit('%s: %s' % (path, error))
+    if not isinstance(run, dict) or 'figures' not in run:
+        sys.exit('%s: not written by scripts/bench --json' % path)
+    return run
 
 
 def main():
@@ -220,9 +227,14 @@ def main():
     parser.add_argument('--seconds', metavar='S', type=float, default=30, help='longest time for them (default 30)')
     arguments = parser.parse_args()
     before = read(arguments.before) if arguments.before else None
-    run = read(arguments.source) if arguments.source else measure(arguments.goals, arguments.seconds)
-    if arguments.json:
-        pathlib.Path(arguments.json).write_text(json.dumps(run, indent=2) + '\n')
+    try:
+        if arguments.json:
+            open(arguments.json, 'a').close()  # minutes later it would be too late to say that it cannot be written
+        run = read(arguments.source) if arguments.source else measure(arguments.goals, arguments.seconds)
+        if arguments.json:
+            pathlib.Path(arguments.json).write_text(json.dumps(run, indent=2) + '\n')
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
+        sys.exit(str(error))
     if arguments.docs:
         PAGE.write_text(figures.with_table(PAGE.read_text(), run))
     print(figures.text(run, before))

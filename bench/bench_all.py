@@ -11,7 +11,6 @@ import os
 import pathlib
 import platform
 import re
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -136,7 +135,6 @@ def of_rest():
     for name in 'resident', 'locked':
         yield 'rest/' + name, of_value('node at rest, %s memory' % name, 'MB', found[name] / 1e6)
     yield 'rest/wake_ups', of_value("the loop's wake-ups alone", '% of a core', 100 * found['wake_ups_alone']['processor'])
-    # An earlier node does not name the loop's thread, so that it counts among the others.
     shares = [found[threads]['processor'] for threads in ('loop', 'rest')]
     yield 'rest/processor', of_value('node at rest, all threads', '% of a core', 100 * sum(shares), 'rest/wake_ups')
 
@@ -156,15 +154,7 @@ class LoopDiagnostics:
                     self._values[value.key].append(value.value)
 
     def figures(self):
-        """Of all times that it tells a median and a p99 of: the median of each over the run's seconds."""
-        found = {}
-        for key, values in list(self._values.items()):
-            part = re.fullmatch(r'(.*?),? (median|p99) \[s\]', key)
-            if part:
-                figure = found.setdefault('loop/' + part.group(1), dict(
-                    of_value(part.group(1).lower() + ', live', 'us', None), count=len(values)))
-                figure[part.group(2)] = 1e6 * statistics.median(map(float, values))
-        return found
+        return figures.of_diagnostics(dict(self._values), {'wake-up delay': 'wake_up', 'cycle duration': 'cycle'})
 
 
 def measure_goals(goals, seconds):

@@ -11,7 +11,6 @@ import os
 import pathlib
 import platform
 import re
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -32,7 +31,7 @@ PAGE = ROOT / 'docs/performance.md'
 NODE = '/grinder'
 COMMAND_RUNS = 10
 
-REPETITIONS = 5
+REPETITIONS = 9
 BENCHMARKS = r'^(setpointFloor|step/[0-9]|next/[0-9]|cycle|plan/0/real_time|planTool/real_time|checkCutter/0|collision)$'
 
 
@@ -53,8 +52,10 @@ def origin():
 def run_benchmarks():
     """Those of Google Benchmark, by name; times in s, each the median of some repetitions."""
     with tempfile.NamedTemporaryFile(suffix='.json') as out, open(ROOT / 'build/bench_grinder.log', 'w') as log:
-        subprocess.run([BUILD / 'bench_grinder', '--benchmark_filter=' + BENCHMARKS, '--benchmark_min_time=0.2',
+        subprocess.run([BUILD / 'bench_grinder', '--benchmark_filter=' + BENCHMARKS, '--benchmark_min_time=0.1',
                         '--benchmark_repetitions=%d' % REPETITIONS, '--benchmark_report_aggregates_only=true',
+                        # What else the computer does comes to the floor and to what stands on it alike.
+                        '--benchmark_enable_random_interleaving=true',
                         '--benchmark_out=' + out.name, '--benchmark_out_format=json'],
                        check=True, stdout=log, stderr=log)
         found = json.load(out)['benchmarks']
@@ -134,7 +135,6 @@ def of_rest():
     for name in 'resident', 'locked':
         yield 'rest/' + name, of_value('node at rest, %s memory' % name, 'MB', found[name] / 1e6)
     yield 'rest/wake_ups', of_value("the loop's wake-ups alone", '% of a core', 100 * found['wake_ups_alone']['processor'])
-    # An earlier node does not name the loop's thread, so that it counts among the others.
     shares = [found[threads]['processor'] for threads in ('loop', 'rest')]
     yield 'rest/processor', of_value('node at rest, all threads', '% of a core', 100 * sum(shares), 'rest/wake_ups')
 
@@ -154,15 +154,7 @@ class LoopDiagnostics:
                     self._values[value.key].append(value.value)
 
     def figures(self):
-        """Of all times that it tells a median and a p99 of: the median of each over the run's seconds."""
-        found = {}
-        for key, values in list(self._values.items()):
-            part = re.fullmatch(r'(.*?),? (median|p99) \[s\]', key)
-            if part:
-                figure = found.setdefault('loop/' + part.group(1), dict(
-                    of_value(part.group(1).lower() + ', live', 'us', None), count=len(values)))
-                figure[part.group(2)] = 1e6 * statistics.median(map(float, values))
-        return found
+        return figures.of_diagnostics(dict(self._values), {'wake-up delay': 'wake_up', 'cycle duration': 'cycle'})
 
 
 def measure_goals(goals, seconds):
@@ -203,8 +195,15 @@ def measure(goals, seconds):
 
 
 def read(path):
-    with open(path) as file:
-        return json.load(file)
+    """A run from a file; ends the program if it has none."""
+    try:
+        with open(path) as file:
+            run = json.load(file)
+    except (OSError, ValueError) as error:
+        sys.exit('%s: %s' % (path, error))
+    if not isinstance(run, dict) or 'figures' not in run:
+        sys.exit('%s: not written by scripts/bench --json' % path)
+    return run
 
 
 def main():
@@ -218,9 +217,14 @@ def main():
     parser.add_argument('--seconds', metavar='S', type=float, default=30, help='longest time for them (default 30)')
     arguments = parser.parse_args()
     before = read(arguments.before) if arguments.before else None
-    run = read(arguments.source) if arguments.source else measure(arguments.goals, arguments.seconds)
-    if arguments.json:
-        pathlib.Path(arguments.json).write_text(json.dumps(run, indent=2) + '\n')
+    try:
+        if arguments.json:
+            open(arguments.json, 'a').close()  # minutes later it would be too late to say that it cannot be written
+        run = read(arguments.source) if arguments.source else measure(arguments.goals, arguments.seconds)
+        if arguments.json:
+            pathlib.Path(arguments.json).write_text(json.dumps(run, indent=2) + '\n')
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
+        sys.exit(str(error))
     if arguments.docs:
         PAGE.write_text(figures.with_table(PAGE.read_text(), run))
     print(figures.text(run, before))

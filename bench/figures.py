@@ -7,6 +7,7 @@ comparison of two runs. A run is what its JSON file holds:
 `p99` and `floor` are missing where there is none; `count` is of the samples."""
 
 import math
+import re
 import statistics
 
 FACTORS = {'s': 1, 'ms': 1e3, 'us': 1e6, 'ns': 1e9}
@@ -30,6 +31,21 @@ def of_times(label, unit, seconds, floor=None):
     factor = FACTORS[unit]
     return dict(of_value(label, unit, factor * statistics.median(seconds), floor),
                 p99=factor * percentile(seconds, 0.99), count=len(seconds))
+
+
+def of_diagnostics(values, floors):
+    """The times that a node tells on /diagnostics as "Median ... [s]" and "99 % ... [s]", each the median of what it has told.
+    @param values lists of texts, by key. @param floors names of figures, by the time's name."""
+    found = {}
+    for key, told in values.items():
+        parts = re.fullmatch(r'(Median|99 %) (.*) \[s\]', key)
+        if not parts:
+            continue
+        name = parts.group(2)
+        figure = found.setdefault('loop/' + name, of_value(name + ', live', 'us', None, floors.get(name)))
+        value = 1e6 * statistics.median(map(float, told))
+        figure.update({'median': value, 'count': len(told)} if parts.group(1) == 'Median' else {'p99': value})
+    return found
 
 
 def ratio(figures, name):

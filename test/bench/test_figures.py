@@ -45,6 +45,22 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(figures.percentile(range(1000), 0.99), 989)
         self.assertEqual(figures.percentile(range(101), 0.99), 99)
 
+    def test_times_that_the_node_tells(self):
+        values = {'State': ['ready', 'running'], 'Longest cycle duration [s]': ['1', '1', '1'], 'Mean period [s]': ['0.001'],
+                  '99 % cycle duration [s]': ['9e-06', '7e-06', '8e-06'], 'Median cycle duration [s]': ['2e-06', '3e-06', '4e-06'],
+                  'Median wake-up delay [s]': ['5e-05']}
+        found = figures.of_diagnostics(values, {'wake-up delay': 'wake_up'})
+        self.assertEqual(set(found), {'loop/cycle duration', 'loop/wake-up delay'})
+        cycle, delay = found['loop/cycle duration'], found['loop/wake-up delay']
+        self.assertAlmostEqual(cycle['median'], 3)
+        self.assertAlmostEqual(cycle['p99'], 8)
+        self.assertEqual((cycle['unit'], cycle['count']), ('us', 3))
+        self.assertNotIn('floor', cycle)
+        self.assertAlmostEqual(delay['median'], 50)
+        self.assertNotIn('p99', delay)
+        self.assertEqual(delay['floor'], 'wake_up')
+        self.assertEqual(figures.of_diagnostics({}, {}), {})
+
     def test_ratio_is_that_of_the_times_whatever_their_units(self):
         self.assertAlmostEqual(figures.ratio(RUN['figures'], 'motion'), 2e-3 / 50e-6)
 

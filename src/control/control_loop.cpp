@@ -77,10 +77,12 @@ void ControlLoop::checkDrive() {
 }
 
 void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period) {
-  drive_command_.home = state_ == MachineState::kHoming;
-  drive_command_.spindle = drive_command_.coolant = stream_ != nullptr;
+  // Put together here and copied as a whole, like record and status.
+  DriveCommand drive_command = drive_command_;
+  drive_command.home = state_ == MachineState::kHoming;
+  drive_command.spindle = drive_command.coolant = stream_ != nullptr;
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
-  drive_.setCommand(drive_command_);
+  drive_.setCommand(drive_command);
   hw_.write(time, period);
   history_.add({command_, written_});
 }
@@ -90,18 +92,13 @@ void ControlLoop::publish() {
   record_.state = state_;
   record_.feed_override = feed_override_;
   record_.wheel_in_work = wheel_.wheel().in_work;
-  if (records_.push(record_)) {
-    record_.job_ended = false;
-  } else {
-    ++record_.records_lost;  // job_ended stays set for the next record that fits
-  }
 
   ++next_status_.cycles;
   next_status_.time = record_.time;
   next_status_.state = state_;
   next_status_.homed = record_.drive.homed;
-  std::copy(command_.data(), command_.data() + kAxisCount, next_status_.command.begin());
-  std::copy(record_.position.data(), record_.position.data() + kAxisCount, next_status_.position.begin());
+  Eigen::Map<Axes>(next_status_.command.data()) = command_;
+  Eigen::Map<Axes>(next_status_.position.data()) = record_.position;
   next_status_.position_valid = record_.position.isFinite().all() && record_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = record_.feed_override;
   next_status_.swivel = record_.swivel;
@@ -109,6 +106,13 @@ void ControlLoop::publish() {
   next_status_.probe_contact = record_.drive.probe_contact;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
+
+  // Both are filled in before they are copied: a copy of what was just written has to wait for it.
+  if (records_.push(record_)) {
+    record_.job_ended = false;
+  } else {
+    ++record_.records_lost;  // job_ended stays set for the next record that fits
+  }
   status_.store(next_status_);
 }
 
@@ -125,21 +129,23 @@ void ControlLoop::awaitHoming() {
   fail(fault);
 }
 
-void ControlLoop::awaitSpindle() {
+/// @return whether the job begins in this cycle. Its first setpoint moves nothing: the axes stand there.
+bool ControlLoop::awaitSpindle() {
   const Interlock open = openInterlock();
   if (open == Interlock::kNone) {
     apply(MachineEvent::kDone);
     if (stream_->holding()) apply(MachineEvent::kHold);
-    return;
+    return true;
   }
   waited_ += record_.period;
-  if (waited_ <= config_.spindle_timeout) return;
+  if (waited_ <= config_.spindle_timeout) return false;
   record_.fault.kind = FaultKind::kInterlock;
   record_.fault.interlock = open;
   record_.fault.value = waited_;
   record_.fault.limit = config_.spindle_timeout;
   endJob(JobEnd::kFault);
   comeToRest();
+  return false;
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -167,22 +173,21 @@ void ControlLoop::slowDownIfLate() {
 }
 
 void ControlLoop::advanceJob() {
-  if (state_ == MachineState::kStarting) return awaitSpindle();
+  if (state_ == MachineState::kStarting && !awaitSpindle()) return;
   // Nothing has moved yet, so there is nothing to stop.
   if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
   checkInterlocks();
   stream_->setFeedOverride(feed_override_);
-  Setpoint setpoint;
-  bool moves = stream_->next(setpoint);
-  if (!moves && beginLiftOff()) moves = stream_->next(setpoint);
+  bool moves = stream_->next(record_.setpoint);
+  if (!moves && beginLiftOff()) moves = stream_->next(record_.setpoint);
   if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
   if (!moves) return restJob();
-  commandOfJob(setpoint);
+  commandOfJob();
 }
 
-void ControlLoop::commandOfJob(const Setpoint& setpoint) {
-  command(setpoint, job_offset_);
-  if (stream_) written_.add(setpoint);
+void ControlLoop::commandOfJob() {
+  command(job_offset_);
+  if (stream_) written_.add(record_.setpoint);
 }
 
 void ControlLoop::advanceLift() {
@@ -192,17 +197,17 @@ void ControlLoop::advanceLift() {
 }
 
 bool ControlLoop::advanceAxisMove() {
-  Setpoint setpoint;
+  Setpoint& setpoint = record_.setpoint;
   if (!axis_move_.next(setpoint)) return allReachedAxes();
   if (stream_) {
     // The axes rest already where the move begins.
     if (setpoint.cycle == 0 && !axis_move_.next(setpoint)) return allReachedAxes();
     setpoint.position -= job_offset_;
     stream_->adopt(setpoint);
-    commandOfJob(setpoint);
+    commandOfJob();
     return false;
   }
-  command(setpoint);
+  command();
   if (record_.has_setpoint) record_.job = 0;
   return false;
 }
@@ -231,8 +236,10 @@ void ControlLoop::checkInterlocks() {
   }
 }
 
+/// Commands the record's setpoint, unless it exceeds a limit.
 /// @param offset machine position - position of the setpoint [m], A [rad].
-void ControlLoop::command(const Setpoint& setpoint, const Axes& offset) {
+void ControlLoop::command(const Axes& offset) {
+  const Setpoint& setpoint = record_.setpoint;
   if (const auto violation = limit_check_.check(setpoint, offset)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;
@@ -243,7 +250,6 @@ void ControlLoop::command(const Setpoint& setpoint, const Axes& offset) {
   command_ = setpoint.position + offset;
   rested_ = 0;
   record_.has_setpoint = true;
-  record_.setpoint = setpoint;
 }
 
 bool ControlLoop::allReachedAxes() { return record_.drive.commands_waiting <= rested_++; }

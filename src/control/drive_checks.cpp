@@ -4,6 +4,20 @@
 
 namespace flute_grinder {
 
+namespace {
+
+/// @param value,limit what is beyond which limit, at which axis.
+LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis = 0) noexcept {
+  LoopFault fault;
+  fault.kind = kind;
+  fault.axis = axis;
+  fault.value = value;
+  fault.limit = limit;
+  return fault;
+}
+
+}  // namespace
+
 Refusal DriveChecks::powerRefusal(const CycleRecord& record) const noexcept {
   if (record.drive.emergency_stop) return Refusal::kEmergencyStop;
   if (record.drive.fault) return Refusal::kDriveFault;
@@ -12,33 +26,18 @@ Refusal DriveChecks::powerRefusal(const CycleRecord& record) const noexcept {
 }
 
 std::optional<LoopFault> DriveChecks::findFault(const CycleRecord& record, bool moving_unbuffered) const noexcept {
-  LoopFault fault;
-  if (record.drive.emergency_stop) {
-    fault.kind = FaultKind::kEmergencyStop;
-    return fault;
-  }
+  if (record.drive.emergency_stop) return faultOf(FaultKind::kEmergencyStop);
   // Checked before drive fault and lost power, which may be the drive's reaction to underruns and late cycles.
   if (record.drive.underruns != underruns_at_power_on_) {
-    fault.kind = FaultKind::kUnderrun;
-    fault.value = static_cast<double>(record.drive.underruns - underruns_at_power_on_);
+    const auto count = static_cast<double>(record.drive.underruns - underruns_at_power_on_);
+    LoopFault fault = faultOf(FaultKind::kUnderrun, count);
     fault.cycle = record.setpoint.cycle;
     return fault;
   }
   const double longest = config_.late_fault * config_.machine.period;
-  if (moving_unbuffered && !(record.period <= longest)) {
-    fault.kind = FaultKind::kLate;
-    fault.value = record.period;
-    fault.limit = longest;
-    return fault;
-  }
-  if (record.drive.fault) {
-    fault.kind = FaultKind::kDriveFault;
-    return fault;
-  }
-  if (!record.drive.enabled) {
-    fault.kind = FaultKind::kPowerLost;
-    return fault;
-  }
+  if (moving_unbuffered && !(record.period <= longest)) return faultOf(FaultKind::kLate, record.period, longest);
+  if (record.drive.fault) return faultOf(FaultKind::kDriveFault);
+  if (!record.drive.enabled) return faultOf(FaultKind::kPowerLost);
   return findFeedbackFault(record);
 }
 
@@ -47,27 +46,15 @@ bool DriveChecks::feedbackIsFresh(const CycleRecord& record) const noexcept {
 }
 
 std::optional<LoopFault> DriveChecks::findFeedbackFault(const CycleRecord& record) const noexcept {
-  LoopFault fault;
   if (!feedbackIsFresh(record)) {
-    fault.kind = FaultKind::kStaleFeedback;
-    fault.value = record.feedback_age;
-    fault.limit = config_.feedback_timeout;
-    return fault;
+    return faultOf(FaultKind::kStaleFeedback, record.feedback_age, config_.feedback_timeout);
   }
   for (int i = 0; i < kAxisCount; ++i) {
-    fault.axis = i;
-    if (!std::isfinite(record.position[i])) {
-      fault.kind = FaultKind::kInvalidFeedback;
-      fault.value = record.position[i];
-      return fault;
-    }
-    const double error = std::abs(record.command_in_effect[i] - record.position[i]);
-    if (!(error <= config_.following_error[i])) {
-      fault.kind = FaultKind::kFollowingError;
-      fault.value = error;
-      fault.limit = config_.following_error[i];
-      return fault;
-    }
+    const double position = record.position[i];
+    if (!std::isfinite(position)) return faultOf(FaultKind::kInvalidFeedback, position, 0, i);
+    const double error = std::abs(record.command_in_effect[i] - position);
+    const double allowed = config_.following_error[i];
+    if (!(error <= allowed)) return faultOf(FaultKind::kFollowingError, error, allowed, i);
   }
   return std::nullopt;
 }

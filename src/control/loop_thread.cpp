@@ -69,6 +69,7 @@ void ControlLoop::run() {
     hw_.wait(nominal);
     const Clock::time_point now = Clock::now();
     cycle(start_time + nanoseconds(now - start), nanoseconds(now - last));
+    record_.busy = std::chrono::duration<double>(Clock::now() - now).count();
     last = now;
   }
   drive_command_ = DriveCommand{};

@@ -98,6 +98,8 @@ std::uint64_t FeedLaw::skipCruise(double dt, double margin) noexcept {
 }
 
 FeedLaw::State FeedLaw::after(const State& s, double jerk, double t) noexcept {
+  // At constant speed, which is most of the time: the same figures without a division.
+  if (jerk == 0 && s.acceleration == 0) return {s.position + t * s.speed, s.speed, 0};
   return {s.position + t * (s.speed + t * (s.acceleration / 2 + t * jerk / 6)),
           s.speed + t * (s.acceleration + t * jerk / 2), s.acceleration + t * jerk};
 }

@@ -12,18 +12,16 @@ constexpr double kRelativeRounding = 1e-9;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Whether every |value| is within its limit; false for NaN. Branch-free for speed.
-bool within(const Axes& value, const Axes& limit) noexcept {
-  bool good = true;
-  for (int axis = 0; axis < kAxisCount; ++axis) good &= std::abs(value[axis]) <= limit[axis];
-  return good;
+/// Whether every value is within its limits; false for NaN. Asks what a clamp to the limits would change, because that
+/// is computed for all axes at once: it takes half the time of comparisons.
+bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
+  return (value.max(low).min(high) - value).abs().sum() == 0;
 }
 
-/// The same for a lower and an upper limit.
-bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
-  bool good = true;
-  for (int axis = 0; axis < kAxisCount; ++axis) good &= (value[axis] >= low[axis]) & (value[axis] <= high[axis]);
-  return good;
+/// Whether every |value| is within its limit; false for NaN.
+bool within(const Axes& value, const Axes& limit) noexcept {
+  const Axes size = value.abs();
+  return (size.min(limit) - size).sum() == 0;
 }
 
 }  // namespace
@@ -47,14 +45,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const 
   last_ = p;
 
   violation_count_ = 0;
-  // A machine position at its limit is rounded on the way to work coordinates, and on the way back. Both sums are
-  // exact for an offset of 0.
-  const Axes machine = p + offset;
-  const Axes rounding =
-      (offset == 0).select(0, kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs())));
-  if (!between(machine, limits_.min_position - rounding, limits_.max_position + rounding)) {
-    checkPosition(setpoint, machine, rounding);
-  }
+  if (!between(p + offset, limits_.min_position, limits_.max_position)) checkPosition(setpoint, offset);
   if (!within(velocity_, limits_.max_velocity)) {
     checkSize(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_);
   }
@@ -73,7 +64,12 @@ void LimitCheck::slowPastDown() noexcept {
   slow_down_ = 1;
 }
 
-void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& position, const Axes& rounding) noexcept {
+void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept {
+  const Axes position = setpoint.position + offset;
+  // A machine position at its limit is rounded on the way to work coordinates, and on the way back. Both sums are
+  // exact for an offset of 0.
+  const Axes rounding =
+      (offset == 0).select(0, kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs())));
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const bool low = position[axis] < limits_.min_position[axis] - rounding[axis];
     const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];

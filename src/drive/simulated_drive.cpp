@@ -19,6 +19,9 @@ constexpr std::array<const char*, 10> kFaultNames{"none",         "emergency_sto
                                                   "nan_feedback", "drive_fault",    "reference_lost", "spindle_lost",
                                                   "coolant_lost", "swivel_slipped"};
 
+/// A buffer of the axes' values, to compute with.
+auto axes(std::array<double, kAxisCount>& buffer) { return Eigen::Map<Axes>(buffer.data()); }
+
 template <std::size_t N>
 int indexOf(const std::array<const char*, N>& names, const std::string& name) {
   const auto it = std::find(names.begin(), names.end(), name);
@@ -88,6 +91,8 @@ void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
     const int axis = static_cast<int>(i);
     motor_[axis] = model[i].start_position;
     offset_[axis] = status_.homed ? 0 : motor_[axis];
+    time_constant_[axis] = model[i].time_constant;
+    counts_per_unit_[axis] = model[i].counts_per_unit;
     position_[i] = command_[i] = sent_[i] = motor_[axis] - offset_[axis];
   }
 }
@@ -100,17 +105,15 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
 
   readSwitches(fault);
   readEquipment(fault, dt);
+  const bool fresh = fault != Fault::kStaleFeedback;
+  if (fresh) ++status_.feedback_count;
   const Axes last = motor_;
   moveMotors(fault, failing_axis, dt);
-  status_.probe_contact = touchesBlank();
-  if (fault == Fault::kStaleFeedback) return;
-  for (int i = 0; i < kAxisCount; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    velocity_[n] = dt > 0 ? (motor_[i] - last[i]) / dt : 0;
-    position_[n] = std::round((motor_[i] - offset_[i]) * model_[n].counts_per_unit) / model_[n].counts_per_unit;
-    if (fault == Fault::kNanFeedback && i == failing_axis) position_[n] = std::numeric_limits<double>::quiet_NaN();
-  }
-  ++status_.feedback_count;
+  if (blank_) status_.probe_contact = touches(*blank_);
+  if (!fresh) return;
+  axes(velocity_) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
+  axes(position_) = ((motor_ - offset_) * counts_per_unit_).rint() / counts_per_unit_;
+  if (fault == Fault::kNanFeedback) axes(position_)[failing_axis] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void SimulatedDrive::readSwitches(Fault fault) {
@@ -133,21 +136,20 @@ void SimulatedDrive::readEquipment(Fault fault, double dt) {
   status_.swivel = equipment_.swivel + (fault == Fault::kSwivelSlipped ? kSlip : 0);
 }
 
-bool SimulatedDrive::touchesBlank() const {
-  if (!blank_) return false;
-  const double radius = blank_->ball_diameter / 2;
-  const double x = blank_->ball_centre[0] + motor_[kX], y = blank_->ball_centre[1] + motor_[kY],
-               z = blank_->ball_centre[2] + motor_[kZ];
-  const double before_end = std::max(0.0, blank_->end_face - x);
-  if (blank_->rake_face) {
+bool SimulatedDrive::touches(const Blank& blank) const {
+  const double radius = blank.ball_diameter / 2;
+  const double x = blank.ball_centre[0] + motor_[kX], y = blank.ball_centre[1] + motor_[kY],
+               z = blank.ball_centre[2] + motor_[kZ];
+  const double before_end = std::max(0.0, blank.end_face - x);
+  if (blank.rake_face) {
     // Turned back with the work.
-    const double a = motor_[kA] - blank_->rake_face->angle;
-    const double below = blank_->rake_face->height - (y * std::sin(a) + z * std::cos(a));
+    const double a = motor_[kA] - blank.rake_face->angle;
+    const double below = blank.rake_face->height - (y * std::sin(a) + z * std::cos(a));
     if (below > 0) return before_end == 0 && below <= radius;
   }
-  const double eccentricity = blank_->run_out / 2;
+  const double eccentricity = blank.run_out / 2;
   const double from_axis = std::hypot(y - eccentricity * std::cos(motor_[kA]), z + eccentricity * std::sin(motor_[kA]));
-  return std::hypot(before_end, std::max(0.0, from_axis - blank_->diameter / 2)) <= radius;
+  return std::hypot(before_end, std::max(0.0, from_axis - blank.diameter / 2)) <= radius;
 }
 
 void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
@@ -161,10 +163,7 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
   if (status_.homing) {
     home(dt);
   } else if (!drive_command_.home) {
-    for (int i = 0; i < kAxisCount; ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      motor_[i] += (sent_[n] + offset_[i] - motor_[i]) * dt / (model_[n].time_constant + dt);
-    }
+    motor_ += (axes(sent_) + offset_ - motor_) * (dt / (time_constant_ + dt));
   }
   if (fault == Fault::kStuckAxis) motor_[failing_axis] = stuck;
 }

@@ -43,6 +43,13 @@ void reportKept(Diagnostics::Status& status, const std::string& error, unsigned 
   }
 }
 
+/// @param of what they are, in lower case.
+void addDurations(Diagnostics::Status& status, const std::string& of, const Durations& durations) {
+  status.add("Median " + of + " [s]", durations.quantile(0.5));
+  status.add("99 % " + of + " [s]", durations.quantile(0.99));
+  status.add("Longest " + of + " [s]", durations.longest());
+}
+
 template <typename... Parts>
 std::string text(const Parts&... parts) {
   std::ostringstream stream;
@@ -95,6 +102,8 @@ void Diagnostics::add(const CycleRecord& record) {
   loop_.total += record.period;
   keepLargest(loop_.longest, record.period);
   if (isLate(record.period, config_.machine.period)) ++loop_.late;
+  loop_.busy.add(record.busy);
+  loop_.delay.add(record.period - config_.machine.period);
 
   addDrive(record);
   const bool was_powered = isPowered(last_.state);
@@ -185,6 +194,8 @@ void Diagnostics::reportLoop(Status& status) {
   status.add("Nominal period [s]", config_.machine.period);
   status.add("Mean period [s]", loop_.cycles > 0 ? loop_.total / cycles : 0);
   status.add("Longest period [s]", loop_.longest);
+  addDurations(status, "cycle duration", loop_.busy);
+  addDurations(status, "wake-up delay", loop_.delay);
   status.add("Cycles", loop_.cycles);
   status.add("Late cycles", loop_.late);
   status.add("Records lost", last_.records_lost);

@@ -79,6 +79,8 @@ class FakeDrive : public AxesHW {
     written_drive = drive_command;
   }
 
+  void wait(const ros::Duration& period) override { on_wait ? on_wait() : AxesHW::wait(period); }
+
   void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, position.begin()); }
 
   // The buffers, for the tests.
@@ -89,6 +91,7 @@ class FakeDrive : public AxesHW {
   Buffer& command = command_;
   DriveCommand& drive_command = drive_command_;
   std::function<void(FakeDrive&)> on_read;  ///< has the last word on what is read
+  std::function<void()> on_wait;            ///< in place of the wait
 
   Buffer written{};  ///< as of the last write()
   DriveCommand written_drive;

@@ -101,7 +101,7 @@ class Rig {
   }
   SetpointStream paperStream() const { return paperStream(config_.machine); }
 
-  /// Starts a job and runs until spindle and coolant let it run; the next cycle writes its first setpoint.
+  /// Starts a job and runs until spindle and coolant let it run: to its first setpoint, at rest.
   void start(SetpointStream& job) {
     const RequestReply answer = askToStart(job);
     ASSERT_TRUE(answer.accepted) << answer.text;

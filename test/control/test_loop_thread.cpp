@@ -62,6 +62,26 @@ TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   EXPECT_NEAR(record.time - first, sum, 1e-6);
 }
 
+TEST_F(ControlLoopThread, TellsHowLongTheCycleBeforeTookWithoutTheWait) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds taken{2};
+  const auto spend = [&] {
+    for (const auto start = Clock::now(); Clock::now() - start < taken;) {
+    }
+  };
+  drive_.on_read = [&](FakeDrive&) { spend(); };
+  drive_.on_wait = spend;
+  loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
+  EXPECT_EQ(record.busy, 0);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_TRUE(popInTime(record));
+    EXPECT_GE(record.busy, 0.002);
+    EXPECT_LE(record.busy, record.period - 0.002);
+  }
+}
+
 TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
   LoopConfig config = machineConfig();
   config.following_error.setConstant(1);

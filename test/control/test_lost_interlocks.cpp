@@ -40,12 +40,12 @@ std::vector<LossMoment> lossMoments() {
     const S in = state;
     all.push_back({std::string("in_") + toString(in), [=](Rig<FakeDrive>& rig) { bringTo(rig, in); }, then});
   }
-  all.push_back({"before_the_first_setpoint",
+  all.push_back({"at_rest_at_the_first_setpoint",
                  [](Rig<FakeDrive>& rig) {
                    rig.cycle();
                    rig.startPaper();
                  },
-                 S::kHolding});
+                 S::kHeld});
   all.push_back({"on_the_way_back_to_the_work",
                  [](Rig<FakeDrive>& rig) {
                    bringTo(rig, S::kResuming);

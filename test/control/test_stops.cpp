@@ -408,7 +408,7 @@ TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
       rig.stream.emplace(rig.paperStream());
       rig.start(*rig.stream);
     }();
-    std::vector<Setpoint> written;
+    std::vector<Setpoint> written{rig.last().setpoint};
     std::uint32_t ended = 0;
     for (int i = 0; i < 100000 && !rig.last().job_ended; ++i) {
       rig.cycle();

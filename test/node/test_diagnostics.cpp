@@ -97,6 +97,36 @@ TEST_F(DiagnosticsTest, LoopTellsItsPeriods) {
   EXPECT_EQ(value(status, "Cycles"), "4");
 }
 
+TEST_F(DiagnosticsTest, LoopTellsItsCyclesDurationsAndItsWakeUpsDelays) {
+  const auto seconds = [&](const Diagnostics::Status& status, const std::string& key) {
+    return std::stod(value(status, key));
+  };
+  record_.busy = 2e-6;
+  watch(60);
+  record_.busy = 5e-6;
+  record_.period = 0.00103;
+  watch(39);
+  record_.busy = 70e-6;
+  record_.period = 0.0012;
+  watch();
+  auto status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
+  // Quantiles are told to 4.4 %.
+  EXPECT_NEAR(seconds(status, "Median cycle duration [s]"), 2e-6, 0.1e-6);
+  EXPECT_NEAR(seconds(status, "99 % cycle duration [s]"), 5e-6, 0.25e-6);
+  EXPECT_EQ(value(status, "Longest cycle duration [s]"), "7e-05");
+  EXPECT_EQ(value(status, "Median wake-up delay [s]"), "0");
+  EXPECT_NEAR(seconds(status, "99 % wake-up delay [s]"), 30e-6, 1.5e-6);
+  EXPECT_EQ(value(status, "Longest wake-up delay [s]"), "0.0002");
+
+  record_.busy = 1e-6;
+  record_.period = 0.0009;
+  watch();
+  status = ask(&Diagnostics::reportLoop);
+  EXPECT_EQ(value(status, "Longest cycle duration [s]"), "1e-06");
+  EXPECT_EQ(value(status, "Longest wake-up delay [s]"), "0");
+}
+
 TEST_F(DiagnosticsTest, LateCyclesAreAWarningAndThenAnError) {
   const auto late = [&](int of_hundred) {
     record_.period = 0.0016;

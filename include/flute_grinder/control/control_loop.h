@@ -97,7 +97,7 @@ class ControlLoop : public RequestBox {
   double lowestJog(int axis) const;
 
   void awaitHoming();
-  void awaitSpindle();
+  bool awaitSpindle();
   void advance();
   void slowDownIfLate();
   void advanceJob();
@@ -107,8 +107,8 @@ class ControlLoop : public RequestBox {
   void endJog();
   bool advanceAxisMove();
   void checkInterlocks();
-  void commandOfJob(const Setpoint& setpoint);
-  void command(const Setpoint& setpoint, const Axes& offset = Axes::Zero());
+  void commandOfJob();
+  void command(const Axes& offset = Axes::Zero());
   bool allReachedAxes();
   void restJob();
   bool beginLiftOff();

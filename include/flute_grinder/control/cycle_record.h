@@ -16,6 +16,7 @@ namespace flute_grinder {
 struct CycleRecord {
   double time = 0;    ///< time since the epoch of ROS time, but monotonic [s]
   double period = 0;  ///< since the previous cycle [s]
+  double busy = 0;    ///< how much of it the previous cycle took, without the wait for this one; 0 in the first [s]
   MachineState state = MachineState::kDisabled;
   DriveStatus drive;
   double feedback_age = 0;       ///< time since the drive last delivered fresh positions [s]

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace flute_grinder {
 
@@ -20,12 +22,10 @@ class SeqLock {
 
   /// For one thread only.
   void store(const T& value) noexcept {
-    Words words{};
-    std::memcpy(words.data(), &value, sizeof value);
     const std::uint64_t version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
     // Release: a reader that sees one of these words also sees the odd version.
-    for (std::size_t i = 0; i < words.size(); ++i) words_[i].store(words[i], std::memory_order_release);
+    storeWords(reinterpret_cast<const char*>(&value), std::make_index_sequence<kWords>());
     version_.store(version + 2, std::memory_order_release);
   }
 
@@ -44,10 +44,24 @@ class SeqLock {
   }
 
  private:
-  using Words = std::array<std::uint64_t, (sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t)>;
+  static constexpr std::size_t kWord = sizeof(std::uint64_t);
+  static constexpr std::size_t kWords = (sizeof(T) + kWord - 1) / kWord;
+  using Words = std::array<std::uint64_t, kWords>;
+
+  /// Without a loop or a copy of the value in between: this is a good part of a cycle.
+  template <std::size_t... i>
+  void storeWords(const char* bytes, std::index_sequence<i...>) noexcept {
+    (storeWord<i>(bytes), ...);
+  }
+  template <std::size_t i>
+  void storeWord(const char* bytes) noexcept {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes + i * kWord, std::min(kWord, sizeof(T) - i * kWord));
+    words_[i].store(word, std::memory_order_release);
+  }
 
   std::atomic<std::uint64_t> version_{0};  ///< odd while a store is in progress
-  std::array<std::atomic<std::uint64_t>, std::tuple_size_v<Words>> words_{};
+  std::array<std::atomic<std::uint64_t>, kWords> words_{};
 };
 
 }  // namespace flute_grinder

@@ -73,7 +73,7 @@ class LimitCheck {
 
  private:
   void slowPastDown() noexcept;
-  void checkPosition(const Setpoint& setpoint, const Axes& position, const Axes& rounding) noexcept;
+  void checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept;
   void checkPairEnd(const Setpoint& setpoint) noexcept;
   void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                  double rounding) noexcept;

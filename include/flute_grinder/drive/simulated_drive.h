@@ -84,7 +84,7 @@ class SimulatedDrive : public AxesHW {
  private:
   void readSwitches(Fault fault);
   void readEquipment(Fault fault, double dt);
-  bool touchesBlank() const;
+  bool touches(const Blank& blank) const;
   void moveMotors(Fault fault, int failing_axis, double dt);
   void home(double dt);
   bool onInjectFault(InjectFault::Request& request, InjectFault::Response& response);
@@ -95,8 +95,10 @@ class SimulatedDrive : public AxesHW {
   std::atomic<std::uint16_t> injected_{0};  ///< fault and axis in one word
   ros::ServiceServer inject_service_;
 
-  Axes motor_ = Axes::Zero();   ///< true positions of the axes
-  Axes offset_ = Axes::Zero();  ///< of the encoders' readings
+  Axes time_constant_ = Axes::Zero();    ///< of the model [s]
+  Axes counts_per_unit_ = Axes::Zero();  ///< of the model [1/m], A [1/rad]
+  Axes motor_ = Axes::Zero();            ///< true positions of the axes
+  Axes offset_ = Axes::Zero();           ///< of the encoders' readings
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;  ///< fraction of full speed
   Buffer sent_{};             ///< commands at the last write()

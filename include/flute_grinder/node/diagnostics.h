@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/durations.h"
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/core/limit_check.h"
 
@@ -74,6 +75,8 @@ class Diagnostics {
     std::uint64_t late = 0;
     double longest = 0;  ///< period [s]
     double total = 0;    ///< [s]
+    Durations busy;      ///< of the cycles, without the wait
+    Durations delay;     ///< of the wake-ups: what a period is longer than nominal
   };
   struct Drive {
     double feedback_age = 0;  ///< longest [s]

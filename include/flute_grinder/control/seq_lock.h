@@ -49,15 +49,15 @@ class SeqLock {
   using Words = std::array<std::uint64_t, kWords>;
 
   /// Without a loop or a copy of the value in between: this is a good part of a cycle.
-  template <std::size_t... i>
-  void storeWords(const char* bytes, std::index_sequence<i...>) noexcept {
-    (storeWord<i>(bytes), ...);
+  template <std::size_t... Index>
+  void storeWords(const char* bytes, std::index_sequence<Index...>) noexcept {
+    (storeWord<Index>(bytes), ...);
   }
-  template <std::size_t i>
+  template <std::size_t Index>
   void storeWord(const char* bytes) noexcept {
     std::uint64_t word = 0;
-    std::memcpy(&word, bytes + i * kWord, std::min(kWord, sizeof(T) - i * kWord));
-    words_[i].store(word, std::memory_order_release);
+    std::memcpy(&word, bytes + Index * kWord, std::min(kWord, sizeof(T) - Index * kWord));
+    words_[Index].store(word, std::memory_order_release);
   }
 
   std::atomic<std::uint64_t> version_{0};  ///< odd while a store is in progress

@@ -207,8 +207,8 @@ class TestSetting(OffsetsTest):
         self.check_both_refused('the machine is in state retracted; allowed: ready, disabled')
         run.cancel()
         run.wait()
-        # A plan of some seconds.
-        run = self.client.send(gc.paper(feed=1 * MM_MIN, infeed=0.02 * MM))
+        # A plan of a second or more: no pass is like another.
+        run = self.client.send(gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM))
         self.client.wait_for(lambda: run.feedback, 'feedback')
         self.check_both_refused('a job is being planned')
         run.cancel()

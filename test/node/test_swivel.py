@@ -140,10 +140,10 @@ class TestConfirmed(OwnNode):
         self.check_refused('confirmed', 30)
 
     def test_turned_while_the_job_is_planned_it_does_not_start(self):
-        # Passes enough for the plan to take a while.
+        # A stroke slow enough for the plan to take a while.
         self.assertTrue(self.grinder.confirm_swivel(ASKED * DEG).success)
         rest = self.grinder.wait_rest()
-        run = self.send(gc.paper(infeed=0.01 * MM))
+        run = self.send(gc.paper(feed=0.2 * MM_MIN))
         self.grinder.wait_for(lambda: any(f.state == 'planning' for f in run.feedback), 'planning')
         self.assertTrue(self.grinder.confirm_swivel(30 * DEG).success)
         run.wait()

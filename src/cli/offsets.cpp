@@ -88,12 +88,20 @@ void printTable(const std::string& node, const WorkOffsets& offsets, const Grind
   if (!offsets.error.empty()) std::printf("%s\n", offsets.error.c_str());
 }
 
+/// Whether a state is not from before the last change of the offsets, which it would contradict.
+bool agree(const GrinderState& state, const WorkOffsets& offsets) {
+  for (std::size_t i = 0; i < offsets.values.size(); ++i) {
+    // As the grinder computes it; an axis may have no position.
+    if (std::abs(state.position[i] - offsets.values[i] - state.work_position[i]) > 0) return false;
+  }
+  return true;
+}
+
 int show(ros::NodeHandle& nh, bool json) {
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
-  // A state from before the last change would contradict the offsets.
-  if (!watch.awaitNext()) return fail(kLinkLost);
+  if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
   if (json) {
     print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
   } else {

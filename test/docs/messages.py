@@ -42,7 +42,7 @@ MESSAGES = {
                                     "the flute's other wall first"),
     'src/geometry/touch_off.cpp': (),
     'src/messages/continue_job.cpp': (),
-    'src/node/diagnostics.cpp': ('of the allowed [%]',),
+    'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),
     'src/node/frames.cpp': (),
     'src/node/goal_desk.cpp': ('planned and checked; nothing moved',),
     'src/node/grinder_node.cpp': (),

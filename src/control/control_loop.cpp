@@ -130,7 +130,7 @@ void ControlLoop::awaitHoming() {
 }
 
 /// @return whether the job begins in this cycle. Its first setpoint moves nothing: the axes stand there.
-bool ControlLoop::awaitSpindle() {
+bool ControlLoop::awaitInterlocks() {
   const Interlock open = openInterlock();
   if (open == Interlock::kNone) {
     apply(MachineEvent::kDone);
@@ -173,7 +173,7 @@ void ControlLoop::slowDownIfLate() {
 }
 
 void ControlLoop::advanceJob() {
-  if (state_ == MachineState::kStarting && !awaitSpindle()) return;
+  if (state_ == MachineState::kStarting && !awaitInterlocks()) return;
   // Nothing has moved yet, so there is nothing to stop.
   if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
   checkInterlocks();
@@ -214,8 +214,10 @@ bool ControlLoop::advanceAxisMove() {
 
 Interlock ControlLoop::openInterlock() const {
   const Interlock open = flute_grinder::openInterlock(record_.drive);
-  const bool slipped = stream_ && !record_.swivel.isAt(job_swivel_);
-  return open == Interlock::kNone && slipped ? Interlock::kSwivel : open;
+  if (open != Interlock::kNone || !stream_) return open;
+  if (!record_.swivel.isAt(job_swivel_)) return Interlock::kSwivel;
+  const bool entered = in_journal_ || jobInJournal() == next_status_.jobs_started;
+  return entered ? Interlock::kNone : Interlock::kJournal;
 }
 
 void ControlLoop::checkInterlocks() {

@@ -146,6 +146,7 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   stream_ = job.stream;
   job_swivel_ = job.swivel;
   job_offset_ = job.offset;
+  in_journal_ = job.in_journal;
   wheel_.startJob(job.wheel);
   limit_check_.restart();
   record_.fault = LoopFault{};

@@ -84,10 +84,10 @@ std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint3
   return toReply(stops_.reply(event, ticket));
 }
 
-bool RequestBox::startJob(SetpointStream* stream) noexcept {
+bool RequestBox::startJob(SetpointStream* stream, bool in_journal) noexcept {
   const GrindProgram& program = stream->program();
   return job_starts_.post(
-      {stream, program.machine().work_offset, wheelOf(program), program.job().process.setup_swivel});
+      {stream, program.machine().work_offset, wheelOf(program), program.job().process.setup_swivel, in_journal});
 }
 
 RequestReply RequestBox::jog(const JogRequest& jog) {

@@ -36,6 +36,7 @@ const char* toString(Interlock interlock) noexcept {
     case Interlock::kCoolant: return "no coolant flows";
     case Interlock::kProbe: return "the measuring probe is in the way";
     case Interlock::kSwivel: return "the swivel is not at the job's angle";
+    case Interlock::kJournal: return "the journal does not contain the job";
   }
   return "unknown";
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPollPeriod = 0.001;             ///< [s]
 constexpr double kIdlePollPeriod = 0.02;          ///< without a goal [s]
-constexpr double kJournalPollPeriod = 0.0001;     ///< while a job waits for its entry [s]
+constexpr double kStartPollPeriod = 0.0001;       ///< while a job starts, and waits for its entry [s]
 const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
 const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
 /// How long the result waits for the last setpoints to be published and the journal to be written.
@@ -182,12 +182,31 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
     telemetry_.show(preview);
     return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
   }
-  goal_->phase = Phase::kJournaling;
-  thread_.setPeriod(kJournalPollPeriod);
+  startJob(std::move(preview));
+}
+
+void GoalDesk::startJob(std::shared_ptr<const Preview> preview) {
+  GoalHandle handle = goal_->handle;
+  const std::string& name = handle.getGoal()->job_name;
+  goal_->phase = Phase::kStarting;
+  thread_.setPeriod(kStartPollPeriod);
   goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
-  tracker_.begin(*plan.program, goal_->digest, handle.getGoal()->job_name, goal_->preview->first, goal_->number);
-  handle.setAccepted();  // while the disk writes
+  // Spindle and coolant start while the disk writes; the axes wait for the entry.
+  tracker_.begin(*goal_->preview->plan.program, goal_->digest, name, goal_->preview->first, goal_->number);
+  telemetry_.announceJob(goal_->number, handle.getGoalID(), goal_->preview, name);
+  bool posted = false;
+  const bool started = gate_.start([&](bool held) {
+    posted = loop_.startJob(goal_->preview->stream.get(), false);
+    if (posted && held) loop_.postStop(MachineEvent::kHold);
+  });
+  if (!started) return cancelBeforeStart();
+  if (!posted) {
+    rollBack();
+    return reject(handle, GrindResult::NOT_READY, "the control loop has not answered the start of the job before");
+  }
+  handle.setAccepted();
+  publishJob();
 }
 
 void GoalDesk::poll() {
@@ -198,8 +217,8 @@ void GoalDesk::poll() {
   if (!goal_) return;
   switch (goal_->phase) {
     case Phase::kPlanning: return publishPlanningFeedback();
-    case Phase::kJournaling: return startWhenJournaled();
     case Phase::kStarting: return checkStartReply();
+    case Phase::kJournaling: return releaseWhenJournaled();
     case Phase::kRunning: return endWhenPublished();
   }
 }
@@ -214,25 +233,6 @@ void GoalDesk::publishPlanningFeedback() {
   goal_->handle.publishFeedback(feedback);
 }
 
-void GoalDesk::startWhenJournaled() {
-  if (gate_.canceled()) return cancelBeforeStart();
-  if (!tracker_.upToDate()) return;
-  const std::string error = tracker_.error();
-  if (!error.empty()) return abortGoal(error);
-  telemetry_.announceJob(goal_->number, goal_->handle.getGoalID(), goal_->preview, goal_->handle.getGoal()->job_name);
-  SetpointStream* stream = goal_->preview->stream.get();
-  bool posted = false;
-  const bool started = gate_.start([&](bool held) {
-    posted = loop_.startJob(stream);
-    if (posted && held) loop_.postStop(MachineEvent::kHold);
-  });
-  goal_->phase = Phase::kStarting;
-  thread_.setPeriod(kPollPeriod);
-  if (!started) return cancelBeforeStart();
-  if (!posted) return abortGoal("the control loop has not answered the start of the job before");
-  publishJob();
-}
-
 void GoalDesk::publishJob() {
   GrindActionGoal job;
   job.header.stamp = ros::Time::now();
@@ -245,7 +245,21 @@ void GoalDesk::checkStartReply() {
   const auto reply = loop_.startJobReply();
   if (!reply) return;
   if (!reply->accepted) return abortGoal(reply->text);
+  goal_->phase = Phase::kJournaling;
+}
+
+void GoalDesk::releaseWhenJournaled() {
+  const bool ended = loop_.status().jobs_ended >= goal_->number;
+  if (!ended && !tracker_.upToDate()) return;
   goal_->phase = Phase::kRunning;
+  thread_.setPeriod(kPollPeriod);
+  if (ended) return;
+  goal_->journal_error = tracker_.error();
+  if (goal_->journal_error.empty()) {
+    loop_.confirmJournal(goal_->number);
+  } else {
+    loop_.postStop(MachineEvent::kCancel);
+  }
 }
 
 void GoalDesk::cancelBeforeStart() {
@@ -263,8 +277,10 @@ void GoalDesk::abortGoal(const std::string& text) {
 }
 
 void GoalDesk::rollBack() {
-  if (goal_->phase == Phase::kStarting) telemetry_.withdrawJob(goal_->number);
-  if (goal_->phase != Phase::kPlanning) tracker_.revert();
+  if (goal_->phase != Phase::kPlanning) {
+    telemetry_.withdrawJob(goal_->number);
+    tracker_.revert();
+  }
   release();
 }
 
@@ -274,7 +290,11 @@ void GoalDesk::endWhenPublished() {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (goal_->ended.isZero()) {
     goal_->ended = now;
-    tracker_.end(status);
+    if (goal_->journal_error.empty()) {
+      tracker_.end(status);
+    } else {
+      tracker_.revert();
+    }
   }
   const bool reported = telemetry_.jobsPublished() >= goal_->number && tracker_.upToDate();
   if (reported || now - goal_->ended > kEndTimeout) endJob();
@@ -283,33 +303,37 @@ void GoalDesk::endWhenPublished() {
 void GoalDesk::endJob() {
   const LoopStatus status = loop_.status();
   GoalHandle handle = goal_->handle;
-  const std::shared_ptr<const Preview> preview = goal_->preview;
   const std::uint64_t number = goal_->number;
+  const bool aborted = status.end == JobEnd::kFault || !goal_->journal_error.empty();
+  const GrindResult r = resultOfJob(status);
   release();
+  telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
+  if (aborted) {
+    ROS_ERROR_STREAM("goal aborted: " << r.error_string);
+    return handle.setAborted(r, r.error_string);
+  }
+  if (status.end == JobEnd::kCanceled) return handle.setCanceled(r, r.error_string);
+  handle.setSucceeded(r);
+}
+
+GrindResult GoalDesk::resultOfJob(const LoopStatus& status) const {
+  const JobPlan& plan = goal_->preview->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
-    at.tooth = static_cast<std::uint16_t>(preview->first.tooth);
-    at.pass = static_cast<std::uint16_t>(preview->first.pass);
-    at.x = preview->plan.program->start()[kX];
+    at.tooth = static_cast<std::uint16_t>(goal_->preview->first.tooth);
+    at.pass = static_cast<std::uint16_t>(goal_->preview->first.pass);
+    at.x = plan.program->start()[kX];
   }
-  const GrindProgram& program = *preview->plan.program;
-  const core::PathStatistics& statistics = preview->plan.statistics;
-  GrindResult r = result(GrindResult::SUCCESSFUL, "", statistics);
-  if (status.end == JobEnd::kFault) {
-    r = result(errorCode(status.fault.kind), {endReason(status, at, program)}, statistics);
+  GrindResult r = result(GrindResult::SUCCESSFUL, "", plan.statistics);
+  if (!goal_->journal_error.empty()) {
+    r = result(GrindResult::NOT_READY, goal_->journal_error, plan.statistics);
+  } else if (status.end == JobEnd::kFault) {
+    r = result(errorCode(status.fault.kind), {endReason(status, at, *plan.program)}, plan.statistics);
   } else if (status.end == JobEnd::kCanceled) {
-    r = result(GrindResult::CANCELED, {endReason(status, at, program)}, statistics);
+    r = result(GrindResult::CANCELED, {endReason(status, at, *plan.program)}, plan.statistics);
   }
   r.setpoints_written = status.setpoints_written;
-  telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
-  switch (status.end) {
-    case JobEnd::kFault:
-      ROS_ERROR_STREAM("goal aborted: " << r.error_string);
-      return handle.setAborted(r, r.error_string);
-    case JobEnd::kCanceled: return handle.setCanceled(r, r.error_string);
-    case JobEnd::kNone:
-    case JobEnd::kDone: return handle.setSucceeded(r);
-  }
+  return r;
 }
 
 void GoalDesk::release() {

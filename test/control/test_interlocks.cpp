@@ -162,6 +162,49 @@ TEST(BeforeAJob, SpindleThatIsTooSlowOnTheSimulatedDriveEndsIt) {
   EXPECT_TRUE(rig.setpoints().empty());
 }
 
+class WaitsForJournal : public testing::Test {
+ protected:
+  void SetUp() override {
+    rig_.cycle();
+    rig_.enable();
+    rig_.stream.emplace(rig_.paperStream());
+    ASSERT_TRUE(rig_.loop->startJob(&*rig_.stream, false));
+    const RequestReply answer = rig_.answerOf([this] { return rig_.loop->startJobReply(); });
+    ASSERT_TRUE(answer.accepted) << answer.text;
+  }
+
+  Rig<FakeDrive> rig_;
+};
+
+TEST_F(WaitsForJournal, SpindleRunsAndNothingMoves) {
+  rig_.loop->confirmJournal(rig_.loop->status().jobs_started - 1);  // of the job before
+  for (int i = 0; i < 15; ++i) {
+    rig_.cycle();
+    ASSERT_EQ(rig_.last().state, S::kStarting);
+    ASSERT_TRUE(rig_.drive.written_drive.spindle);
+    ASSERT_TRUE(rig_.drive.written_drive.coolant);
+  }
+  EXPECT_TRUE(rig_.setpoints().empty());
+}
+
+TEST_F(WaitsForJournal, StreamsTheWholeJobOnceItIsThere) {
+  rig_.run(15);
+  rig_.loop->confirmJournal(rig_.loop->status().jobs_started);
+  EXPECT_EQ(rig_.cycle().state, S::kRunning);
+  rig_.runToEnd();
+  expectCompleted(rig_);
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
+}
+
+TEST_F(WaitsForJournal, GivesUpAfterTheTimeout) {
+  rig_.runUntil(S::kReady);
+  EXPECT_EQ(rig_.last().fault.interlock, Interlock::kJournal);
+  EXPECT_EQ(rig_.last().fault.text(),
+            "the journal does not contain the job 0.021 s after the job was started, allowed 0.0205 s");
+  EXPECT_TRUE(rig_.setpoints().empty());
+  EXPECT_FALSE(rig_.drive.written_drive.spindle);
+}
+
 // ---------------------------------------------------------------------------------------------------------------------
 // Commands to the drive
 

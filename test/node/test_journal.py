@@ -467,11 +467,38 @@ class TestSlowDisk(JournalTest):
             file.write(str(seconds))
         os.rename(self.seconds + '.new', self.seconds)
 
-    def test_strokes_go_on_and_progress_waits_for_the_disk(self):
+    def setUp(self):
+        super().setUp()
         self.seconds = os.path.join(self.folder, 'seconds')
         library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libslow_fsync.so')
         self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
         self.addCleanup(self.slow_down, 0)
+
+    def test_spindle_starts_and_the_axes_wait_for_the_entry(self):
+        self.slow_down(100)
+        rest = self.client.wait_rest()
+        run = self.client.send(self.job)
+        self.client.wait_for(lambda: self.client.states[-1].spindle_at_speed, 'the spindle at speed')
+        self.assertEqual(self.client.fresh_state().state, GrinderState.STARTING)
+        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
+        self.assertEqual(run.setpoints, [])
+        self.assertFalse(os.path.exists(self.journal))
+        self.slow_down(0)
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED')
+        self.check_told(self.wait_finished())
+
+    def test_cancel_does_not_wait_for_the_entry(self):
+        self.slow_down(100)
+        run = self.client.send(self.job)
+        self.client.wait_state(GrinderState.STARTING)
+        run.cancel()
+        self.client.wait_state(GrinderState.READY)
+        self.slow_down(0)
+        run.wait()
+        self.assertEqual((run.status, run.setpoints), ('PREEMPTED', []))
+
+    def test_strokes_go_on_and_progress_waits_for_the_disk(self):
         run = self.hold_in_stroke_of(0, 1)
         journal = self.wait_left(run)
         gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place told')
@@ -484,6 +511,28 @@ class TestSlowDisk(JournalTest):
         self.slow_down(0)
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED')
+        self.check_told(self.wait_finished())
+
+
+class TestFailingDisk(JournalTest):
+    """What cannot be entered is not ground."""
+
+    def test_nothing_moves_and_the_last_entry_stays(self):
+        self.start_ready()
+        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
+        before = self.wait_finished()
+        rest = self.client.wait_rest()
+        new = self.journal + '.new'
+        os.mkdir(new)  # where an entry is written first
+        run = self.client.send(gc.SHORT).wait()
+        self.assertEqual((run.status, run.code, run.setpoints), ('ABORTED', GrindResult.NOT_READY, []))
+        self.assertIn(self.journal, run.text)
+        self.client.wait_state(GrinderState.READY)
+        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
+        gc.poll(lambda: not self.client.fresh_state().spindle_at_speed, 'the spindle stopped')
+        self.check_told(before)
+        os.rmdir(new)
+        self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
         self.check_told(self.wait_finished())
 
 

@@ -97,7 +97,7 @@ class ControlLoop : public RequestBox {
   double lowestJog(int axis) const;
 
   void awaitHoming();
-  bool awaitSpindle();
+  bool awaitInterlocks();
   void advance();
   void slowDownIfLate();
   void advanceJob();
@@ -127,6 +127,7 @@ class ControlLoop : public RequestBox {
   SetpointStream* stream_ = nullptr;
   double job_swivel_ = 0;           ///< that the stream's job needs [rad]
   Axes job_offset_ = Axes::Zero();  ///< machine position - position of the stream's setpoints [m], A [rad]
+  bool in_journal_ = true;          ///< the job, when it was started
   AxisMove axis_move_;              ///< of a lift or a jog
   bool jogging_ = false;            ///< in the middle of a job too, whose stream then takes its setpoints over
   bool continuous_ = false;         ///< the jog
@@ -143,7 +144,7 @@ class ControlLoop : public RequestBox {
   bool power_off_next_ = false;     ///< once the axes are at rest
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
-  double waited_ = 0;  ///< for power, the reference, or spindle and coolant [s]
+  double waited_ = 0;  ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
   bool homing_seen_ = false;
   CycleRecord record_;

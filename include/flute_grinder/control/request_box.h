@@ -7,6 +7,7 @@
 #include "flute_grinder/control/stop_requests.h"
 #include "flute_grinder/core/setpoint_stream.h"
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 
@@ -18,6 +19,7 @@ struct JobStart {
   Axes offset = Axes::Zero();  ///< for which it was planned, see Machine::work_offset [m], A [rad]
   Wheel wheel;                 ///< for this job
   double swivel = 0;           ///< that this job needs [rad]
+  bool in_journal = true;      ///< otherwise confirmed later
 };
 
 /// Holds other threads' requests to the control loop, and the answers. Stops, job starts, jogs, confirmations of the
@@ -66,8 +68,13 @@ class RequestBox {
 
   /// Requests to start a job, without waiting. For one thread at a time.
   /// @param stream not null; must stay alive until the job has ended (LoopStatus::jobs_ended) or its start is refused.
+  /// @param in_journal whether the journal contains the job. A job that it does not contain yet waits for
+  ///     confirmJournal() before it moves, as for any other interlock.
   /// @return false while the previous start is unanswered; this one is then not posted.
-  bool startJob(SetpointStream* stream) noexcept;
+  bool startJob(SetpointStream* stream, bool in_journal = true) noexcept;
+  /// States that the journal contains a job. Thread safe.
+  /// @param number the loop's number for this job, see LoopStatus::jobs_started.
+  void confirmJournal(std::uint64_t number) noexcept { job_in_journal_.store(number, std::memory_order_release); }
   /// The answer to the last startJob(), once available. For one thread at a time.
   std::optional<RequestReply> startJobReply();
 
@@ -93,6 +100,7 @@ class RequestBox {
   // For the loop. Real-time safe.
   StopRequests::Taken takeStops() noexcept { return stops_.take(); }
   std::optional<JobStart> takeJobStart() noexcept { return job_starts_.take(); }
+  std::uint64_t jobInJournal() const noexcept { return job_in_journal_.load(std::memory_order_acquire); }
   std::optional<MachineEvent> takeRequest() noexcept { return requests_.take(); }
   std::optional<double> takeSwivel() noexcept { return swivels_.take(); }
   std::optional<JogRequest> takeJog() noexcept { return jogs_.take(); }
@@ -112,6 +120,7 @@ class RequestBox {
   RequestSlot<JogRequest> series_jogs_;
   RequestSlot<MachineEvent> requests_;
   RequestSlot<double> swivels_;
+  std::atomic<std::uint64_t> job_in_journal_{0};  ///< the last one confirmed
 };
 
 }  // namespace flute_grinder

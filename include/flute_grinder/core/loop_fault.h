@@ -15,6 +15,7 @@ enum class Interlock : std::uint8_t {
   kCoolant,  ///< not flowing
   kProbe,    ///< in the wheel's path
   kSwivel,   ///< not at the job's angle
+  kJournal,  ///< does not contain the job yet; only before a job begins
 };
 
 /// Describes the open interlock, e.g. "the spindle is not at speed"; empty for kNone.

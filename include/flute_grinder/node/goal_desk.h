@@ -36,7 +36,7 @@ class GoalDesk {
   using Server = actionlib::ActionServer<GrindAction>;
   using GoalHandle = Server::GoalHandle;
 
-  enum class Phase { kPlanning, kJournaling, kStarting, kRunning };
+  enum class Phase { kPlanning, kStarting, kJournaling, kRunning };
 
   /// The goal being processed.
   struct Goal {
@@ -46,6 +46,7 @@ class GoalDesk {
     Phase phase = Phase::kPlanning;
     std::shared_ptr<const Preview> preview{};
     std::uint64_t number = 0;         ///< of its job, as counted by the loop
+    std::string journal_error{};      ///< why its job could not be entered
     ros::SteadyTime ended{};          ///< when the loop was seen to have finished the job
     ros::SteadyTime last_feedback{};  ///< while planning
   };
@@ -59,11 +60,13 @@ class GoalDesk {
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
   void publishPlanningFeedback();
-  void startWhenJournaled();
+  void startJob(std::shared_ptr<const Preview> preview);
   void publishJob();
   void checkStartReply();
+  void releaseWhenJournaled();
   void endWhenPublished();
   void endJob();
+  GrindResult resultOfJob(const LoopStatus& status) const;
   void cancelBeforeStart();
   void abortGoal(const std::string& text);
   void rollBack();

@@ -20,7 +20,7 @@ Json moveDurations(const core::PathStatistics& statistics) {
   return json;
 }
 
-Json lastJob(const JobProgress& progress) {
+Json lastJobObject(const JobProgress& progress) {
   if (progress.job_digest.empty()) return nullptr;
   const Cutter& cutter = progress.cutter;
   return {{"name", progress.job_name},
@@ -90,7 +90,7 @@ Json toJson(const std::string& node, const GrinderState& state) {
           {"pass", job ? Json(state.pass + 1) : Json(nullptr)},
           {"hold_reason", state.hold_reason},
           {"fault", faultText(state)},
-          {"last_job", lastJob(state.progress)}};
+          {"last_job", lastJobObject(state.progress)}};
 }
 
 void print(const Json& json) { std::printf("%s\n", text(json).c_str()); }

@@ -56,7 +56,7 @@ std::string whoami() {
   return name;
 }
 
-void print(const WheelFile& wheel) {
+void printWheel(const WheelFile& wheel) {
   const GrindProcess& p = wheel.process;
   const auto line = [](const char* name, const std::string& text) { std::printf("%-16s %s\n", name, text.c_str()); };
   line("profile", toString(p.wheel_profile));
@@ -113,7 +113,7 @@ int update(const std::string& path, const std::string& old, const WheelFile& bef
   try {
     const WheelFile after = parseWheel(text, path);
     replaceFile(path, text);
-    print(after);
+    printWheel(after);
   } catch (const JobFileError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
@@ -131,7 +131,7 @@ int showWheel(const WheelOptions& options) {
   if (options.json) {
     print(toJson(wheel));
   } else {
-    print(wheel);
+    printWheel(wheel);
   }
   return 0;
 }

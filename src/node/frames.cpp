@@ -16,8 +16,8 @@ constexpr const char* kWork = "work";
 constexpr const char* kCutter = "cutter";
 constexpr const char* kContact = "contact";
 
-geometry_msgs::TransformStamped toMessage(const std::string& parent, const std::string& frame,
-                                          const Eigen::Isometry3d& pose, const ros::Time& stamp) {
+geometry_msgs::TransformStamped transformMessage(const std::string& parent, const std::string& frame,
+                                                 const Eigen::Isometry3d& pose, const ros::Time& stamp) {
   geometry_msgs::TransformStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = parent;
@@ -75,12 +75,12 @@ void Frames::publishSetUp(const ros::Time& stamp) {
   std::vector<geometry_msgs::TransformStamped> frames;
   const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
   const Eigen::Translation3d end(set_up.offset[kX], 0, 0);
-  frames.push_back(toMessage(axis_a.parent_link_name, kWork, childPose(axis_a, 0) * end, stamp));
-  frames.push_back(toMessage(axis_a.child_link_name, kCutter,
-                             end * Eigen::AngleAxisd(set_up.offset[kA], Eigen::Vector3d::UnitX()), stamp));
+  frames.push_back(transformMessage(axis_a.parent_link_name, kWork, childPose(axis_a, 0) * end, stamp));
+  frames.push_back(transformMessage(axis_a.child_link_name, kCutter,
+                                    end * Eigen::AngleAxisd(set_up.offset[kA], Eigen::Vector3d::UnitX()), stamp));
   const auto add_child = [&](const char* name, double at) {
     const urdf::Joint& joint = *model_->getJoint(name);
-    frames.push_back(toMessage(joint.parent_link_name, joint.child_link_name, childPose(joint, at), stamp));
+    frames.push_back(transformMessage(joint.parent_link_name, joint.child_link_name, childPose(joint, at), stamp));
   };
   // The joints of the axes have machine positions.
   add_child("y_zero", set_up.wheel_y - set_up.offset[kY]);
@@ -100,7 +100,7 @@ void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   pose.linear().col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
   pose.linear().col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
   pose.linear().col(2) = pose.linear().col(0).cross(pose.linear().col(1));
-  moving_frames_.sendTransform(toMessage(kWork, kContact, pose, stamp));
+  moving_frames_.sendTransform(transformMessage(kWork, kContact, pose, stamp));
 }
 
 }  // namespace flute_grinder

@@ -14,7 +14,7 @@ constexpr double kLatest = 4e9;  ///< time that a ROS message can hold [s]
 
 /// Calls visit(key, value) for every field of the file.
 template <typename AnyOffsets, typename Visit>
-void visitFields(AnyOffsets& offsets, const Visit& visit) {
+void visitOffsets(AnyOffsets& offsets, const Visit& visit) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     auto& offset = offsets.axes[static_cast<std::size_t>(axis)];
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
@@ -36,15 +36,15 @@ void requireSound(const core::WorkOffsets& offsets) {
   }
 }
 
-std::string toText(const core::WorkOffsets& offsets) {
+std::string offsetsText(const core::WorkOffsets& offsets) {
   requireSound(offsets);
   return toYaml("The grinder's work offsets: machine position - work position; .nan is unknown.",
-                [&](const auto& visit) { visitFields(offsets, visit); });
+                [&](const auto& visit) { visitOffsets(offsets, visit); });
 }
 
-core::WorkOffsets fromText(const std::string& text) {
+core::WorkOffsets offsetsFromText(const std::string& text) {
   core::WorkOffsets offsets;
-  fromYaml(text, [&](const auto& visit) { visitFields(offsets, visit); });
+  fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, visit); });
   requireSound(offsets);
   return offsets;
 }
@@ -55,7 +55,7 @@ OffsetStore::OffsetStore(std::string path, std::string owner)
     : file_("file of work offsets", std::move(path), std::move(owner)) {
   try {
     const std::optional<std::string> text = file_.read();
-    if (text) offsets_ = file_.named([&] { return fromText(*text); });
+    if (text) offsets_ = file_.named([&] { return offsetsFromText(*text); });
   } catch (const KeptFileOwned&) {
     throw;
   } catch (const KeptFileError& error) {
@@ -84,7 +84,7 @@ std::string OffsetStore::unknown() const {
 void OffsetStore::set(int axis, const core::WorkOffset& offset) {
   core::WorkOffsets changed = offsets();
   changed.axes[static_cast<std::size_t>(axis)] = offset;
-  file_.named([&] { file_.write(toText(changed)); });
+  file_.named([&] { file_.write(offsetsText(changed)); });
   file_.settle();
   const std::lock_guard<std::mutex> lock(mutex_);
   offsets_ = changed;

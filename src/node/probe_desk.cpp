@@ -14,7 +14,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr std::chrono::milliseconds kPoll(2);  ///< of the loop's status
-constexpr std::uint32_t kThreads = 2;
+constexpr std::uint32_t kProbeThreads = 2;
 constexpr std::chrono::seconds kLoopTimeout(5);  ///< without a cycle
 
 /// Why there is no result.
@@ -135,7 +135,7 @@ void checkRequest(const Probe::Request& request, const ControlLoop& loop, const 
 }  // namespace
 
 ProbeDesk::ProbeDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
-    : loop_(loop), gate_(gate), spinner_(kThreads, &queue_) {
+    : loop_(loop), gate_(gate), spinner_(kProbeThreads, &queue_) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(&queue_);
   service_ = nh.advertiseService("probe", &ProbeDesk::onProbe, this);

@@ -19,7 +19,7 @@ namespace {
 using units::kMillimetre;
 
 constexpr int kPausePerWork = 9;
-constexpr int kDecimals = 2;  ///< of X: no finer place is computed
+constexpr int kXDecimals = 2;  ///< of X: no finer place is computed
 
 template <typename Value>
 bool isReady(const std::future<Value>& future) {
@@ -35,7 +35,7 @@ SectionView::SectionView(QWidget* parent)
       drawing_(new SectionDrawing),
       figures_(new QLabel) {
   x_->setObjectName("section_x");
-  x_->setDecimals(kDecimals);
+  x_->setDecimals(kXDecimals);
   x_->setSingleStep(0.5);
   x_->setSuffix(" mm");
   x_->setKeyboardTracking(false);

@@ -23,7 +23,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kPollInterval = 50;  ///< [ms]
-constexpr int kLines = 24, kColumns = 100;
+constexpr int kSheetLines = 24, kColumns = 100;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
     : QDialog(parent),
       file_(file.toStdString()),
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
-      sheet_(textView("setup_sheet", kLines)),
+      sheet_(textView("setup_sheet", kSheetLines)),
       keep_(new QComboBox),
       write_(new QPushButton("Write into the file")) {
   setObjectName("setup_dialog");

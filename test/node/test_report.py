@@ -806,7 +806,7 @@ class TestLayout(ReportCase):
             self.assertAlmostEqual(float(width), 595, delta=1)
             self.assertAlmostEqual(float(height), 842, delta=1)
         self.assertEqual(len(self.sizes), len(self.sheets))
-        self.assertEqual(len(self.sheets), int(re.search(r'1 / (\d+)', self.sheets[0]).group(1)))
+        self.assertEqual(len(self.sheets), int(re.search(r'1/(\d+)$', self.flat(self.sheets[0])).group(1)))
 
     def test_picture_for_the_documentation(self):
         picture = os.path.join(PICTURES, 'report.png')

@@ -13,6 +13,7 @@
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/json.h"
 #include "jobs.h"
 
 #include <actionlib/TestAction.h>
@@ -20,7 +21,6 @@
 #include <actionlib/server/action_server.h>
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -181,7 +181,7 @@ GrindGoal goalOf(const GrindJob& job) {
 }
 
 /// Of a thread like the control loop's that sleeps for a millisecond [s].
-void wakeUps(nlohmann::ordered_json& out) {
+void wakeUps(Json& out) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> delays;
   delays.reserve(kWakeUps);
@@ -235,7 +235,7 @@ class Bench {
     out_["values"][name + "/max_odd_error"] = statistics_.max_odd_error;
   }
 
-  nlohmann::ordered_json results() {
+  Json results() {
     wakeUps(out_);
     out_["samples"]["loop_deviation"] = motion_.deviations();
     return out_;
@@ -296,7 +296,7 @@ class Bench {
   MotionWatch motion_;
   int sent_ = 0;
   PathStatistics statistics_;  ///< of the last goal
-  nlohmann::ordered_json out_;
+  Json out_;
 };
 
 /// Accepts every goal at once, and ends it.

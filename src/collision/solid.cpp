@@ -1,6 +1,15 @@
 #include "flute_grinder/collision/solid.h"
 
+// FCL 0.5, as in Ubuntu 20.04, has vectors of its own.
+#if __has_include(<fcl/narrowphase/gjk_libccd.h>)
+#include <fcl/narrowphase/gjk_libccd.h>
+namespace fcl_gjk = fcl::details;
+using FclVector = fcl::Vec3f;
+#else
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
+namespace fcl_gjk = fcl::detail;
+using FclVector = Eigen::Vector3d;
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -112,12 +121,13 @@ Gap gap(const Solid& first, const Solid& second, const Eigen::Vector3d& shift) {
     const Eigen::Matrix3d frame = Eigen::AngleAxisd(attempt, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     View views[]{{&first, Eigen::Vector3d::Zero(), frame}, {&second, shift, frame}};
     double distance = 0;
-    Eigen::Vector3d on_first, on_second;
-    if (!fcl::detail::GJKDistance<double>(&views[0], farthestOf, &views[1], farthestOf, kGjkIterations, kGjkTolerance,
-                                          &distance, &on_first, &on_second)) {
+    FclVector on_first, on_second;
+    if (!fcl_gjk::GJKDistance(&views[0], farthestOf, &views[1], farthestOf, kGjkIterations, kGjkTolerance, &distance,
+                              &on_first, &on_second)) {
       continue;
     }
-    const Eigen::Vector3d way = frame.transpose() * (on_second - on_first);
+    const FclVector between = on_second - on_first;
+    const Eigen::Vector3d way = frame.transpose() * Eigen::Vector3d(between[0], between[1], between[2]);
     nearest_points = std::min(nearest_points, way.norm());
     const Eigen::Vector3d normal = way.normalized();
     const double planes = normal.dot(second.farthest(-normal) + shift - first.farthest(normal));

@@ -112,7 +112,8 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   if (blank_) status_.probe_contact = touches(*blank_);
   if (!fresh) return;
   axes(velocity_) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
-  axes(position_) = ((motor_ - offset_) * counts_per_unit_).rint() / counts_per_unit_;
+  const Axes counts = ((motor_ - offset_) * counts_per_unit_).unaryExpr([](double v) { return std::rint(v); });
+  axes(position_) = counts / counts_per_unit_;
   if (fault == Fault::kNanFeedback) axes(position_)[failing_axis] = std::numeric_limits<double>::quiet_NaN();
 }
 

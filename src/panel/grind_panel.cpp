@@ -279,7 +279,8 @@ void GrindPanel::nameWindows() {
     const QString title = (getName() + " " + name).trimmed();
     if (dock->windowTitle() != title) dock->setWindowTitle(title);
   }
-  QStringList parts = window()->windowTitle().split(kTitleSeparator, Qt::SkipEmptyParts);
+  QStringList parts = window()->windowTitle().split(kTitleSeparator);
+  parts.removeAll(QString());
   if (titled_ == name && (name.isEmpty() || parts.contains(name))) return;
   if (titled_ != name) parts.removeAll(titled_);
   if (!name.isEmpty()) parts.prepend(name);

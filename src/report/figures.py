@@ -222,7 +222,8 @@ class Timing:
         known = min(len(counts), len(self._counts))
         counts[:known] = self._counts[:known]
         counts = counts.reshape(columns, each).sum(axis=1)
-        axes.stairs(counts, np.arange(columns + 1) * each * self._width / MS, fill=True, color=CURVE)
+        edges = np.arange(columns + 1) * each * self._width / MS
+        axes.fill_between(edges, np.append(counts, 0), step='post', color=CURVE, linewidth=0)
         axes.axvline(self._period / MS, color=THEORY, linestyle=':', label='nominal')
         axes.axvline(LATE * self._period / MS, color=LIMIT, linestyle='--', label='late from here on')
         axes.set_ylim(bottom=0.5)

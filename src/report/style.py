@@ -30,7 +30,7 @@ matplotlib.rcParams.update({
 
 
 def new_figure(height):
-    return Figure((WIDTH, height), layout='constrained')
+    return Figure((WIDTH, height), constrained_layout=True)
 
 
 def svg_of(figure):

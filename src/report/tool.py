@@ -106,7 +106,7 @@ def draw_curve(axes, tool, key, asked, title):
     axes.set_title(title, loc='left')
     axes.ticklabel_format(useOffset=False)
     if key == 'rake_deg' and tool['teeth'] > 1:
-        axes.legend(ncols=min(tool['teeth'], 4), fontsize=7)
+        axes.legend(ncol=min(tool['teeth'], 4), fontsize=7)
 
 
 def tool_pictures(tool):
@@ -131,15 +131,17 @@ def tool_pictures(tool):
 
 def draw_file(tool):
     """All in one picture."""
-    figure = Figure((9, 11.7), layout='constrained', facecolor='white')
-    above, below = figure.subfigures(2, height_ratios=(4.1, 7.5))
-    above.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
+    figure = Figure((9, 11.7), constrained_layout=True, facecolor='white')
+    above, below = figure.add_gridspec(2, 1, height_ratios=(4.1, 7.5))
+    figure.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
     shown = shown_sections(tool)
-    for axes, section in zip(np.ravel(above.subplots(1, len(shown))), shown):
-        draw_section(axes, tool, section)
-    panels = below.subplots(len(CURVES), sharex=True)
-    for axes, curve in zip(panels, CURVES):
-        draw_curve(axes, tool, *curve)
+    for place, section in zip(above.subgridspec(1, len(shown)), shown):
+        draw_section(figure.add_subplot(place), tool, section)
+    panels = []
+    for place, curve in zip(below.subgridspec(len(CURVES), 1), CURVES):
+        panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))
+        draw_curve(panels[-1], tool, *curve)
+        panels[-1].label_outer()
     panels[-1].set_xlabel('X [mm]')
     return svg_of(figure)
 

@@ -26,6 +26,9 @@ from session import ROOT, Failure, Session, missing_line
 NOT_RUN = {
     'scripts/setup': 'installs packages; every test begins with it',
     'scripts/test': 'runs this test',
+    'scripts/setup --run': 'installs packages; scripts/demo begins with it',
+    'scripts/test_on 13': 'installs a system for an hour',
+    'scripts/test_on 11 --gcc 9': 'installs a system for an hour',
     'cmake --install build': 'writes to /opt; test/install_space.sh runs it',
     'cmake build && cmake --build build': 'configures anew, for packages that were installed later',
     'sudo apt-get install linux-image-rt-amd64': 'installs a kernel',

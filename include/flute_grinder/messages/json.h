@@ -12,7 +12,11 @@
 namespace flute_grinder {
 
 /// JSON output: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
+#if NLOHMANN_JSON_VERSION_MAJOR > 3 || NLOHMANN_JSON_VERSION_MINOR >= 9
 using Json = nlohmann::ordered_json;
+#else  // as in Ubuntu 20.04: in the order of the alphabet
+using Json = nlohmann::json;
+#endif
 
 /// One number per axis, in mm and deg, with the units in the names.
 /// @param per_time what the names end in, e.g. "_s" for velocities.

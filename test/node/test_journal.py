@@ -469,7 +469,7 @@ class TestSlowDisk(JournalTest):
 
     def test_strokes_go_on_and_progress_waits_for_the_disk(self):
         self.seconds = os.path.join(self.folder, 'seconds')
-        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libslow_fsync.so')
+        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libflute_grinder_slow_fsync.so')
         self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
         self.addCleanup(self.slow_down, 0)
         run = self.hold_in_stroke_of(0, 1)

@@ -19,7 +19,7 @@ import figures
 import links
 import messages
 from links import PAGES
-from pages import COMMAND, read_page
+from pages import COMMAND, read_page, write_file
 from session import ROOT, Failure, Session, missing_line
 
 # What no test can run, and why. Each must stand in the documentation, and nothing else may be left out.
@@ -93,9 +93,7 @@ def grind_job(command, job, *arguments):
 def do(session, item, last):
     """Does what an item asks of the reader."""
     if item.kind == 'file':
-        path = session.clone / item.path.replace('~', str(session.home))
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text('\n'.join(item.lines) + '\n')
+        write_file(session.clone / item.path.replace('~', str(session.home)), item.lines)
     elif item.kind == 'commands':
         run_commands(session, item)
     elif item.kind == 'output' and last not in NOT_RUN:

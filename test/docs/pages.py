@@ -21,7 +21,8 @@ import sys
 from dataclasses import dataclass, field
 
 PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|grind'
-COMMAND = re.compile(r'(?:%s|source|export|cmake|git|sudo|cp|sed|kill|uname|latency-histogram)(?= |$)' % PROGRAMS)
+COMMAND = re.compile(r'(?:%s|source|export|cd|cmake|catkin_make|git|rosdep|sudo|cp|sed|kill|uname|latency-histogram)(?= |$)'
+                     % PROGRAMS)
 
 
 @dataclass

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # The package in a catkin workspace, beside a package that uses its messages and libraries (test/workspace/neighbour) and the drive
 # plugin of docs/drive-plugin.md: tests, programs and launch files from the devel space and from the install space.
-# The workspace is kept in build/workspace. Nothing is optimised there, which compiles in half the time, and the panel is left out.
+# Nothing is optimised there, which compiles in half the time, and the panel is left out.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-workspace=$root/build/workspace
+# Kept, so that only what has changed is compiled again; not below the clone, where roslaunch would find every file twice.
+workspace=${XDG_CACHE_HOME:-$HOME/.cache}/flute_grinder$root
 folder=$(mktemp -d)
 launch=
 end_launch() {
@@ -28,9 +29,11 @@ for ros in /opt/ros/*; do
   [ ! -f "$ros/setup.bash" ] || use_space "$ros"
 done
 
-mkdir -p "$workspace/src"
-ln -sfn "$root" "$workspace/src/flute_grinder"
-ln -sfn "$root/test/workspace/neighbour" "$workspace/src/neighbour"
+# The files keep their times, by which make goes.
+rm -rf "$workspace"/src/{flute_grinder,neighbour}
+mkdir -p "$workspace/src/flute_grinder"
+find "$root" -mindepth 1 -maxdepth 1 ! -name build ! -name '.*' -exec cp -a -t "$workspace/src/flute_grinder" {} +
+cp -a "$root/test/workspace/neighbour" "$workspace/src"
 /usr/bin/python3 "$root/test/docs/pages.py" "$root/docs/drive-plugin.md" "$workspace/src"
 { sed 's#flute_grinder/SimulatedDrive#my_drive/MyDrive#; /^late_cycle:/d' "$root/config/grinder.yaml"
   cat "$root/test/patient.yaml"; } >"$folder/machine.yaml"

@@ -99,7 +99,7 @@ class TestNodeWithoutMaster(unittest.TestCase):
         self.start(['rosmaster', '--core', '-p', str(self.port)])
         # It has no parameters, which is as far as it comes without.
         self.assertEqual(node.wait(gc.PATIENCE), 1)
-        self.assertIn('parameter /grinder/', self.output())
+        self.assertIn('parameter /robot_description is missing', self.output())
 
 
 class TestWithoutMaster(RunTest):

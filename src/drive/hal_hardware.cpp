@@ -1,8 +1,7 @@
 #include "flute_grinder/drive/hal_hardware.h"
 
+#include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/drive/parameters.h"
-
-#include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -199,4 +198,4 @@ void HalHardware::wait(const ros::Duration& period) {
 
 }  // namespace flute_grinder
 
-PLUGINLIB_EXPORT_CLASS(flute_grinder::HalHardware, flute_grinder::RobotHW)
+FLUTE_GRINDER_EXPORT_DRIVE(flute_grinder::HalHardware)

@@ -1,9 +1,8 @@
 #include "flute_grinder/drive/simulated_drive.h"
 
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/drive/parameters.h"
-
-#include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -207,4 +206,4 @@ bool SimulatedDrive::onInjectFault(InjectFault::Request& request, InjectFault::R
 
 }  // namespace flute_grinder
 
-PLUGINLIB_EXPORT_CLASS(flute_grinder::SimulatedDrive, flute_grinder::RobotHW)
+FLUTE_GRINDER_EXPORT_DRIVE(flute_grinder::SimulatedDrive)

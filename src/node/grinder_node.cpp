@@ -1,6 +1,8 @@
 #include "flute_grinder/node/grinder_node.h"
 
+#include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/node/crash_guard.h"
+#include "flute_grinder/node/plugin_abi.h"
 
 #include <chrono>
 #include <thread>
@@ -27,6 +29,16 @@ std::string join(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : "; ") + name;
   return text;
+}
+
+/// Refuses a loaded plugin that was built against another version of the drive interface.
+void checkAbi(const std::string& parameter, const std::string& library) {
+  const auto abi = driveAbiOf(library);
+  if (abi == kDriveAbi) return;
+  throw ParameterError("parameter " + parameter +
+                       (abi ? " was built against version " + std::to_string(*abi) + " of the drive interface"
+                            : " tells no version of the drive interface") +
+                       "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 
 constexpr double kLargestHistory = 1e12;  ///< [bytes]
@@ -80,16 +92,18 @@ GrinderNode::~GrinderNode() { endCrashGuard(); }
 
 void GrinderNode::loadDrive(const ParameterReader& parameters) {
   const std::string type = parameters.text("hardware/type");
+  const std::string parameter = parameters.name("hardware/type") + " = " + type;
   loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
   if (!loader_->isClassAvailable(type)) {
-    throw ParameterError("parameter " + parameters.name("hardware/type") + " = " + type +
-                         "; allowed: " + join(loader_->getDeclaredClasses()));
+    throw ParameterError("parameter " + parameter + "; allowed: " + join(loader_->getDeclaredClasses()));
   }
   try {
+    loader_->loadLibraryForClass(type);
+    checkAbi(parameter, loader_->getClassLibraryPath(type));
     hw_ = loader_->createUniqueInstance(type);
   } catch (const pluginlib::PluginlibException& error) {
-    throw ParameterError("parameter " + parameters.name("hardware/type") + " = " + type +
-                         " cannot be loaded: " + error.what() + " What it is: " + loader_->getClassDescription(type));
+    throw ParameterError("parameter " + parameter + " cannot be loaded: " + error.what() +
+                         " What it is: " + loader_->getClassDescription(type));
   }
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
   if (!hw_->init(private_nh_, hardware_nh)) throw ParameterError("the drive " + type + " could not be initialised");

@@ -1,4 +1,5 @@
 #include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/node/grinder_node.h"
@@ -6,6 +7,7 @@
 
 #include <ros/ros.h>
 
+#include <atomic>
 #include <csignal>
 #include <ctime>
 #include <exception>
@@ -14,11 +16,27 @@
 
 namespace {
 
+/// Waits a tenth of a second for a signal that ends the program. @return whether there was one.
+bool isEnded(const sigset_t& signals) {
+  const timespec interval{0, 100'000'000};
+  return sigtimedwait(&signals, nullptr, &interval) > 0;
+}
+
+/// Waits for the ROS master. roscpp would wait by itself when it is started, but with no way to end it by a signal.
+/// @return false if a signal has ended the wait.
+bool waitForMaster(const sigset_t& signals) {
+  const std::atomic<bool> never{false};
+  for (bool told = false;
+       !flute_grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never); told = true) {
+    if (!told) ROS_WARN_STREAM("no ROS master answers at " << ros::master::getURI() << "; waiting for one");
+    if (isEnded(signals)) return false;
+  }
+  return true;
+}
+
 /// Waits for a signal that ends the program, or until ROS is shut down by other means.
 void waitForEnd(const sigset_t& signals) {
-  const timespec interval{0, 100'000'000};
-  while (ros::ok()) {
-    if (sigtimedwait(&signals, nullptr, &interval) > 0) return;
+  while (ros::ok() && !isEnded(signals)) {
   }
 }
 
@@ -46,6 +64,7 @@ int main(int argc, char** argv) {
   flute_grinder::boundThreadStacks();
 
   ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  if (!waitForMaster(signals)) return 0;
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
   // With /use_sim_time, use the system clock until the first /clock message arrives.

@@ -11,13 +11,18 @@ a block says what a reader sees by themselves:
     <!-- test: exits N -->            the last command of the block ends with this status
     <!-- test: output of COMMAND -->  the block is what that command has printed
     <!-- figures: ... -->             the table below has figures that grind has printed, see figures.py
+
+pages.py PAGE FOLDER: writes the files of a page, in FOLDER where the page has the home folder.
 """
 
+import pathlib
 import re
+import sys
 from dataclasses import dataclass, field
 
 PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|grind'
-COMMAND = re.compile(r'(?:%s|source|export|cmake|git|sudo|cp|sed|kill|uname|latency-histogram)(?= |$)' % PROGRAMS)
+COMMAND = re.compile(r'(?:%s|source|export|cd|cmake|catkin_make|git|rosdep|sudo|cp|sed|kill|uname|latency-histogram)(?= |$)'
+                     % PROGRAMS)
 
 
 @dataclass
@@ -102,3 +107,18 @@ def read_page(text):
             last = line or last if i else line
         i += 1
     return items
+
+
+def write_file(path, lines):
+    """A file of a page; one that is up to date keeps its time, by which make goes."""
+    text = '\n'.join(lines) + '\n'
+    if not path.exists() or path.read_text() != text:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+if __name__ == '__main__':
+    page, folder = sys.argv[1:]
+    for item in read_page(pathlib.Path(page).read_text()):
+        if item.kind == 'file':
+            write_file(pathlib.Path(item.path.replace('~', folder, 1)), item.lines)

@@ -19,7 +19,7 @@ import figures
 import links
 import messages
 from links import PAGES
-from pages import COMMAND, read_page
+from pages import COMMAND, read_page, write_file
 from session import ROOT, Failure, Session, missing_line
 
 # What no test can run, and why. Each must stand in the documentation, and nothing else may be left out.
@@ -29,6 +29,14 @@ NOT_RUN = {
     'scripts/setup --run': 'installs packages; scripts/demo begins with it',
     'scripts/test_on 13': 'installs a system for an hour',
     'scripts/test_on 11 --gcc 9': 'installs a system for an hour',
+    'source /opt/ros/noetic/setup.bash': 'is for Ubuntu; test/workspace.sh sources what there is',
+    'cd ~/catkin_ws': 'is for a workspace; test/workspace.sh has one',
+    'rosdep install --from-paths src --ignore-src -y': 'installs packages; test/rosdep.sh looks for their names',
+    'catkin_make -DCMAKE_BUILD_TYPE=Release': 'builds for minutes; test/workspace.sh runs it',
+    'source devel/setup.bash': 'is for a workspace; test/workspace.sh has one',
+    'catkin_make -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3': 'builds for minutes; test/workspace.sh runs it',
+    'catkin_make run_tests_flute_grinder': 'runs all tests; test/workspace.sh runs one of each kind',
+    'catkin_make install': 'test/workspace.sh runs it',
     'cmake --install build': 'writes to /opt; test/install_space.sh runs it',
     'cmake build && cmake --build build': 'configures anew, for packages that were installed later',
     'sudo apt-get install linux-image-rt-amd64': 'installs a kernel',
@@ -52,7 +60,7 @@ NOT_RUN = {
 }
 IN_HAL = {'docs/shop-floor-pc.md'}
 # What a new user reads, so that nothing may have been typed before.
-FROM_THE_BEGINNING = {'README.md', 'docs/first-cutter.md'}
+FROM_THE_BEGINNING = {'README.md', 'docs/first-cutter.md', 'docs/install.md'}
 
 
 def run_commands(session, item):
@@ -96,9 +104,7 @@ def grind_job(command, job, *arguments):
 def do(session, item, last):
     """Does what an item asks of the reader."""
     if item.kind == 'file':
-        path = session.clone / item.path.replace('~', str(session.home))
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text('\n'.join(item.lines) + '\n')
+        write_file(session.clone / item.path.replace('~', str(session.home)), item.lines)
     elif item.kind == 'commands':
         run_commands(session, item)
     elif item.kind == 'output' and last not in NOT_RUN:

@@ -1,4 +1,5 @@
 #include "flute_grinder/drive/axes_hw.h"
+#include "flute_grinder/drive/export_drive.h"
 
 #include <gtest/gtest.h>
 
@@ -53,6 +54,18 @@ TEST(AxesHW, RegistersTheDriveHandle) {
   handle.setCommand(command);
   drive.read(ros::Time(1), ros::Duration(0.001));
   EXPECT_TRUE(handle.getStatus().enabled);
+}
+
+// What plugins of this version have compiled in, on a 64-bit computer. A change of it needs another version.
+TEST(DriveAbi, LayoutOfTheVersion) {
+  EXPECT_EQ(kDriveAbi, 1U);
+  EXPECT_EQ(sizeof(DriveStatus), 48U);
+  EXPECT_EQ(offsetof(DriveStatus, swivel), 40U);
+  EXPECT_EQ(sizeof(DriveCommand), 5U);
+  EXPECT_EQ(sizeof(JointHandle), 64U);
+  EXPECT_EQ(sizeof(DriveHandle), 48U);
+  EXPECT_EQ(sizeof(RobotHW), 64U);
+  EXPECT_EQ(sizeof(AxesHW), 392U);
 }
 
 }  // namespace

@@ -470,7 +470,7 @@ class TestSlowDisk(JournalTest):
     def setUp(self):
         super().setUp()
         self.seconds = os.path.join(self.folder, 'seconds')
-        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libslow_fsync.so')
+        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libflute_grinder_slow_fsync.so')
         self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
         self.addCleanup(self.slow_down, 0)
 

@@ -236,7 +236,7 @@ class TestSetting(OffsetsTest):
 
     def test_nothing_waits_for_the_disk(self):
         delay = os.path.join(self.folder, 'delay')
-        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libslow_fsync.so')
+        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libflute_grinder_slow_fsync.so')
         self.start(environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': delay})
         self.client.make_ready()
         with open(delay, 'w') as file:

@@ -214,7 +214,7 @@ class TestTheWayDown(NodeTest):
 
     def start_on_slow_disk(self):
         self.node.close()
-        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libslow_fsync.so')
+        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libflute_grinder_slow_fsync.so')
         self.delay = os.path.join(self.node.folder + '_delay')
         self.addCleanup(gc.remove_file, self.delay)
         self.client = self.start(machine(), environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': self.delay})

@@ -5,9 +5,11 @@ are missing."""
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import unittest
 
 import rosgraph
 import rostest
@@ -46,6 +48,58 @@ class Master:
         return subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, **self.environment),
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
                               timeout=gc.PATIENCE)
+
+
+class TestNodeWithoutMaster(unittest.TestCase):
+    """The node waits for its master, and a signal ends that."""
+
+    def setUp(self):
+        self.port = free_port()
+        self.environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % self.port)
+        # Several write to it, each at its end, while it is read.
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.log = open(os.path.join(folder.name, 'log'), 'a+')
+        self.addCleanup(self.log.close)
+
+    def start(self, arguments):
+        process = subprocess.Popen(arguments, env=self.environment, stdout=self.log, stderr=subprocess.STDOUT)
+        self.addCleanup(Master.end, process)
+        return process
+
+    def start_waiting(self):
+        node = self.start([gc.program('grinder')])
+        text = 'no ROS master answers at %s; waiting for one' % self.environment['ROS_MASTER_URI']
+        gc.poll(lambda: text in self.output(), 'the message')
+        return node
+
+    def output(self):
+        self.log.seek(0)
+        return self.log.read()
+
+    def check_signals(self):
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            with self.subTest(number):
+                node = self.start_waiting()
+                node.send_signal(number)
+                self.assertEqual(node.wait(gc.PATIENCE), 0, self.output())
+            self.log.truncate(0)
+
+    def test_signals_where_nothing_listens(self):
+        self.check_signals()
+
+    def test_signals_where_nothing_answers(self):
+        with socket.socket() as silent:
+            silent.bind(('127.0.0.1', self.port))
+            silent.listen()
+            self.check_signals()
+
+    def test_goes_on_with_the_master(self):
+        node = self.start_waiting()
+        self.start(['rosmaster', '--core', '-p', str(self.port)])
+        # It has no parameters, which is as far as it comes without.
+        self.assertEqual(node.wait(gc.PATIENCE), 1)
+        self.assertIn('parameter /robot_description is missing', self.output())
 
 
 class TestWithoutMaster(RunTest):

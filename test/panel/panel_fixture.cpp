@@ -41,21 +41,39 @@ std::vector<QWidget*> leaves(QWidget& panel) {
   return found;
 }
 
-void expectRoomForText(QWidget& widget) {
+/// What of a widget's text does not fit; empty if all does.
+std::string lacksRoom(QWidget& widget) {
   if (auto* label = qobject_cast<QLabel*>(&widget)) {
-    if (label->wordWrap()) {
-      EXPECT_LE(label->heightForWidth(label->width()), label->height())
-          << nameOf(widget) << label->text().toStdString();
-    } else {
-      EXPECT_LE(label->fontMetrics().horizontalAdvance(label->text()), label->contentsRect().width())
-          << nameOf(widget) << label->text().toStdString();
-    }
+    const bool fits = label->wordWrap()
+                          ? label->heightForWidth(label->width()) <= label->height()
+                          : label->fontMetrics().horizontalAdvance(label->text()) <= label->contentsRect().width();
+    if (!fits) return "no room for the text of " + nameOf(widget) + ": " + label->text().toStdString() + '\n';
   } else if (auto* button = qobject_cast<QAbstractButton*>(&widget)) {
-    EXPECT_LE(button->fontMetrics().horizontalAdvance(button->text()) + 6, button->width()) << nameOf(widget);
-    EXPECT_LE(button->fontMetrics().height(), button->height()) << nameOf(widget);
+    const QSize text(button->fontMetrics().horizontalAdvance(button->text()) + 6, button->fontMetrics().height());
+    if (button->size().expandedTo(text) != button->size()) return "no room for the text of " + nameOf(widget) + '\n';
   } else if (auto* bar = qobject_cast<QProgressBar*>(&widget)) {
-    EXPECT_FALSE(bar->isTextVisible()) << nameOf(widget) << ": over the bar's end it is hard to read";
+    if (bar->isTextVisible()) return nameOf(widget) + ": over the bar's end a text is hard to read\n";
   }
+  return "";
+}
+
+/// What is wrong with how a panel looks, a line each.
+std::string wrongs(QWidget& panel) {
+  std::string found;
+  if (panel.size() != QSize(kWidth, kHeight)) found += "it wants more room\n";
+  const std::vector<QWidget*> widgets = leaves(panel);
+  if (widgets.size() <= 20) found += "it shows next to nothing\n";
+  std::vector<QRect> taken;
+  for (QWidget* widget : widgets) {
+    found += lacksRoom(*widget);
+    const QRect place(widget->mapTo(&panel, QPoint(0, 0)), widget->size());
+    if (!panel.rect().contains(place)) found += nameOf(*widget) + " is cut off\n";
+    for (const QRect& other : taken) {
+      if (place.intersects(other)) found += nameOf(*widget) + " covers another\n";
+    }
+    taken.push_back(place);
+  }
+  return found;
 }
 
 }  // namespace
@@ -104,20 +122,10 @@ void Panel::openTab(const QString& title) {
 
 void Panel::picture(const std::string& name) {
   SCOPED_TRACE("picture " + name);
-  EXPECT_EQ(panel_->width(), kWidth) << "it wants more room";
-  EXPECT_EQ(panel_->height(), kHeight) << "it wants more room";
-  // A change of a text is laid out level by level.
-  for (int level = 0; level < 5; ++level) QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
-  const std::vector<QWidget*> widgets = leaves(*panel_);
-  EXPECT_GT(widgets.size(), 20U);
-  std::vector<QRect> taken;
-  for (QWidget* widget : widgets) {
-    expectRoomForText(*widget);
-    const QRect place(widget->mapTo(panel_.get(), QPoint(0, 0)), widget->size());
-    EXPECT_TRUE(panel_->rect().contains(place)) << nameOf(*widget);
-    for (const QRect& other : taken) EXPECT_FALSE(place.intersects(other)) << nameOf(*widget);
-    taken.push_back(place);
-  }
+  // A change of a text is laid out level by level, and values go on coming.
+  std::string wrong;
+  const auto looksGood = [&] { return (wrong = wrongs(*panel_)).empty(); };
+  EXPECT_TRUE(QTest::qWaitFor(looksGood, kPatience)) << wrong;
   QDir().mkpath(SCREENSHOTS);
   EXPECT_TRUE(panel_->grab().save(QString(SCREENSHOTS "/panel_%1.png").arg(QString::fromStdString(name))));
 }

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <pluginlib/class_list_macros.hpp>
+
+#include <cstdint>
+
+/// @file
+/// How the library of a drive plugin exports its drives, and tells which version of the drive interface it was built
+/// against.
+namespace flute_grinder {
+
+/// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
+/// flute_grinder/core/axes.h declare, and the order of RobotHW's virtual functions. To be increased whenever one of
+/// them changes. The node refuses plugins that were built against another version.
+constexpr std::uint32_t kDriveAbi = 1;
+
+}  // namespace flute_grinder
+
+/// Exports a drive, a class derived from flute_grinder::RobotHW, as a plugin for the node. To be used in place of
+/// PLUGINLIB_EXPORT_CLASS, outside of namespaces; in a library with several drives, once for each.
+#define FLUTE_GRINDER_EXPORT_DRIVE(Drive)                                                          \
+  extern "C" {                                                                                     \
+  extern const std::uint32_t flute_grinder_drive_abi __attribute__((weak, visibility("default"))); \
+  const std::uint32_t flute_grinder_drive_abi = flute_grinder::kDriveAbi;                          \
+  }                                                                                                \
+  PLUGINLIB_EXPORT_CLASS(Drive, flute_grinder::RobotHW)

@@ -4,7 +4,7 @@
 # Nothing is optimised there, which compiles in half the time, and the panel is left out.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
-# Kept, so that only what has changed is compiled again; not below the clone, where roslaunch would find every file twice.
+# Kept: the first run compiles the whole package, those after it only what has changed. Not below the clone, where roslaunch would find every file twice.
 workspace=${XDG_CACHE_HOME:-$HOME/.cache}/flute_grinder$root
 folder=$(mktemp -d)
 launch=

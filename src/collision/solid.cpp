@@ -1,19 +1,16 @@
 #include "flute_grinder/collision/solid.h"
 
-// FCL 0.5, as in Ubuntu 20.04, has vectors of its own.
 #if __has_include(<fcl/narrowphase/gjk_libccd.h>)
+#define FLUTE_GRINDER_FCL_0_5  // as in Ubuntu 20.04
 #include <fcl/narrowphase/gjk_libccd.h>
-namespace fcl_gjk = fcl::details;
-using FclVector = fcl::Vec3f;
 #else
 #include <fcl/narrowphase/detail/convexity_based_algorithm/gjk_libccd.h>
-namespace fcl_gjk = fcl::detail;
-using FclVector = Eigen::Vector3d;
 #endif
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace flute_grinder {
 
@@ -32,13 +29,35 @@ struct View {
   const Solid* solid;
   Eigen::Vector3d shift;
   Eigen::Matrix3d frame;
+  mutable Eigen::Vector3d asked = Eigen::Vector3d::Zero();  ///< the last direction, in the frame
 };
 
 void farthestOf(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
   const View& view = *static_cast<const View*>(object);
   const Eigen::Vector3d d(direction->v[0], direction->v[1], direction->v[2]);
+  view.asked = d;
   const Eigen::Vector3d p = view.frame * (view.solid->farthest(view.frame.transpose() * d) + view.shift);
   for (int i = 0; i < 3; ++i) point->v[i] = p[i];
+}
+
+/// From a body's nearest point to the other's, in the frame, by GJK. @return none if GJK finds no distance
+std::optional<Eigen::Vector3d> wayBetween(View& first, View& second) {
+  double distance = 0;
+#ifdef FLUTE_GRINDER_FCL_0_5
+  // Its nearest points are wrong; its distance is right, and it searches along the way at last.
+  if (!fcl::details::GJKDistance(&first, farthestOf, &second, farthestOf, kGjkIterations, kGjkTolerance, &distance,
+                                 nullptr, nullptr)) {
+    return std::nullopt;
+  }
+  return distance * first.asked.normalized();
+#else
+  Eigen::Vector3d on_first, on_second;
+  if (!fcl::detail::GJKDistance<double>(&first, farthestOf, &second, farthestOf, kGjkIterations, kGjkTolerance,
+                                        &distance, &on_first, &on_second)) {
+    return std::nullopt;
+  }
+  return on_second - on_first;
+#endif
 }
 
 }  // namespace
@@ -120,14 +139,9 @@ Gap gap(const Solid& first, const Solid& second, const Eigen::Vector3d& shift) {
   for (int attempt = 0; attempt < kAttempts && !(nearest_points - best.distance <= kAccuracy); ++attempt) {
     const Eigen::Matrix3d frame = Eigen::AngleAxisd(attempt, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
     View views[]{{&first, Eigen::Vector3d::Zero(), frame}, {&second, shift, frame}};
-    double distance = 0;
-    FclVector on_first, on_second;
-    if (!fcl_gjk::GJKDistance(&views[0], farthestOf, &views[1], farthestOf, kGjkIterations, kGjkTolerance, &distance,
-                              &on_first, &on_second)) {
-      continue;
-    }
-    const FclVector between = on_second - on_first;
-    const Eigen::Vector3d way = frame.transpose() * Eigen::Vector3d(between[0], between[1], between[2]);
+    const auto between = wayBetween(views[0], views[1]);
+    if (!between) continue;
+    const Eigen::Vector3d way = frame.transpose() * *between;
     nearest_points = std::min(nearest_points, way.norm());
     const Eigen::Vector3d normal = way.normalized();
     const double planes = normal.dot(second.farthest(-normal) + shift - first.farthest(normal));

@@ -25,6 +25,18 @@ FRAME = '''<!DOCTYPE html><html><body style="margin: 0"><pre id="told"></pre>
 <script>onmessage = message => { document.getElementById('told').textContent = message.data; };</script></body></html>'''
 
 
+NUMBERS_PAGES = 131  # the first version that prints what a style sheet puts into a page's margin
+
+
+def version():
+    """Of Chromium, its first number; 0 where it is not installed."""
+    try:
+        told = subprocess.check_output(['chromium', '--version'], universal_newlines=True)
+    except FileNotFoundError:
+        return 0
+    return int(re.search(r'\d+', told).group())
+
+
 def chromium(*arguments):
     sandbox = ['--no-sandbox'] if os.geteuid() == 0 else []
     with tempfile.TemporaryDirectory() as profile:

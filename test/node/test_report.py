@@ -773,6 +773,7 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assertIn('/another', done.stderr)
 
 
+@unittest.skipIf(browser.version() < browser.NUMBERS_PAGES, 'no Chromium here that numbers pages')
 class TestLayout(ReportCase):
     """On a phone, on a screen, in the dark and on paper."""
 

@@ -161,9 +161,9 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   start();
   inject("emergency_stop");
   WAIT_FOR(panel.state() == "Fault");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "reset"}));
-  EXPECT_NE(panel.label("meaning").find("Fault: emergency stop. The emergency stop is pressed."), std::string::npos);
   WAIT_FOR(panel.text("messages").find("The job has ended: emergency stop") != std::string::npos);
+  WAIT_FOR(panel.enabledRequests() == (Names{"disable", "reset"}));
+  EXPECT_NE(panel.label("meaning").find("Fault: emergency stop. The emergency stop is pressed."), std::string::npos);
   panel.picture("emergency_stop");
   panel.click("reset");
   WAIT_FOR(panel.text("messages").find("Reset refused") != std::string::npos);

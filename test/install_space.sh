@@ -1,23 +1,14 @@
 #!/usr/bin/env bash
 # The installed package works without the source and the build: programs, launch file, plugin.
 set -euo pipefail
-root=$(cd "$(dirname "$0")/.." && pwd)
-staging=$(mktemp -d)
-log=$staging/roslaunch.log
-launch=
-cleanup() {
-  [ -z "$launch" ] || { kill -INT "$launch" 2>/dev/null; wait "$launch"; } || true
-  rm -rf "$staging"
-}
-trap cleanup EXIT
+source "$(dirname "$0")/launched.sh"
+log=$folder/roslaunch.log
 
-DESTDIR=$staging cmake --install "$root/build" >/dev/null
-space=$staging$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
+DESTDIR=$folder cmake --install "$root/build" >/dev/null
+space=$folder$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
 cd "$space"
 unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH LD_LIBRARY_PATH
-set +u
-source "$space/setup.bash"
-set -u
+use_space "$space"
 [ "$(rospack find flute_grinder)" = "$space/share/flute_grinder" ]
 for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml; do
   [ -f "share/flute_grinder/$file" ]
@@ -28,15 +19,15 @@ done
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
 
 port=${ROS_MASTER_URI##*:}
-roslaunch -p "$port" flute_grinder grinder.launch journal:="$staging/journal" >"$log" 2>&1 &
+roslaunch -p "$port" flute_grinder grinder.launch journal:="$folder/journal" >"$log" 2>&1 &
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
 # A job that names its wheel by a file.
 rosrun flute_grinder grind table share/flute_grinder/jobs/unequal_d12_t4.yaml --step-length 1 >/dev/null
-rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$staging/table.csv" >/dev/null
-rosrun flute_grinder grind report "$staging/table.csv" -o "$staging/table.html"
-grep -q '3\.9785e-05 rad' "$staging/table.html"
+rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$folder/table.csv" >/dev/null
+rosrun flute_grinder grind report "$folder/table.csv" -o "$folder/table.html"
+grep -q '3\.9785e-05 rad' "$folder/table.html"
 rosrun flute_grinder grind enable || { cat "$log"; exit 1; }
 rosrun flute_grinder grind run "$job" --dry-run
 rosrun flute_grinder grind status | grep -q '^state *ready'

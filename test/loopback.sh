@@ -2,24 +2,16 @@
 # What another computer reaches, seen from a second network namespace: nothing of what README launches, by IPv4 and by
 # IPv6; with loopback_only:=false the same look finds the master and the nodes, as docs/network.md says.
 set -euo pipefail
-root=$(cd "$(dirname "$0")/.." && pwd)
+source "$(dirname "$0")/launched.sh"
 
 space=grinder_peer_$$
 own=10.213.7.1
 own6=fd9e:213:7::1
-folder=$(mktemp -d)
-launch=
-end_launch() {
-  [ -z "$launch" ] || { kill -INT "$launch" 2>/dev/null; wait "$launch"; } || true
-  launch=
-}
-cleanup() {
-  end_launch
+cut_link() {
   ip netns delete "$space" 2>/dev/null || true
   ip link delete "veth_$$" 2>/dev/null || true
-  rm -rf "$folder"
 }
-trap cleanup EXIT
+trap 'cleanup; cut_link' EXIT
 
 if ! ip netns add "$space" 2>"$folder/refusal"; then
   echo "no network namespace may be made here ($(cat "$folder/refusal"))"
@@ -34,9 +26,7 @@ ip -n "$space" -6 address add fd9e:213:7::2/64 dev outside nodad
 ip -n "$space" link set outside up
 
 unset ROS_HOSTNAME ROS_IP ROS_ETC_DIR
-set +u
-source "$root/build/devel/setup.bash"
-set -u
+use_space "$root/build/devel"
 
 # with_hosts COMMAND...: becomes a command for which localhost is ::1 too, as on most computers.
 printf '127.0.0.1 localhost\n::1 localhost\n' >"$folder/hosts"

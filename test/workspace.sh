@@ -3,29 +3,13 @@
 # plugin of docs/drive-plugin.md: tests, programs and launch files from the devel space and from the install space.
 # Nothing is optimised there, which compiles in two thirds of the time, and the panel is left out.
 set -euo pipefail
-root=$(cd "$(dirname "$0")/.." && pwd)
+source "$(dirname "$0")/launched.sh"
 # Kept: the first run compiles the whole package, those after it only what has changed. Not below the clone, where roslaunch would
 # find every file twice.
 workspace=${XDG_CACHE_HOME:-$HOME/.cache}/flute_grinder$root
-folder=$(mktemp -d)
-launch=
-end_launch() {
-  [ -z "$launch" ] || { kill -INT "$launch" 2>/dev/null; wait "$launch"; } || true
-  launch=
-}
-cleanup() {
-  end_launch
-  rm -rf "$folder"
-}
-trap cleanup EXIT
 
 # Nothing of the clone's own build.
 unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH ROS_ETC_DIR PYTHONPATH LD_LIBRARY_PATH PKG_CONFIG_PATH
-use_space() {
-  set +u
-  source "$1/setup.bash"
-  set -u
-}
 for ros in /opt/ros/*; do
   [ ! -f "$ros/setup.bash" ] || use_space "$ros"
 done

@@ -1,0 +1,23 @@
+# For the checks that launch a grinder; to be sourced. Root of the sources, a folder for the check's files, and the roslaunch that
+# runs: both go with the check.
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+folder=$(mktemp -d)
+launch=
+
+end_launch() {
+  [ -z "$launch" ] || { kill -INT "$launch" 2>/dev/null; wait "$launch"; } || true
+  launch=
+}
+
+cleanup() {
+  end_launch
+  rm -rf "$folder"
+}
+trap cleanup EXIT
+
+# use_space SPACE: as a user's shell sources it.
+use_space() {
+  set +u
+  source "$1/setup.bash"
+  set -u
+}

@@ -371,6 +371,7 @@ class TestSimulatedDrive(NodeParameters, unittest.TestCase):
                                             'rake_face': {'height': 0.0, 'angle': 0.0}}
 
 
+@unittest.skipUnless((PROGRAMS.parent / 'libflute_grinder_hal_hardware.so').exists(), 'the HAL drive is left out')
 class TestHal(NodeParameters, unittest.TestCase):
     section = 'hal'
     drive = 'flute_grinder/HalHardware'

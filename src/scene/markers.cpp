@@ -54,6 +54,13 @@ Marker& append(MarkerArray& array, const char* ns, int type, const char* frame) 
   return m;
 }
 
+Marker& appendLines(MarkerArray& array, const char* ns, int type, const char* frame, double width) {
+  Marker& m = append(array, ns, type, frame);
+  m.scale.x = width;
+  m.scale.y = m.scale.z = 0;  // rviz 1.14.4 complains of any other
+  return m;
+}
+
 Marker& appendSolid(MarkerArray& array, const char* ns, const char* frame, const std::vector<OutlinePoint>& outline,
                     const std_msgs::ColorRGBA& colour) {
   constexpr int segments = 180;  // 2 degrees each: off by 0.15 per mille of the radius, so that no corners show

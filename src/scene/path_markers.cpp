@@ -115,8 +115,7 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = append(array, "tool_path", Marker::LINE_STRIP, kFrame);
-    m.scale.x = kPathWidth * fineness(cutter_);
+    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(cutter_));
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
@@ -158,8 +157,7 @@ void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
 
 void ExecutedPath::append(MarkerArray& array) const {
   if (points_.empty()) return;
-  Marker& m = flute_grinder::append(array, "executed_path", Marker::LINE_STRIP, kFrame);
-  m.scale.x = kExecutedWidth * fineness(cutter_);
+  Marker& m = appendLines(array, "executed_path", Marker::LINE_STRIP, kFrame, kExecutedWidth * fineness(cutter_));
   m.color = colour(0.3, 1, 1);
   m.points = points_;
   m.points.push_back(last_);
@@ -204,8 +202,7 @@ double PathErrorMarkers::scale() const {
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  Marker& arrows = append(array, "path_error", Marker::LINE_LIST, kFrame);
-  arrows.scale.x = kArrowWidth * fineness(cutter_);
+  Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(cutter_));
   // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
   const double around = cutter_.cosHelixToGeneratrix();
   const double along = std::copysign(std::sqrt(1 - around * around), cutter_.tanSpiral());

@@ -259,7 +259,10 @@ class TestPeers(Attacked):
         self.check()
 
     def datagram_port(self):
-        inodes = {os.readlink(link)[len('socket:['):-1] for link in glob.glob('/proc/%d/fd/*' % self.node.process.pid)}
+        inodes = set()
+        for link in glob.glob('/proc/%d/fd/*' % self.node.process.pid):
+            with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+                inodes.add(os.readlink(link)[len('socket:['):-1])
         with open('/proc/net/udp') as table:
             lines = [line.split() for line in list(table)[1:]]
         port, = [int(fields[1].split(':')[1], 16) for fields in lines if fields[9] in inodes]

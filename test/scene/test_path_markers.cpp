@@ -109,6 +109,30 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   }
 }
 
+/// All of a line's scale that rviz knows.
+void expectLinesOfAWidth(const MarkerArray& array) {
+  std::size_t lines = 0;
+  for (const Marker& m : array.markers) {
+    if (m.type != Marker::LINE_STRIP && m.type != Marker::LINE_LIST) continue;
+    ++lines;
+    EXPECT_GT(m.scale.x, 0) << m.ns;
+    EXPECT_EQ(m.scale.y, 0) << m.ns;
+    EXPECT_EQ(m.scale.z, 0) << m.ns;
+  }
+  EXPECT_GT(lines, 0u);
+}
+
+TEST(PathMarkers, AreLinesOfAWidth) {
+  const Shown shown = show(0, kX, 0);
+  expectLinesOfAWidth(shown.flutes);
+  expectLinesOfAWidth(shown.executed);
+  const GrindProgram job = program();
+  PathErrorMarkers errors(job.job());
+  SetpointStream stream(job);
+  for (Setpoint p; stream.next(p);) errors.add(p);
+  expectLinesOfAWidth(errors.markers());
+}
+
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
   job.cutter = {0.1e-3, 0, 1, 0, 500e-3};

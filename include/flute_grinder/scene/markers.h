@@ -28,6 +28,12 @@ visualization_msgs::MarkerArray clearedArray();
 /// @return the marker; valid until the next is appended.
 visualization_msgs::Marker& append(visualization_msgs::MarkerArray& array, const char* ns, int type, const char* frame);
 
+/// The same for lines.
+/// @param type visualization_msgs::Marker::LINE_STRIP or LINE_LIST.
+/// @param width of the lines [m].
+visualization_msgs::Marker& appendLines(visualization_msgs::MarkerArray& array, const char* ns, int type,
+                                        const char* frame, double width);
+
 /// A corner of the outline of a solid of revolution.
 struct OutlinePoint {
   double x;       ///< along the axis [m]

@@ -23,11 +23,14 @@ cp -a "$root/test/workspace/neighbour" "$workspace/src"
 { sed 's#flute_grinder/SimulatedDrive#my_drive/MyDrive#; /^late_cycle:/d' "$root/config/grinder.yaml"
   cat "$root/test/patient.yaml"; } >"$folder/machine.yaml"
 
+# Where CLI11 is no package, it is fetched once for both.
+cli11=$(sed -n 's/^CLI11_SOURCE_DIR:STATIC=//p' "$root/build/CMakeCache.txt")
+
 # make_workspace TARGET...
 make_workspace() {
   local begin=$SECONDS
   (cd "$workspace" && catkin_make --no-color -j"$(nproc)" -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
-    -DBUILD_BENCHMARKS=OFF -DCMAKE_DISABLE_FIND_PACKAGE_rviz=ON \
+    -DBUILD_BENCHMARKS=OFF -DCMAKE_DISABLE_FIND_PACKAGE_rviz=ON ${cli11:+-DFETCHCONTENT_SOURCE_DIR_CLI11="$cli11"} \
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=--param=ggc-min-heapsize=1000000 -DCMAKE_CXX_FLAGS_DEBUG=-O0 "$@") >"$folder/log" 2>&1 ||
     { tail -n 40 "$folder/log"; exit 1; }
   echo "catkin_make $*: $((SECONDS - begin)) s"

@@ -148,6 +148,8 @@ TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
 
 TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {
   loop_->startThread();
+  CycleRecord record;
+  ASSERT_TRUE(popInTime(record));
   EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
   const RequestReply answer = loop_->stop(E::kCancel);
   EXPECT_TRUE(answer.answered);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Counts the test cases in the JUnit files below a folder; names the checks of scripts/test that were skipped and all that
-failed, and exits 1 if any has failed."""
+failed, with the end of what they say, and exits 1 if any has failed."""
 
 import pathlib
 import sys
@@ -20,10 +20,12 @@ for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
         skip = case.find('skipped')
         if skip is not None:
             skipped += ['%s: %s' % (case.get('name'), skip.get('message'))] if case.get('classname') == 'checks' else []
-        elif case.find('failure') is None and case.find('error') is None:
-            passed += 1
-        else:
-            failed.append('%s: %s.%s' % (path.name, case.get('classname'), case.get('name')))
+            continue
+        failures = case.findall('failure') + case.findall('error')
+        passed += not failures
+        for failure in failures[:1]:
+            said = (failure.text or failure.get('message') or '').strip().splitlines()[-5:]
+            failed.append('\n  '.join(['%s: %s.%s' % (path.name, case.get('classname'), case.get('name')), *said]))
 for name in skipped:
     print('SKIPPED ' + name)
 for name in failed:

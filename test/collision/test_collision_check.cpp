@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 namespace flute_grinder {
-namespace {
+namespace test_collision_check {
 
 using Eigen::AngleAxisd;
 using Eigen::Translation3d;
@@ -195,5 +195,5 @@ TEST(CollisionCheck, RefusesAMachineThatDoesNotHoldTheCutter) {
   EXPECT_THROW(CollisionCheck(MachineShapes(small.urdf()), plainJob()), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_collision_check
 }  // namespace flute_grinder

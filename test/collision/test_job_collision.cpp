@@ -11,7 +11,7 @@
 #include <sstream>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_collision {
 
 using test_support::plainMachine;
 using units::kDegree;
@@ -244,5 +244,5 @@ TEST(JobCollision, LeavesAPlanWithoutAProgramAsItIs) {
   EXPECT_FALSE(plan.closest);
 }
 
-}  // namespace
+}  // namespace test_job_collision
 }  // namespace flute_grinder

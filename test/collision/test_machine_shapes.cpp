@@ -10,7 +10,7 @@
 #include <stdexcept>
 
 namespace flute_grinder {
-namespace {
+namespace test_machine_shapes {
 
 using Eigen::Vector3d;
 using units::kDegree;
@@ -109,5 +109,5 @@ TEST(MachineShapes, RefusesWhatItCannotCheckByName) {
                 "joint axis_a must be revolute");
 }
 
-}  // namespace
+}  // namespace test_machine_shapes
 }  // namespace flute_grinder

@@ -7,7 +7,7 @@
 #include <random>
 
 namespace flute_grinder {
-namespace {
+namespace test_solid {
 
 using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
@@ -175,5 +175,5 @@ TEST(Solid, ACylinderOnTheAxisSweepsItself) {
   }
 }
 
-}  // namespace
+}  // namespace test_solid
 }  // namespace flute_grinder

@@ -7,7 +7,7 @@
 
 // Cancel.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_cancel {
 
 class Cancel : public testing::TestWithParam<std::tuple<MoveKind, int>> {
  protected:
@@ -178,5 +178,5 @@ INSTANTIATE_TEST_SUITE_P(, CancelIn,
                                          S::kRetracted, S::kResuming),
                          stateName);
 
-}  // namespace
+}  // namespace test_cancel
 }  // namespace flute_grinder::test_support

@@ -5,7 +5,7 @@
 #include <memory>
 
 namespace flute_grinder {
-namespace {
+namespace test_command_history {
 
 CommandHistory::Entry entry(int number) {
   CommandHistory::Entry entry;
@@ -67,5 +67,5 @@ TEST_F(CommandHistoryTest, DoesNotReachBackBeyondAClear) {
   expectInEffect(5, 11);
 }
 
-}  // namespace
+}  // namespace test_command_history
 }  // namespace flute_grinder

@@ -6,7 +6,7 @@
 
 // Construction, the loop without power, a whole job, and the records.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_control_loop {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -230,5 +230,5 @@ TEST(ControlLoopRecords, TheEndOfAJobIsToldEvenIfItsOwnRecordWasLost) {
   EXPECT_FALSE(rig.cycle().job_ended);
 }
 
-}  // namespace
+}  // namespace test_control_loop
 }  // namespace flute_grinder::test_support

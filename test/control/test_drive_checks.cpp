@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace flute_grinder::test_support {
-namespace {
+namespace test_drive_checks {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -97,5 +97,5 @@ TEST(OpenInterlock, IsTheFirstThatIsOpen) {
   EXPECT_EQ(openInterlock(drive), Interlock::kNotHomed);
 }
 
-}  // namespace
+}  // namespace test_drive_checks
 }  // namespace flute_grinder::test_support

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace flute_grinder {
-namespace {
+namespace test_durations {
 
 TEST(Durations, OfNothingAreZero) {
   const Durations none;
@@ -48,5 +48,5 @@ TEST(Durations, LongerThanTheLastClassIsStillTheLongest) {
   EXPECT_EQ(durations.longest(), std::numeric_limits<double>::infinity());
 }
 
-}  // namespace
+}  // namespace test_durations
 }  // namespace flute_grinder

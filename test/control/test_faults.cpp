@@ -7,7 +7,7 @@
 
 // Faults, and how the machine recovers from them.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_faults {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -454,5 +454,5 @@ TEST(FaultAtRest, AxisThatIsPushedWhileHeldOrRetractedIsAFollowingError) {
   }
 }
 
-}  // namespace
+}  // namespace test_faults
 }  // namespace flute_grinder::test_support

@@ -8,7 +8,7 @@
 
 // The feed override of a running job.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_feed_override {
 
 TEST(FeedOverride, IsOneAtFirst) {
   Rig<FakeDrive> rig;
@@ -194,5 +194,5 @@ TEST(FeedOverride, IsTakenFromAnotherThread) {
   }
 }
 
-}  // namespace
+}  // namespace test_feed_override
 }  // namespace flute_grinder::test_support

@@ -5,7 +5,7 @@
 
 // A setpoint that a limit forbids: the stream is planned for a stronger machine than the loop's.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_forbidden_setpoint {
 
 struct LimitCase {
   const char* name;
@@ -136,5 +136,5 @@ TEST_P(ForbiddenSetpoint, IsToldInWords) {
 INSTANTIATE_TEST_SUITE_P(, ForbiddenSetpoint, testing::ValuesIn(limitCases()),
                          [](const testing::TestParamInfo<LimitCase>& info) { return std::string(info.param.name); });
 
-}  // namespace
+}  // namespace test_forbidden_setpoint
 }  // namespace flute_grinder::test_support

@@ -6,7 +6,7 @@
 
 // What an operator does to a running job: hold, resume and retract.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_hold_and_retract {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Hold and resume
@@ -305,5 +305,5 @@ TEST(Retract, SeveralTimesInOneStrokeCompletesTheJob) {
   expectCompleted(rig);
 }
 
-}  // namespace
+}  // namespace test_hold_and_retract
 }  // namespace flute_grinder::test_support

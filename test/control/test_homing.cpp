@@ -8,7 +8,7 @@
 
 // Homing: the drive finds the machine's reference by itself while the loop only monitors it.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_homing {
 
 using S = MachineState;
 using E = MachineEvent;
@@ -334,5 +334,5 @@ TEST_F(HomingFake, AFollowingErrorCountsAgainAfterwards) {
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kFollowingError);
 }
 
-}  // namespace
+}  // namespace test_homing
 }  // namespace flute_grinder::test_support

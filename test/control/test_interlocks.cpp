@@ -9,7 +9,7 @@
 
 // What a job waits for before it begins, and what the loop commands to spindle and coolant.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_interlocks {
 
 TEST(InterlockText, SaysWhatIsWrong) {
   EXPECT_STREQ(toString(Interlock::kNone), "");
@@ -292,5 +292,5 @@ TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
   EXPECT_FALSE(drive.written_drive.coolant);
 }
 
-}  // namespace
+}  // namespace test_interlocks
 }  // namespace flute_grinder::test_support

@@ -11,7 +11,7 @@
 
 // Jogs: steps and continuous ones, what is refused, and how they end.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_jog {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kTimeoutCycles = 50;  // of 50.5 ms
@@ -482,5 +482,5 @@ TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
   EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
 }
 
-}  // namespace
+}  // namespace test_jog
 }  // namespace flute_grinder::test_support

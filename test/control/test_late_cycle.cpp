@@ -5,7 +5,7 @@
 
 // Late cycles.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_late_cycle {
 
 /// Allows stale positions for long, so that only the lateness itself is a fault.
 LoopConfig patient() {
@@ -161,5 +161,5 @@ TEST_P(LateWithoutTheJob, TheAxisTakesItsSpeedUpAnewToo) {
 INSTANTIATE_TEST_SUITE_P(, LateWithoutTheJob, testing::Values(S::kLifting, S::kJogging, S::kJoggingRetracted),
                          [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
-}  // namespace
+}  // namespace test_late_cycle
 }  // namespace flute_grinder::test_support

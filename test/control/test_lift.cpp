@@ -7,7 +7,7 @@
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_lift {
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
 const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
@@ -193,5 +193,5 @@ TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace test_lift
 }  // namespace flute_grinder::test_support

@@ -4,7 +4,7 @@
 
 // Requests: enable, job starts, and what each state refuses.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_loop_requests {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -297,5 +297,5 @@ TEST_P(StartAfterMoving, IsRefused) {
 INSTANTIATE_TEST_SUITE_P(Axis, StartAfterMoving, testing::Values(kX, kY, kZ, kA),
                          [](const testing::TestParamInfo<int>& info) { return std::string(1, "XYZA"[info.param]); });
 
-}  // namespace
+}  // namespace test_loop_requests
 }  // namespace flute_grinder::test_support

@@ -12,7 +12,7 @@
 
 // The thread. Whatever a test waits for comes at once; the deadline only ends a test that has failed.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_loop_thread {
 
 class ControlLoopThread : public testing::Test {
  protected:
@@ -196,5 +196,5 @@ TEST_F(ControlLoopThread, StopWithoutAStartIsHarmless) {
   EXPECT_FALSE(drive_.written_drive.enable);
 }
 
-}  // namespace
+}  // namespace test_loop_thread
 }  // namespace flute_grinder::test_support

@@ -11,7 +11,7 @@
 // Everything that other threads may do to the loop, concurrently and at random times, with drives that fail: no data
 // race, no request without an answer, no job that does not end. Made for ThreadSanitizer.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_loop_threads {
 
 using E = MachineEvent;
 constexpr std::uint64_t kCycles = 60000;
@@ -158,5 +158,5 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
   EXPECT_GT(accepted_, 2u) << "no job ran while all this was asked";
 }
 
-}  // namespace
+}  // namespace test_loop_threads
 }  // namespace flute_grinder::test_support

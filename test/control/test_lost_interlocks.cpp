@@ -8,7 +8,7 @@
 
 // A reference, spindle, coolant or probe that is lost in the middle of a job.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_lost_interlocks {
 
 /// When a part is lost, and the state in the cycle that detects it.
 struct LossMoment {
@@ -336,5 +336,5 @@ INSTANTIATE_TEST_SUITE_P(, LostOnTheSimulatedDrive,
                            return std::string(parts()[static_cast<std::size_t>(std::get<1>(info.param)) - 1].name);
                          });
 
-}  // namespace
+}  // namespace test_lost_interlocks
 }  // namespace flute_grinder::test_support

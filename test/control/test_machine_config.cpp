@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_machine_config {
 
 using ::testing::TestParamInfo;
 using ::testing::TestWithParam;
@@ -691,5 +691,5 @@ TEST(ParameterReader, RefusesAStructForANumber) {
   EXPECT_NE(readerError([](const ParameterReader& r) { r.number("a/b", 0, 1); }).find("/ns/a/b = "), std::string::npos);
 }
 
-}  // namespace
+}  // namespace test_machine_config
 }  // namespace flute_grinder

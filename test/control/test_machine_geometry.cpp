@@ -17,7 +17,7 @@
 /// The zeros of a job, against figures by hand and against the URDF's chain of joints.
 
 namespace flute_grinder {
-namespace {
+namespace test_machine_geometry {
 
 const double kDegree = std::acos(-1.0) / 180;
 
@@ -163,5 +163,5 @@ TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
   }
 }
 
-}  // namespace
+}  // namespace test_machine_geometry
 }  // namespace flute_grinder

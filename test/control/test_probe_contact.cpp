@@ -6,7 +6,7 @@
 
 // Jogs that end where the measuring probe touches.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_probe_contact {
 
 /// A wall that the probe touches while X stands at or beyond it.
 template <typename Drive>
@@ -122,5 +122,5 @@ TEST_P(ProbeFrom, AFaultEndsTheJog) {
 
 INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted), stateName);
 
-}  // namespace
+}  // namespace test_probe_contact
 }  // namespace flute_grinder::test_support

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_seq_lock {
 
 /// Every word the same, so that a torn copy shows.
 struct Row {
@@ -75,5 +75,5 @@ TEST(SeqLock, ReadersSeeWholeValuesInTheirOrder) {
   EXPECT_EQ(lock.load().words[0], kLast);
 }
 
-}  // namespace
+}  // namespace test_seq_lock
 }  // namespace flute_grinder

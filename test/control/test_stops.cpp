@@ -7,7 +7,7 @@
 
 // Stops in every state, and the job in the loop's status.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_stops {
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
 const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
@@ -160,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(, EndsHoming, testing::Values(E::kHold, E::kCancel, E::
 // ---------------------------------------------------------------------------------------------------------------------
 // Cancel
 
-TEST(Cancel, LiftsTheWheelWhileSpindleAndCoolantRunAlsoWithoutThem) {
+TEST(CancelWithLift, LiftsTheWheelWhileSpindleAndCoolantRunAlsoWithoutThem) {
   for (const bool lost : {false, true}) {
     Rig<FakeDrive> rig;
     ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
@@ -177,7 +177,7 @@ TEST(Cancel, LiftsTheWheelWhileSpindleAndCoolantRunAlsoWithoutThem) {
   }
 }
 
-TEST(Cancel, AgainDuringTheLiftChangesNothing) {
+TEST(CancelWithLift, AgainDuringTheLiftChangesNothing) {
   Rig<FakeDrive> once, often;
   ASSERT_NO_FATAL_FAILURE(bringTo(once, S::kCanceling));
   ASSERT_NO_FATAL_FAILURE(bringTo(often, S::kCanceling));
@@ -191,7 +191,7 @@ TEST(Cancel, AgainDuringTheLiftChangesNothing) {
 }
 
 /// Every motion can be stopped.
-TEST(Cancel, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
+TEST(CancelWithLift, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
   for (const double lifted : {0.0, 1e-4, 1e-3}) {
     Rig<FakeDrive> rig;
     ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
@@ -210,7 +210,7 @@ TEST(Cancel, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork) {
   }
 }
 
-TEST(Cancel, AFaultDuringTheLiftEndsTheJobAsAFault) {
+TEST(CancelWithLift, AFaultDuringTheLiftEndsTheJobAsAFault) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
   const double stopped_at = rig.last().command[kY];
@@ -224,7 +224,7 @@ TEST(Cancel, AFaultDuringTheLiftEndsTheJobAsAFault) {
   EXPECT_TRUE(status.wheel.in_work);
 }
 
-TEST(Cancel, InTheCycleOfTheStartEndsTheJobBeforeAnythingMoves) {
+TEST(CancelWithLift, InTheCycleOfTheStartEndsTheJobBeforeAnythingMoves) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -447,5 +447,5 @@ TEST(Status, IsRightThoughNobodyTakesTheRecords) {
   EXPECT_EQ(rig.loop->status().setpoints_written, planned);
 }
 
-}  // namespace
+}  // namespace test_stops
 }  // namespace flute_grinder::test_support

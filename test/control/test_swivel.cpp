@@ -8,7 +8,7 @@
 
 // Where the swivel stands: confirmed by an operator or measured by the drive, and what a job makes of it.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_swivel {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -201,5 +201,5 @@ TEST(MeasuredSwivel, ThatIsLostAmidAJobLiftsTheWheelUntilAnOperatorConfirmsIt) {
   expectCompleted(rig);
 }
 
-}  // namespace
+}  // namespace test_swivel
 }  // namespace flute_grinder::test_support

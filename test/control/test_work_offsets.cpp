@@ -10,7 +10,7 @@
 
 // Jobs with work offsets: setpoints are the work's, commands, limits and heights the machine's.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_work_offsets {
 
 const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
 const double kClearance = 0.037 * kTanCone + 0.005;           // of the paper's job, in work coordinates
@@ -316,5 +316,5 @@ TEST(WorkOffsets, TheStatusHasThePositionsAsRead) {
   EXPECT_FALSE(rig.loop->status().position_valid) << "not fresh for 3 periods; 2.5 are allowed";
 }
 
-}  // namespace
+}  // namespace test_work_offsets
 }  // namespace flute_grinder::test_support

@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_axis_move {
 
 using namespace test_support;
 
@@ -156,5 +156,5 @@ RC_GTEST_PROP(AxisMoveProperty, KeepsTheLimitsAtAnySpeedsAndSlowedDownAtAnyMomen
   if (move.finished()) RC_ASSERT(p.position[axis] == to);
 }
 
-}  // namespace
+}  // namespace test_axis_move
 }  // namespace flute_grinder

@@ -12,7 +12,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_conical_cutter {
 
 using namespace test_support;
 
@@ -148,5 +148,5 @@ TEST(ConicalCutter, TakesACylinderAStraightFluteAndALeftHand) {
   EXPECT_EQ(errorOf({10e-3, 0.1, -0.5, 0, 30e-3}), "");
 }
 
-}  // namespace
+}  // namespace test_conical_cutter
 }  // namespace flute_grinder

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace flute_grinder {
-namespace {
+namespace test_enum_table {
 
 enum class Wheel { kPlain, kCup, kDish };
 
@@ -51,5 +51,5 @@ TEST(EnumTable, IsInOrderWithARowForEachValueAtItsPlace) {
   EXPECT_FALSE(isInOrder(gap));
 }
 
-}  // namespace
+}  // namespace test_enum_table
 }  // namespace flute_grinder

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_feed_law {
 
 using namespace test_support;
 
@@ -591,5 +591,5 @@ RC_GTEST_PROP(FeedLawProperty, TheTimeLeftIsWhatItThenTakes, ()) {
   assertFinished(law, m);
 }
 
-}  // namespace
+}  // namespace test_feed_law
 }  // namespace flute_grinder

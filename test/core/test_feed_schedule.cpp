@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_feed_schedule {
 
 using namespace test_support;
 
@@ -433,5 +433,5 @@ TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {
   EXPECT_GE(static_cast<double>(deviation), 0.9e-6);
 }
 
-}  // namespace
+}  // namespace test_feed_schedule
 }  // namespace flute_grinder

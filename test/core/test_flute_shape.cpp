@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_flute_shape {
 
 using namespace test_support;
 
@@ -95,5 +95,5 @@ TEST(FluteShape, ADepthBeyondTheRadiusAtTheFlutesEndIsRefused) {
   EXPECT_EQ(validate(job)[0].field, "process.depth_end");
 }
 
-}  // namespace
+}  // namespace test_flute_shape
 }  // namespace flute_grinder

@@ -5,7 +5,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_format {
 
 TEST(Format, IsAsByPrintf) {
   EXPECT_EQ(format("X %.3f mm, %zu %s", 1.23456, std::size_t{2}, "teeth"), "X 1.235 mm, 2 teeth");
@@ -17,5 +17,5 @@ TEST(Format, CutsNothingOff) {
   EXPECT_EQ(format("<%s>", name.c_str()), "<" + name + ">");
 }
 
-}  // namespace
+}  // namespace test_format
 }  // namespace flute_grinder

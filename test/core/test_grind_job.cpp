@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_grind_job {
 
 using test_support::paperJob;
 
@@ -487,5 +487,5 @@ RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
   }
 }
 
-}  // namespace
+}  // namespace test_grind_job
 }  // namespace flute_grinder

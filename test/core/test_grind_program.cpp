@@ -16,7 +16,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_grind_program {
 
 using namespace test_support;
 
@@ -423,5 +423,5 @@ RC_GTEST_PROP(GrindProgramProperty, EveryToothGetsEveryPassOnce, ()) {
   for (const int count : seen) RC_ASSERT(count == 1);
 }
 
-}  // namespace
+}  // namespace test_grind_program
 }  // namespace flute_grinder

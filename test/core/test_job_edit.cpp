@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_edit {
 
 using Edits = std::vector<JobEdit>;
 
@@ -219,5 +219,5 @@ TEST(JobEdit, RefusesWhatItCannotEditWithoutRisk) {
   EXPECT_NE(refusal(wide, {{"p.a", "2"}}), "");
 }
 
-}  // namespace
+}  // namespace test_job_edit
 }  // namespace flute_grinder

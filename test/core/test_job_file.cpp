@@ -18,7 +18,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_file {
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
@@ -709,5 +709,5 @@ TEST(JobFile, NamesTheFileAndLineOfAnErrorInIt) {
   EXPECT_EQ(fileErrorOf(path).find(path + ":13: process.depth_mm = deep"), 0u) << fileErrorOf(path);
 }
 
-}  // namespace
+}  // namespace test_job_file
 }  // namespace flute_grinder

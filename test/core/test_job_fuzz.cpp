@@ -17,7 +17,7 @@
 /// Whatever a job holds, the answer is a plan that keeps all limits, or a refusal with its reasons.
 
 namespace flute_grinder {
-namespace {
+namespace test_job_fuzz {
 
 using test_support::paperJob;
 using test_support::plainMachine;
@@ -357,5 +357,5 @@ TEST(JobFuzz, StreamsOfGoodJobsStayWithinLimitsWhateverIsDoneToThem) {
   EXPECT_GT(streams, 50);
 }
 
-}  // namespace
+}  // namespace test_job_fuzz
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_plan {
 
 using namespace test_support;
 
@@ -349,5 +349,5 @@ RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
   RC_ASSERT(plan.statistics.max_deviation <= work.job.interpolation.tolerance);
 }
 
-}  // namespace
+}  // namespace test_job_plan
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_limit_check {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -441,5 +441,5 @@ RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {
   }
 }
 
-}  // namespace
+}  // namespace test_limit_check
 }  // namespace flute_grinder

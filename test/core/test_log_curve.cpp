@@ -11,7 +11,7 @@
 #include <limits>
 
 namespace flute_grinder {
-namespace {
+namespace test_log_curve {
 
 using namespace test_support;
 
@@ -139,5 +139,5 @@ RC_GTEST_PROP(LogCurveProperty, SlopeIsTheDerivative, ()) {
 
 RC_GTEST_PROP(LogCurveProperty, BeginsAtZero, ()) { RC_ASSERT(Curves::draw().curve.a(0) == 0); }
 
-}  // namespace
+}  // namespace test_log_curve
 }  // namespace flute_grinder

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_machine_state {
 
 using ::testing::Combine;
 using ::testing::Range;
@@ -144,8 +144,12 @@ TEST(MachineState, AJogLeadsBackToWhereItWasBegun) {
     EXPECT_EQ(jogging.has_value(),
               from == S::kReady || from == S::kRetracted || from == S::kJogging || from == S::kJoggingRetracted)
         << toString(from);
-    if (from == S::kReady || from == S::kRetracted) EXPECT_EQ(after(*jogging, E::kAtRest), from);
-    if (jogging) EXPECT_EQ(after(*jogging, E::kJog), jogging);
+    if (from == S::kReady || from == S::kRetracted) {
+      EXPECT_EQ(after(*jogging, E::kAtRest), from);
+    }
+    if (jogging) {
+      EXPECT_EQ(after(*jogging, E::kJog), jogging);
+    }
   }
   EXPECT_FALSE(isInJob(S::kJogging));
   EXPECT_TRUE(isInJob(S::kJoggingRetracted));
@@ -185,5 +189,5 @@ TEST(MachineState, WhatIsNoStateOrEventIsRefused) {
   EXPECT_STREQ(toString(static_cast<E>(99)), "unknown");
 }
 
-}  // namespace
+}  // namespace test_machine_state
 }  // namespace flute_grinder

@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_odd_even_interpolator {
 
 using namespace test_support;
 
@@ -299,5 +299,5 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, NegativeStepsGoAsPositiveOnesDoOnTheM
   }
 }
 
-}  // namespace
+}  // namespace test_odd_even_interpolator
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_path_statistics {
 
 using namespace test_support;
 
@@ -226,5 +226,5 @@ TEST(JobPlan, ReportsTheRippleOfTheOddEvenSteps) {
   EXPECT_GE(plan.statistics.ripple_acceleration[kA], static_cast<double>(thin / (curve.u(0.001L) * curve.u(0.001L))));
 }
 
-}  // namespace
+}  // namespace test_path_statistics
 }  // namespace flute_grinder

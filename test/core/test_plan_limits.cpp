@@ -14,7 +14,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_plan_limits {
 
 using namespace test_support;
 
@@ -177,5 +177,5 @@ TEST(JobPlan, TellsToleranceAndLimitsTogether) {
   EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis_x").size());
 }
 
-}  // namespace
+}  // namespace test_plan_limits
 }  // namespace flute_grinder

@@ -14,7 +14,7 @@
 /// A plan generates only what its moves have not in common. It is held against one of every setpoint, which a visitor
 /// makes planJob() generate.
 namespace flute_grinder {
-namespace {
+namespace test_plan_shapes {
 
 using namespace test_support;
 
@@ -156,5 +156,5 @@ TEST(PlanShapes, AreGivenUp) {
   EXPECT_EQ(textOf(plan), "given up while it was planned\n");
 }
 
-}  // namespace
+}  // namespace test_plan_shapes
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_reason {
 
 using core::Reason;
 using Kind = core::ReasonKind;
@@ -335,5 +335,5 @@ TEST(JobFields, HaveTheirNamesInTheJobFile) {
   EXPECT_EQ(fieldName("process.spark_out", UnitSystem::kShop), "process.spark_out");
 }
 
-}  // namespace
+}  // namespace test_reason
 }  // namespace flute_grinder

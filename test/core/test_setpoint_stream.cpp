@@ -15,7 +15,7 @@
 #include <memory>
 
 namespace flute_grinder {
-namespace {
+namespace test_setpoint_stream {
 
 using namespace test_support;
 
@@ -336,5 +336,5 @@ TEST(SetpointStream, SharesItsProgram) {
   EXPECT_FALSE(owned.next(q));
 }
 
-}  // namespace
+}  // namespace test_setpoint_stream
 }  // namespace flute_grinder

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_step_table {
 
 using namespace test_support;
 
@@ -108,5 +108,5 @@ TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
   EXPECT_EQ(table.rows.front().point.x, 0);
 }
 
-}  // namespace
+}  // namespace test_step_table
 }  // namespace flute_grinder

@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_stream_feed {
 
 using namespace test_support;
 
@@ -329,5 +329,5 @@ TEST(SetpointStream, GoesAsFarTowardTheOverrideAsAnAxisAllows) {
   EXPECT_GT(fastest, 1.099 * paperSpeed());
 }
 
-}  // namespace
+}  // namespace test_stream_feed
 }  // namespace flute_grinder

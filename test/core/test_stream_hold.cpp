@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_stream_hold {
 
 using namespace test_support;
 
@@ -195,5 +195,5 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstructio
   RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
-}  // namespace
+}  // namespace test_stream_hold
 }  // namespace flute_grinder

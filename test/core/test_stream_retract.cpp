@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_stream_retract {
 
 using namespace test_support;
 
@@ -439,5 +439,5 @@ TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
   EXPECT_TRUE((p.position == plainMachine().park).all());
 }
 
-}  // namespace
+}  // namespace test_stream_retract
 }  // namespace flute_grinder

@@ -19,7 +19,7 @@
 /// with its own name and lines.
 
 namespace flute_grinder {
-namespace {
+namespace test_wheel_file {
 
 // Line numbers in the rows below are those of this text.
 const char* const kWheel =
@@ -334,5 +334,5 @@ TEST(WheelFile, OfPointsKeepsTheirWidth) {
   EXPECT_EQ(errorOf(with(text.c_str(), "width_mm: 7}", "width_mm: 8}")), "");
 }
 
-}  // namespace
+}  // namespace test_wheel_file
 }  // namespace flute_grinder

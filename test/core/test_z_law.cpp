@@ -11,7 +11,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_z_law {
 
 using namespace test_support;
 
@@ -167,5 +167,5 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
   EXPECT_LT(plan.statistics.max_jerk[kZ], 2.001e-3);
 }
 
-}  // namespace
+}  // namespace test_z_law
 }  // namespace flute_grinder

@@ -7,7 +7,7 @@
 
 // The base class of a drive, as a third-party package uses it: by its header alone.
 namespace flute_grinder {
-namespace {
+namespace test_axes_hw {
 
 class MinimalDrive : public AxesHW {
  public:
@@ -68,5 +68,5 @@ TEST(DriveAbi, LayoutOfTheVersion) {
   EXPECT_EQ(sizeof(AxesHW), 392U);
 }
 
-}  // namespace
+}  // namespace test_axes_hw
 }  // namespace flute_grinder

@@ -4,7 +4,7 @@
 
 // The control loop with a drive that buffers commands and plays them by a clock of its own.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_buffered_drive {
 
 constexpr std::size_t kDepth = 50;
 
@@ -95,5 +95,5 @@ TEST_F(BufferedDrive, FollowsPositionsAnewAfterAFault) {
   EXPECT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
 }
 
-}  // namespace
+}  // namespace test_buffered_drive
 }  // namespace flute_grinder::test_support

@@ -5,7 +5,7 @@
 
 // Set-up, motion and encoders of the simulated drive.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_simulated_drive {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Set up
@@ -196,5 +196,5 @@ TEST(SimulatedDriveFeedback, CountGoesUpWithEveryRead) {
   }
 }
 
-}  // namespace
+}  // namespace test_simulated_drive
 }  // namespace flute_grinder::test_support

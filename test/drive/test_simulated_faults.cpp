@@ -5,7 +5,7 @@
 
 // Faults that the simulated drive injects.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_simulated_faults {
 
 TEST(SimulatedDriveFault, EmergencyStopTakesPowerAndMotionAway) {
   MovingBench bench;
@@ -140,5 +140,5 @@ TEST(SimulatedDriveFault, OneTakesThePlaceOfAnother) {
   EXPECT_EQ(bench.position(kZ), stuck);
 }
 
-}  // namespace
+}  // namespace test_simulated_faults
 }  // namespace flute_grinder::test_support

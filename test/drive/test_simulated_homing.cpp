@@ -6,7 +6,7 @@
 
 // Spindle, coolant, swivel, reference and homing of the simulated drive.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_simulated_homing {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Spindle and coolant
@@ -326,5 +326,5 @@ TEST(SimulatedDriveFault, ALostReferenceStaysLostUntilHomed) {
   EXPECT_TRUE(bench.status().homed);
 }
 
-}  // namespace
+}  // namespace test_simulated_homing
 }  // namespace flute_grinder::test_support

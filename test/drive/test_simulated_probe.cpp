@@ -5,7 +5,7 @@
 
 // What the simulated drive's probe touches.
 namespace flute_grinder::test_support {
-namespace {
+namespace test_simulated_probe {
 
 constexpr double kBall = 0.001;
 
@@ -83,5 +83,5 @@ TEST(SimulatedProbe, TheRakeFaceComesDownAsATurns) {
   EXPECT_TRUE(touches(tooth, Axes(0.1, 0.0045, 0, M_PI / 2))) << "in the half that is left";
 }
 
-}  // namespace
+}  // namespace test_simulated_probe
 }  // namespace flute_grinder::test_support

@@ -17,7 +17,7 @@
 #include <random>
 
 namespace flute_grinder {
-namespace {
+namespace test_constant_rake {
 
 using core::ReasonKind;
 using units::kDegree;
@@ -274,5 +274,5 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   EXPECT_LT(rakeError(strokes.cutter(), job), 0.006);  // sampled from setpoints
 }
 
-}  // namespace
+}  // namespace test_constant_rake
 }  // namespace flute_grinder

@@ -11,7 +11,7 @@
 #include <map>
 
 namespace flute_grinder {
-namespace {
+namespace test_cutter_solid {
 
 using test_support::Case;
 using test_support::cylinder;
@@ -159,5 +159,5 @@ TEST(CutterSolid, RefusesWhatCannotBeShown) {
   EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{0, 4}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_cutter_solid
 }  // namespace flute_grinder

@@ -11,7 +11,7 @@
 #include <random>
 
 namespace flute_grinder {
-namespace {
+namespace test_ground_cutter {
 
 using test_support::Case;
 using test_support::faceFor;
@@ -473,5 +473,5 @@ TEST(GroundCutter, ALeftHandCutterIsARightHandOneInTheMirror) {
   EXPECT_NEAR(*left.land, *right.land, 1e-9);
 }
 
-}  // namespace
+}  // namespace test_ground_cutter
 }  // namespace flute_grinder

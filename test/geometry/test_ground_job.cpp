@@ -13,7 +13,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_ground_job {
 
 using core::ReasonKind;
 using units::kDegree;
@@ -294,5 +294,5 @@ TEST(GroundJob, ARefusedOrAbandonedPlanIsLeftAsItIs) {
   EXPECT_FALSE(plan.complete.has_value());
 }
 
-}  // namespace
+}  // namespace test_ground_job
 }  // namespace flute_grinder

@@ -12,7 +12,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_setup {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -177,5 +177,5 @@ TEST(SetupSheet, TellsHowHighTheWheelStands) {
   EXPECT_NEAR(lowerFaceHeight(job) / kMillimetre, 2 * 2.788 - 4.552, 1e-3);
 }
 
-}  // namespace
+}  // namespace test_job_setup
 }  // namespace flute_grinder

@@ -11,7 +11,7 @@
 #include <cmath>
 
 namespace flute_grinder {
-namespace {
+namespace test_rake_correction {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -123,5 +123,5 @@ TEST(RakeCorrection, WhereThereIsNoFluteThereIsNoCorrection) {
                    .has_value());
 }
 
-}  // namespace
+}  // namespace test_rake_correction
 }  // namespace flute_grinder

@@ -18,7 +18,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_rake_touch {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -358,5 +358,5 @@ TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
   EXPECT_EQ(core::text(*reason, UnitSystem::kShop), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
 }
 
-}  // namespace
+}  // namespace test_rake_touch
 }  // namespace flute_grinder

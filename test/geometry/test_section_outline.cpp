@@ -9,7 +9,7 @@
 #include <cmath>
 
 namespace flute_grinder {
-namespace {
+namespace test_section_outline {
 
 using test_support::Case;
 using test_support::cylinder;
@@ -142,5 +142,5 @@ TEST(SectionOutline, RefusesACoreThatIsCutThrough) {
   EXPECT_THROW(outlineOf(cylinder().ground(2), 0.01, {2, 16, 0}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_section_outline
 }  // namespace flute_grinder

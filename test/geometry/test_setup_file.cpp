@@ -13,7 +13,7 @@
 #include <string>
 
 namespace flute_grinder {
-namespace {
+namespace test_setup_file {
 
 namespace fs = std::filesystem;
 
@@ -107,5 +107,5 @@ TEST_F(SetupFile, AFileThatIsGoneIsNotMade) {
   EXPECT_EQ(filesInFolder(), 1);
 }
 
-}  // namespace
+}  // namespace test_setup_file
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <stdexcept>
 
 namespace flute_grinder {
-namespace {
+namespace test_setup_solver {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -421,5 +421,5 @@ TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
   EXPECT_LT(count, 190);
 }
 
-}  // namespace
+}  // namespace test_setup_solver
 }  // namespace flute_grinder

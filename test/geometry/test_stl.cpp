@@ -14,7 +14,7 @@
 #include <regex>
 
 namespace flute_grinder {
-namespace {
+namespace test_stl {
 
 using test_support::cylinder;
 using test_support::SolidCase;
@@ -82,5 +82,5 @@ TEST(Stl, OfACutterWithAShankIsSound) {
   }
 }
 
-}  // namespace
+}  // namespace test_stl
 }  // namespace flute_grinder

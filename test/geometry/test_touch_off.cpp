@@ -11,7 +11,7 @@
 #include <limits>
 
 namespace flute_grinder {
-namespace {
+namespace test_touch_off {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -71,5 +71,5 @@ TEST(TouchOff, ATaperedWheelTouchesAtItsLargerFace) {
       << heightRefusal(tapered(), -2.788 * kMillimetre);
 }
 
-}  // namespace
+}  // namespace test_touch_off
 }  // namespace flute_grinder

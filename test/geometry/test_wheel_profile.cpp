@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 namespace flute_grinder {
-namespace {
+namespace test_wheel_profile {
 
 using units::kDegree;
 
@@ -105,5 +105,5 @@ TEST(WheelProfile, WhatIsNoWheelIsRefusedByName) {
   EXPECT_TRUE(refused([] { WheelProfile::angled(0.02, 0.02, 60 * kDegree); }, "radius"));
 }
 
-}  // namespace
+}  // namespace test_wheel_profile
 }  // namespace flute_grinder

@@ -17,7 +17,7 @@
 /// Whatever bytes a goal is made of, the answer is a plan or a refusal with its reasons.
 
 namespace flute_grinder {
-namespace {
+namespace test_goal_fuzz {
 
 Machine machine() {
   Machine m = test_support::plainMachine();
@@ -209,5 +209,5 @@ TEST(GoalFuzz, GoalsWithHostileNumbersAreAnswered) {
   }
 }
 
-}  // namespace
+}  // namespace test_goal_fuzz
 }  // namespace flute_grinder

@@ -16,7 +16,7 @@
 /// A job told in JSON is a job file, which reads back as the same job.
 
 namespace flute_grinder {
-namespace {
+namespace test_json {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -102,5 +102,5 @@ RC_GTEST_PROP(JobJson, OfAnyJobIsTheSameWithinRounding, ()) {
   RC_ASSERT(back.tooth_angles.size() == job.tooth_angles.size());
 }
 
-}  // namespace
+}  // namespace test_json
 }  // namespace flute_grinder

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_reasons {
 
 bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
@@ -102,5 +102,5 @@ TEST(ReasonMessage, OfAPlanIsReadInShopUnits) {
   EXPECT_EQ(planTexts(plan), std::vector<std::string>{kFollowingError});
 }
 
-}  // namespace
+}  // namespace test_reasons
 }  // namespace flute_grinder

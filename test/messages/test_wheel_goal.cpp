@@ -11,7 +11,7 @@
 /// The shipped jobs that name a wheel file give the goal and the digest that they give with the wheel's keys in them.
 
 namespace flute_grinder {
-namespace {
+namespace test_wheel_goal {
 
 std::string withKeys(const std::string& job, const std::string& file, const std::string& keys) {
   std::ifstream stream(SOURCE_DIR "/jobs/" + job + ".yaml");
@@ -42,5 +42,5 @@ TEST(WheelGoal, OfAWornWheel) {
              "0.12\n");
 }
 
-}  // namespace
+}  // namespace test_wheel_goal
 }  // namespace flute_grinder

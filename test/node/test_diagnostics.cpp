@@ -8,7 +8,7 @@
 #include <limits>
 
 namespace flute_grinder {
-namespace {
+namespace test_diagnostics {
 
 using diagnostic_msgs::DiagnosticStatus;
 using Report = void (Diagnostics::*)(Diagnostics::Status&);
@@ -477,5 +477,5 @@ TEST_F(DiagnosticsTest, HistoryWarnsOfWhatIsAmiss) {
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
 }
 
-}  // namespace
+}  // namespace test_diagnostics
 }  // namespace flute_grinder

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_history {
 
 namespace fs = std::filesystem;
 
@@ -145,5 +145,5 @@ TEST_F(HistoryTest, ARecordThatCannotBeMadeIsTold) {
   EXPECT_TRUE(files().empty());
 }
 
-}  // namespace
+}  // namespace test_history
 }  // namespace flute_grinder

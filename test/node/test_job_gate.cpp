@@ -6,7 +6,7 @@
 #include <thread>
 
 namespace flute_grinder {
-namespace {
+namespace test_job_gate {
 
 actionlib_msgs::GoalID id(const std::string& name, double stamp = 0) {
   actionlib_msgs::GoalID id;
@@ -166,5 +166,5 @@ TEST_F(JobGateTest, NoCancelFallsBetweenPlanAndLoop) {
   }
 }
 
-}  // namespace
+}  // namespace test_job_gate
 }  // namespace flute_grinder

@@ -24,7 +24,7 @@
 /// made at random; each figure is computed once more from the list of all of them.
 
 namespace flute_grinder {
-namespace {
+namespace test_job_record {
 
 constexpr double kStart = 1795367053.123;  ///< 2026-11-22 17:04:13.123 UTC
 const MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive",       0.001,
@@ -351,5 +351,5 @@ TEST(RecordName, SortsByTimeAndReadsBack) {
   }
 }
 
-}  // namespace
+}  // namespace test_job_record
 }  // namespace flute_grinder

@@ -17,7 +17,7 @@
 // through the very parts of the node that they go through: no data race, and no job that a stop has missed. Made for
 // ThreadSanitizer.
 namespace flute_grinder {
-namespace {
+namespace test_job_threads {
 
 using test_support::FakeDrive;
 using test_support::machineConfig;
@@ -162,5 +162,5 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
   EXPECT_TRUE(seenAll()) << given_up_ << ' ' << ended(JobEnd::kCanceled) << ' ' << ended(JobEnd::kFault);
 }
 
-}  // namespace
+}  // namespace test_job_threads
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <limits>
 
 namespace flute_grinder {
-namespace {
+namespace test_journal_file {
 
 using namespace test_support;
 
@@ -321,5 +321,5 @@ TEST_F(JournalFileTest, AWriteThatFailsLeavesTheOldFile) {
   expectSame(journal.read().value(), Progress());
 }
 
-}  // namespace
+}  // namespace test_journal_file
 }  // namespace flute_grinder

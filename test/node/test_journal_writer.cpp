@@ -9,7 +9,7 @@
 #include <thread>
 
 namespace flute_grinder {
-namespace {
+namespace test_journal_writer {
 
 using test_support::expectSame;
 using test_support::someProgress;
@@ -179,5 +179,5 @@ TEST_F(JournalWriterTest, WritesAndQueriesMayComeFromManyThreads) {
   EXPECT_EQ(Journal(path_, "/grinder").read().value().x, all.rbegin()->second) << "the newest is not on the disk";
 }
 
-}  // namespace
+}  // namespace test_journal_writer
 }  // namespace flute_grinder

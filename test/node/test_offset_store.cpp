@@ -13,7 +13,7 @@
 
 // The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal_file.cpp.
 namespace flute_grinder {
-namespace {
+namespace test_offset_store {
 
 using namespace test_support;
 
@@ -189,5 +189,5 @@ TEST_F(OffsetStoreTest, BelongsToOneNode) {
   }
 }
 
-}  // namespace
+}  // namespace test_offset_store
 }  // namespace flute_grinder

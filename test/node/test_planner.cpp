@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_planner {
 
 constexpr std::chrono::seconds kPatience(60);
 
@@ -167,5 +167,5 @@ TEST(Planner, ItsEndGivesUpAndAnswers) {
   EXPECT_FALSE(planner.submit(late.request));
 }
 
-}  // namespace
+}  // namespace test_planner
 }  // namespace flute_grinder

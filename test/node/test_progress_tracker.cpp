@@ -11,7 +11,7 @@
 #include <thread>
 
 namespace flute_grinder {
-namespace {
+namespace test_progress_tracker {
 
 const ToothPass kFirst{0, 0};
 
@@ -174,5 +174,5 @@ TEST_F(ProgressTrackerTest, TheWheelIsEnteredWithoutAJobToo) {
   EXPECT_FALSE(onDisk().wheel.in_work);
 }
 
-}  // namespace
+}  // namespace test_progress_tracker
 }  // namespace flute_grinder

@@ -7,7 +7,7 @@
 #include <future>
 
 namespace flute_grinder {
-namespace {
+namespace test_served_queue {
 
 constexpr double kShort = 0.001;  ///< [s]
 constexpr double kHour = 3600;    ///< [s]
@@ -47,5 +47,5 @@ TEST_F(ServedQueueTest, ALongerPeriodSetByPollCountsForTheNextPoll) {
   EXPECT_EQ(polls, 1);
 }
 
-}  // namespace
+}  // namespace test_served_queue
 }  // namespace flute_grinder

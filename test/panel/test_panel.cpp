@@ -21,7 +21,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 
@@ -762,7 +762,7 @@ TEST_F(OnStage, AxesThatAreNotHomedAreTold) {
   WAIT_FOR(panel.label("meaning").find("not homed") != std::string::npos);
 }
 
-}  // namespace
+}  // namespace test_panel
 }  // namespace flute_grinder
 
 int main(int argc, char** argv) {

@@ -16,7 +16,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel_job {
 
 const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/";
 
@@ -241,5 +241,5 @@ TEST_F(WithGrinder, AJobBeyondTheAxesIsRefused) {
   EXPECT_FALSE(panel.enabled("start"));
 }
 
-}  // namespace
+}  // namespace test_panel_job
 }  // namespace flute_grinder

@@ -17,7 +17,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel_jog {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
@@ -260,5 +260,5 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
   QTest::mouseRelease(&button, Qt::LeftButton);
 }
 
-}  // namespace
+}  // namespace test_panel_jog
 }  // namespace flute_grinder

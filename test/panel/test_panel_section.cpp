@@ -18,7 +18,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel_section {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 const char* const kRed = "color:#b00020";
@@ -214,5 +214,5 @@ TEST_F(SectionOnStage, AQuestionAtTheStartIsSeen) {
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
 }
 
-}  // namespace
+}  // namespace test_panel_section
 }  // namespace flute_grinder

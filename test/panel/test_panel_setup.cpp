@@ -10,7 +10,7 @@
 #include <QTemporaryDir>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel_setup {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
 const QByteArray kSetup = "  setup: {swivel_deg: 31.769, height_mm: 2.788}";
@@ -92,5 +92,5 @@ TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
   EXPECT_FALSE(panel->enabled("write_setup"));
 }
 
-}  // namespace
+}  // namespace test_panel_setup
 }  // namespace flute_grinder

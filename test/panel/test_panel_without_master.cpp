@@ -16,7 +16,7 @@
 #include <cstring>
 
 namespace flute_grinder {
-namespace {
+namespace test_panel_without_master {
 
 constexpr const char* kGrinder = "--grinder";  ///< argument of the grinder's process
 
@@ -195,11 +195,11 @@ TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
   findBoth();
 }
 
-}  // namespace
+}  // namespace test_panel_without_master
 }  // namespace flute_grinder
 
 int main(int argc, char** argv) {
-  using namespace flute_grinder;
+  using namespace flute_grinder::test_panel_without_master;
   const bool is_grinder = argc > 1 && std::strcmp(argv[1], kGrinder) == 0;
   ::testing::InitGoogleTest(&argc, argv);
   const QApplication application(argc, argv);

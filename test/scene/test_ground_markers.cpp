@@ -14,7 +14,7 @@
 #include <filesystem>
 
 namespace flute_grinder {
-namespace {
+namespace test_ground_markers {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -205,5 +205,5 @@ TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   EXPECT_NE(textsOf(array).find("core radius = "), std::string::npos) << textsOf(array);
 }
 
-}  // namespace
+}  // namespace test_ground_markers
 }  // namespace flute_grinder

@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace {
+namespace test_path_markers {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
@@ -145,5 +145,5 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   EXPECT_LT(points, 5000u);
 }
 
-}  // namespace
+}  // namespace test_path_markers
 }  // namespace flute_grinder

@@ -8,7 +8,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kAccuracy = 1e-6;  ///< of the search; that of gap() comes on top [m]
+constexpr double kSearchAccuracy = 1e-6;  ///< of the search; that of gap() comes on top [m]
 
 }  // namespace
 
@@ -55,7 +55,7 @@ void ClosestSearch::search(const CollisionCheck::Pair& pair, const Pieces& piece
       bound = std::min(bound, space.distance + slope.dot(place(piece.leg, end) - here));
     }
   }
-  if (bound >= std::min(best_.distance, pair.below) - kAccuracy) return;
+  if (bound >= std::min(best_.distance, pair.below) - kSearchAccuracy) return;
 
   int axis = 0;
   box.sizes().maxCoeff(&axis);

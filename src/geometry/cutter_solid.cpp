@@ -13,8 +13,6 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTurn = 2 * units::kPi;
-
 struct Layer {
   double x;
   std::vector<PolarPoint> outline;
@@ -22,9 +20,9 @@ struct Layer {
 
 OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution) {
   const std::vector<GroundTooth>& teeth = cutter.teeth();
-  double widest = teeth.empty() ? 0 : kTurn + teeth.front().angle - teeth.back().angle;
+  double widest = teeth.empty() ? 0 : units::kTurn + teeth.front().angle - teeth.back().angle;
   for (std::size_t i = 1; i < teeth.size(); ++i) widest = std::max(widest, teeth[i].angle - teeth[i - 1].angle);
-  const double columns = std::ceil(widest / kTurn * static_cast<double>(resolution.around));
+  const double columns = std::ceil(widest / units::kTurn * static_cast<double>(resolution.around));
   return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns))};
 }
 
@@ -38,7 +36,7 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
     if (!layers.empty() && x > layers.back().x) {
       const Layer last = layers.back();
       const double twist = std::abs(curve.a(x) - curve.a(last.x));
-      const double parts = std::ceil(twist / kTurn * static_cast<double>(resolution.around));
+      const double parts = std::ceil(twist / units::kTurn * static_cast<double>(resolution.around));
       for (double part = 1; part < parts; ++part) {
         Layer& layer = layers.emplace_back(Layer{last.x + part / parts * (x - last.x), last.outline});
         for (std::size_t i = 0; i < layer.outline.size(); ++i) {
@@ -140,7 +138,7 @@ class Joiner {
     begin_ = end_;
     end_ = static_cast<std::uint32_t>(solid_.vertices.size());
     for (const PolarPoint& p : with_inside_ || is_end ? mesh_.points(layer.outline) : layer.outline) {
-      const double angle = kTurn * (p.turns - std::floor(p.turns));
+      const double angle = units::kTurn * (p.turns - std::floor(p.turns));
       solid_.vertices.emplace_back(layer.x, p.radius * std::cos(angle), p.radius * std::sin(angle));
     }
   }

@@ -11,7 +11,6 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTurn = 2 * units::kPi;
 /// For the slope of the edge, of the blank's radius: small against the curvature, large against rounding.
 constexpr double kDifference = 1e-4;
 constexpr int kRings = 64;        ///< for the area of a section
@@ -19,17 +18,17 @@ constexpr int kRingsOfDepth = 6;  ///< on which a flute must be complete
 constexpr double kRangeAccuracy = 10e-6;
 
 /// An angle within one turn.
-double withinTurn(double angle) { return angle - kTurn * std::floor(angle / kTurn); }
+double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
 
 /// How much of a turn some arcs cover together.
 double covered(std::vector<Arc>& arcs) {
   std::vector<Arc> parts;
   for (const Arc& arc : arcs) {
-    if (arc.high - arc.low >= kTurn) return kTurn;
+    if (arc.high - arc.low >= units::kTurn) return units::kTurn;
     const double low = withinTurn(arc.low);
     const double high = low + (arc.high - arc.low);
-    parts.push_back({low, std::min(high, kTurn)});
-    if (high > kTurn) parts.push_back({0, high - kTurn});
+    parts.push_back({low, std::min(high, units::kTurn)});
+    if (high > units::kTurn) parts.push_back({0, high - units::kTurn});
   }
   std::sort(parts.begin(), parts.end(), [](const Arc& a, const Arc& b) { return a.low < b.low; });
   double sum = 0, end = 0;
@@ -122,7 +121,8 @@ std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<To
   const ToothSection& other = measured[teeth_[next].flute];
   if (!own.edge || !other.edge) return std::nullopt;
   const bool around = right ? next <= tooth : next >= tooth;
-  const double pitch = std::abs(teeth_[next].angle - teeth_[tooth].angle + (around ? (right ? kTurn : -kTurn) : 0));
+  const double pitch =
+      std::abs(teeth_[next].angle - teeth_[tooth].angle + (around ? (right ? units::kTurn : -units::kTurn) : 0));
   const double ahead = right ? *other.edge - *own.edge : *own.edge - *other.edge;
   const double left = pitch + ahead - *other.flute;
   if (!(left > 0)) return std::nullopt;

@@ -11,11 +11,11 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kPieces[] = {4, 8, ZCorrection::kMostPieces};
-constexpr int kSections = 48;  ///< in which the rake is made right
-constexpr int kSteps = 6;      ///< of Newton's method, for one number of pieces
+constexpr int kCorrectedSections = 48;  ///< in which the rake is made right
+constexpr int kSteps = 6;               ///< of Newton's method, for one number of pieces
 constexpr double kGoodEnough = 0.001 * units::kDegree;
-constexpr double kDifference = 1e-6;  ///< for derivatives by a coefficient, of the radius
-constexpr double kSmooth = 1e-3;      ///< weight of the coefficients' third differences against the rake
+constexpr double kDerivativeStep = 1e-6;  ///< for derivatives by a coefficient, of the radius
+constexpr double kSmooth = 1e-3;          ///< weight of the coefficients' third differences against the rake
 
 class Correction {
  public:
@@ -67,9 +67,9 @@ class Correction {
     GrindStroke stroke = stroke_;
     stroke.z_correction = z;
     const WheelSweep sweep(cutter_, wheel_, nominal_radius_, setup_, stroke);
-    Eigen::VectorXd errors(kSections + 1);
-    for (int i = 0; i <= kSections; ++i) {
-      const double x = cutter_.geometry().flute_length * i / kSections;
+    Eigen::VectorXd errors(kCorrectedSections + 1);
+    for (int i = 0; i <= kCorrectedSections; ++i) {
+      const double x = cutter_.geometry().flute_length * i / kCorrectedSections;
       const double r = cutter_.radius(x);
       const auto wall = sweep.wall(x, r, high_);
       errors[i] = wall ? std::atan((high_ ? -r : r) * wall->slope) - rake_ : std::nan("");
@@ -81,7 +81,7 @@ class Correction {
   /// them free.
   void improve(ZCorrection& z, const Eigen::VectorXd& errors) const {
     const int n = z.coefficientCount();
-    const double h = kDifference * cutter_.radius(0);
+    const double h = kDerivativeStep * cutter_.radius(0);
     const double weight = kSmooth / cutter_.radius(0);
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(errors.size() + n - 3, n);
     Eigen::VectorXd b = Eigen::VectorXd::Zero(a.rows());

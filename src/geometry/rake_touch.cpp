@@ -20,15 +20,15 @@ namespace {
 
 using units::kPi;
 
-constexpr int kSteps = 12;                ///< either way over the ball, from which a touch is refined
-constexpr std::size_t kCandidates = 3;    ///< places of the ball that may touch first
-constexpr int kBits = 20;                 ///< to which a place is refined: the angle is far better
-constexpr std::uintmax_t kMaxSteps = 60;  ///< of a refinement
-constexpr int kDistances = 24;            ///< that are tried for what is allowed
-constexpr int kHalvings = 6;              ///< of the diameter, the same
-constexpr double kAtEdge = 10e-6;         ///< nearer to the edge than this is no rake face [m]
-constexpr double kFar = 1e3;              ///< more than any angle of a wall [rad]
-constexpr double kRounding = 1e-6;        ///< of lengths in texts, and the least ball [m]
+constexpr int kTouchSteps = 12;                ///< either way over the ball, from which a touch is refined
+constexpr std::size_t kCandidates = 3;         ///< places of the ball that may touch first
+constexpr int kBits = 20;                      ///< to which a place is refined: the angle is far better
+constexpr std::uintmax_t kMaxTouchSteps = 60;  ///< of a refinement
+constexpr int kDistances = 24;                 ///< that are tried for what is allowed
+constexpr int kDiameterHalvings = 6;           ///< of the diameter, the same
+constexpr double kAtEdge = 10e-6;              ///< nearer to the edge than this is no rake face [m]
+constexpr double kFar = 1e3;                   ///< more than any angle of a wall [rad]
+constexpr double kRounding = 1e-6;             ///< of lengths in texts, and the least ball [m]
 
 /// Why a ball does not come to the rake face.
 enum class Fit { kTouches, kOutside, kEdge, kFloor, kOtherWall };
@@ -111,19 +111,20 @@ class TurningBall {
 
   /// The places of a grid that come to a wall before their neighbours do; the first ones, in order.
   std::vector<Place> coarse(int side, std::size_t count) const {
-    std::array<std::array<Place, kSteps + 1>, kSteps + 1> grid;
-    for (std::size_t i = 0; i <= kSteps; ++i) {
-      for (std::size_t k = 0; k <= kSteps; ++k) {
-        const double along = kPi * (static_cast<double>(i) / kSteps - 0.5), across = static_cast<double>(k) / kSteps;
+    std::array<std::array<Place, kTouchSteps + 1>, kTouchSteps + 1> grid;
+    for (std::size_t i = 0; i <= kTouchSteps; ++i) {
+      for (std::size_t k = 0; k <= kTouchSteps; ++k) {
+        const double along = kPi * (static_cast<double>(i) / kTouchSteps - 0.5),
+                     across = static_cast<double>(k) / kTouchSteps;
         grid[i][k] = {along, across, angleAt(side, along, across)};
       }
     }
     std::vector<Place> found;
-    for (std::size_t i = 0; i <= kSteps; ++i) {
-      for (std::size_t k = 0; k <= kSteps; ++k) {
+    for (std::size_t i = 0; i <= kTouchSteps; ++i) {
+      for (std::size_t k = 0; k <= kTouchSteps; ++k) {
         bool is_first = true;
-        for (std::size_t m = i == 0 ? 0 : i - 1; m <= std::min<std::size_t>(i + 1, kSteps); ++m) {
-          for (std::size_t n = k == 0 ? 0 : k - 1; n <= std::min<std::size_t>(k + 1, kSteps); ++n)
+        for (std::size_t m = i == 0 ? 0 : i - 1; m <= std::min<std::size_t>(i + 1, kTouchSteps); ++m) {
+          for (std::size_t n = k == 0 ? 0 : k - 1; n <= std::min<std::size_t>(k + 1, kTouchSteps); ++n)
             is_first = is_first && grid[i][k].angle <= grid[m][n].angle;
         }
         if (is_first) found.push_back(grid[i][k]);
@@ -136,7 +137,7 @@ class TurningBall {
 
   template <typename Function>
   static std::pair<double, double> least(const Function& f, double middle, double step, double from, double to) {
-    std::uintmax_t steps = kMaxSteps;
+    std::uintmax_t steps = kMaxTouchSteps;
     return boost::math::tools::brent_find_minima(f, std::max(from, middle - step), std::min(to, middle + step), kBits,
                                                  steps);
   }
@@ -144,10 +145,10 @@ class TurningBall {
   Place refined(int side, const Place& place) const {
     const auto in_section = [&](double along) {
       const auto f = [&](double across) { return angleAt(side, along, across); };
-      return least(f, place.across, 1.0 / kSteps, 0, 1);
+      return least(f, place.across, 1.0 / kTouchSteps, 0, 1);
     };
     const auto f = [&](double along) { return in_section(along).second; };
-    const auto [along, angle] = least(f, place.along, kPi / kSteps, -kPi / 2, kPi / 2);
+    const auto [along, angle] = least(f, place.along, kPi / kTouchSteps, -kPi / 2, kPi / 2);
     return {along, in_section(along).first, angle};
   }
 
@@ -230,7 +231,7 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
   if (const auto distances = fittingDistances(cutter, x, radius))
     refuse("ball's distance from the axis", from_axis, *distances, else_touches);
   double smaller = radius;
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kDiameterHalvings; ++i) {
     smaller /= 2;
     if (fittingDistances(cutter, x, smaller))
       refuse("ball diameter", 2 * radius, {kRounding, 2 * smaller}, else_touches);

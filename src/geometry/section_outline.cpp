@@ -15,15 +15,14 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTurn = 2 * units::kPi;
-constexpr double kNearFloor = 1e-9;    ///< above a flute's floor [m]
-constexpr std::uintmax_t kSteps = 60;  ///< to where two walls meet
+constexpr double kNearFloor = 1e-9;              ///< above a flute's floor [m]
+constexpr std::uintmax_t kMaxMeetingSteps = 60;  ///< to where two walls meet
 
 double squared(double v) { return v * v; }
 
 double roundedTurns(double turns) { return std::ldexp(std::nearbyint(std::ldexp(turns, 40)), -40); }
 
-PolarPoint polar(double radius, double angle) { return {radius, roundedTurns(angle / kTurn)}; }
+PolarPoint polar(double radius, double angle) { return {radius, roundedTurns(angle / units::kTurn)}; }
 
 /// The walls of a flute in a section, for a tooth at angle 0. Each circle is computed once.
 class FluteWalls {
@@ -110,7 +109,9 @@ class Outliner {
     const std::size_t whole = flute / grid_.teeth;
     return static_cast<double>(whole);
   }
-  double angle(std::size_t flute) const { return cutter_.teeth()[flute % grid_.teeth].angle + kTurn * laps(flute); }
+  double angle(std::size_t flute) const {
+    return cutter_.teeth()[flute % grid_.teeth].angle + units::kTurn * laps(flute);
+  }
   double floor(std::size_t flute) { return angle(flute) + walls(flute).floor(); }
   double high(std::size_t flute, double r) { return angle(flute) + walls(flute).at(r).high; }
   double low(std::size_t flute, double r) { return angle(flute) + walls(flute).at(r).low; }
@@ -151,7 +152,7 @@ class Outliner {
         continue;
       }
       const auto f = [&](double at) { return gap(from, to, at); };
-      std::uintmax_t steps = kSteps;
+      std::uintmax_t steps = kMaxMeetingSteps;
       const auto meet =
           boost::math::tools::toms748_solve(f, inside, r, boost::math::tools::eps_tolerance<double>(45), steps);
       return meet.first;

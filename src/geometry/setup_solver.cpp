@@ -25,10 +25,10 @@ constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the small end's
 constexpr int kDepthSteps = 48;
 constexpr double kQuarter = units::kPi / 2;
 constexpr int kLeastColumns = 4;
-constexpr int kSections = 8;           ///< in which a set-up is judged
+constexpr int kJudgedSections = 8;     ///< in which a set-up is judged
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
 constexpr double kSameRake = 0.1 * units::kDegree;
-constexpr int kHalvings = 20;       ///< of the flute, for where it is complete
+constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
 constexpr double kBeyond = 1e-5;    ///< added to the overtravel, for the precision of an extremum's place [m]
 constexpr double kCylinder = 1e-6;  ///< a cone whose radius changes less than this over its length is a cylinder
 
@@ -228,7 +228,7 @@ struct Judged {
 
 /// One end of the range over which the flute is complete, between a place where it is and one where it is not.
 double completeEnd(const SetupTrial& trial, const WheelSweep& sweep, double complete, double incomplete) {
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kFluteHalvings; ++i) {
     const double middle = (complete + incomplete) / 2;
     (trial.reach(sweep, middle).complete ? complete : incomplete) = middle;
   }
@@ -273,8 +273,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   s.depth = point.depth;
   s.least_rake = s.land = std::numeric_limits<double>::infinity();
   s.largest_rake = -s.least_rake;
-  for (int i = 0; i <= kSections; ++i) {
-    const double x = length * i / kSections;
+  for (int i = 0; i <= kJudgedSections; ++i) {
+    const double x = length * i / kJudgedSections;
     const double r = trial.cutter().radius(x);
     const auto high = sweep.wall(x, r, true), low = sweep.wall(x, r, false);
     if (!high || !low) {

@@ -8,21 +8,21 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOfApex = 0.98;  ///< of the way to the apex, the stroke may go
-constexpr int kRings = 10;        ///< of a wall, on which is asked what forms it
+constexpr int kWallRings = 10;    ///< of a wall, on which is asked what forms it
 constexpr int kRingsOfReach = 6;
-constexpr double kFloor = 1e-5;        ///< of the depth: where a wall passes into the floor
-constexpr int kPlacesOfProfile = 400;  ///< at which the wheel's largest radius is looked for
-constexpr double kLargest = 1e-6;      ///< of the radius, that the largest one may fall short
-constexpr double kOnFace = 1e-8;       ///< how far below the edge still is the edge [m]
+constexpr double kFloor = 1e-5;             ///< of the depth: where a wall passes into the floor
+constexpr int kPlacesOfProfile = 400;       ///< at which the wheel's largest radius is looked for
+constexpr double kLargestShortfall = 1e-6;  ///< of the radius, that the largest one may fall short
+constexpr double kOnFace = 1e-8;            ///< how far below the edge still is the edge [m]
 
 /// The place of the largest radius that is nearest to the upper face.
-double largestPlace(const WheelProfile& wheel) {
+double upperLargestPlace(const WheelProfile& wheel) {
   const double step = (wheel.upperFace() - wheel.lowerFace()) / kPlacesOfProfile;
   for (int i = kPlacesOfProfile; i > 0; --i) {
     const double w = wheel.lowerFace() + i * step;
-    if (wheel.radius(w) >= wheel.largestRadius() * (1 - kLargest)) return w;
+    if (wheel.radius(w) >= wheel.largestRadius() * (1 - kLargestShortfall)) return w;
   }
   return wheel.lowerFace();
 }
@@ -34,7 +34,7 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       wheel_(wheel),
       nominal_radius_(nominal_radius),
       y_per_x_(y_per_x),
-      face_from_(largestPlace(wheel)) {
+      face_from_(upperLargestPlace(wheel)) {
   // Farther than a wheel reaches at any depth.
   const double far = 4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length;
   const double apex = -cutter.radius(0) / cutter.tanCone();
@@ -47,28 +47,28 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
 }
 
 double SetupTrial::rake(const SetupPoint& point, double x) const {
-  if (std::isnan(point.depth)) return kNone;
+  if (std::isnan(point.depth)) return kNowhere;
   const double r = cutter_.radius(x);
   const auto wall = sweep(point).wall(x, r, true);
-  return wall ? std::atan(-r * wall->slope) : kNone;
+  return wall ? std::atan(-r * wall->slope) : kNowhere;
 }
 
 double SetupTrial::coreRadius(const SetupPoint& point) const {
   const double radius = sweep(point).leastRadius(0, std::numeric_limits<double>::max());
-  return std::isfinite(radius) ? radius : kNone;
+  return std::isfinite(radius) ? radius : kNowhere;
 }
 
 double SetupTrial::depthFor(double swivel, double height, double core_radius) const {
   const double depth = sweep({swivel, height, 0}).deeperFor(0, core_radius);
-  return std::isfinite(depth) ? depth : kNone;
+  return std::isfinite(depth) ? depth : kNowhere;
 }
 
 double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x);
   const double depth = r - sweep.leastRadius(x, r);
-  for (int i = 0; i < kRings; ++i) {
-    const auto wall = sweep.wall(x, r - depth * i / kRings, true);
-    if (!wall || wall->w < face_from_ - kOnFace) return static_cast<double>(i) / kRings;
+  for (int i = 0; i < kWallRings; ++i) {
+    const auto wall = sweep.wall(x, r - depth * i / kWallRings, true);
+    if (!wall || wall->w < face_from_ - kOnFace) return static_cast<double>(i) / kWallRings;
   }
   return 1;
 }

@@ -11,14 +11,14 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kPlaces = 400;              ///< at which the wheel's largest radius is looked for
-constexpr double kLargest = 1e-6;         ///< of the radius, that the largest one may fall short
+constexpr double kShortfall = 1e-6;       ///< of the radius, that the largest one may fall short
 constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that touches, and of its radius [m]
 
 /// The middle of where a wheel's circumference is largest, along its spindle [m].
-double largestPlace(const WheelProfile& wheel) {
+double middleLargestPlace(const WheelProfile& wheel) {
   const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
   const auto is_largest = [&](int i) {
-    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kLargest);
+    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kShortfall);
   };
   int first = 0, last = kPlaces;
   while (first < kPlaces && !is_largest(first)) ++first;
@@ -33,7 +33,7 @@ TouchReadings touchReadings(const GrindJob& job) {
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
-  touch.z_for_y = -(p.setup_height + largestPlace(wheel) * std::cos(p.setup_swivel));
+  touch.z_for_y = -(p.setup_height + middleLargestPlace(wheel) * std::cos(p.setup_swivel));
   touch.z = -wheel.lowerFace() - p.setup_height;
   return touch;
 }

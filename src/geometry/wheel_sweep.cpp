@@ -17,11 +17,11 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kNone = -kInfinite;
+constexpr double kNotReached = -kInfinite;
 constexpr int kPosesPerWindow = 32;  ///< from which an extremum is refined
 constexpr int kAnglesPerPose = 8;    ///< from which the wheel's deepest place on a circle is refined
-constexpr std::uintmax_t kMaxSteps = 60;
-constexpr int kHalvings = 30;          ///< of a step between poses, for where a circle near the floor is reached
+constexpr std::uintmax_t kMaxPoseSteps = 60;
+constexpr int kPoseHalvings = 30;      ///< of a step between poses, for where a circle near the floor is reached
 constexpr int kDiscs = 16;             ///< of the wheel, from which its least radius is refined
 constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
 constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
@@ -40,7 +40,7 @@ template <typename Function>
 double root(const Function& f, double a, double fa, double b, double fb) {
   if (fa == 0) return a;
   if (fb == 0) return b;
-  std::uintmax_t steps = kMaxSteps;
+  std::uintmax_t steps = kMaxPoseSteps;
   const auto bracket =
       a < b ? boost::math::tools::toms748_solve(f, a, b, fa, fb, boost::math::tools::eps_tolerance<double>(52), steps)
             : boost::math::tools::toms748_solve(f, b, a, fb, fa, boost::math::tools::eps_tolerance<double>(52), steps);
@@ -168,7 +168,7 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
     if (value < f_inside) inside = theta, f_inside = value;
   }
   if (f_inside > 0) {
-    std::uintmax_t steps = kMaxSteps;
+    std::uintmax_t steps = kMaxPoseSteps;
     std::tie(inside, f_inside) = boost::math::tools::brent_find_minima(f, std::max(least, inside - step),
                                                                        std::min(most, inside + step), 26, steps);
     if (!(f_inside <= 0)) return std::nullopt;
@@ -179,7 +179,7 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
 double WheelSweep::endOver(double x, double axis_x, double r, bool high) const {
   const Pose p = pose(x, axis_x);
   const auto end = endAt(p, r, high);
-  if (!end) return kNone;
+  if (!end) return kNotReached;
   return high ? *end + p.a : -(*end + p.a);
 }
 
@@ -192,20 +192,22 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
   const auto first = std::max_element(value.begin(), value.end());
   double best = *first;
   double best_at = static_cast<double>(first - value.begin());
-  const auto at = [&](int i) { return i < 0 || i > kPosesPerWindow ? kNone : value[static_cast<std::size_t>(i)]; };
+  const auto at = [&](int i) {
+    return i < 0 || i > kPosesPerWindow ? kNotReached : value[static_cast<std::size_t>(i)];
+  };
   // In steps, since the search ends at a fixed part of its variable.
   const auto search = [&](int i, int side) {
     const auto lost = [&](double along) {
       const double e = end(window.from + (i + along) * step);
-      return e == kNone ? std::numeric_limits<double>::max() : -e;
+      return e == kNotReached ? std::numeric_limits<double>::max() : -e;
     };
-    std::uintmax_t steps = kMaxSteps;
+    std::uintmax_t steps = kMaxPoseSteps;
     const auto peak =
         boost::math::tools::brent_find_minima(lost, std::min(side, 0) * 1.0, std::max(side, 0) * 1.0, 26, steps);
     if (-peak.second > best) best = -peak.second, best_at = i + peak.first;
   };
   for (int i = 0; i <= kPosesPerWindow; ++i) {
-    if (at(i) == kNone || (at(i) == at(i - 1) && at(i) == at(i + 1))) continue;
+    if (at(i) == kNotReached || (at(i) == at(i - 1) && at(i) == at(i + 1))) continue;
     const auto rises = [&](int side) {
       return i + side >= 0 && i + side <= kPosesPerWindow && end(window.from + (i + side * kAside) * step) > at(i);
     };
@@ -218,7 +220,7 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
     }
     // A peak may also lie between the last pose that reaches the circle and the next one.
     for (const int side : {-1, 1}) {
-      if (at(i + side) == kNone && rises(side)) search(i, side);
+      if (at(i + side) == kNotReached && rises(side)) search(i, side);
     }
   }
   double axis_x = window.from + best_at * step;
@@ -260,7 +262,7 @@ WheelSweep::Least WheelSweep::least(double x, double largest_height, const Funct
       const double y = centre_ + axis_x * y_per_x_ + off.y - std::sqrt(std::max(0.0, radius * radius - t * t));
       return f(y, height + axis_x * rise + stroke_.z_correction.at(axis_x).z + off.z);
     };
-    std::uintmax_t steps = kMaxSteps;
+    std::uintmax_t steps = kMaxPoseSteps;
     const auto found = boost::math::tools::brent_find_minima(along, from, to, 26, steps);
     return {found.second, found.first};
   };
@@ -274,7 +276,7 @@ WheelSweep::Least WheelSweep::least(double x, double largest_height, const Funct
     if (discs[here].value < best.value) best = discs[here];
     if (i > 0 && discs[here].value > discs[here - 1].value) continue;
     if (i < kDiscs && discs[here].value > discs[here + 1].value) continue;
-    std::uintmax_t steps = kMaxSteps;
+    std::uintmax_t steps = kMaxPoseSteps;
     const double from = std::max(0, i - 1), to = std::min(kDiscs, i + 1);
     const auto value = [&](double disc) { return at(disc).value; };
     const Least found = at(boost::math::tools::brent_find_minima(value, from, to, 26, steps).first);
@@ -295,7 +297,7 @@ std::optional<WheelSweep::Window> WheelSweep::narrowWindow(double x, double r, d
   if (!(lowest.value < r * r) || !reached(lowest.axis_x)) return std::nullopt;
   const auto end = [&](double outside) {
     double inside = lowest.axis_x;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < kPoseHalvings; ++i) {
       const double middle = (inside + outside) / 2;
       (reached(middle) ? inside : outside) = middle;
     }
@@ -307,7 +309,7 @@ std::optional<WheelSweep::Window> WheelSweep::narrowWindow(double x, double r, d
 
 WheelSweep::Extremum WheelSweep::anyExtremum(double x, double r, const Window& window, bool high) const {
   const Extremum found = extremum(x, r, window, high);
-  if (found.value != kNone) return found;
+  if (found.value != kNotReached) return found;
   const auto narrow = narrowWindow(x, r, (window.to - window.from) / kPosesPerWindow);
   return narrow ? extremum(x, r, *narrow, high) : found;
 }
@@ -316,7 +318,7 @@ std::optional<Arc> WheelSweep::arc(double x, double r) const {
   const auto w = window(x, r);
   if (!w) return std::nullopt;
   const Extremum high = anyExtremum(x, r, *w, true);
-  if (high.value == kNone) return std::nullopt;
+  if (high.value == kNotReached) return std::nullopt;
   const Extremum low = anyExtremum(x, r, *w, false);
   return Arc{-low.value, high.value, isComplete(x, r, low, false) && isComplete(x, r, high, true)};
 }
@@ -344,7 +346,7 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   const auto range = window(x, r);
   if (!range) return std::nullopt;
   const Extremum end = anyExtremum(x, r, *range, high);
-  if (end.value == kNone) return std::nullopt;
+  if (end.value == kNotReached) return std::nullopt;
   const double angle = high ? end.value : -end.value;
   const Pose p = pose(x, end.axis_x);
   const double theta = angle - p.a;

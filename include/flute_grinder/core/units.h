@@ -9,6 +9,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kMillimetre = 1e-3;                  ///< [m]
 constexpr double kMicrometre = 1e-6;                  ///< [m]
 constexpr double kDegree = kPi / 180;                 ///< [rad]
+constexpr double kTurn = 2 * kPi;                     ///< [rad]
 constexpr double kMillimetrePerMinute = 1e-3 / 60;    ///< [m/s]
 constexpr double kMillimetrePerRadian = kMillimetre;  ///< [m/rad]
 

@@ -462,6 +462,13 @@ class Grinder:
         self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == state, 'state %d' % state)
         return self.states[-1]
 
+    def wait_power_off(self):
+        """Waits for the state disabled with the power off, which the drive tells a cycle later, told from now on."""
+        seen = len(self.states)
+        self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == GrinderState.DISABLED and
+                      not self.states[-1].enabled, 'the end of the power')
+        return self.states[-1]
+
     def positions(self):
         """Of all axes, as told last."""
         return list(axes_of(self.joints[-1]))

@@ -244,6 +244,9 @@ class TestMachine(CommandLine):
         grinder().wait_for(past, 'the stroke')
 
     def test_interrupt_cancels_the_run(self):
+        # With time to interfere in the stroke, even on a host that stalls.
+        assert grinder().set_feed_override(0.2).success
+        self.addCleanup(grinder().set_feed_override, 1)
         batches = len(grinder().batches)
         process = self.start_run()
         self.wait_in_stroke(batches)

@@ -24,7 +24,10 @@ constexpr std::uint64_t kPlenty = 1 << 30;
 class HistoryTest : public ::testing::Test {
  protected:
   HistoryTest() : folder_(makeFolder()) {}
-  ~HistoryTest() override { fs::remove_all(folder_); }
+  ~HistoryTest() override {
+    close();
+    fs::remove_all(folder_);
+  }
 
   static fs::path makeFolder() {
     std::string name = ::testing::TempDir() + "history_XXXXXX";

@@ -33,17 +33,24 @@ std::uint32_t strokeOf(const GrindProgram& program, int pass) {
   throw std::logic_error("no such stroke");
 }
 
-class ProgressTrackerTest : public ::testing::Test {
- protected:
-  ProgressTrackerTest() : folder_(makeFolder()), writer_(folder_ / "journal", "/test"), tracker_(writer_) {}
-  ~ProgressTrackerTest() override { std::filesystem::remove_all(folder_); }
-
-  static std::filesystem::path makeFolder() {
+class Folder {
+ public:
+  Folder() {
     std::string name = ::testing::TempDir() + "progress_tracker_XXXXXX";
     if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    return name;
+    path_ = name;
   }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
 
+ private:
+  std::filesystem::path path_;
+};
+
+class ProgressTrackerTest : public ::testing::Test {
+ protected:
   /// What is on the disk once all is there that was entered.
   Progress onDisk() {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
@@ -62,9 +69,9 @@ class ProgressTrackerTest : public ::testing::Test {
     tracker_.update(status_);
   }
 
-  const std::filesystem::path folder_;
-  JournalWriter writer_;
-  ProgressTracker tracker_;
+  const Folder folder_;  // first, since the writer's thread writes there to its end
+  JournalWriter writer_{folder_.path() / "journal", "/test"};
+  ProgressTracker tracker_{writer_};
   LoopStatus status_;
 };
 

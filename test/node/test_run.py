@@ -27,6 +27,12 @@ LINE = re.compile(r'\[(#*\.*)\]   {,2}(\d+) %  (\w+)  tooth (\d+)/(\d+)  pass (\
                   r'\d+:\d\d left')
 
 
+def make_ready_for_a_slow_stroke():
+    """With time to interfere in it, even on a host that stalls."""
+    grinder().make_ready()
+    assert grinder().set_feed_override(0.2).success
+
+
 class TestBar(RunTest):
     def setUp(self):
         super().setUp()
@@ -99,6 +105,7 @@ class TestBar(RunTest):
         self.assertRegex(lines[-1], r'^100 %')
 
     def test_messages_do_not_tear_the_line(self):
+        make_ready_for_a_slow_stroke()
         seen = len(grinder().batches)
         command = self.grind(*RUN, PAPER_JOB, columns=200)
         self.wait_in_stroke(grinder(), seen)
@@ -119,7 +126,7 @@ class TestEnd(RunTest):
 
     def setUp(self):
         super().setUp()
-        grinder().make_ready()
+        make_ready_for_a_slow_stroke()
 
     def start(self, **options):
         seen = len(grinder().batches)
@@ -187,7 +194,7 @@ class TestStuck(RunTest):
     """Whoever takes what it says or writes takes no more for a while."""
 
     def test_terminal_that_stands_still_holds_up_no_stop(self):
-        grinder().make_ready()
+        make_ready_for_a_slow_stroke()
         seen = len(grinder().batches)
         reader, writer = os.pipe()
         os.set_blocking(writer, False)

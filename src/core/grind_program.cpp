@@ -121,8 +121,7 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   const Axes park = machine.park - machine.work_offset;
   requireParkClear(machine, park, clearance_y_);
   const std::vector<ToothPass> order = passOrder(job);
-  const auto is_first = [&](const ToothPass& p) { return p.tooth == first.tooth && p.pass == first.pass; };
-  const auto begin = std::find_if(order.begin(), order.end(), is_first);
+  const auto begin = std::find(order.begin(), order.end(), first);
   if (begin == order.end()) {
     std::ostringstream text;
     text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to "

@@ -12,15 +12,10 @@ namespace flute_grinder {
 
 namespace {
 
-// 0 stands for any digit.
+// As hasForm() takes them.
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
 constexpr std::size_t kSuffix = 7;  ///< characters that writeFile() appends while it writes, a dot and six of mkstemp()
-
-bool hasForm(std::string_view text, std::string_view form) {
-  return std::equal(text.begin(), text.end(), form.begin(), form.end(),
-                    [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
-}
 
 }  // namespace
 

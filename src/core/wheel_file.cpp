@@ -1,6 +1,7 @@
 #include "flute_grinder/core/wheel_file.h"
 
 #include "flute_grinder/core/flat_file.h"
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/core/units.h"
 
@@ -59,13 +60,6 @@ void takeFlange(FlatFile& file, WheelFile& wheel) {
     return file.fail(file.line(key), key + " = " + text(flange, UnitSystem::kShop, 10) + "; allowed: " + allowed);
   }
   wheel.flange = flange.si;
-}
-
-/// Whether a text has the form of another, in which 0 stands for any digit.
-bool hasForm(std::string_view text, std::string_view form) {
-  return text.size() == form.size() && std::equal(text.begin(), text.end(), form.begin(), [](char c, char f) {
-           return f == '0' ? c >= '0' && c <= '9' : c == f;
-         });
 }
 
 /// Wear of the radius, to a picometre, so that it has the bits that the same number of millimetres has in a job file.

@@ -24,8 +24,7 @@ RecordedStrokes::RecordedStrokes(const GrindJob& job)
     : job_(job), order_(passOrder(job)), wear_(wearOfPasses(job)), depths_(passDepths(job.process)) {}
 
 std::size_t RecordedStrokes::placeInOrder(const ToothPass& place) const {
-  const auto same = [&](const ToothPass& p) { return p.tooth == place.tooth && p.pass == place.pass; };
-  return static_cast<std::size_t>(std::find_if(order_.begin(), order_.end(), same) - order_.begin());
+  return static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin());
 }
 
 void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
@@ -40,7 +39,7 @@ void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + ": the position read is not finite");
   }
   const bool stroke = setpoint.move == MoveKind::kStroke;
-  if (stroke && !(reading_ && reading_->place.tooth == place.tooth && reading_->place.pass == place.pass)) {
+  if (stroke && !(reading_ && reading_->place == place)) {
     endStroke();
     reading_.emplace(Reading(job_, place, wear_[placeInOrder(place)]));
   }

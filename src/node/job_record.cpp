@@ -30,8 +30,6 @@ bool isHeld(MachineState state) {
   }
 }
 
-bool same(const ToothPass& a, const ToothPass& b) { return a.tooth == b.tooth && a.pass == b.pass; }
-
 /// Appends tooth and pass, which count from 1.
 Json placed(Json json, const ToothPass& pass) {
   json["tooth"] = pass.tooth + 1;
@@ -107,7 +105,7 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleRecord& record)
 
 void JobRecord::addToStroke(const Setpoint& setpoint, const CycleRecord& record) {
   // A stroke that is resumed after a hold goes on.
-  if (strokes_.empty() || !same(strokes_.back().pass, pass_)) {
+  if (strokes_.empty() || strokes_.back().pass != pass_) {
     Stroke& fresh = strokes_.emplace_back();
     fresh.pass = pass_;
     fresh.from = since(record);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPoll(2);  ///< of the loop's status
 constexpr std::uint32_t kProbeThreads = 2;
-constexpr std::chrono::seconds kLoopTimeout(5);  ///< without a cycle
+constexpr std::chrono::seconds kLongestWait(5);  ///< without a cycle
 
 /// Why there is no result.
 class ProbingError : public std::runtime_error {
@@ -99,7 +99,7 @@ class ProbingMove {
       const LoopStatus next = loop_.status();
       const auto now = std::chrono::steady_clock::now();
       if (next.cycles != status.cycles) alive = now;
-      if (now - alive > kLoopTimeout) {
+      if (now - alive > kLongestWait) {
         loop_.postStop(MachineEvent::kHold);
         throw ProbingError("the control loop has stopped");
       }

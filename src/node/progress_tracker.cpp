@@ -25,16 +25,14 @@ std::string describe(const Progress& p) {
   return text.str();
 }
 
-bool same(const ToothPass& a, const ToothPass& b) { return a.tooth == b.tooth && a.pass == b.pass; }
-
 }  // namespace
 
 ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progress_(writer.status().on_disk) {}
 
 std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first) const {
   if (progress_.job_digest.empty() || progress_.finished) return "";
-  const bool from_the_beginning = first.tooth == 0 && first.pass == 0;
-  if (digest == progress_.job_digest && (!from_the_beginning || same(first, progress_.next))) return "";
+  const bool from_the_beginning = first == ToothPass{};
+  if (digest == progress_.job_digest && (!from_the_beginning || first == progress_.next)) return "";
   return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 
@@ -103,8 +101,7 @@ void ProgressTracker::updatePlace(const LoopStatus& status) {
   if (status.strokes_ended_at > strokes_ended_at_) {
     strokes_ended_at_ = status.strokes_ended_at;
     const Move& ended = moves_[strokes_ended_at_ - 1];
-    const auto is_ended = [&](const ToothPass& pass) { return same(pass, {ended.tooth, ended.pass}); };
-    const auto next = std::find_if(passes_.begin(), passes_.end(), is_ended) + 1;
+    const auto next = std::find(passes_.begin(), passes_.end(), ToothPass{ended.tooth, ended.pass}) + 1;
     progress_.x = ended.to[kX];
     progress_.finished = next == passes_.end();
     if (!progress_.finished) progress_.next = *next;

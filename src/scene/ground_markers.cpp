@@ -36,7 +36,7 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const GrindJob& job, const Re
   for (const ToothPass& pass : passOrder(job)) {
     const auto tooth = static_cast<std::size_t>(pass.tooth);
     const double depth = depths[static_cast<std::size_t>(pass.pass)];
-    const bool runs = pass.tooth == reached.pass.tooth && pass.pass == reached.pass.pass;
+    const bool runs = pass == reached.pass;
     if (runs && reached.phase == PassPhase::kBefore) break;
     if (runs && reached.phase == PassPhase::kStroke) {
       GrindStroke stroke = at(tooth, depth);

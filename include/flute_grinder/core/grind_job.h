@@ -100,6 +100,9 @@ struct ProfilePoint {
 struct ToothPass {
   int tooth = 0;  ///< from 0
   int pass = 0;   ///< from 0
+
+  bool operator==(const ToothPass& other) const { return tooth == other.tooth && pass == other.pass; }
+  bool operator!=(const ToothPass& other) const { return !(*this == other); }
 };
 
 /// How the flutes are interpolated.

@@ -13,9 +13,7 @@ struct Reached {
   PassPhase phase = PassPhase::kBefore;
   double x = 0;  ///< in the stroke [m]
 
-  bool operator==(const Reached& other) const {
-    return pass.tooth == other.pass.tooth && pass.pass == other.pass.pass && phase == other.phase && x == other.x;
-  }
+  bool operator==(const Reached& other) const { return pass == other.pass && phase == other.phase && x == other.x; }
 };
 
 /// The cutter as a part of a job leaves it: of each tooth the deepest pass that is done, and the stroke that runs up to

@@ -34,7 +34,7 @@ class TestMachine(CommandLine):
 
     def test_status_as_json(self):
         run = grinder().run(gc.SHORT)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         told, _ = self.json(0, 'status')
         progress = grinder().fresh_state().progress
         digest = told['last_job'].pop('digest')

@@ -98,7 +98,7 @@ class TestDiagnostics(unittest.TestCase):
     def test_figures_of_a_job_are_those_of_its_setpoints(self):
         mark = self.reports.mark()
         run = self.grinder.run(gc.SHORT)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.reports.mark()
         setpoints, period, limits = run.setpoints, self.grinder.period(), self.grinder.limits()
         allowed = [rospy.get_param('/%s/constraints/%s/trajectory' % (self.name, joint)) for joint in gc.JOINTS]

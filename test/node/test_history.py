@@ -335,7 +335,7 @@ class TestRecords(Kept):
             return run.wait_complete()
 
         record, run = self.record_of(dry)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         hold, = record['holds']
         self.assertEqual((hold['reason'], hold['tooth'], hold['pass']), ('no coolant flows', 1, 1))
         self.assertEqual(len(record['strokes']), 4)

@@ -294,7 +294,7 @@ class TestOverrideBeforeTheJob(unittest.TestCase):
         self.assertTrue(g.set_feed_override(0.5).success)
         gc.poll(lambda: g.fresh_state().override == 0.5, 'the override told')
         run = g.run(gc.SHORT)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         feed = 0.5 * gc.SHORT['process.feed']
         helix = checks.Helix(gc.SHORT)
         infeed = max(abs(s.velocity[Y]) for s in run.setpoints if s.move == INFEED)
@@ -479,7 +479,7 @@ class CancelAtRest:
         self.assertFalse(self.resume.success)
 
     def test_next_goal_lifts_first_and_succeeds(self):
-        self.assertEqual(self.next_run.status, 'SUCCEEDED')
+        self.assertEqual(self.next_run.status, 'SUCCEEDED', self.next_run.text)
         self.assertEqual(list(self.next_run.setpoints[0].position), list(self.setpoints[-1].position))
         self.assertEqual(self.next_run.setpoints[1].move, LIFT)
 

@@ -215,7 +215,7 @@ class TestReferenceLost(LostMidStroke, unittest.TestCase):
         self.assertTrue(self.homed.homed)
         for joint, position, resolution in zip(gc.JOINTS, self.at_home, RESOLUTION):
             self.assertAlmostEqual(position, self.parameters['hardware'][joint]['home_position'], delta=resolution)
-        self.assertEqual(self.next_run.status, 'SUCCEEDED')
+        self.assertEqual(self.next_run.status, 'SUCCEEDED', self.next_run.text)
 
 
 class TestHoming(OwnNode, unittest.TestCase):
@@ -301,7 +301,7 @@ class TestHoming(OwnNode, unittest.TestCase):
         self.assertEqual(set(self.positions_after_start), {(0, 0, 0, 0)})
 
     def test_dry_run_does_not_need_it(self):
-        self.assertEqual(self.dry_run.status, 'SUCCEEDED')
+        self.assertEqual(self.dry_run.status, 'SUCCEEDED', self.dry_run.text)
 
     def test_status_tells_it(self):
         self.assertRegex(self.status.stdout, r'(?m)^homed +no$')
@@ -420,7 +420,7 @@ class TestCoolantThatNeverComes(NeverReady, unittest.TestCase):
     def test_next_job_is_ground_when_it_is_back(self):
         self.assertTrue(self.client.inject('none').success)
         run = self.client.run(gc.SHORT)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertEqual(self.client.fresh_state().fault, '')
 
 
@@ -526,7 +526,7 @@ class TestEmergencyStopWhileRetracted(OwnNode, unittest.TestCase):
         self.assertEqual((self.ready.fault, self.ready.hold_reason), ('', ''))
         self.assertFalse(self.ready.wheel_in_work, 'it was lifted ahead of the fault')
         self.assertFalse(self.resume.success)
-        self.assertEqual(self.next_run.status, 'SUCCEEDED')
+        self.assertEqual(self.next_run.status, 'SUCCEEDED', self.next_run.text)
 
 
 if __name__ == '__main__':

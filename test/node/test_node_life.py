@@ -413,7 +413,7 @@ class TestParametersAreObeyed(OwnNode):
         self.assertRegex(refused.text, r'axis_y position .* beyond its limit -0\.0004 m \(infeed')
         job['process.depth'] = job['process.infeed'] = 0.3 * MM
         run = self.grinder.run(job)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertEqual({batch.period for batch in run.batches}, {0.002})
         positions = [s.position[X] for s in run.setpoints]
         fastest = max(abs(b - a) for a, b in zip(positions, positions[1:])) / 0.002

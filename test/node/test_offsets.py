@@ -86,7 +86,7 @@ class TestJob(OffsetsTest):
         self.start_ready()
         self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
         without = self.client.run(gc.SHORT)
-        self.assertEqual(without.status, 'SUCCEEDED')
+        self.assertEqual(without.status, 'SUCCEEDED', without.text)
         self.client.wait_rest()
         self.set_offsets(OFFSETS)
         first = len(self.client.joints)

@@ -292,7 +292,7 @@ class TestState(unittest.TestCase):
             self.assertRegex(reply.message,
                              r'refused: the machine is in state running; allowed: disable, hold, cancel$')
         run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertTrue(checks.is_gapless(run.setpoints))
 
     def test_disable_while_running_cancels_first(self):
@@ -344,7 +344,7 @@ class TestState(unittest.TestCase):
         self.assertFalse(grinder().plan(gc.goal_of(gc.paper(feed=NAN))).valid)
         self.assertFalse(run.done)
         run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertTrue(checks.is_gapless(run.setpoints))
 
 

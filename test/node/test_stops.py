@@ -130,7 +130,7 @@ class TestPlanning(NodeTest):
         parts = [f.planned for f in run.feedback if f.state == 'planning']
         self.assertEqual(parts, sorted(parts))
         self.assertTrue(any(0 < part < 1 for part in parts), parts)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
 
     def test_plan_beside_it_is_busy(self):
         run = self.send_planning()
@@ -248,7 +248,7 @@ class TestTheWayDown(NodeTest):
         run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
         self.stop_disk()
         run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertEqual(run.result.setpoints_written, run.result.statistics.setpoints)
         self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertFalse(self.client.fresh_state().progress.finished)

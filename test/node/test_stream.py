@@ -298,7 +298,7 @@ class TestRepetition(unittest.TestCase):
         first = stream(600).setpoints
         grinder().make_ready_at_park()
         again = grinder().run(gc.MOTION)
-        self.assertEqual(again.status, 'SUCCEEDED')
+        self.assertEqual(again.status, 'SUCCEEDED', again.text)
         bits = [[[p.hex() for p in s.position] + [s.path_error.hex()] for s in setpoints]
                 for setpoints in (first, again.setpoints)]
         self.assertEqual(len(bits[0]), len(bits[1]))
@@ -307,7 +307,7 @@ class TestRepetition(unittest.TestCase):
     def test_machine_rests_at_park_and_is_ready(self):
         grinder().make_ready()
         run = grinder().run(gc.SHORT)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         for position, park in zip(grinder().wait_rest(), grinder().park()):
             self.assertAlmostEqual(position, park, delta=1e-6)
@@ -318,7 +318,7 @@ class TestRepetition(unittest.TestCase):
         job = dict(gc.SHORT)
         job.update({'cutter.tooth_angles': angles, 'cutter.flute_length': 2 * MM, 'process.infeed': 0.3 * MM})
         run = grinder().run(job)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         helix = checks.Helix(job)
         strokes = []
         for s in run.setpoints:
@@ -338,7 +338,7 @@ class TestRepetition(unittest.TestCase):
         job = dict(gc.SHORT)
         job['process.direction'] = 1
         run = grinder().run(job)
-        self.assertEqual(run.status, 'SUCCEEDED')
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
         pairs = checks.stroke_pairs(run.setpoints)
         self.assertAlmostEqual(pairs[0][0].position[X], 6 * MM, delta=1e-12)
         self.assertAlmostEqual(pairs[-1][2].position[X], -1 * MM, delta=1e-9)

@@ -150,7 +150,7 @@ class FaultMidStroke:
         self.assertAlmostEqual(self.at_lift[Y], STEEP_CLEAR, delta=1.01 * RESOLUTION[Y])
 
     def test_next_goal_lifts_first_and_runs_to_its_end(self):
-        self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0))
+        self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0), self.next_run.text)
         self.assertTrue(checks.is_gapless(self.next_run.setpoints))
         check_lift(self, self.next_run.setpoints)
         self.assertEqual(checks.excesses(self.next_run.setpoints, self.limits, self.period), [])
@@ -322,7 +322,7 @@ class CancelledGoal:
             self.assertAlmostEqual(position, commanded, delta=1.01 * resolution)
 
     def test_next_goal_goes_on_from_there(self):
-        self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0))
+        self.assertEqual((self.next_run.status, self.next_run.code), ('SUCCEEDED', 0), self.next_run.text)
         self.assertTrue(checks.is_gapless(self.next_run.setpoints))
         self.assertEqual(list(self.next_run.setpoints[0].position), list(self.setpoints[-1].position))
 

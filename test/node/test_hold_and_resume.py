@@ -80,7 +80,7 @@ class Interference:
         self.assertEqual(rest['state'].feed, 0)
 
     def test_goal_succeeds(self):
-        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
+        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), self.job_run.text)
 
     def test_no_cycle_is_missing(self):
         self.assertTrue(checks.is_gapless(self.setpoints))
@@ -420,7 +420,7 @@ class TestFeedbackOfARetraction(unittest.TestCase):
         # On the way back it is never less than what is ground again after the re-entry.
         self.assertGreater(min(f.stroke_fraction for f in run.feedback[held:]), reached - 0.2)
         run.wait_complete()
-        self.assertEqual((run.status, run.feedback[-1].stroke_fraction), ('SUCCEEDED', 1))
+        self.assertEqual((run.status, run.feedback[-1].stroke_fraction), ('SUCCEEDED', 1), run.text)
 
 
 class CancelAtRest:

@@ -128,7 +128,7 @@ class LostMidStroke(OwnNode):
 class LostAndBack(LostMidStroke):
     def test_resume_is_taken_when_it_is_well_again(self):
         self.assertEqual((self.resume_when_well.success, self.resume_when_well.message), (True, ''))
-        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
+        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), self.job_run.text)
         self.assertEqual((self.after.state_name, self.after.hold_reason), ('ready', ''))
 
     def test_states_follow_one_another(self):
@@ -330,7 +330,7 @@ class TestHoming(OwnNode, unittest.TestCase):
         self.assertEqual(self.states, ['homing', 'disabled', 'ready'] * 3 + ['homing', 'ready'])
 
     def test_job_works_afterwards(self):
-        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', 0))
+        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', 0), self.job_run.text)
         for position, park in zip(self.job_run.setpoints[-1].position, self.client.park()):
             self.assertAlmostEqual(position, park, delta=1e-15)
 

@@ -256,7 +256,7 @@ class TestState(unittest.TestCase):
         self.assertRegex(second.text, r'running; allowed: .*cancel')
         self.assertFalse(first.done)
         first.wait_complete()
-        self.assertEqual((first.status, first.code), ('SUCCEEDED', 0))
+        self.assertEqual((first.status, first.code), ('SUCCEEDED', 0), first.text)
         self.assertTrue(checks.is_gapless(first.setpoints))
         self.assertEqual(len(first.setpoints), first.result.statistics.setpoints)
         self.assertEqual(second.setpoints, [])
@@ -354,7 +354,7 @@ class TestAfterwards(unittest.TestCase):
         for _, changes, fields, _, _ in CASES:
             gc.Run(grinder(), gc.goal_of(dict(gc.MOTION, **changes), **fields)).wait()
         run = grinder().run(gc.SHORT)
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertAlmostEqual(max(s.position[X] for s in run.setpoints if s.move == STROKE), 6 * MM, delta=1e-9)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)

@@ -352,7 +352,7 @@ class TestDryRun(unittest.TestCase):
         positions = grinder().make_ready_at_park()
         batches, joints = len(grinder().batches), len(grinder().joints)
         run = grinder().send(gc.MOTION, dry_run=True).wait()
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(run.result.statistics, planned)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), batches)
@@ -362,7 +362,7 @@ class TestDryRun(unittest.TestCase):
         grinder().make_ready()
         self.assertTrue(grinder().disable().success)
         run = grinder().send(gc.MOTION, dry_run=True).wait()
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
 
     def test_plan_service_tells_the_same(self):

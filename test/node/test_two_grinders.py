@@ -213,7 +213,7 @@ class TestFaultOfOne(unittest.TestCase):
         self.assertFalse(runs[1].done)
         self.assertEqual(right.fresh_state().state, GrinderState.RUNNING)
         runs[1].wait_complete()
-        self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0))
+        self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0), runs[1].text)
         self.assertTrue(checks.is_gapless(runs[1].setpoints))
         self.assertEqual(runs[1].result.setpoints_written, runs[1].result.statistics.setpoints)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
@@ -257,7 +257,7 @@ class TestEndOfOne(unittest.TestCase):
         os.kill(xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2], signal.SIGKILL)
         left.wait_end_of_connections()
         run.wait_complete()
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0))
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
 
 

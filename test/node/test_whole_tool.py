@@ -307,7 +307,7 @@ class JobOfTheFolder(WholeTool):
         self.assertEqual((self.plan.returncode, self.plan.stderr), (0, ''))
 
     def test_dry_run_succeeds_with_the_statistics_of_the_plan_service(self):
-        self.assertEqual((self.dry_run.status, self.dry_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
+        self.assertEqual((self.dry_run.status, self.dry_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), self.dry_run.text)
         self.assertEqual((self.service.valid, self.service.reasons), (True, []))
         self.assertEqual(self.dry_run.result.statistics, self.service.statistics)
         self.assertEqual(self.service.duration, self.service.statistics.duration)
@@ -480,7 +480,7 @@ class TestConstantRake(unittest.TestCase):
         service = grinder().plan(gc.goal_of(self.job))
         self.assertEqual((service.valid, service.reasons), (True, []))
         dry_run = grinder().send(self.job, dry_run=True).wait()
-        self.assertEqual((dry_run.status, dry_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL))
+        self.assertEqual((dry_run.status, dry_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), dry_run.text)
         self.assertEqual(dry_run.result.statistics, service.statistics)
         # By the published law the cutter is not as asked.
         published = grinder().plan(gc.goal_of(dict(self.job, **{'process.z_law': Process.PUBLISHED})))

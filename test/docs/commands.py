@@ -15,6 +15,7 @@ NOT_RUN = {
     'scripts/test': 'runs this test',
     'scripts/setup --run': 'installs packages; scripts/demo begins with it',
     'scripts/test_on 13': 'installs a system for an hour',
+    'scripts/test_on 11': 'installs a system for an hour',
     'scripts/test_on 11 --gcc 9': 'installs a system for an hour',
     'source /opt/ros/noetic/setup.bash': 'is for Ubuntu; test/workspace.sh sources what there is',
     'cd ~/catkin_ws': 'is for a workspace; test/workspace.sh has one',

@@ -2,6 +2,8 @@
 
 #include "flute_grinder/core/job_fields.h"
 
+#include "temp_folder.h"
+
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
@@ -70,12 +72,9 @@ std::string jobText(const std::string& wheel) {
 class WheelOfAJob : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = ::testing::TempDir() + "wheelXXXXXX";
-    folder_ = ::mkdtemp(pattern.data());
     std::filesystem::create_directory(folder_ + "/jobs");
     std::filesystem::create_directory(folder_ + "/wheels");
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   std::string write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name) << text;
@@ -91,7 +90,8 @@ class WheelOfAJob : public ::testing::Test {
     return "";
   }
 
-  std::string folder_;
+  const test_support::TempFolder temp_;
+  const std::string folder_ = temp_.path();
 };
 
 /// Equal to the last bit.

@@ -4,8 +4,9 @@
 
 #include "flute_grinder/core/units.h"
 
+#include "temp_folder.h"
+
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -22,14 +23,9 @@ constexpr Range kMachine{-60 * units::kDegree, 60 * units::kDegree};
 class SetupFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = ::testing::TempDir() + "setup_file.XXXXXX";
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-    job_ = folder_ / "job.yaml";
     fs::copy_file(SOURCE_DIR "/jobs/paper.yaml", job_);
     fs::permissions(job_, fs::perms(0640));
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static std::string textOf(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -54,7 +50,9 @@ class SetupFile : public ::testing::Test {
     return "";
   }
 
-  fs::path folder_, job_;
+  const test_support::TempFolder temp_;
+  const fs::path folder_ = temp_.path();
+  const fs::path job_ = folder_ / "job.yaml";
 };
 
 TEST_F(SetupFile, IsReadBackAsSolved) {

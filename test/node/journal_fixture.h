@@ -2,8 +2,9 @@
 
 #include "flute_grinder/node/journal.h"
 
+#include "temp_folder.h"
+
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -15,13 +16,6 @@ namespace flute_grinder::test_support {
 /// A folder of its own, with a journal that is not there yet.
 class JournalTest : public ::testing::Test {
  protected:
-  JournalTest() {
-    std::string name = ::testing::TempDir() + "journal_XXXXXX";
-    folder_ = mkdtemp(name.data());
-    path_ = folder_ + "/journal";
-  }
-  ~JournalTest() override { std::filesystem::remove_all(folder_); }
-
   static std::string contentOf(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
@@ -31,7 +25,9 @@ class JournalTest : public ::testing::Test {
     std::ofstream(path, std::ios::binary) << content;
   }
 
-  std::string folder_, path_;
+  const TempFolder temp_;
+  const std::string folder_ = temp_.path();
+  std::string path_ = folder_ + "/journal";
 };
 
 /// No figure of it is a default, nor like another.

@@ -1,10 +1,11 @@
 #include "flute_grinder/node/history.h"
 
+#include "temp_folder.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -23,18 +24,6 @@ constexpr std::uint64_t kPlenty = 1 << 30;
 
 class HistoryTest : public ::testing::Test {
  protected:
-  HistoryTest() : folder_(makeFolder()) {}
-  ~HistoryTest() override {
-    close();
-    fs::remove_all(folder_);
-  }
-
-  static fs::path makeFolder() {
-    std::string name = ::testing::TempDir() + "history_XXXXXX";
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    return name;
-  }
-
   void open(std::uint64_t limit) { history_ = std::make_unique<History>(folder_ / "a" / "b", limit); }
   void keep(const std::string& name, const std::string& text) {
     history_->keep(name, [text] { return text; });
@@ -64,7 +53,8 @@ class HistoryTest : public ::testing::Test {
     std::ofstream(folder_ / "a" / "b" / name) << std::string(size, '.');
   }
 
-  const fs::path folder_;
+  const test_support::TempFolder temp_;
+  const fs::path folder_ = temp_.path();
   std::unique_ptr<History> history_;
 };
 

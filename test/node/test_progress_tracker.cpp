@@ -2,11 +2,11 @@
 #include "flute_grinder/node/progress_tracker.h"
 
 #include "control/fixtures.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -33,22 +33,6 @@ std::uint32_t strokeOf(const GrindProgram& program, int pass) {
   throw std::logic_error("no such stroke");
 }
 
-class Folder {
- public:
-  Folder() {
-    std::string name = ::testing::TempDir() + "progress_tracker_XXXXXX";
-    if (!mkdtemp(name.data())) throw std::runtime_error("no folder");
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 class ProgressTrackerTest : public ::testing::Test {
  protected:
   /// What is on the disk once all is there that was entered.
@@ -69,7 +53,7 @@ class ProgressTrackerTest : public ::testing::Test {
     tracker_.update(status_);
   }
 
-  const Folder folder_;  // first, since the writer's thread writes there to its end
+  const test_support::TempFolder folder_;
   JournalWriter writer_{folder_.path() / "journal", "/test"};
   ProgressTracker tracker_{writer_};
   LoopStatus status_;

@@ -65,7 +65,7 @@ std::uint64_t Recorder::missed(std::uint64_t written) const {
 
 double Recorder::duration() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return (end_ - begin_).toSec();
+  return end_.toSec() - begin_.toSec();
 }
 
 void Recorder::close() {

@@ -160,8 +160,6 @@ int runJob(const std::string& node, const RunOptions& options) {
   ros::NodeHandle nh(node);
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);
-  // An action client would wait for a clock for ever.
-  if (!await(kPatience, [] { return ros::Time::isValid(); })) return noGrinder(nh);
   GoalWatch watched;
   Client client(nh, "grind", false);
   StopKeys keys(nh, watch);

@@ -67,8 +67,6 @@ int main(int argc, char** argv) {
   if (!waitForMaster(signals)) return 0;
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
-  // With /use_sim_time, use the system clock until the first /clock message arrives.
-  ros::Time::init();
   try {
     flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
     const flute_grinder::MasterWatch master_watch(services());

@@ -13,7 +13,8 @@ constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jo
 
 /// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
 std::string staleness(const Jog& message, double timeout) {
-  const double age = (ros::Time::now() - message.header.stamp).toSec();
+  // Not the difference of the stamps, which throws where it is no ros::Duration.
+  const double age = ros::Time::now().toSec() - message.header.stamp.toSec();
   if (std::abs(age) <= timeout) return "";
   std::ostringstream text;
   text << "jog refused: the message is " << age << " s old; allowed: up to " << timeout

@@ -214,7 +214,8 @@ void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswe
 
 void GrinderLink::jog(int axis, double velocity) {
   Jog message;
-  message.header.stamp = ros::Time::now();
+  const ros::WallTime now = ros::WallTime::now();  // rviz may take its time from a simulation
+  message.header.stamp = ros::Time(now.sec, now.nsec);
   message.axis = static_cast<std::uint8_t>(axis);
   message.velocity = velocity;
   jogs_.publish(message);

@@ -10,8 +10,13 @@
 #include <ros/console.h>
 #include <ros/subscription.h>
 #include <ros/transport/transport_udp.h>
+#include <ros/transport_publisher_link.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <functional>
 #include <string>
 
 using flute_grinder::kMaxPeerMessage;
@@ -28,11 +33,44 @@ bool isAddressOfTcpros(XmlRpcValue& answer) {
          protocol[0].getType() == XmlRpcValue::TypeString && static_cast<std::string&>(protocol[0]) == "TCPROS";
 }
 
+constexpr std::uint32_t kPiece = 16384;  ///< [bytes]
+
+/// Reads bytes and throws them away.
+/// @param then called after the last of them, unless the connection ends before.
+void skip(const ros::ConnectionPtr& connection, std::uint32_t size, const std::function<void()>& then) {
+  if (size == 0) return then();
+  connection->read(std::min(size, kPiece),
+                   [size, then](const ros::ConnectionPtr& from, const auto&, std::uint32_t read, bool success) {
+                     if (success) skip(from, size - read, then);
+                   });
+}
+
 }  // namespace
 
 namespace ros {
 
-/// Reads a message of the announced length; drops the connection if that is too long.
+/// A publisher has announced the length of its next message. One that is too long is skipped: the connection stays, so
+/// that what follows arrives. roscpp never makes a connection again that its subscriber has closed.
+void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
+                                             const boost::shared_array<std::uint8_t>& buffer, std::uint32_t size,
+                                             bool success) {
+  using OnLength = void (*)(TransportPublisherLink*, const ConnectionPtr&, const boost::shared_array<std::uint8_t>&,
+                            std::uint32_t, bool);
+  static const auto next = reinterpret_cast<OnLength>(
+      nextDefinition("_ZN3ros22TransportPublisherLink15onMessageLengthERKN5boost10shared_ptrINS_10ConnectionEEERKNS1_"
+                     "12shared_arrayIhEEjb"));
+  std::uint32_t length = 0;
+  if (success) std::memcpy(&length, buffer.get(), sizeof length);
+  if (length <= kMaxPeerMessage) return next(this, connection, buffer, size, success);
+  const SubscriptionPtr subscription = parent_.lock();
+  ROS_WARN_STREAM("a message of " << length << " bytes on " << (subscription ? subscription->getName() : "a topic")
+                                  << " is dropped; allowed: " << kMaxPeerMessage << ": "
+                                  << connection->getRemoteString());
+  skip(connection, length,
+       [this] { connection_->read(sizeof length, [this](const auto&... read) { onMessageLength(read...); }); });
+}
+
+/// Reads a header, a request, or a message of the announced length; drops the connection if that is too long.
 void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   using Read = void (*)(Connection*, uint32_t, const ReadFinishedFunc&);
   static const auto next = reinterpret_cast<Read>(nextDefinition(

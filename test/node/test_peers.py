@@ -8,6 +8,7 @@ import http.server
 import io
 import os
 import random
+import re
 import resource
 import socket
 import struct
@@ -21,7 +22,7 @@ import rosgraph
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
 from flute_grinder.srv import Plan, PlanRequest
 
 import grinder_client as gc
@@ -342,6 +343,28 @@ class TestPeers(Attacked):
         with contextlib.suppress(socket.timeout):
             self.assertEqual(connection.recv(1), b'', 'the connection is still open')
         self.check()
+
+    def test_what_follows_a_message_that_is_too_long_arrives(self):
+        cancels, goals = (self.publisher('/attacked/grind/' + name, kind) for name, kind in
+                          (('cancel', GoalID), ('goal', GrindActionGoal)))
+        too_long = 'x' * (LONGEST_MESSAGE + 1)
+        cancels.publish(GoalID(id=too_long))
+        goals.publish(GrindActionGoal(goal_id=GoalID(id=too_long), goal=gc.goal_of(gc.paper())))
+        goal = GrindActionGoal(goal_id=GoalID(id='next'), goal=gc.goal_of(gc.paper()))
+        goals.publish(goal)
+        self.grinder.wait_for(lambda: [r.result.error_code for r in self.grinder.results if r.status.goal_id.id == 'next'] ==
+                              [GrindResult.BUSY], 'the answer to the next goal')
+        cancels.publish(GoalID())
+        self.assertEqual(self.run_.wait().status, 'PREEMPTED')
+        self.assertEqual([publisher.get_num_connections() for publisher in (cancels, goals)], [1, 1])
+        self.assertEqual(len(re.findall(r'a message of \d+ bytes on /attacked/grind/(?:cancel|goal) is dropped; allowed: 262144',
+                                        self.node.output)), 2)
+
+    def publisher(self, topic, kind):
+        publisher = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)
+        self.addCleanup(publisher.unregister)
+        gc.poll(lambda: publisher.get_num_connections() > 0, 'a connection')
+        return publisher
 
     # Both.
 

@@ -63,7 +63,7 @@ class Writer {
         return "max_job_duration = " + limit() + ": the job takes " + (r_.value > 0 ? value() + " or more" : "longer") +
                " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
                name("process.feed") + " or " + name("process.infeed") + ", or the parameter";
-      case ReasonKind::kGivenUp: return "given up while it was planned";
+      case ReasonKind::kGivenUp: return r_.detail.empty() ? "given up while it was planned" : "given up: " + r_.detail;
       case ReasonKind::kOther: return r_.detail;
       case ReasonKind::kPosition: return axis() + " position " + excess();
       case ReasonKind::kVelocity: return axis() + " velocity " + excess();

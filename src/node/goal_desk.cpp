@@ -148,6 +148,7 @@ void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, cons
   request.job = job;
   request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  request.for_goal = true;
   request.control = control;
   request.done = [this](std::unique_ptr<Preview> preview) {
     thread_.post([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });

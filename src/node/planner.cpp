@@ -16,7 +16,9 @@ void Planner::end() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended_ = true;
-    if (request_) request_->control->give_up = true;
+    for (const auto* request : {&request_, &goal_}) {
+      if (*request) (*request)->control->give_up = true;
+    }
   }
   changed_.notify_one();
   thread_.join();
@@ -25,8 +27,9 @@ void Planner::end() {
 bool Planner::submit(Request request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (request_ || ended_) return false;
-    request_ = std::move(request);
+    if (ended_ || goal_ || (request_ && (request_->for_goal || !request.for_goal))) return false;
+    goal_waits_ = request_.has_value();
+    (goal_waits_ ? goal_ : request_) = std::move(request);
   }
   changed_.notify_one();
   return true;
@@ -38,7 +41,8 @@ void Planner::run() {
     {
       // Before `done`: it may submit the next job.
       const std::lock_guard<std::mutex> lock(mutex_);
-      request_.reset();
+      request_ = std::exchange(goal_, std::nullopt);
+      goal_waits_ = false;
     }
     request->done(std::move(preview));
   }
@@ -69,12 +73,14 @@ std::unique_ptr<Preview> Planner::plan(const Request& request) {
 JobPlan Planner::makePlan(const Request& request) const {
   const auto watch = [&](double done) {
     request.control->done = done;
-    return !request.control->give_up;
+    return !request.control->give_up && !goal_waits_;
   };
   Machine machine = machine_;
   machine.work_offset = request.offset;
   JobPlan plan = planGroundJob(request.job, machine, request.start - request.offset, request.first, {}, watch);
   checkCollision(plan, shapes_);
+  if (plan.fault == PlanFault::kGivenUp && goal_waits_)
+    plan.reasons.back().detail = "a goal came first; plan again after it";
   return plan;
 }
 

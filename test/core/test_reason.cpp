@@ -119,6 +119,8 @@ const Row kRows[]{
      "process.infeed_mm, or the parameter"},
     {Kind::kGivenUp, "GivenUp", Unit::kNone, 0, 0, nothing, "given up while it was planned",
      "given up while it was planned"},
+    {Kind::kGivenUp, "GivenUpForAnother", Unit::kNone, 0, 0, [](Reason& r) { r.detail = "a goal came first"; },
+     "given up: a goal came first", "given up: a goal came first"},
     {Kind::kCollision, "Hit", Unit::kMetre, 0, 0.001,
      [](Reason& r) {
        r.detail = "wheel and collet";

@@ -74,6 +74,7 @@ class JobThreads : public ::testing::Test {
     Planner::Request request;
     request.job = job_;
     request.start = Eigen::Map<const Axes>(before.command.data());
+    request.for_goal = true;
     request.control = control;
     request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
     ASSERT_TRUE(planner_.submit(std::move(request)));
@@ -147,6 +148,16 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 100000));
     if (random() % 3 == 0) return cancel();
     if (!gate_.hold()) loop_->postStop(E::kHold);
+  });
+  spawn(5, [this](std::mt19937&) {
+    // As the plan service does; a goal goes first.
+    std::promise<void> done;
+    Planner::Request request;
+    request.job = job_;
+    request.start = machineConfig().machine.park;
+    request.control = std::make_shared<PlanControl>();
+    request.done = [&](const std::unique_ptr<Preview>&) { done.set_value(); };
+    if (planner_.submit(std::move(request))) done.get_future().wait();
   });
   spawn(4, [this](std::mt19937& random) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 4000));

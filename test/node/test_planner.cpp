@@ -157,6 +157,38 @@ TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
   EXPECT_FALSE(second.isDone());
 }
 
+TEST(Planner, AGoalGoesFirst) {
+  Planner planner(machine(), kShapes);
+  Asked plan(endless()), goal(endless()), other_goal(paper()), late(paper()), next(paper());
+  for (Asked* asked : {&goal, &other_goal}) asked->request.for_goal = true;
+  ASSERT_TRUE(planner.submit(plan.request));
+  ASSERT_TRUE(planner.submit(goal.request));
+  EXPECT_FALSE(planner.submit(other_goal.request));
+  EXPECT_FALSE(planner.submit(late.request));
+  const auto given_up = plan.wait();
+  ASSERT_EQ(given_up->plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(text(given_up->plan.reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  EXPECT_GT(goal.request.control->done, 0);
+  EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
+  EXPECT_FALSE(planner.submit(late.request));
+  goal.request.control->give_up = true;
+  EXPECT_EQ(text(goal.wait()->plan.reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
+  ASSERT_TRUE(planner.submit(next.request));
+  EXPECT_TRUE(next.wait()->plan.good());
+}
+
+TEST(Planner, ItsEndGivesUpTheGoalThatWaitsToo) {
+  Planner planner(machine(), kShapes);
+  Asked plan(endless()), goal(endless());
+  goal.request.for_goal = true;
+  ASSERT_TRUE(planner.submit(plan.request));
+  ASSERT_TRUE(planner.submit(goal.request));
+  planner.end();
+  ASSERT_TRUE(plan.isDone() && goal.isDone());
+}
+
 TEST(Planner, ItsEndGivesUpAndAnswers) {
   Planner planner(machine(), kShapes);
   Asked asked(endless()), late(paper());

@@ -27,7 +27,8 @@ struct PlanControl {
   std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
 };
 
-/// Plans one job at a time in its own thread. The last good plan is kept: the same job from the same place needs no
+/// Plans one job at a time in its own thread. A goal goes first: what is being planned without one is given up for it.
+/// The last good plan is kept: the same job from the same place needs no
 /// other, as after a dry run, and for one tool after the other.
 class Planner {
  public:
@@ -36,6 +37,7 @@ class Planner {
     Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
     Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
     ToothPass first;             ///< to grind
+    bool for_goal = false;
     std::shared_ptr<PlanControl> control;
     std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
   };
@@ -48,7 +50,7 @@ class Planner {
   /// Abandons the current plan; its `done` is called. Later requests are refused.
   void end();
 
-  /// @return false, and does nothing, while another job is being planned.
+  /// @return false, and does nothing, while another job is being planned; for a goal, only while another goal is.
   bool submit(Request request);
 
  private:
@@ -59,10 +61,12 @@ class Planner {
 
   const Machine machine_;
   const MachineShapes shapes_;
-  std::mutex mutex_;  ///< guards the next three
+  std::mutex mutex_;  ///< guards the next four
   std::condition_variable changed_;
   std::optional<Request> request_;  ///< until it is done
+  std::optional<Request> goal_;     ///< waits for the end of a request without a goal
   bool ended_ = false;
+  std::atomic<bool> goal_waits_{false};
 
   /// The last good plan, with what it depends on. Used by the thread only.
   struct Kept {

@@ -13,6 +13,8 @@
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
 
+#include <std_msgs/Header.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,9 +28,11 @@ namespace {
 
 using units::kMillimetre;
 
-const ros::WallDuration kProbing(86400);   ///< longest time of a probing move
-const ros::WallDuration kHoldAgain(0.05);  ///< after a key that stops: a motion may be just about to begin
-constexpr double kTurned = 1e-4;           ///< within which half a turn has reached its end [rad]
+const ros::WallDuration kProbing(86400);  ///< longest time of a probing move
+/// Between messages that this program is alive; and between holds after a key that stops, since a motion may be just
+/// about to begin.
+const ros::WallDuration kAgain(0.05);
+constexpr double kTurned = 1e-4;  ///< within which half a turn has reached its end [rad]
 
 std::string shown(double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop, 6); }
 
@@ -37,18 +41,23 @@ struct Failed {
   int status;
 };
 
-/// A connected grinder with a measuring probe. Ctrl-C and Ctrl-Z stop its motion.
+/// A connected grinder with a measuring probe. Ctrl-C, Ctrl-Z and the end of this program stop its motion.
 class ProbedMachine {
  public:
   /// @throw Failed
   explicit ProbedMachine(const std::string& node) : nh_(node), watch_(nh_), keys_(nh_, watch_) {
-    if (!await(kPatience, [&] { return watch_.begun() && keys_.connected(); })) throw Failed{noGrinder(nh_)};
+    alive_ = nh_.advertise<std_msgs::Header>("probe_alive", 1);
+    if (!await(kPatience, [&] { return watch_.begun() && keys_.connected() && alive_.getNumSubscribers() > 0; }))
+      throw Failed{noGrinder(nh_)};
     geometry_ = geometryOf(nh_);
     if (!geometry_.probe) throw Failed{fail("parameter " + nh_.getNamespace() + "/geometry/probe is missing")};
     catchInterrupts();
     catchHolds();
     keys_.start([this] { keys_.hold(); });
-    again_ = nh_.createWallTimer(kHoldAgain, [this](const ros::WallTimerEvent&) {
+    again_ = nh_.createWallTimer(kAgain, [this](const ros::WallTimerEvent&) {
+      std_msgs::Header alive;
+      alive.stamp = ros::Time::now();
+      alive_.publish(alive);
       if (stopped()) keys_.hold();
     });
   }
@@ -116,6 +125,7 @@ class ProbedMachine {
   StateWatch watch_;
   StopKeys keys_;
   MachineGeometry geometry_;
+  ros::Publisher alive_;
   ros::WallTimer again_;
   std::uint64_t stops_ = 0;  ///< of the grinder's last answer; a later stop refuses the next motion
 };

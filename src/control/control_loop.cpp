@@ -20,6 +20,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   moving_unbuffered_ = moving && record_.drive.commands_waiting == 0;
   if (isPowered(state_)) checkDrive();
   dead_man_.wait(record_.period);
+  watchClient();
   executeRequests();
   awaitPower();
   if (state_ == MachineState::kHoming) awaitHoming();

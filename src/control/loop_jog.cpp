@@ -58,7 +58,9 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!stream_) limit_check_.restart();
   jogging_ = true;
   continuous_ = jog.continuous;
+  for_client_ = jog.for_client;
   next_status_.contact = {};
+  next_status_.client_lost = false;
   ++next_status_.jogs_begun;
   power_off_next_ = false;
   apply(MachineEvent::kJog);
@@ -90,8 +92,16 @@ double ControlLoop::lowestJog(int axis) const {
   return axis == kY && stream_ ? std::max(lowest, wheel_.wheel().clear_y) : lowest;
 }
 
+void ControlLoop::watchClient() {
+  client_.wait(record_.period);
+  const std::uint32_t keep_alives = keepAlives();
+  if (keep_alives != keep_alives_seen_) client_.press();
+  keep_alives_seen_ = keep_alives;
+}
+
 void ControlLoop::advanceJog() {
   stopJogOnContact();
+  stopJogWithoutClient();
   // Without the reference the limits mean nothing.
   if ((continuous_ && dead_man_.released()) || !record_.drive.homed) axis_move_.setSpeed(0);
   if (!advanceAxisMove()) return;
@@ -107,6 +117,15 @@ void ControlLoop::stopJogOnContact() {
   next_status_.contact.made = true;
   std::copy(record_.position.data(), record_.position.data() + kAxisCount, next_status_.contact.position.begin());
   dead_man_.block();
+  axis_move_.setSpeed(0);
+}
+
+/// As a stop does, so that the series ends too.
+void ControlLoop::stopJogWithoutClient() {
+  if (!for_client_ || !client_.released()) return;
+  for_client_ = false;
+  next_status_.client_lost = true;
+  ++next_status_.stops;
   axis_move_.setSpeed(0);
 }
 

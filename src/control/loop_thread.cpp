@@ -27,6 +27,7 @@ ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& whe
       config_(config),
       axis_move_(config.machine),
       dead_man_(config.jog_timeout),
+      client_(config.jog_timeout),
       limit_check_(config.machine.limits, config.machine.period, LimitCheck::kUnplannedRoundings),
       drive_checks_(config_),
       wheel_(wheel) {

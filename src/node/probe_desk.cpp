@@ -1,6 +1,7 @@
 #include "flute_grinder/node/probe_desk.h"
 
 #include "flute_grinder/core/quantity.h"
+#include "flute_grinder/node/stamp_age.h"
 
 #include <algorithm>
 #include <chrono>
@@ -81,11 +82,16 @@ class ProbingMove {
   /// Jogs, unless a stop came since the beginning. @return the status when the axis rests.
   LoopStatus step(double distance, double velocity, bool to_touch) {
     const std::uint64_t jog = loop_.status().jogs_begun + 1;
-    const RequestReply reply = loop_.jogInSeries({axis_, false, distance, velocity, stops_, to_touch});
+    const RequestReply reply = loop_.jogInSeries({axis_, false, distance, velocity, stops_, to_touch, true});
     if (!reply.answered) loop_.postStop(MachineEvent::kHold);  // it may still begin
     if (!reply.accepted) throw ProbingError(reply.text);
     const LoopStatus status = awaitEnd(jog);
     if (status.state == MachineState::kFault) throw ProbingError("the machine is in state fault");
+    if (status.client_lost) {
+      throw ProbingError("its client was silent for " +
+                         text({loop_.config().jog_timeout, Unit::kSecond}, UnitSystem::kShop) +
+                         "; ~probe_alive is to be repeated, stamped by a clock that agrees");
+    }
     if (status.stops != stops_) throw ProbingError("stopped");
     if (status.jogs_begun != jog) throw ProbingError("another jog came between");
     return status;
@@ -138,12 +144,14 @@ ProbeDesk::ProbeDesk(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGa
     : loop_(loop), gate_(gate), spinner_(kProbeThreads, &queue_) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(&queue_);
+  alive_ = nh.subscribe("probe_alive", 1, &ProbeDesk::onAlive, this, ros::TransportHints().tcpNoDelay());
   service_ = nh.advertiseService("probe", &ProbeDesk::onProbe, this);
   spinner_.start();
 }
 
 ProbeDesk::~ProbeDesk() {
   service_.shutdown();
+  alive_.shutdown();
   spinner_.stop();
 }
 
@@ -158,6 +166,11 @@ bool ProbeDesk::onProbe(Probe::Request& request, Probe::Response& response) {
   return true;
 }
 
+void ProbeDesk::onAlive(const std_msgs::Header::ConstPtr& message) {
+  // A network that was interrupted delivers old ones.
+  if (std::abs(ageOf(message->stamp)) <= loop_.config().jog_timeout) loop_.keepAlive();
+}
+
 void ProbeDesk::probe(const Probe::Request& request, Probe::Response& response) {
   if (!gate_.shutOutJobs()) {
     response.message = "probing refused: a job is planned or in progress; allowed: after its end";
@@ -167,6 +180,7 @@ void ProbeDesk::probe(const Probe::Request& request, Probe::Response& response) 
     const LoopStatus status = loop_.status();
     checkRequest(request, loop_, status);
     response.stops = request.stops != 0 ? request.stops : status.stops;
+    loop_.keepAlive();  // by its call
     const ProbingMove move(loop_, request.axis, request.distance, response.stops);
     response.position = move.mean();
     response.spread = move.spread();

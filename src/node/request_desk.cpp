@@ -1,5 +1,7 @@
 #include "flute_grinder/node/request_desk.h"
 
+#include "flute_grinder/node/stamp_age.h"
+
 #include <std_msgs/String.h>
 
 #include <cmath>
@@ -13,8 +15,7 @@ constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jo
 
 /// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
 std::string staleness(const Jog& message, double timeout) {
-  // Not the difference of the stamps, which throws where it is no ros::Duration.
-  const double age = ros::Time::now().toSec() - message.header.stamp.toSec();
+  const double age = ageOf(message.header.stamp);
   if (std::abs(age) <= timeout) return "";
   std::ostringstream text;
   text << "jog refused: the message is " << age << " s old; allowed: up to " << timeout

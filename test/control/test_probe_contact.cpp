@@ -110,6 +110,45 @@ TEST_P(ProbeFrom, AStepOfASeriesIsRefusedAfterAnyStop) {
   EXPECT_TRUE(rig_.jog(step(0.001)).accepted) << "by hand";
 }
 
+TEST_P(ProbeFrom, AStepForAClientEndsWithIt) {
+  JogRequest next = step(0.01);
+  next.stops = rig_.loop->status().stops;
+  next.for_client = true;
+  const auto alive = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) {
+      if (i % 20 == 0) rig_.loop->keepAlive();
+      rig_.cycle();
+    }
+  };
+  alive(1);
+  ASSERT_TRUE(rig_.jog(next).accepted);
+  alive(200);
+  const std::size_t last_message = rig_.log.size() - 1;
+  EXPECT_GT(rig_.last().command[kX], at_[kX] + 0.002);
+  rig_.runUntil(GetParam());
+  // After the time-out of 0.0505 s and the way to stop from 0.02 m/s, short of the end.
+  const double stopping = std::pow(0.02, 1.5) / std::sqrt(10.0);
+  EXPECT_LT(rig_.last().command[kX], rig_.log[last_message].command[kX] + 0.02 * 0.055 + stopping);
+  EXPECT_GT(rig_.log.size() - last_message, 30U);
+  EXPECT_EQ(rig_.loop->status().stops, next.stops + 1) << "once";
+  EXPECT_TRUE(rig_.loop->status().client_lost);
+  alive(1);
+  EXPECT_EQ(rig_.jog(next).text, "jog refused: a stop came first");
+  EXPECT_TRUE(smooth(rig_.log));
+}
+
+TEST_P(ProbeFrom, AStepForAClientThatIsGoneMovesNothing) {
+  JogRequest next = step(0.01);
+  next.stops = rig_.loop->status().stops;
+  next.for_client = true;
+  rig_.run(100);
+  const std::size_t rest = rig_.log.size() - 1;
+  ASSERT_TRUE(rig_.jog(next).accepted);
+  rig_.runUntil(GetParam());
+  for (std::size_t i = rest; i < rig_.log.size(); ++i) EXPECT_TRUE((rig_.log[i].command == at_).all()) << i;
+  EXPECT_EQ(rig_.loop->status().stops, next.stops + 1);
+}
+
 TEST_P(ProbeFrom, AFaultEndsTheJog) {
   const std::uint64_t ended = rig_.loop->status().jogs_ended;
   ASSERT_TRUE(rig_.jog(step(0.03)).accepted);

@@ -106,13 +106,13 @@ def parameters(**hardware):
 
 
 class Node:
-    """A grinder's node on HAL. Longer than shipped (None), `feedback_timeout` lets a host that stalls not end a test."""
+    """A grinder's node on HAL. Longer than shipped (None), the time-outs let a host that stalls not end a test."""
 
     def __init__(self, name='grinder', prefix=(), feedback_timeout=1, **hardware):
         self.name = name
         machine = parameters(**hardware)
         if feedback_timeout:
-            machine['feedback_timeout'] = feedback_timeout
+            machine['feedback_timeout'] = machine['jog_timeout'] = feedback_timeout
         folder = tempfile.mkdtemp()
         # For a test that starts the node as somebody else.
         os.chmod(folder, 0o777)

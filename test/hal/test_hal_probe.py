@@ -5,7 +5,6 @@ import unittest
 
 import rospy
 import rostest
-from flute_grinder.srv import Probe
 
 import hal_bench
 from hal_bench import gc
@@ -29,7 +28,7 @@ class TestProbe(unittest.TestCase):
         self.node.end()
 
     def probe(self):
-        return self.grinder._call('probe', Probe, X, 10 * MM, 0)
+        return self.grinder.probe(X, 10 * MM)
 
     def test_it_stops_at_the_contact_and_says_where(self):
         wall = self.at + WAY

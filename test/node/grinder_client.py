@@ -22,8 +22,9 @@ import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import GrindAction, GrindActionResult, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
-from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, SetFeedOverride
+from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, Probe, SetFeedOverride
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Header
 from std_srvs.srv import Trigger
 
 MM = 1e-3
@@ -387,6 +388,17 @@ class Grinder:
 
     def confirm_swivel(self, angle):
         return self._call('confirm_swivel', ConfirmSwivel, angle)
+
+    def probe(self, axis, distance, stops=0):
+        """Probes, and says again and again that this program is alive."""
+        alive = rospy.Publisher('/%s/probe_alive' % self.name, Header, queue_size=1, tcp_nodelay=True)
+        poll(lambda: alive.get_num_connections() > 0, 'a connection')
+        timer = rospy.Timer(rospy.Duration(0.05), lambda _: alive.publish(Header(stamp=rospy.Time.now())))
+        try:
+            return self._call('probe', Probe, axis, distance, stops)
+        finally:
+            timer.shutdown()
+            alive.unregister()
 
     def plan(self, goal):
         return self._call('plan', Plan, goal)

@@ -149,8 +149,9 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     if (random() % 3 == 0) return cancel();
     if (!gate_.hold()) loop_->postStop(E::kHold);
   });
-  spawn(5, [this](std::mt19937&) {
+  spawn(5, [this](std::mt19937& random) {
     // As the plan service does; a goal goes first.
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     std::promise<void> done;
     Planner::Request request;
     request.job = job_;

@@ -43,6 +43,8 @@ class ProbeTest(unittest.TestCase):
         """Starts a node, ready, with the probe swung in before the blank."""
         ProbeTest.started += 1
         parameters = gc.machine()
+        # A host that stalls is not to count as a client that is gone.
+        parameters['jog_timeout'] = 1.0
         parameters.update(changes)
         parameters['hardware']['blank'] = blank
         self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
@@ -64,8 +66,8 @@ class ProbeTest(unittest.TestCase):
         self.jog(X, x - BALL_X - at[X])
         self.jog(Y, y - BALL_Y - at[Y])
 
-    def probe(self, axis, distance):
-        return self.client._call('probe', Probe, axis, distance, 0)
+    def probe(self, axis, distance, stops=0):
+        return self.client.probe(axis, distance, stops)
 
     def grind(self, *arguments):
         return gc.grind('--node', self.client.name, *arguments, timeout=60)
@@ -275,6 +277,24 @@ class TestStop(ProbeTest):
 
         return begun
 
+    def test_its_end_ends_it_however_it_comes(self):
+        self.start()
+        self.bring_ball(-35 * MM, 0)
+        before = self.client.wait_rest()[X]
+        command = [gc.program('grind'), '--node', self.client.name, 'probe', 'end-face', '--job', JOB, '--within', '45']
+        client = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(client.wait)
+        self.addCleanup(client.kill)
+        # For longer than a client that is gone may move the axis.
+        self.client.wait_for(lambda: self.client.joints[-1].position[X] > before + 3 * MM, 'the search')
+        client.send_signal(signal.SIGKILL)
+        client.wait()
+        at = self.client.joints[-1].position[X]
+        self.client.wait_state(GrinderState.READY)
+        # To where it would end it is 40 mm more; the host may stall.
+        self.assertLess(self.client.wait_rest()[X], at + 20 * MM)
+        self.assertIn('probing ended: its client was silent for 1 s; ~probe_alive is to be repeated', self.node.output)
+
     def test_another_call_meanwhile_is_refused(self):
         self.start()
         self.bring_ball(-35 * MM, 0)
@@ -291,7 +311,7 @@ class TestStop(ProbeTest):
         self.client._call('hold', Trigger)
         step = self.client._call('jog_step', JogStep, A, 0.1, 1.0, answer.stops)
         self.assertEqual((step.success, step.message), (False, 'jog refused: a stop came first'))
-        self.assertEqual(self.client._call('probe', Probe, X, 1 * MM, answer.stops).message,
+        self.assertEqual(self.probe(X, 1 * MM, answer.stops).message,
                          'probing ended: jog refused: a stop came first')
 
     def test_no_job_starts_meanwhile(self):

@@ -103,6 +103,8 @@ class ControlLoop : public RequestBox {
   void advanceJob();
   void advanceLift();
   void advanceJog();
+  void watchClient();
+  void stopJogWithoutClient();
   void stopJogOnContact();
   void endJog();
   bool advanceAxisMove();
@@ -132,7 +134,10 @@ class ControlLoop : public RequestBox {
   bool jogging_ = false;            ///< in the middle of a job too, whose stream then takes its setpoints over
   bool continuous_ = false;         ///< the jog
   bool touched_ = false;            ///< the probe, in the previous cycle
+  bool for_client_ = false;         ///< the jog
   DeadMansSwitch dead_man_;
+  DeadMansSwitch client_;  ///< of a series
+  std::uint32_t keep_alives_seen_ = 0;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;

@@ -16,12 +16,14 @@ struct JogRequest {
   /// LoopStatus::stops when this step was decided on, for a step of a series: a stop since then refuses it. 0 if no
   /// stop does.
   std::uint64_t stops = 0;
-  bool to_touch = false;  ///< refused if the measuring probe touches already
+  bool to_touch = false;    ///< refused if the measuring probe touches already
+  bool for_client = false;  ///< a step that ends where RequestBox::keepAlive() has not been called for jog_timeout
 };
 
-/// The dead man's switch of a continuous jog, whose messages must come again and again. Once the jog was stopped or
-/// refused, a switch that is still pressed moves nothing: it must first be released, by a message that stops or by
-/// none until the time-out. Counts the cycles' time, so that no other thread can keep an axis moving. Real-time safe.
+/// The dead man's switch of a continuous jog, or of a series, whose messages must come again and again. Once the jog
+/// was stopped or refused, a switch that is still pressed moves nothing: it must first be released, by a message that
+/// stops or by none until the time-out. Counts the cycles' time, so that no other thread can keep an axis moving.
+/// Real-time safe.
 class DeadMansSwitch {
  public:
   /// @param timeout longest allowed time between messages [s].

@@ -62,6 +62,7 @@ struct LoopStatus {
   bool has_probe = false;                     ///< the drive reads a measuring probe
   bool probe_contact = false;                 ///< the measuring probe touches something
   ProbeContact contact;                       ///< of the present jog, or else the last one
+  bool client_lost = false;                   ///< so the present jog, or else the last one, was stopped
   std::uint64_t jogs_begun = 0;               ///< since the start of the loop
   std::uint64_t jogs_ended = 0;               ///< since the start of the loop
   std::uint64_t stops = 1;                    ///< 1 + those requested since the start of the loop

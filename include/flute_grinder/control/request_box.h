@@ -91,6 +91,8 @@ class RequestBox {
   std::optional<RequestReply> jogReply();
   /// As jog(), for the steps of a series, whose JogRequest::stops is set. For one other thread at a time.
   RequestReply jogInSeries(const JogRequest& jog);
+  /// States that the client for whom a series is run is alive. Thread safe.
+  void keepAlive() noexcept { keep_alives_.fetch_add(1, std::memory_order_relaxed); }
 
  protected:
   /// @param enable_timeout longest allowed time from an enable to its answer [s].
@@ -105,6 +107,7 @@ class RequestBox {
   std::optional<double> takeSwivel() noexcept { return swivels_.take(); }
   std::optional<JogRequest> takeJog() noexcept { return jogs_.take(); }
   std::optional<JogRequest> takeSeriesJog() noexcept { return series_jogs_.take(); }
+  std::uint32_t keepAlives() const noexcept { return keep_alives_.load(std::memory_order_relaxed); }
   void answerStop(const Answer& answer) noexcept { stops_.answer(answer); }
   void answerJobStart(const Answer& answer) noexcept { job_starts_.answer(answer); }
   void answerJog(const Answer& answer) noexcept { jogs_.answer(answer); }
@@ -121,6 +124,7 @@ class RequestBox {
   RequestSlot<MachineEvent> requests_;
   RequestSlot<double> swivels_;
   std::atomic<std::uint64_t> job_in_journal_{0};  ///< the last one confirmed
+  std::atomic<std::uint32_t> keep_alives_{0};     ///< calls of keepAlive()
 };
 
 }  // namespace flute_grinder

@@ -6,14 +6,15 @@
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <std_msgs/Header.h>
 
 #include <atomic>
 
 namespace flute_grinder {
 
-/// Serves `~probe`: a series of jogs that end where the measuring probe touches. Two threads: one waits for the motion,
-/// the other refuses further calls, so that none waits and then moves after a stop. A stop goes to the control loop
-/// past them, and ends the series.
+/// Serves `~probe`: a series of jogs that end where the measuring probe touches, for as long as its client repeats
+/// `~probe_alive`. Two threads: one waits for the motion, the other takes these messages, and refuses further calls, so
+/// that none waits and then moves after a stop. A stop goes to the control loop past them, and ends the series.
 class ProbeDesk {
  public:
   /// @param private_nh the node's own namespace.
@@ -23,6 +24,7 @@ class ProbeDesk {
 
  private:
   bool onProbe(Probe::Request& request, Probe::Response& response);
+  void onAlive(const std_msgs::Header::ConstPtr& message);
   void probe(const Probe::Request& request, Probe::Response& response);
 
   ControlLoop& loop_;
@@ -30,6 +32,7 @@ class ProbeDesk {
   std::atomic<bool> probing_{false};
   ros::CallbackQueue queue_;
   ros::ServiceServer service_;
+  ros::Subscriber alive_;
   ros::AsyncSpinner spinner_;  ///< last member, so that no call is running when the others are destroyed
 };
 

@@ -120,11 +120,11 @@ void collision(benchmark::State& state) {
   Machine clear = machine();
   clear.collision_clearance = 1e-3;
   for (auto _ : state) {
-    const GrindProgram program(job, clear, clear.park);
-    const ClosestPlace place =
-        CollisionCheck(MachineShapes(urdf.str()), collisionJobOf(program)).closest(pathOf(program).points);
-    state.counters["closest_mm"] = place.distance * 1e3;
-    state.SetLabel(place.first + " and " + place.second);
+    JobPlan plan;
+    plan.program = std::make_shared<const GrindProgram>(job, clear, clear.park);
+    checkCollision(plan, MachineShapes(urdf.str()));
+    state.counters["closest_mm"] = plan.closest->distance * 1e3;
+    state.SetLabel(plan.closest->first + " and " + plan.closest->second);
   }
 }
 BENCHMARK(collision)->Unit(benchmark::kMillisecond);

@@ -12,10 +12,13 @@ constexpr double kSearchAccuracy = 1e-6;  ///< of the search; that of gap() come
 
 }  // namespace
 
-ClosestSearch::ClosestSearch(const std::vector<Axes>& path, double height) : path_(path), height_(0, 0, height) {
+ClosestSearch::ClosestSearch(const std::vector<Axes>& path, double height,
+                             const std::function<bool(std::size_t leg)>& searched)
+    : path_(path), height_(0, 0, height) {
   // The strokes of all teeth are one, since A makes no difference.
   std::map<std::array<double, 6>, bool> seen;
   for (std::size_t leg = 0; leg + 1 < std::max<std::size_t>(path.size(), 2); ++leg) {
+    if (searched && !searched(leg)) continue;
     const Axes& from = path[leg];
     const Axes& to = path[std::min(leg + 1, path.size() - 1)];
     if (seen.try_emplace({from[kX], from[kY], from[kZ], to[kX], to[kY], to[kZ]}, true).second)
@@ -24,7 +27,7 @@ ClosestSearch::ClosestSearch(const std::vector<Axes>& path, double height) : pat
 }
 
 void ClosestSearch::visit(const CollisionCheck::Pair& pair) {
-  if (best_.distance > 0) search(pair, all_);
+  if (best_.distance > 0 && !all_.empty()) search(pair, all_);
 }
 
 Axes ClosestSearch::at(std::size_t leg, double fraction) const {

@@ -11,6 +11,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kCentred = 1e-6;         ///< farther from the wheel's axis, a shape does not hold the wheel [m]
+constexpr double kContact = 1e-9;         ///< a distance below this is none, whatever is allowed [m]
 constexpr double kRunOutMargin = 20e-6;   ///< more than search and run-out err together [m]
 constexpr double kRunOutAccuracy = 1e-7;  ///< [m]
 
@@ -37,6 +38,23 @@ void require(bool good, const char* name, double value, const char* allowed) {
   }
 }
 
+CollisionCheck::Pair pairOf(const MachinePart& first, const MachinePart& second) {
+  return {first.solid, second.solid, second.motion - first.motion};
+}
+
+CollisionCheck::Pair pairOf(const MachinePart& first, const MachinePart& second, double clearance) {
+  CollisionCheck::Pair pair = pairOf(first, second);
+  pair.below = std::max(clearance, kContact);
+  return pair;
+}
+
+void requireFinite(const std::vector<Axes>& path) {
+  const auto finite = [](const Axes& axes) { return axes.allFinite(); };
+  if (path.empty() || !std::all_of(path.begin(), path.end(), finite)) {
+    throw std::invalid_argument("path of the axes: empty or not finite; allowed: one or more finite points");
+  }
+}
+
 bool canMeet(const MachinePart& a, const MachinePart& b) {
   return a.with_wheel != b.with_wheel && a.carrier != b.link && b.carrier != a.link;
 }
@@ -52,6 +70,8 @@ CollisionCheck::CollisionCheck(const MachineShapes& machine, const CollisionJob&
   const double shank_from = job.shank_from.value_or(0);
   require(std::isfinite(shank_from), "shank_from", shank_from, "finite");
   require(job.clearance >= 0 && std::isfinite(job.clearance), "clearance", job.clearance, "0 or more");
+  require(job.work_clearance >= 0 && std::isfinite(job.work_clearance), "work_clearance", job.work_clearance,
+          "0 or more");
   require(job.shank_diameter > 0 && std::isfinite(job.shank_diameter), "shank_diameter", job.shank_diameter,
           "positive");
   require(std::isfinite(job.x_offset), "x_offset", job.x_offset, "finite");
@@ -108,23 +128,34 @@ void CollisionCheck::addJob(const MachineShapes& machine, const CollisionJob& jo
   }
   const double shank_from = job.shank_from ? *job.shank_from : runOutEnd(job);
   if (shank_from < holder) {
-    add(wheel, shank(shank_from));
-    if (!job.shank_from) pairs_.back().below = job.clearance;
+    pairs_.push_back(job.shank_from ? pairOf(wheel, shank(shank_from))
+                                    : pairOf(wheel, shank(shank_from), job.clearance));
   }
+  work_pairs_ = {pairOf(wheel, cutter, job.work_clearance), pairOf(wheel, whole_shank, job.work_clearance)};
 }
 
 void CollisionCheck::add(const MachinePart& first, const MachinePart& second) {
-  pairs_.push_back({first.solid, second.solid, second.motion - first.motion});
+  pairs_.push_back(pairOf(first, second));
 }
 
 ClosestPlace CollisionCheck::closest(const std::vector<Axes>& path) const {
-  const auto finite = [](const Axes& axes) { return axes.allFinite(); };
-  if (path.empty() || !std::all_of(path.begin(), path.end(), finite)) {
-    throw std::invalid_argument("path of the axes: empty or not finite; allowed: one or more finite points");
-  }
+  requireFinite(path);
   ClosestSearch search(path, height_);
   for (const Pair& pair : pairs_) search.visit(pair);
   return search.best();
+}
+
+std::optional<ClosestPlace> CollisionCheck::tooCloseToWork(const std::vector<Axes>& path,
+                                                           const std::vector<bool>& outside_cut) const {
+  requireFinite(path);
+  if (outside_cut.size() + 1 != path.size()) {
+    throw std::invalid_argument("outside_cut: " + std::to_string(outside_cut.size()) + " legs; allowed: the path's, " +
+                                std::to_string(path.size() - 1));
+  }
+  ClosestSearch search(path, height_, [&](std::size_t leg) { return outside_cut[leg]; });
+  for (const Pair& pair : work_pairs_) search.visit(pair);
+  if (search.best().distance < std::numeric_limits<double>::infinity()) return search.best();
+  return std::nullopt;
 }
 
 double runOutEnd(const CollisionJob& job) {

@@ -11,7 +11,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kBow = 1e-6;  ///< between a bent stroke and its legs [m]
+constexpr double kBow = 1e-6;      ///< between a bent stroke and its legs [m]
+constexpr double kWorkPart = 0.5;  ///< of the job's clearance, which a cone takes some of where it rises to the wheel
 
 /// Of the ends of infeeds and strokes, the one at the shank, and there the deepest.
 Axes strokeEndOf(const GrindProgram& program) {
@@ -22,6 +23,43 @@ Axes strokeEndOf(const GrindProgram& program) {
     if (nearer || (move.to[kX] == end->to[kX] && move.to[kY] < end->to[kY])) end = &move;
   }
   return end->to;
+}
+
+/// The largest radius of the work within the wheel's reach of a position [m].
+double workRadiusNear(const GrindJob& job, const WheelProfile& wheel, double x) {
+  const double reach = wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace();
+  const double flute_end = job.cutter.flute_length;
+  const ConicalCutter cone(job.cutter);
+  const auto radius = [&](double at) { return cone.radius(std::clamp(at, 0.0, flute_end)); };
+  const double shank = x + reach < flute_end + job.cutter.neck_length ? 0 : job.cutter.shank_diameter / 2;
+  return std::max({radius(x - reach), radius(x + reach), shank});
+}
+
+bool isUp(MoveKind kind) { return kind == MoveKind::kLift || kind == MoveKind::kRetract; }
+
+/// Whether a move up leaves the work alone even if the wheel stands in it, as after a stroke: over the whole width of
+/// the wheel, whatever lies above its lower side lies within the wheel, because no work is higher than its spindle.
+bool risesOut(const GrindProgram& program, const WheelProfile& wheel, const Axes& from) {
+  const GrindJob& job = program.job();
+  const double spindle = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + from[kY];
+  return spindle >= workRadiusNear(job, wheel, from[kX]);
+}
+
+/// Of every leg, whether the wheel has to keep off the work.
+std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& path) {
+  const WheelProfile wheel = wheelOf(program.job());
+  std::vector<bool> outside;
+  outside.reserve(path.moves.size());
+  for (std::size_t leg = 0; leg < path.moves.size(); ++leg) {
+    const MoveKind kind = program.moves()[path.moves[leg]].kind;
+    outside.push_back(!isAtFeed(kind) && !(isUp(kind) && risesOut(program, wheel, path.points[leg])));
+  }
+  return outside;
+}
+
+/// See CollisionJob::work_clearance.
+double workClearance(const GrindProgram& program) {
+  return std::min(program.machine().collision_clearance, kWorkPart * program.job().process.clearance);
 }
 
 core::Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
@@ -37,6 +75,16 @@ core::Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
   reason.tooth = move.tooth;
   reason.pass = move.pass;
   reason.x = place.axes[kX];
+  return reason;
+}
+
+/// For a wheel that comes too close to the work outside the cut.
+core::Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
+  core::Reason reason = reasonOf(place, program);
+  if (isUp(reason.move)) return reason;  // another clearance would not change where it begins
+  reason.field = "process.clearance";
+  reason.low = program.job().process.clearance;
+  reason.limit = workClearance(program);
   return reason;
 }
 
@@ -73,7 +121,8 @@ CollisionJob collisionJobOf(const GrindProgram& program) {
           has_neck ? std::optional<double>(job.cutter.flute_length + job.cutter.neck_length) : std::nullopt,
           strokeEndOf(program),
           program.machine().collision_clearance,
-          program.machine().work_offset[kX]};
+          program.machine().work_offset[kX],
+          workClearance(program)};
 }
 
 void checkCollision(JobPlan& plan, const MachineShapes& machine) {
@@ -81,11 +130,19 @@ void checkCollision(JobPlan& plan, const MachineShapes& machine) {
   core::Reason reason;
   try {
     const ProgramPath path = pathOf(*plan.program);
-    plan.closest = CollisionCheck(machine, collisionJobOf(*plan.program)).closest(path.points);
+    const CollisionCheck check(machine, collisionJobOf(*plan.program));
+    plan.closest = check.closest(path.points);
     plan.closest->leg = path.moves.at(plan.closest->leg);
     const double distance = plan.closest->distance;
-    if (distance > 0 && distance >= plan.program->machine().collision_clearance) return;
-    reason = reasonOf(*plan.closest, *plan.program);
+    if (!(distance > 0 && distance >= plan.program->machine().collision_clearance)) {
+      reason = reasonOf(*plan.closest, *plan.program);
+    } else if (auto in_work = check.tooCloseToWork(path.points, outsideCut(*plan.program, path))) {
+      in_work->leg = path.moves.at(in_work->leg);
+      plan.closest = std::move(in_work);
+      reason = reasonInWork(*plan.closest, *plan.program);
+    } else {
+      return;
+    }
   } catch (const std::invalid_argument& error) {
     reason.kind = core::ReasonKind::kOther;
     reason.detail = error.what();

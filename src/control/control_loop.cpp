@@ -203,9 +203,12 @@ bool ControlLoop::advanceAxisMove() {
   if (stream_) {
     // The axes rest already where the move begins.
     if (setpoint.cycle == 0 && !axis_move_.next(setpoint)) return allReachedAxes();
+    const Axes at = setpoint.position;
     setpoint.position -= job_offset_;
     stream_->adopt(setpoint);
     commandOfJob();
+    // Not rounded on the way to work coordinates and back: an end at a limit is reached exactly.
+    if (record_.has_setpoint) command_ = at;
     return false;
   }
   command();
@@ -250,7 +253,9 @@ void ControlLoop::command(const Axes& offset) {
     fault.violation = *violation;
     return fail(fault);
   }
-  command_ = setpoint.position + offset;
+  // The check lets pass what rounding adds to a limit; it is not commanded.
+  command_ =
+      (setpoint.position + offset).max(config_.machine.limits.min_position).min(config_.machine.limits.max_position);
   rested_ = 0;
   record_.has_setpoint = true;
 }

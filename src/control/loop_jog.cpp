@@ -2,9 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 // Jogs: their requests and their motion; all of it is real-time.
 namespace flute_grinder {
+
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+}  // namespace
 
 Answer ControlLoop::executeJog(const JogRequest& jog) {
   Answer answer = answerTo(MachineEvent::kJog, Refusal::kNone);
@@ -51,6 +58,9 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   answer.limit = way < 0 ? lowestJog(jog.axis) : config_.machine.limits.max_position[jog.axis];
   answer.value = jog.continuous ? answer.limit : from + jog.distance;
   if (jog.continuous && (way < 0 ? from <= answer.limit : from >= answer.limit)) return Refusal::kAtLimit;
+  // The distance to a limit is rounded, by no more than its ends are, and so is the sum.
+  const double rounding = kEpsilon / 2 * (std::abs(from) + 2 * std::abs(answer.limit));
+  if (std::abs(answer.value - answer.limit) <= rounding) answer.value = answer.limit;
   const bool within = way < 0 ? answer.value >= answer.limit : answer.value <= answer.limit;
   if (!within) return Refusal::kTooFar;
 

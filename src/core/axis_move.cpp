@@ -1,5 +1,6 @@
 #include "flute_grinder/core/axis_move.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace flute_grinder {
@@ -35,7 +36,7 @@ bool AxisMove::next(Setpoint& setpoint) noexcept {
   if (!mid_pair_ && !beginPair()) return false;
   law_.advance(period_);
   const double before = current_.position[axis_];
-  current_.position[axis_] = law_.finished() ? to_ : from_ + direction() * law_.position();
+  current_.position[axis_] = position();
   current_.velocity[axis_] = (current_.position[axis_] - before) / period_;
   current_.feed = axis_ == kA ? 0 : law_.speed();
   current_.move_fraction = law_.finished() ? 1 : law_.position() / std::abs(to_ - from_);
@@ -43,6 +44,13 @@ bool AxisMove::next(Setpoint& setpoint) noexcept {
   mid_pair_ = !mid_pair_;
   setpoint = current_;
   return true;
+}
+
+double AxisMove::position() const noexcept {
+  if (law_.finished()) return to_;
+  // The whole distance, which is rounded, may lead beyond the end.
+  const double at = from_ + direction() * law_.position();
+  return direction() > 0 ? std::min(at, to_) : std::max(at, to_);
 }
 
 bool AxisMove::beginPair() noexcept {

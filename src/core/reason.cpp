@@ -48,8 +48,9 @@ class Writer {
                     : std::string("nowhere")) +
                "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
       case ReasonKind::kCollision:
-        return "collision_clearance = " + limit() + ": " + r_.detail +
-               (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
+        if (r_.field.empty()) return "collision_clearance = " + limit() + ": " + apart();
+        return name(r_.field) + " = " + low() + ": " + apart() + " outside the cut; allowed: " + limit() +
+               " or more; raise it";
       case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
       case ReasonKind::kUnevenRake:
         return name("process.z_law") + " = constant_rake: tooth " + tooth() +
@@ -112,6 +113,7 @@ class Writer {
   std::string digits(double si) const { return flute_grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
   std::string value() const { return flute_grinder::text(Quantity{r_.value, r_.unit}, units_); }
   std::string limit() const { return flute_grinder::text(Quantity{r_.limit, r_.unit}, units_); }
+  std::string low() const { return flute_grinder::text(Quantity{r_.low, r_.unit}, units_); }
   std::string x() const { return flute_grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
   std::string tooth() const { return std::to_string(r_.tooth + 1); }
   std::string number() const { return flute_grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
@@ -128,6 +130,10 @@ class Writer {
     const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
     const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
     return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
+  }
+
+  std::string apart() const {
+    return r_.detail + (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
   }
 
   /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.

@@ -7,16 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace flute_grinder {
 
 namespace {
 
-constexpr double kSlip = 0.002;  ///< of the swivel [rad]
+constexpr double kSlip = 0.002;        ///< of the swivel [rad]
+constexpr double kFlickerAt = 0.2e-3;  ///< before the surface [m]
 
-constexpr std::array<const char*, 10> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
+constexpr std::array<const char*, 11> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
                                                   "nan_feedback", "drive_fault",    "reference_lost", "spindle_lost",
-                                                  "coolant_lost", "swivel_slipped"};
+                                                  "coolant_lost", "swivel_slipped", "probe_flickers"};
 
 /// A buffer of the axes' values, to compute with.
 auto axes(std::array<double, kAxisCount>& buffer) { return Eigen::Map<Axes>(buffer.data()); }
@@ -108,7 +110,7 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   if (fresh) ++status_.feedback_count;
   const Axes last = motor_;
   moveMotors(fault, failing_axis, dt);
-  if (blank_) status_.probe_contact = touches(*blank_);
+  if (blank_) status_.probe_contact = readProbe(*blank_, fault);
   if (!fresh) return;
   axes(velocity_) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
   const Axes counts = ((motor_ - offset_) * counts_per_unit_).unaryExpr([](double v) { return std::rint(v); });
@@ -134,6 +136,14 @@ void SimulatedDrive::readEquipment(Fault fault, double dt) {
   status_.spindle_at_speed = spindle_speed_ >= 1;
   status_.coolant_on = drive_command_.coolant && fault != Fault::kCoolantLost;
   status_.swivel = equipment_.swivel + (fault == Fault::kSwivelSlipped ? kSlip : 0);
+}
+
+bool SimulatedDrive::readProbe(const Blank& blank, Fault fault) {
+  Blank film = blank;
+  film.ball_diameter += 2 * kFlickerAt;
+  const bool was_near = std::exchange(probe_near_, touches(film));
+  const bool flickers = fault == Fault::kProbeFlickers && probe_near_ && !was_near;
+  return flickers || touches(blank);
 }
 
 bool SimulatedDrive::touches(const Blank& blank) const {

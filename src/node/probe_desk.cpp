@@ -64,6 +64,8 @@ class ProbingMove {
       throw ProbingError(status.command[n_] == end ? "nothing was touched over " + shown(std::abs(distance))
                                                    : "the axis rests before anything was touched");
     }
+    // The axis rests beyond a surface. A contact that flickers does so at one place, and its touches would agree.
+    if (!status.probe_contact) throw ProbingError("the contact was lost again before the axis came to rest");
     last_touch_ = status.contact.position;
     backOff(last_touch_[n_]);
     return last_touch_[n_];

@@ -10,12 +10,13 @@
 namespace flute_grinder {
 
 /// The least value of a convex function between two ends, by golden section.
+/// @param within of the place where it is least.
 template <typename Function>
-double leastOf(double low, double high, const Function& value) {
+double leastOf(double low, double high, const Function& value, double within = 1e-9) {
   constexpr double part = 0.6180339887498949;
   double a = high - part * (high - low), b = low + part * (high - low);
   double at_a = value(a), at_b = value(b);
-  while (high - low > 1e-9) {
+  while (high - low > within) {
     if (at_a < at_b) {
       high = b, b = a, at_b = at_a;
       at_a = value(a = high - part * (high - low));

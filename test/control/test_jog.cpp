@@ -316,7 +316,7 @@ TEST_P(JogFrom, AtRandomMomentsItKeepsTheLimitsAndRestsInTheEnd) {
       rig_.cycle(chance(random) < 0.01 ? 1 + 0.9 * chance(random) : 1);
       const S state = rig_.last().state;
       ASSERT_TRUE(state == GetParam() || state == jogging()) << toString(state) << rig_.last().fault.text();
-      ASSERT_TRUE(GetParam() == S::kReady || rig_.last().command[kY] >= kClearanceHeight - 1e-15);
+      ASSERT_TRUE(GetParam() == S::kReady || rig_.last().command[kY] >= rig_.loop->status().wheel.clear_y);
       static_cast<void>(rig_.loop->jogReply());
     }
     rig_.loop->postStop(E::kHold);
@@ -327,6 +327,28 @@ TEST_P(JogFrom, AtRandomMomentsItKeepsTheLimitsAndRestsInTheEnd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), stateName);
+
+TEST(Jog, ToALimitItEndsThereWithoutAFault) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  const AxisLimits limits = machineConfig().machine.limits;
+  for (const int axis : {kZ, kX, kA}) {
+    for (const bool up : {true, false}) {
+      const double limit = up ? limits.max_position[axis] : limits.min_position[axis];
+      const double speed = limits.max_velocity[axis] / 2;
+      for (int i = 0; i < 60000 && (i < 100 || rig.last().state == S::kJogging); ++i) {
+        if (i % 20 == 0) rig.loop->postJog(on(axis, up ? speed : -speed));
+        rig.cycle();
+        static_cast<void>(rig.loop->jogReply());
+      }
+      ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
+      EXPECT_EQ(rig.last().command[axis], limit);
+      rig.run(kTimeoutCycles + 1);
+    }
+  }
+  EXPECT_TRUE(smooth(rig.log));
+}
 
 TEST(Jog, FromOutsideTheLimitsIsRefused) {
   Rig<FakeDrive> rig;

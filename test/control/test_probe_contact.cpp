@@ -77,6 +77,23 @@ TEST_P(ProbeFrom, OfAContactThatBouncesTheFirstIsKept) {
   EXPECT_LT(rig_.last().command[kX], wall_ + 0.002);
 }
 
+/// What took it for a touch finds out: the axis rests beyond the place, and the probe is free.
+TEST_P(ProbeFrom, AtAContactOfASingleCycleItStopsAndIsFree) {
+  const double wall = wall_;
+  bool over = false;
+  rig_.drive.on_read = [wall, &over](FakeDrive& d) {
+    const bool beyond = d.position[kX] >= wall;
+    d.status.probe_contact = beyond && !over;
+    over |= beyond;
+  };
+  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
+  rig_.runUntil(GetParam());
+  EXPECT_TRUE(rig_.loop->status().contact.made);
+  EXPECT_FALSE(rig_.loop->status().probe_contact);
+  EXPECT_LT(rig_.last().command[kX], wall_ + 0.002);
+  EXPECT_TRUE(rig_.jog(step(0.001)).accepted);
+}
+
 TEST_P(ProbeFrom, AButtonThatStaysPressedDoesNotPressOn) {
   double rested = 0;
   for (int i = 0; i < 2000; ++i) {

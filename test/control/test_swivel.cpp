@@ -201,5 +201,40 @@ TEST(MeasuredSwivel, ThatIsLostAmidAJobLiftsTheWheelUntilAnOperatorConfirmsIt) {
   expectCompleted(rig);
 }
 
+/// A clamp that gives way slowly, under the eyes of an encoder with noise.
+TEST(MeasuredSwivel, ThatDriftsAmidAJobHoldsItOnceAtTheToleranceAndLiftsTheWheel) {
+  Rig<FakeDrive> rig;
+  measure(rig, kPaperSwivel);
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  const double noise = 0.002 * kDegree, drift = 0.0001 * kDegree;
+  double off = 0;
+  rig.drive.on_read = [&](FakeDrive& d) {
+    off += drift;
+    d.status.swivel = kPaperSwivel + off + (d.status.feedback_count % 2 == 0 ? noise : -noise);
+  };
+  while (rig.last().state == S::kRunning) {
+    ASSERT_LE(std::abs(rig.last().swivel.angle - kPaperSwivel), kSwivelTolerance);
+    rig.cycle();
+  }
+  EXPECT_GT(rig.last().swivel.angle - kPaperSwivel, kSwivelTolerance);
+  EXPECT_EQ(rig.last().state, S::kHolding);
+  EXPECT_EQ(rig.last().interlock, Interlock::kSwivel);
+  S before = S::kHolding;
+  std::vector<S> states{before};
+  for (int i = 0; i < 3000; ++i) {
+    if (rig.cycle().state != before) states.push_back(before = rig.last().state);
+  }
+  EXPECT_EQ(states, (std::vector<S>{S::kHolding, S::kHeld, S::kRetracting, S::kRetracted}));
+  EXPECT_TRUE(rig.drive.written_drive.enable);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the swivel is not at the job's angle");
+  EXPECT_FALSE(rig.confirm(kPaperSwivel).accepted) << "the encoder counts";
+  measure(rig, kPaperSwivel);
+  rig.cycle();
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  rig.runToEnd();
+  expectCompleted(rig);
+}
+
 }  // namespace test_swivel
 }  // namespace flute_grinder::test_support

@@ -104,10 +104,11 @@ RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
   RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
   RC_ASSERT(!rig.last().wheel_in_work);
   for (const CycleRecord& record : rig.log) {
-    const Axes rounding = 2 * kUlp * (offset.abs() + limits.max_position.abs());
-    RC_ASSERT((record.command <= limits.max_position + rounding).all());
-    RC_ASSERT((record.command >= limits.min_position - rounding).all());
+    RC_ASSERT((record.command <= limits.max_position).all());
+    RC_ASSERT((record.command >= limits.min_position).all());
   }
+  const RequestReply jog = rig.jog({kX, false, 0.001, 0.01});
+  RC_ASSERT(jog.accepted);
 }
 
 RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures, ()) {
@@ -248,6 +249,48 @@ TEST_F(InAShiftedStroke, AJogWhileRetracted) {
   EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
   EXPECT_TRUE(commandsAreShifted(rig_.log, kOffset));
   EXPECT_TRUE(smooth(inWork(rig_.log, kOffset)));
+}
+
+/// In the middle of a job too the limits are the machine's, and the height to which Y may go down with them.
+RC_GTEST_PROP(WorkOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack, ()) {
+  const Axes offset = anyOffset();
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  rig.stream.emplace(streamAt(offset, rig.last().command));
+  rig.start(*rig.stream);
+  rig.runTo(MoveKind::kStroke);
+  RC_ASSERT(rig.ask(E::kHold).accepted);
+  rig.runUntil(S::kHeld);
+  RC_ASSERT(rig.ask(E::kRetract).accepted);
+  rig.runUntil(S::kRetracted);
+  const AxisLimits limits = machineConfig().machine.limits;
+  for (int i = 0; i < 6; ++i) {
+    const int axis = *rc::gen::element(static_cast<int>(kX), static_cast<int>(kY), static_cast<int>(kZ));
+    const bool up = *rc::gen::arbitrary<bool>();
+    const double low = axis == kY ? rig.loop->status().wheel.clear_y : limits.min_position[axis];
+    const double limit = up ? limits.max_position[axis] : low;
+    if (rig.last().command[axis] == limit) continue;
+    const double speed = limits.max_velocity[axis] * between(0.5, 1);
+    const bool step = *rc::gen::arbitrary<bool>();
+    RC_ASSERT(!step || rig.jog({axis, false, limit - rig.last().command[axis], speed}).accepted);
+    for (int cycle = 0; cycle < 20000 && (cycle < 50 || rig.last().state == S::kJoggingRetracted); ++cycle) {
+      if (!step && cycle % 20 == 0) rig.loop->postJog({axis, true, 0, up ? speed : -speed});
+      rig.cycle();
+      static_cast<void>(rig.loop->jogReply());
+      const double at = rig.last().command[axis];
+      const bool within = up ? at <= limit : at >= limit;
+      RC_ASSERT(within);
+    }
+    RC_ASSERT(rig.last().state == S::kRetracted);
+    RC_ASSERT(rig.last().command[axis] == limit);
+    RC_ASSERT(!rig.last().wheel_in_work);
+    rig.run(100);
+  }
+  rig.log.erase(rig.log.begin(), rig.log.end() - 1);
+  RC_ASSERT(rig.ask(E::kResume).accepted);
+  rig.runToEnd();
+  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
 }
 
 TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {

@@ -156,5 +156,24 @@ RC_GTEST_PROP(AxisMoveProperty, KeepsTheLimitsAtAnySpeedsAndSlowedDownAtAnyMomen
   if (move.finished()) RC_ASSERT(p.position[axis] == to);
 }
 
+/// The distance of two positions is rounded, and so is their sum. Between round numbers a setpoint often comes within
+/// rounding of the end before the move is finished.
+RC_GTEST_PROP(AxisMoveProperty, EndsExactlyAtItsEndAndIsNeverBeyond, ()) {
+  Machine machine = plainMachine();
+  machine.limits.max_acceleration[kZ] = 0.5;
+  machine.limits.max_jerk[kZ] = 10;
+  AxisMove move(machine);
+  for (int i = 0; i < 10; ++i) {
+    const double from = 0.5e-3 * *whole(-200, 200), to = 0.5e-3 * *whole(-200, 200);
+    move.begin(MoveKind::kPosition, Axes(from, from, from, from), kZ, to, 5e-3 * *whole(1, 20));
+    Setpoint p;
+    while (move.next(p)) {
+      const bool within = to < from ? p.position[kZ] >= to : p.position[kZ] <= to;
+      RC_ASSERT(within);
+    }
+    RC_ASSERT(p.position[kZ] == to);
+  }
+}
+
 }  // namespace test_axis_move
 }  // namespace flute_grinder

@@ -131,6 +131,16 @@ const Row kRows[]{
     {Kind::kCollision, "TooClose", Unit::kMetre, 0.0004, 0.001, field("", "spindle and work_head"),
      "collision_clearance = 0.001 m: spindle and work_head come within 0.0004 m of each other",
      "collision_clearance = 1 mm: spindle and work_head come within 0.4 mm of each other"},
+    {Kind::kCollision, "OutsideTheCut", Unit::kMetre, 0.0001, 0.00025,
+     [](Reason& r) {
+       r.field = "process.clearance";
+       r.detail = "wheel and shank";
+       r.low = 0.0005;
+     },
+     "process.clearance = 0.0005 m: wheel and shank come within 0.0001 m of each other outside the cut; allowed: "
+     "0.00025 m or more; raise it",
+     "process.clearance_mm = 0.5 mm: wheel and shank come within 0.1 mm of each other outside the cut; allowed: "
+     "0.25 mm or more; raise it"},
     {Kind::kSwivel, "SwivelUnknown", Unit::kRadian, std::numeric_limits<double>::quiet_NaN(), kPi / 8, swivel(""),
      "process.setup_swivel = 0.3926990817 rad: the swivel is not confirmed; set it to 22.5 deg and confirm it: grind "
      "confirm-swivel 22.5",

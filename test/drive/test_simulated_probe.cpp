@@ -83,5 +83,24 @@ TEST(SimulatedProbe, TheRakeFaceComesDownAsATurns) {
   EXPECT_TRUE(touches(tooth, Axes(0.1, 0.0045, 0, M_PI / 2))) << "in the half that is left";
 }
 
+/// In a single reading each time that it comes within 0.2 mm, as through a film of coolant.
+TEST(SimulatedProbe, ThatFlickersTouchesBeforeTheSurfaceToo) {
+  Bench bench(plainModel(0));
+  bench.drive.clamp(blank());
+  bench.drive.inject(SimulatedDrive::Fault::kProbeFlickers);
+  bench.set(true);
+  const auto touches_at = [&](double x) {
+    bench.command(kX, x);
+    bench.run(1);
+    return bench.status().probe_contact;
+  };
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(touches_at(0.05925));
+    EXPECT_TRUE(touches_at(0.05935));
+    EXPECT_FALSE(touches_at(0.0594));
+  }
+  EXPECT_TRUE(touches_at(0.0596));
+}
+
 }  // namespace test_simulated_probe
 }  // namespace flute_grinder::test_support

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Shows on the real HAL that a probing move stops at the probe's contact, though commands wait in a buffer, and where it was."""
 
+import threading
 import unittest
 
 import rospy
@@ -50,6 +51,19 @@ class TestProbe(unittest.TestCase):
         # What was in the buffer is played; then the axis comes to rest.
         self.assertGreater(largest, wall)
         self.assertLess(largest, wall + SPEED * BUFFER + 1 * MM)
+
+    def test_a_contact_that_does_not_last_is_no_touch(self):
+        """It ends while the buffer is played, long before the axis rests."""
+        answers = []
+        probing = threading.Thread(target=lambda: answers.append(self.probe()))
+        probing.start()
+        self.addCleanup(probing.join)
+        self.grinder.wait_for(lambda: self.grinder.joints[-1].position[X] > self.at + 1 * MM, 'the way to the surface')
+        hal_bench.halcmd('setp', 'wall.in0', '-1000')
+        hal_bench.halcmd('setp', 'wall.in0', '1000')
+        probing.join()
+        self.assertEqual(answers[0].message, 'probing ended: the contact was lost again before the axis came to rest')
+        self.assertLess(self.grinder.wait_rest()[X], self.at + 9 * MM)
 
     def test_without_a_contact_it_goes_all_the_way(self):
         self.assertEqual(self.probe().message, 'probing ended: nothing was touched over 10 mm')

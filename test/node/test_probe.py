@@ -187,6 +187,18 @@ class TestMove(ProbeTest):
         self.bring_ball(12 * MM, 0)
         self.assertRegex(self.probe(X, 8 * MM).message, '^probing ended: the touches spread over .*; allowed: up to ')
 
+    def test_a_contact_that_does_not_last_is_no_touch(self):
+        """It comes and goes at the same place each time, so that the touches would agree."""
+        self.start()
+        self.bring_ball(12 * MM, 0)
+        self.assertTrue(self.client.inject('probe_flickers').success)
+        done = self.grind('probe', 'end-face', '--job', JOB)
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, 'probing ended: the contact was lost again before the axis came to rest\n'))
+        self.assertEqual(self.offset(X)['set_by'], None)
+        self.assertTrue(self.client.inject('none').success)
+        self.cycle('end-face', '--job', JOB)
+
     def test_requests_are_checked(self):
         self.start()
         for axis, distance in ((4, 0.001), (X, 0), (X, math.nan), (X, math.inf)):

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/collision/collision_check.h"
 
+#include <functional>
 #include <vector>
 
 namespace flute_grinder {
@@ -11,8 +12,10 @@ namespace flute_grinder {
 /// it is halved in space, so that strokes beside each other are treated as one.
 class ClosestSearch {
  public:
-  /// @param path points with straight legs. @param height added to Z [m].
-  ClosestSearch(const std::vector<Axes>& path, double height);
+  /// @param path points with straight legs. @param height added to Z [m]. @param searched whether a leg is; without
+  ///        it, every leg is.
+  ClosestSearch(const std::vector<Axes>& path, double height,
+                const std::function<bool(std::size_t leg)>& searched = {});
 
   void visit(const CollisionCheck::Pair& pair);
 

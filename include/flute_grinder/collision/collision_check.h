@@ -25,6 +25,7 @@ struct CollisionJob {
   Axes stroke_end = Axes::Zero();    ///< of the deepest stroke, on the shank's side
   double clearance = 0;              ///< the least distance that is allowed [m]
   double x_offset = 0;               ///< work offset of X: how far the cutter stands in its holder, or out of it [m]
+  double work_clearance = 0;         ///< the least distance of the wheel from the work outside the cut [m]
 };
 
 /// Finds how close the bodies of a machine and a job come to each other along a path.
@@ -36,6 +37,9 @@ struct CollisionJob {
 /// The wheel is meant to cut the fluted part, and to leave the cutter toward the shank in a run-out. So the wheel is
 /// checked against the shank alone, from CollisionJob::shank_from on; all else against the fluted part too, and against
 /// a shank that begins at the flute's end. The shank reaches to the first shape that turns with the cutter.
+///
+/// Outside the cut the wheel is checked against the work as well: the cone before it is ground, and a shank that begins
+/// where the flute ends, or the neck. Whatever is left of the cutter lies within these.
 ///
 /// The path is in work coordinates. In Y and Z they say how wheel and cutter stand to each other, and what carries them
 /// follows. In X the machine's bodies stand where the machine coordinates say, and the cutter where it was clamped.
@@ -52,6 +56,11 @@ class CollisionCheck {
   /// @param path points with straight legs in X, Y and Z; at least one.
   ClosestPlace closest(const std::vector<Axes>& path) const;
 
+  /// Where the wheel comes closest to the work outside the cut; the search ends at the first contact that it finds.
+  /// @param path as above. @param outside_cut of every leg of the path, whether it is outside the cut.
+  /// @return none if it keeps CollisionJob::work_clearance everywhere.
+  std::optional<ClosestPlace> tooCloseToWork(const std::vector<Axes>& path, const std::vector<bool>& outside_cut) const;
+
   /// A pair of bodies that can meet.
   struct Pair {
     Solid first, second;
@@ -65,6 +74,7 @@ class CollisionCheck {
   void add(const MachinePart& first, const MachinePart& second);
 
   std::vector<Pair> pairs_;
+  std::vector<Pair> work_pairs_;
   double height_;
 };
 

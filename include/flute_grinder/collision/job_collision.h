@@ -22,7 +22,9 @@ CollisionJob collisionJobOf(const GrindProgram& program);
 
 /// Finds the closest place of a job. Takes a few milliseconds.
 /// @param plan gets the closest place, and the reason if the bodies hit each other or come closer than
-///        Machine::collision_clearance. Left as it is if the job's numbers were refused or planning was given up.
+///        Machine::collision_clearance, or if the wheel comes too close to the work outside the cut: closer than half
+///        of GrindProcess::clearance, but no more than collision_clearance. Left as it is if the job's numbers were
+///        refused or planning was given up.
 void checkCollision(JobPlan& plan, const MachineShapes& machine);
 
 }  // namespace flute_grinder

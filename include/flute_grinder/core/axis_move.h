@@ -48,6 +48,7 @@ class AxisMove {
 
  private:
   bool beginPair() noexcept;
+  double position() const noexcept;  ///< of the axis, never beyond its end [m], A [rad]
 
   std::array<MotionLimits, kAxisCount> limits_;
   double period_;

@@ -49,7 +49,7 @@ enum class ReasonKind : std::uint8_t {
   kLand,        ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
   kCore,        ///< the wheel cuts through the core; at `x`
   kIncomplete,  ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
-  kCollision,   ///< `detail`, two bodies, come within `value` of each other, 0 if they hit; allowed: `limit` or more
+  kCollision,   ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
   kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
   kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
 };

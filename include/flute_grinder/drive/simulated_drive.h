@@ -64,7 +64,8 @@ class SimulatedDrive : public AxesHW {
     kReferenceLost,
     kSpindleLost,
     kCoolantLost,
-    kSwivelSlipped
+    kSwivelSlipped,
+    kProbeFlickers
   };
 
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
@@ -85,6 +86,7 @@ class SimulatedDrive : public AxesHW {
   void readSwitches(Fault fault);
   void readEquipment(Fault fault, double dt);
   bool touches(const Blank& blank) const;
+  bool readProbe(const Blank& blank, Fault fault);
   void moveMotors(Fault fault, int failing_axis, double dt);
   void home(double dt);
   bool onInjectFault(InjectFault::Request& request, InjectFault::Response& response);
@@ -99,6 +101,7 @@ class SimulatedDrive : public AxesHW {
   Axes counts_per_unit_ = Axes::Zero();  ///< of the model [1/m], A [1/rad]
   Axes motor_ = Axes::Zero();            ///< true positions of the axes
   Axes offset_ = Axes::Zero();           ///< of the encoders' readings
+  bool probe_near_ = false;              ///< as near to the blank as a contact that flickers is made
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;  ///< fraction of full speed
   Buffer sent_{};             ///< commands at the last write()

@@ -59,7 +59,7 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
       cos_(std::cos(setup.swivel)),
       centre_(cutter.geometry().end_diameter / 2 + nominal_radius + stroke.y),
       y_per_x_(cutter.tanCone() + stroke.y_per_x),
-      z_per_x_(cutter.tanCone() * cutter.sinRake()) {
+      z_per_x_(cutter.tanCone() * cutter.zPerY()) {
   if (!(std::abs(setup.swivel) < units::kPi / 2)) {
     std::ostringstream text;
     text << "setup.swivel = " << setup.swivel << " rad; allowed: within (-pi/2, pi/2)";

@@ -241,7 +241,7 @@ void rakeCorrection(benchmark::State& state) {
   const GrindStroke stroke{-solved.overtravel[0], 0.03 + solved.overtravel[1], -solved.depth, 0, 0};
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        correctRake(ConicalCutter(r.cutter), r.direction, r.wheel, r.nominal_radius, solved.setup, stroke, r.rake));
+        correctRake(ConicalCutter(r.cutter), r.wheel, r.nominal_radius, solved.setup, stroke, r.rake));
   }
 }
 BENCHMARK(rakeCorrection)->Unit(benchmark::kMillisecond);

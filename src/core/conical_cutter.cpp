@@ -25,7 +25,7 @@ ConicalCutter::ConicalCutter(const CutterGeometry& geometry)
     : geometry_(geometry),
       tan_cone_(std::tan(geometry.cone_angle)),
       tan_spiral_(std::tan(geometry.spiral_angle)),
-      sin_rake_(std::sin(geometry.rake_angle)),
+      z_per_y_(std::sin(geometry.cut == CutDirection::kLeftHand ? -geometry.rake_angle : geometry.rake_angle)),
       edge_per_travel_(std::sqrt(1 + tan_cone_ * tan_cone_ + tan_spiral_ * tan_spiral_)),
       cos_helix_to_generatrix_(1 / std::hypot(1, tan_spiral_ * std::cos(geometry.cone_angle))) {
   const auto positive = [](double v) { return v > 0 && std::isfinite(v); };

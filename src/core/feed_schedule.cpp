@@ -33,7 +33,7 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
       from_(stroke.from),
       to_(stroke.to) {
   const LogCurve curve(cutter);
-  const double z_per_x = cutter.tanCone() * cutter.sinRake();
+  const double z_per_x = cutter.tanCone() * cutter.zPerY();
   const ZCorrection::Bounds correction = stroke.z_correction.bounds();
   z_per_x_ = std::max(std::abs(z_per_x + correction.least_first), std::abs(z_per_x + correction.largest_first));
   z_bend_ = correction.second;

@@ -41,9 +41,8 @@ double covered(std::vector<Arc>& arcs) {
 
 }  // namespace
 
-GroundCutter::GroundCutter(const ConicalCutter& cutter, CutDirection direction, std::vector<Flute> flutes,
-                           std::vector<GroundTooth> teeth)
-    : cutter_(cutter), direction_(direction), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
+GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth)
+    : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
   for (const Flute& flute : flutes_) {
     if (flute.empty()) throw std::invalid_argument("a flute has 0 strokes; allowed: 1 or more");
   }
@@ -72,7 +71,7 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
 }
 
 std::optional<Wall> GroundCutter::rakeFace(const Flute& flute, double x) const {
-  const bool high = direction_ == CutDirection::kRightHand;
+  const bool high = direction() == CutDirection::kRightHand;
   std::optional<Wall> outermost;
   for (const WheelSweep& sweep : flute) {
     const auto wall = sweep.wall(x, cutter_.radius(x), high);
@@ -115,7 +114,7 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
 std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<ToothSection>& measured) const {
   // Behind an edge that moves toward falling angles lies what has larger ones.
   const std::size_t n = teeth_.size();
-  const bool right = direction_ == CutDirection::kRightHand;
+  const bool right = direction() == CutDirection::kRightHand;
   const std::size_t next = right ? (tooth + 1) % n : (tooth + n - 1) % n;
   const ToothSection& own = measured[teeth_[tooth].flute];
   const ToothSection& other = measured[teeth_[next].flute];
@@ -148,7 +147,7 @@ ToothSection GroundCutter::measure(const Flute& flute, double x) const {
   const auto face = rakeFace(flute, x);
   if (!at || !face) return section;
   section.edge = face->angle;
-  section.rake = std::atan(direction_ == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
+  section.rake = std::atan(direction() == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
   section.flute = at->high - at->low;
   const auto ahead = rakeFace(flute, x + h), behind = rakeFace(flute, x - h);
   if (ahead && behind) {

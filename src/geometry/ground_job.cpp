@@ -109,7 +109,7 @@ GroundCutter groundCutterOf(const GrindJob& job, double same_wear) {
     const int tooth = static_cast<int>(i);
     flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job.process.deepest(), wear[i]))});
   }
-  return GroundCutter(ConicalCutter(job.cutter), job.cutter.cut, std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job.cutter), std::move(flutes), std::move(teeth));
 }
 
 }  // namespace

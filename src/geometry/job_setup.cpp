@@ -96,7 +96,6 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
     const auto [least, largest] = std::minmax_element(job.spiral_angles.begin(), job.spiral_angles.end());
     r.cutter.spiral_angle = (*least + *largest) / 2;
   }
-  r.direction = job.cutter.cut;
   r.rake = job.cutter.rake_angle;
   r.tooth_angles = job.tooth_angles;
   r.wheel = wheelOf(job).worn(p.wheel_wear);

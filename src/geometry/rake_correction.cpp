@@ -17,12 +17,12 @@ constexpr double kGoodEnough = 0.001 * units::kDegree;
 constexpr double kDerivativeStep = 1e-6;  ///< for derivatives by a coefficient, of the radius
 constexpr double kSmooth = 1e-3;          ///< weight of the coefficients' third differences against the rake
 
+/// Of a right-hand cutter.
 class Correction {
  public:
-  Correction(const ConicalCutter& cutter, CutDirection direction, const WheelProfile& wheel, double nominal_radius,
-             const WheelSetup& setup, const GrindStroke& stroke, double rake, const PlanWatch& watch)
+  Correction(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
+             const GrindStroke& stroke, double rake, const PlanWatch& watch)
       : cutter_(cutter),
-        high_(direction == CutDirection::kRightHand),
         wheel_(wheel),
         nominal_radius_(nominal_radius),
         setup_(setup),
@@ -71,8 +71,8 @@ class Correction {
     for (int i = 0; i <= kCorrectedSections; ++i) {
       const double x = cutter_.geometry().flute_length * i / kCorrectedSections;
       const double r = cutter_.radius(x);
-      const auto wall = sweep.wall(x, r, high_);
-      errors[i] = wall ? std::atan((high_ ? -r : r) * wall->slope) - rake_ : std::nan("");
+      const auto wall = sweep.wall(x, r, true);
+      errors[i] = wall ? std::atan(-r * wall->slope) - rake_ : std::nan("");
     }
     return errors;
   }
@@ -102,7 +102,6 @@ class Correction {
   }
 
   ConicalCutter cutter_;
-  bool high_;
   WheelProfile wheel_;
   double nominal_radius_;
   WheelSetup setup_;
@@ -113,10 +112,23 @@ class Correction {
 
 }  // namespace
 
-std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, CutDirection direction,
-                                          const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
-                                          const GrindStroke& stroke, double rake, const PlanWatch& watch) {
-  return Correction(cutter, direction, wheel, nominal_radius, setup, stroke, rake, watch).solve();
+std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
+                                          const WheelSetup& setup, const GrindStroke& stroke, double rake,
+                                          const PlanWatch& watch) {
+  if (cutter.geometry().cut == CutDirection::kLeftHand) {
+    CutterGeometry right = cutter.geometry();
+    right.cut = CutDirection::kRightHand;
+    right.spiral_angle *= -1;
+    GrindStroke right_stroke = stroke;
+    right_stroke.a *= -1;
+    auto result = correctRake(ConicalCutter(right), wheel.mirrored(), nominal_radius, {-setup.swivel, -setup.height},
+                              right_stroke, rake, watch);
+    if (result) {
+      for (double& c : result->z.coefficients) c = -c;
+    }
+    return result;
+  }
+  return Correction(cutter, wheel, nominal_radius, setup, stroke, rake, watch).solve();
 }
 
 }  // namespace flute_grinder

@@ -127,7 +127,7 @@ GroundCutter RecordedStrokes::cutter() const {
     teeth.push_back({job_.tooth_angles[i], flutes.size()});
     flutes.push_back(std::move(flute));
   }
-  return GroundCutter(ConicalCutter(job_.cutter), job_.cutter.cut, std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job_.cutter), std::move(flutes), std::move(teeth));
 }
 
 }  // namespace flute_grinder

@@ -202,9 +202,8 @@ void check(const SetupRequest& r) {
 
 /// The same tool in the mirror: a left-hand cutter becomes a right-hand one.
 SetupRequest mirrored(SetupRequest r) {
-  r.direction = CutDirection::kRightHand;
+  r.cutter.cut = CutDirection::kRightHand;
   r.cutter.spiral_angle = -r.cutter.spiral_angle;
-  r.cutter.rake_angle = -r.cutter.rake_angle;
   r.wheel = r.wheel.mirrored();
   r.kept = {-r.kept.swivel, -r.kept.height};
   std::swap(r.least_swivel, r.largest_swivel);
@@ -333,7 +332,7 @@ SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
 
 std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) {
   check(request);
-  if (request.direction == CutDirection::kLeftHand) {
+  if (request.cutter.cut == CutDirection::kLeftHand) {
     auto result = solveSetup(mirrored(request));
     if (auto* solved = std::get_if<SolvedSetup>(&result)) {
       solved->setup = {-solved->setup.swivel, -solved->setup.height};

@@ -18,8 +18,9 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNotReached = -kInfinite;
-constexpr int kPosesPerWindow = 32;  ///< from which an extremum is refined
-constexpr int kAnglesPerPose = 8;    ///< from which the wheel's deepest place on a circle is refined
+constexpr int kLeastPoses = 32, kMostPoses = 512;  ///< of a window, from which an extremum is refined
+constexpr double kPoseTurn = 0.1;  ///< of the cutter between two poses; or the wheel's rise, of the cutter's radius
+constexpr int kAnglesPerPose = 8;  ///< from which the wheel's deepest place on a circle is refined
 constexpr std::uintmax_t kMaxPoseSteps = 60;
 constexpr int kPoseHalvings = 30;      ///< of a step between poses, for where a circle near the floor is reached
 constexpr int kDiscs = 16;             ///< of the wheel, from which its least radius is refined
@@ -57,9 +58,10 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
       height_(setup.height),
       sin_(std::sin(setup.swivel)),
       cos_(std::cos(setup.swivel)),
-      centre_(cutter.geometry().end_diameter / 2 + nominal_radius + stroke.y),
+      radius_(cutter.geometry().end_diameter / 2),
+      centre_(radius_ + nominal_radius + stroke.y),
       y_per_x_(cutter.tanCone() + stroke.y_per_x),
-      z_per_x_(cutter.tanCone() * cutter.sinRake()) {
+      z_per_x_(cutter.tanCone() * cutter.zPerY()) {
   if (!(std::abs(setup.swivel) < units::kPi / 2)) {
     std::ostringstream text;
     text << "setup.swivel = " << setup.swivel << " rad; allowed: within (-pi/2, pi/2)";
@@ -76,6 +78,15 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
   const auto lower = [](const PathDeviation& a, const PathDeviation& b) { return a.y < b.y; };
   const auto deepest = std::min_element(stroke.deviations.begin(), stroke.deviations.end(), lower);
   if (deepest != stroke.deviations.end()) deepest_deviation_ = deepest->y;
+  // A spline keeps between its coefficients.
+  const auto first = stroke.z_correction.coefficients.begin();
+  if (const int count = stroke.z_correction.coefficientCount(); count > 0) {
+    const auto [low, high] = std::minmax_element(first, first + count);
+    z_off_ = {*low, *high};
+  }
+  const auto below = [](const PathDeviation& a, const PathDeviation& b) { return a.z < b.z; };
+  const auto [low, high] = std::minmax_element(stroke.deviations.begin(), stroke.deviations.end(), below);
+  if (low != stroke.deviations.end()) z_off_ = {z_off_.from + low->z, z_off_.to + high->z};
 }
 
 PathDeviation WheelSweep::deviation(double axis_x) const noexcept {
@@ -134,7 +145,25 @@ WheelSweep::Window WheelSweep::reach(double x, double r) const noexcept {
     const double square = b * b - a * (above * above + width * width * stretch - radius * radius);
     return side * std::max(width, square > 0 ? (-side * b + std::sqrt(square)) / a : 0);
   };
-  return {x + end(-1), x + end(1)};
+  const Window abreast = betweenFaces(x, r);
+  return {std::max(x + end(-1), abreast.from), std::min(x + end(1), abreast.to)};
+}
+
+WheelSweep::Window WheelSweep::betweenFaces(double x, double r) const noexcept {
+  // In a section the faces pass the axis at heights that are linear along the stroke.
+  const double rise = z_per_x_ - sin_ / cos_;
+  const double at_start = height_ + x * sin_ / cos_;
+  const double least = -r - (at_start + wheel_.upperFace() / cos_ + z_off_.to);
+  const double most = r - (at_start + wheel_.lowerFace() / cos_ + z_off_.from);
+  if (rise == 0) return least <= 0 && most >= 0 ? Window{-kInfinite, kInfinite} : Window{kInfinite, -kInfinite};
+  return {std::min(least / rise, most / rise), std::max(least / rise, most / rise)};
+}
+
+int WheelSweep::posesOf(double x, const Window& w) const noexcept {
+  const double turn = std::abs(curve_.delta(w.from, w.to - w.from));
+  const double rise = std::abs(z_per_x_ - sin_ / cos_) * (w.to - w.from) / (radius_ * curve_.u(x));
+  const double poses = std::ceil(std::max(turn, rise) / kPoseTurn);
+  return poses < kMostPoses ? std::max(kLeastPoses, static_cast<int>(poses)) : kMostPoses;
 }
 
 std::optional<WheelSweep::Window> WheelSweep::window(double x, double r) const noexcept {
@@ -186,15 +215,14 @@ double WheelSweep::endOver(double x, double axis_x, double r, bool high) const {
 WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& window, bool high) const {
   // The largest end of the arcs, or the least by its negative.
   const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
-  std::array<double, kPosesPerWindow + 1> value;
-  const double step = (window.to - window.from) / kPosesPerWindow;
-  for (int i = 0; i <= kPosesPerWindow; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
-  const auto first = std::max_element(value.begin(), value.end());
+  const int poses = posesOf(x, window);
+  std::array<double, kMostPoses + 1> value;
+  const double step = (window.to - window.from) / poses;
+  for (int i = 0; i <= poses; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
+  const auto first = std::max_element(value.begin(), value.begin() + poses + 1);
   double best = *first;
   double best_at = static_cast<double>(first - value.begin());
-  const auto at = [&](int i) {
-    return i < 0 || i > kPosesPerWindow ? kNotReached : value[static_cast<std::size_t>(i)];
-  };
+  const auto at = [&](int i) { return i < 0 || i > poses ? kNotReached : value[static_cast<std::size_t>(i)]; };
   // In steps, since the search ends at a fixed part of its variable.
   const auto search = [&](int i, int side) {
     const auto lost = [&](double along) {
@@ -206,16 +234,16 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
         boost::math::tools::brent_find_minima(lost, std::min(side, 0) * 1.0, std::max(side, 0) * 1.0, 26, steps);
     if (-peak.second > best) best = -peak.second, best_at = i + peak.first;
   };
-  for (int i = 0; i <= kPosesPerWindow; ++i) {
+  for (int i = 0; i <= poses; ++i) {
     if (at(i) == kNotReached || (at(i) == at(i - 1) && at(i) == at(i + 1))) continue;
     const auto rises = [&](int side) {
-      return i + side >= 0 && i + side <= kPosesPerWindow && end(window.from + (i + side * kAside) * step) > at(i);
+      return i + side >= 0 && i + side <= poses && end(window.from + (i + side * kAside) * step) > at(i);
     };
     if (at(i) >= at(i - 1) && at(i) >= at(i + 1)) {
       // Any peak among the poses may be the highest on either side of it.
       const bool before = rises(-1), after = rises(1);
       if (i > 0 && (before || !after)) search(i, -1);
-      if (i < kPosesPerWindow && (after || !before)) search(i, 1);
+      if (i < poses && (after || !before)) search(i, 1);
       continue;
     }
     // A peak may also lie between the last pose that reaches the circle and the next one.
@@ -310,7 +338,7 @@ std::optional<WheelSweep::Window> WheelSweep::narrowWindow(double x, double r, d
 WheelSweep::Extremum WheelSweep::anyExtremum(double x, double r, const Window& window, bool high) const {
   const Extremum found = extremum(x, r, window, high);
   if (found.value != kNotReached) return found;
-  const auto narrow = narrowWindow(x, r, (window.to - window.from) / kPosesPerWindow);
+  const auto narrow = narrowWindow(x, r, (window.to - window.from) / posesOf(x, window));
   return narrow ? extremum(x, r, *narrow, high) : found;
 }
 

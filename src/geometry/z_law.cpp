@@ -16,8 +16,8 @@ ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch)
   const GrindProcess& p = job.process;
   const double rake = job.cutter.rake_angle;
   const auto found =
-      correctRake(ConicalCutter(cutterOf(job, tooth)), job.cutter.cut, wheelOf(job).worn(p.wheel_wear),
-                  p.wheel_diameter / 2, setupOf(job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
+      correctRake(ConicalCutter(cutterOf(job, tooth)), wheelOf(job).worn(p.wheel_wear), p.wheel_diameter / 2,
+                  setupOf(job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
   if (found && std::abs(found->least_rake - rake) <= kEvenRake && std::abs(found->largest_rake - rake) <= kEvenRake) {
     return found->z;
   }

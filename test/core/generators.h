@@ -54,6 +54,11 @@ inline double openLength(const CutterGeometry& g, int side, double limit) {
   return closing > 0 ? std::min(limit, 0.8 * g.end_diameter / 2 / closing) : limit;
 }
 
+/// dZ/dY of the published law: a left-hand cutter is a right-hand one in the mirror.
+inline long double zPerY(const CutterGeometry& g) {
+  return (g.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(static_cast<long double>(g.rake_angle));
+}
+
 inline rc::Gen<CutterGeometry> cutterGeometry() {
   return rc::gen::exec([] {
     CutterGeometry g;
@@ -62,6 +67,7 @@ inline rc::Gen<CutterGeometry> cutterGeometry() {
     g.spiral_angle = *spiralAngle();
     g.rake_angle = *uniform(-20 * units::kDegree, 20 * units::kDegree);
     g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
+    g.cut = *rc::gen::arbitrary<bool>() ? CutDirection::kLeftHand : CutDirection::kRightHand;
     g.rake_tolerance = 0.5 * units::kDegree;
     g.shank_diameter = 10e-3;
     return g;

@@ -216,7 +216,7 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
   const double direction = to < from ? -1 : 1;
   const Axes rounding = 2 * roundingOf(setpoints);
   const double growth = std::tan(g.cone_angle);
-  const double sin_rake = std::sin(g.rake_angle);
+  const auto z_per_y = static_cast<double>(zPerY(g));
   const double feed = kMaxFeedOverride * work.job.process.feed / edgePerTravel(g);
   const double step = feed * work.machine.period;
   const ReferenceCurve curve(g);
@@ -237,7 +237,7 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
     RC_ASSERT(direction * (to - x) >= -rounding[kX]);
     RC_ASSERT(std::abs(p.position[kY] - (x * growth - work.job.process.depth)) <= 2 * rounding[kY]);
     const Real correction = referenceCorrection(zCorrectionOf(work.job, p.tooth), x);
-    RC_ASSERT(std::abs(p.position[kZ] - (x * growth * sin_rake + correction)) <= 2 * rounding[kZ] + 1e-18);
+    RC_ASSERT(std::abs(p.position[kZ] - (x * growth * z_per_y + correction)) <= 2 * rounding[kZ] + 1e-18);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
     if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
     if (ends) RC_ASSERT(p.move_fraction == 1);

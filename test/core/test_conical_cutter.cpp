@@ -55,15 +55,15 @@ RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
   const double x = *uniform(-2e-3, g.flute_length);
   const Real tan_cone = std::tan(Real(g.cone_angle));
   const Real y = x * tan_cone;
-  const Real z = y * std::sin(Real(g.rake_angle));
+  const Real z_per_y = test_support::zPerY(g);
+  const Real z = y * z_per_y;
   RC_ASSERT(std::abs(cutter.y(x) - y) <= 4 * kEps * std::abs(y));
   RC_ASSERT(std::abs(cutter.z(x) - z) <= 8 * kEps * std::abs(z));
   RC_ASSERT(std::abs(cutter.radius(x) - (Real(g.end_diameter) / 2 + y)) <= 4 * kEps * (g.end_diameter + std::abs(y)));
   RC_ASSERT(std::abs(cutter.tanCone() - tan_cone) <= 4 * kEps * std::abs(tan_cone));
   RC_ASSERT(std::abs(cutter.tanSpiral() - std::tan(Real(g.spiral_angle))) <=
             4 * kEps * std::abs(std::tan(Real(g.spiral_angle))));
-  RC_ASSERT(std::abs(cutter.sinRake() - std::sin(Real(g.rake_angle))) <=
-            4 * kEps * std::abs(std::sin(Real(g.rake_angle))));
+  RC_ASSERT(std::abs(cutter.zPerY() - z_per_y) <= 4 * kEps * std::abs(z_per_y));
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, ()) {

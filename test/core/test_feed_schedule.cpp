@@ -60,7 +60,7 @@ struct Pose {
 
 Pose poseAt(const CutterGeometry& g, const ReferenceCurve& curve, Real x) {
   const Real y = x * std::tan(Real(g.cone_angle));
-  return {{x, y, y * std::sin(Real(g.rake_angle)), curve.a(x)}};
+  return {{x, y, y * test_support::zPerY(g), curve.a(x)}};
 }
 
 /// The worst of velocity, acceleration and jerk over their limits, by differences of the axes over the time `h` between

@@ -66,7 +66,7 @@ void checkDetours(const Ride& ride, const Work& work) {
       const double radius = g.end_diameter / 2 + start * growth;
       RC_ASSERT(Deviation(work.job).of(before) <= radius * (rounding[kA] + rounding[kX] * std::abs(slope)));
       RC_ASSERT(std::abs(before.position[kY] - (start * growth - work.job.process.depth)) <= 2 * rounding[kY]);
-      RC_ASSERT(std::abs(before.position[kZ] - start * growth * std::sin(g.rake_angle)) <= 2 * rounding[kZ]);
+      RC_ASSERT(std::abs(before.position[kZ] - start * growth * static_cast<double>(zPerY(g))) <= 2 * rounding[kZ]);
       strokes.emplace(p.move_index, std::make_pair(start, start));
     }
     auto& [left, reached] = strokes[p.move_index];

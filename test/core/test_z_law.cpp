@@ -17,7 +17,7 @@ using namespace test_support;
 
 /// By the paper and the recursion of de Boor. [m]
 double zOf(const GrindJob& job, double x) {
-  const Real slope = std::tan(Real(job.cutter.cone_angle)) * std::sin(Real(job.cutter.rake_angle));
+  const Real slope = std::tan(Real(job.cutter.cone_angle)) * zPerY(job.cutter);
   return static_cast<double>(x * slope + referenceCorrection(job.z_corrections.at(0), x));
 }
 

@@ -19,6 +19,11 @@ struct Bench {
   int poses = 120, places = 24;
   ZCorrection z_correction{};
 
+  /// dZ/dY
+  static double zPerY(const SetupRequest& request) {
+    return (request.cutter.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(request.cutter.rake_angle);
+  }
+
   double radius(double x) const { return request.cutter.end_diameter / 2 + x * std::tan(request.cutter.cone_angle); }
 
   /// How far the path has turned at a place of the stroke.
@@ -37,7 +42,7 @@ struct Bench {
     const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
     const double y0 =
         request.cutter.end_diameter / 2 + request.nominal_radius - depth + s * (tan_cone + request.y_per_x);
-    const double z0 = height + s * tan_cone * std::sin(request.cutter.rake_angle) + z_correction.at(s).z;
+    const double z0 = height + s * tan_cone * zPerY(request) + z_correction.at(s).z;
     const WheelProfile& wheel = request.wheel;
     const double lower = wheel.lowerFace(), upper = wheel.upperFace();
     double sine = 0;
@@ -103,7 +108,7 @@ struct Bench {
     return best;
   }
 
-  int rakeSide() const { return request.direction == CutDirection::kRightHand ? 1 : -1; }
+  int rakeSide() const { return request.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
 
   double rake(double x) const {
     const double r = radius(x), h = 1e-5 * r;
@@ -157,7 +162,7 @@ struct Bench {
         const WheelProfile& wheel = request.wheel;
         const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * k / discs;
         const double dz = (w - s * sn) / cs, t = dz * sn - s * cs;
-        const double z = height + dz + s * tan_cone * std::sin(request.cutter.rake_angle);
+        const double z = height + dz + s * tan_cone * zPerY(request);
         const double squared = wheel.radius(w) * wheel.radius(w) - t * t;
         if (std::abs(z) > core || squared < 0) continue;
         const double low = request.cutter.end_diameter / 2 + request.nominal_radius + s * (tan_cone + request.y_per_x) -

@@ -14,6 +14,7 @@ struct Case {
   double wheel = 100, width = 6, swivel = 30, face = 0;  ///< height of the upper face above the axis
   double from = -1000, to = 1000;
   double a = 0;
+  CutDirection cut = CutDirection::kRightHand;
 
   ConicalCutter cutter() const {
     CutterGeometry g;
@@ -22,6 +23,7 @@ struct Case {
     g.spiral_angle = spiral * kDegree;
     g.rake_angle = rake * kDegree;
     g.flute_length = kMillimetre;
+    g.cut = cut;
     return ConicalCutter(g);
   }
   WheelProfile profile() const { return WheelProfile::straight(wheel * kMillimetre, width * kMillimetre); }
@@ -29,10 +31,10 @@ struct Case {
   GrindStroke stroke() const { return {from * kMillimetre, to * kMillimetre, -depth * kMillimetre, 0, a}; }
   WheelSweep sweep() const { return sweep(profile()); }
   WheelSweep sweep(const WheelProfile& p) const { return {cutter(), p, wheel / 2 * kMillimetre, setup(), stroke()}; }
-  GroundCutter ground(int teeth = 1, CutDirection direction = CutDirection::kRightHand) const {
+  GroundCutter ground(int teeth = 1) const {
     std::vector<GroundTooth> all;
     for (int i = 0; i < teeth; ++i) all.push_back({2 * units::kPi * i / teeth, 0});
-    return {cutter(), direction, {{sweep()}}, all};
+    return {cutter(), {{sweep()}}, all};
   }
   double rakeAt(double x_mm) const { return ground().section(x_mm * kMillimetre).teeth.at(0).rake.value() / kDegree; }
 };

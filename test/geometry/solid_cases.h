@@ -17,11 +17,10 @@ struct SolidCase {
 };
 
 /// Flutes at angles in degrees, all alike.
-inline GroundCutter groundAt(const Case& c, const std::vector<double>& angles,
-                             CutDirection direction = CutDirection::kRightHand) {
+inline GroundCutter groundAt(const Case& c, const std::vector<double>& angles) {
   std::vector<GroundTooth> teeth;
   for (const double angle : angles) teeth.push_back({angle * kDegree, 0});
-  return {c.cutter(), direction, {{c.sweep()}}, teeth};
+  return {c.cutter(), {{c.sweep()}}, teeth};
 }
 
 inline Case cylinder() {
@@ -58,7 +57,8 @@ inline std::vector<SolidCase> solidCases() {
   left.spiral = -30;
   left.swivel = -38;
   left.face = left.width / std::cos(left.swivel * kDegree) - left.face;
-  add("left hand", left, left.ground(4, CutDirection::kLeftHand), 0, 30);
+  left.cut = CutDirection::kLeftHand;
+  add("left hand", left, left.ground(4), 0, 30);
 
   add("unequal pitch", cylinder(), groundAt(cylinder(), {0, 80, 190, 262}), 0, 30);
 
@@ -75,8 +75,7 @@ inline std::vector<SolidCase> solidCases() {
   Case steeper = cylinder(), shallower = cylinder();
   steeper.spiral = 33;
   shallower.depth = 1.1;
-  const GroundCutter own(cylinder().cutter(), CutDirection::kRightHand,
-                         {{cylinder().sweep()}, {steeper.sweep()}, {shallower.sweep()}},
+  const GroundCutter own(cylinder().cutter(), {{cylinder().sweep()}, {steeper.sweep()}, {shallower.sweep()}},
                          {{0, 0}, {90 * kDegree, 1}, {180 * kDegree, 2}, {270 * kDegree, 0}});
   add("a flute for each tooth", cylinder(), own, 0, 20);
 

@@ -138,7 +138,7 @@ class Membership {
     const double angle = phi - curve_.a(at) - c_.a;
     const double dy =
         r * std::cos(angle) - (c_.diameter / 2 + c_.wheel / 2 - c_.depth) * kMillimetre - at * cutter_.tanCone();
-    const double dz = r * std::sin(angle) - height_ - at * cutter_.tanCone() * cutter_.sinRake();
+    const double dz = r * std::sin(angle) - height_ - at * cutter_.tanCone() * cutter_.zPerY();
     const double dx = x - at;
     const double w = -sn_ * dx + cs_ * dz;
     if (w < wheel_.lowerFace() || w > wheel_.upperFace()) return false;
@@ -261,7 +261,7 @@ TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
   for (int i = 0; checked < 200 && i < 4000; ++i) {
     const auto k = randomCase(random, i);
     if (!k) continue;
-    const GroundCutter ground(k->c.cutter(), CutDirection::kRightHand, {{k->c.sweep(k->wheel)}}, {{0, 0}});
+    const GroundCutter ground(k->c.cutter(), {{k->c.sweep(k->wheel)}}, {{0, 0}});
     const ToothSection tooth = ground.section(k->x).teeth[0];
     if (!tooth.rake || !(*tooth.flute > 1e-3)) continue;
     ++checked;
@@ -462,11 +462,12 @@ TEST(GroundCutter, ALeftHandCutterIsARightHandOneInTheMirror) {
   c.face = faceFor(10, 8);
   c.swivel = 36;
   Case mirrored = c;
+  mirrored.cut = CutDirection::kLeftHand;
   mirrored.spiral = -c.spiral;
   mirrored.swivel = -c.swivel;
   mirrored.face = c.width / std::cos(c.swivel * kDegree) - c.face;  // the lower face at -face
   const ToothSection right = c.ground(3).section(0.02).teeth[0];
-  const ToothSection left = mirrored.ground(3, CutDirection::kLeftHand).section(0.02).teeth[0];
+  const ToothSection left = mirrored.ground(3).section(0.02).teeth[0];
   EXPECT_NEAR(*left.edge, -*right.edge, 1e-9);
   EXPECT_NEAR(*left.rake, *right.rake, 1e-6);
   EXPECT_NEAR(*left.spiral, -*right.spiral, 1e-6);

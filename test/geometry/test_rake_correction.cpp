@@ -77,7 +77,7 @@ SetupRequest requestFor(double diameter, double cone, double spiral, double rake
                         double wheel, double width) {
   SetupRequest r;
   r.cutter = {diameter * kMillimetre, cone * kDegree, spiral * kDegree, rake * kDegree, length * kMillimetre};
-  r.direction = spiral < 0 ? CutDirection::kLeftHand : CutDirection::kRightHand;
+  r.cutter.cut = spiral < 0 ? CutDirection::kLeftHand : CutDirection::kRightHand;
   r.rake = rake * kDegree;
   r.tooth_angles = {0};
   r.wheel = WheelProfile::straight(wheel * kMillimetre, width * kMillimetre);
@@ -96,16 +96,15 @@ TEST(RakeCorrection, TheRakeIsTheSameOverTheWholeFlute) {
     const ConicalCutter cutter(request.cutter);
     const double length = request.cutter.flute_length;
     GrindStroke stroke{-solved.overtravel[0], length + solved.overtravel[1], -solved.depth, 0, 0, {}};
-    const auto corrected = correctRake(cutter, request.direction, request.wheel, request.nominal_radius, solved.setup,
-                                       stroke, request.rake);
+    const auto corrected =
+        correctRake(cutter, request.wheel, request.nominal_radius, solved.setup, stroke, request.rake);
     ASSERT_TRUE(corrected.has_value());
     EXPECT_NEAR(corrected->least_rake, request.rake, 0.005 * kDegree);
     EXPECT_NEAR(corrected->largest_rake, request.rake, 0.005 * kDegree);
     // In other sections than those it was made for, by sections and by brute force.
     stroke.z_correction = corrected->z;
-    const GroundCutter ground(cutter, request.direction,
-                              {{WheelSweep(cutter, request.wheel, request.nominal_radius, solved.setup, stroke)}},
-                              {{}});
+    const GroundCutter ground(
+        cutter, {{WheelSweep(cutter, request.wheel, request.nominal_radius, solved.setup, stroke)}}, {{}});
     brute::Bench bench{request, solved.setup.swivel, solved.setup.height, solved.depth, 800, 100};
     bench.z_correction = corrected->z;
     for (const double part : {0.0, 0.017, 0.231, 0.522, 0.871, 1.0}) {
@@ -118,8 +117,8 @@ TEST(RakeCorrection, TheRakeIsTheSameOverTheWholeFlute) {
 TEST(RakeCorrection, WhereThereIsNoFluteThereIsNoCorrection) {
   const SetupRequest request = requestFor(10, 5, 30, 8, 30, 1.6, 100, 3);
   const WheelSetup above{request.least_swivel, 0.1};
-  EXPECT_FALSE(correctRake(ConicalCutter(request.cutter), request.direction, request.wheel, request.nominal_radius,
-                           above, {0, 0.03, -0.0016, 0, 0, {}}, request.rake)
+  EXPECT_FALSE(correctRake(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, above,
+                           {0, 0.03, -0.0016, 0, 0, {}}, request.rake)
                    .has_value());
 }
 

@@ -126,13 +126,14 @@ class Groove {
     const GrindProcess& p = job_.process;
     const CutterGeometry& c = job_.cutter;
     const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
+    const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
     const double turned = std::abs(tan_cone) < 1e-9 ? std::tan(c.spiral_angle) * s / r0
                                                     : std::tan(c.spiral_angle) / tan_cone * std::log(radius(s) / r0);
     const double depth = p.depth + (p.depthEnd() - p.depth) * s / c.flute_length;
     const double dx = x - s;
     const double dy = from_axis * std::cos(angle - turned) - (radius(s) + p.wheel_diameter / 2 - depth - p.wheel_wear);
-    const double dz = from_axis * std::sin(angle - turned) -
-                      (p.setup_height + s * tan_cone * std::sin(c.rake_angle) + z_correction_.at(s).z);
+    const double dz =
+        from_axis * std::sin(angle - turned) - (p.setup_height + s * tan_cone * z_per_y + z_correction_.at(s).z);
     const double w = dz * std::cos(p.setup_swivel) - dx * std::sin(p.setup_swivel);
     const double within = std::clamp(w, wheel_.lowerFace(), wheel_.upperFace());
     const double from_spindle = std::sqrt(std::max(0.0, dx * dx + dy * dy + dz * dz - w * w));

@@ -92,7 +92,7 @@ TEST(SectionOutline, OfAFluteThatRemovesNothingShrinksToAPointOfTheLand) {
   Case c = cylinder();
   Case none = c;
   none.depth = -0.5;
-  const GroundCutter ground(c.cutter(), CutDirection::kRightHand, {{c.sweep()}, {none.sweep()}},
+  const GroundCutter ground(c.cutter(), {{c.sweep()}, {none.sweep()}},
                             {{0, 1}, {90 * kDegree, 0}, {180 * kDegree, 1}, {270 * kDegree, 1}});
   const OutlineGrid grid{4, 16, 4};
   const std::vector<PolarPoint> outline = outlineOf(ground, 0.01, grid);
@@ -118,8 +118,7 @@ TEST(SectionOutline, LeavesOutAShallowFluteWithinADeepOne) {
   Case deep = cylinder(), shallow = cylinder();
   deep.width = 6;
   shallow.depth = 0.05;
-  const GroundCutter ground(deep.cutter(), CutDirection::kRightHand, {{deep.sweep()}, {shallow.sweep()}},
-                            {{0, 0}, {300 * kDegree, 1}});
+  const GroundCutter ground(deep.cutter(), {{deep.sweep()}, {shallow.sweep()}}, {{0, 0}, {300 * kDegree, 1}});
   const OutlineGrid grid{2, 64, 300};
   const double expected = area(outlineOf(deep.ground(1), 0.01, {1, 64, 600}));
   EXPECT_NEAR(area(outlineOf(ground, 0.01, grid)), expected, 1e-4 * expected);

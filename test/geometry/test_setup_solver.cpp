@@ -67,7 +67,7 @@ GroundCutter ground(const SetupRequest& r, const SolvedSetup& s, double from, do
   const GrindStroke stroke{from, to, -s.depth, r.y_per_x, 0};
   std::vector<GroundTooth> teeth;
   for (const double angle : r.tooth_angles) teeth.push_back({angle, 0});
-  return {cutter, r.direction, {{WheelSweep(cutter, r.wheel, r.nominal_radius, s.setup, stroke)}}, teeth};
+  return {cutter, {{WheelSweep(cutter, r.wheel, r.nominal_radius, s.setup, stroke)}}, teeth};
 }
 
 GroundCutter ground(const SetupRequest& r, const SolvedSetup& s) {
@@ -114,7 +114,8 @@ TEST(SetupSolver, SteeperConesAreSetAsDocumented) {
 
   const Shop left{6, 7, -25, 12, 18, 0.9, 80, 2};
   request = requestFor(middleOf(left));
-  request.direction = CutDirection::kLeftHand;
+  request.cutter.cut = CutDirection::kLeftHand;
+  request.cutter.rake_angle = -request.cutter.rake_angle;  // there Z rises on both hands
   s = solved(request);
   EXPECT_NEAR(s.setup.swivel / kDegree, -28.46, 0.005);
   EXPECT_NEAR(heightOfAll(left, s.setup.height), -0.230, 0.0005);
@@ -206,9 +207,8 @@ TEST(SetupSolver, TheMirroredToolHasTheMirroredSetUp) {
   request.wheel = WheelProfile::angled(0.1, 0.004, 20 * kDegree, {1e-4, 2e-4});
   request.core_diameter = 7.4 * kMillimetre;
   SetupRequest mirrored = request;
-  mirrored.direction = CutDirection::kLeftHand;
+  mirrored.cutter.cut = CutDirection::kLeftHand;
   mirrored.cutter.spiral_angle = -request.cutter.spiral_angle;
-  mirrored.cutter.rake_angle = -request.cutter.rake_angle;  // Z falls where it rose
   mirrored.wheel = WheelProfile::angled(0.1, 0.004, -20 * kDegree, {2e-4, 1e-4});
   const SolvedSetup right = solved(request), left = solved(mirrored);
   EXPECT_NEAR(left.setup.swivel, -right.setup.swivel, 1e-9);
@@ -297,9 +297,8 @@ SetupRequest randomRequest(int i, const std::function<double(double, double)>& u
   double length = uniform(1, 3) * diameter;
   if (cone < 0) length = std::min(length, -0.4 * diameter / 2 / std::tan(cone));
   r.rake = uniform(0, 15) * kDegree;
-  r.direction = uniform(0, 1) < 0.5 ? CutDirection::kRightHand : CutDirection::kLeftHand;
-  const double z_law = r.direction == CutDirection::kRightHand ? r.rake : -r.rake;
-  r.cutter = {diameter, cone, uniform(-45, 45) * kDegree, z_law, length};
+  const CutDirection cut = uniform(0, 1) < 0.5 ? CutDirection::kRightHand : CutDirection::kLeftHand;
+  r.cutter = {diameter, cone, uniform(-45, 45) * kDegree, r.rake, length, cut};
   r.tooth_angles = equalTeeth(1 + static_cast<int>(uniform(0, 4)));
   const double wheel = uniform(50, 125) * kMillimetre, width = uniform(0.1, 0.5) * diameter;
   const std::array<double, 2> corners{uniform(0, 0.2) * width, uniform(0, 0.2) * width};
@@ -327,7 +326,7 @@ class CoarseSearch {
 
   brute::Bench bench(double swivel, double face) const {
     const double radius = request_.cutter.end_diameter / 2;
-    const bool right = request_.direction == CutDirection::kRightHand;
+    const bool right = request_.cutter.cut == CutDirection::kRightHand;
     if (request_.cutter.cone_angle == 0) face = (right ? 1 : -1) * radius * std::sin(request_.rake);
     const double upper = right ? request_.wheel.upperFace() : request_.wheel.lowerFace();
     const double height = face - upper / std::cos(swivel);

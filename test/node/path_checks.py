@@ -3,6 +3,8 @@ independent of the grinder's own."""
 
 import math
 
+from flute_grinder.msg import Cutter
+
 from grinder_client import A, EVEN, JOINTS, LIFT, STROKE, X, Y, Z
 
 EPSILON = 2.0 ** -52
@@ -15,7 +17,7 @@ class Helix:
         self.diameter = job['cutter.end_diameter']
         self.tan_cone = math.tan(job['cutter.cone_angle'])
         self.tan_spiral = math.tan(job['cutter.spiral_angle'])
-        self.sin_rake = math.sin(job['cutter.rake_angle'])
+        self.z_per_y = math.sin(job['cutter.rake_angle']) * (-1 if job['cutter.cut'] == Cutter.LEFT_HAND else 1)
         self.scale = job['interpolation.rotary_scale']
         self.b = 2 * self.tan_cone / self.diameter
         self.k = 2 * self.tan_spiral / self.diameter
@@ -33,7 +35,7 @@ class Helix:
         return x * self.tan_cone
 
     def z(self, x):
-        return x * self.tan_cone * self.sin_rake
+        return x * self.tan_cone * self.z_per_y
 
     def tangent_error(self, x, dx):
         """Theory - commanded of A at the end of a step along the tangent that starts on the curve at x."""

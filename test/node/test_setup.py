@@ -121,14 +121,13 @@ class TestFigures(TestSetup):
                 self.check(job)
 
     def test_mirrored_tool_has_the_mirrored_setup(self):
-        # Z = X tan C sin r has no mirror image but with the rake angle's other sign: a cylinder.
-        source = os.path.join(JOBS, 'roughing_d10_t4.yaml')
-        right = self.setup(self.job('right.yaml', source, setup=None))
-        left = self.job('left.yaml', source, setup=None, spiral_angle_deg=-35, cut='left_hand')
-        found = self.setup(left, '--write')
-        self.assertAlmostEqual(found['swivel_deg'], -right['swivel_deg'], delta=0.001)
-        self.assertAlmostEqual(found['height_mm'], -right['height_mm'], delta=0.001)
-        self.check(left)
+        for source, spiral in ((PAPER_JOB, 30), (os.path.join(JOBS, 'roughing_d10_t4.yaml'), 35)):
+            right = self.setup(self.job('right.yaml', source, setup=None))
+            left = self.job('left.yaml', source, setup=None, spiral_angle_deg=-spiral, cut='left_hand')
+            found = self.setup(left, '--write')
+            self.assertAlmostEqual(found['swivel_deg'], -right['swivel_deg'], delta=0.001)
+            self.assertAlmostEqual(found['height_mm'], -right['height_mm'], delta=0.001)
+            self.check(left)
 
     def test_overtravel_is_lengthened_where_it_is_too_short(self):
         job = self.job('job.yaml', overtravel_mm='[1, 2]')

@@ -90,8 +90,7 @@ class TestFigures(TestSimulate):
         # Mirrored, the wheel's lower face is where its upper one was.
         setup = face_at(4.552, 3, 31.769)
         right = self.job('right.yaml', LONG_PAPER, **setup)
-        mirrored = dict(LONG_PAPER, cutter={'spiral_angle_deg': -30, 'cut': 'left_hand', 'rake_angle_deg': -8,
-                                            'rake_tolerance_deg': 20})
+        mirrored = dict(LONG_PAPER, cutter={'spiral_angle_deg': -30, 'cut': 'left_hand', 'rake_tolerance_deg': 20})
         left = self.job('left.yaml', mirrored, swivel_deg=-setup['swivel_deg'], height_mm=-setup['height_mm'])
         for one, other in zip(self.teeth(0, right, '--at', '5,25'), self.teeth(0, left, '--at', '5,25')):
             for key, value in one.items():
@@ -135,10 +134,8 @@ STEEP = ({'cutter': {'end_diameter_mm': 5, 'cone_angle_deg': 10, 'spiral_angle_d
                      'flute_length_mm': 15, 'shank_diameter_mm': 12, 'rake_tolerance_deg': 1},
           'process': {'depth_mm': 0.7, 'infeed_mm': 0.7, 'overtravel_mm': [8, 8]}, 'wheel': {'diameter_mm': 75, 'width_mm': 1.5}},
          {'swivel_deg': 23.28, 'height_mm': 0.603}, 14)
-STEEP_LEFT = ({'cutter': {'end_diameter_mm': 6, 'cone_angle_deg': 7, 'spiral_angle_deg': -25, 'rake_angle_deg': 12, 'cut': 'left_hand',
-                          'flute_length_mm': 18, 'shank_diameter_mm': 12, 'rake_tolerance_deg': 1},
-               'process': {'depth_mm': 0.9, 'infeed_mm': 0.9, 'overtravel_mm': [8, 8]}, 'wheel': {'diameter_mm': 80, 'width_mm': 2}},
-              {'swivel_deg': -28.46, 'height_mm': -0.230}, 12)
+STEEP_LEFT = (dict(STEEP[0], cutter=dict(STEEP[0]['cutter'], spiral_angle_deg=-20, cut='left_hand')),
+              {'swivel_deg': -23.28, 'height_mm': -0.603}, 14)
 
 
 class TestConstantRake(TestSimulate):
@@ -163,7 +160,8 @@ class TestConstantRake(TestSimulate):
                 rows[law] = self.csv(self.path(law + '.csv'))
             self.assertEqual((told['complete_from_mm'], told['complete_to_mm']), (0, case['cutter']['flute_length_mm']))
             cone, rake = case['cutter']['cone_angle_deg'] * DEG, case['cutter']['rake_angle_deg'] * DEG
-            off = {law: [(float(row['x_mm']), float(row['z_mm']) - float(row['x_mm']) * math.tan(cone) * math.sin(rake))
+            hand = -1 if case is STEEP_LEFT[0] else 1
+            off = {law: [(float(row['x_mm']), float(row['z_mm']) - float(row['x_mm']) * math.tan(cone) * hand * math.sin(rake))
                          for row in rows[law] if row['step'] != 'none'] for law in rows}
             self.assertLess(max(abs(z) for _, z in off['published']), 1e-14)
             bend = [z for _, z in off['constant_rake']]

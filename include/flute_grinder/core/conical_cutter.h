@@ -50,12 +50,13 @@ class ConicalCutter {
   /// Radial position of the surface relative to X = 0: Y = X tan C, the paper's equation 1 [m].
   double y(double x) const noexcept { return x * tan_cone_; }
 
-  /// Height that keeps the rake angle constant: Z = X tan C sin r, the paper's equation 2 [m].
-  double z(double x) const noexcept { return x * tan_cone_ * sin_rake_; }
+  /// Height that keeps the rake angle nearly constant: Z = X tan C sin r, the paper's equation 2, for a right-hand
+  /// cutter; -Z for a left-hand one, its mirror image [m].
+  double z(double x) const noexcept { return x * tan_cone_ * z_per_y_; }
 
   double tanCone() const noexcept { return tan_cone_; }      ///< dY/dX
   double tanSpiral() const noexcept { return tan_spiral_; }  ///< R dA/dX
-  double sinRake() const noexcept { return sin_rake_; }      ///< dZ/dY
+  double zPerY() const noexcept { return z_per_y_; }         ///< dZ/dY: sin r, or -sin r for a left-hand cutter
 
   /// Length of cutting edge per unit of axial travel, sqrt(1 + tan^2 C + tan^2 S); surface feed divided by dX/dt.
   double edgePerTravel() const noexcept { return edge_per_travel_; }
@@ -68,7 +69,7 @@ class ConicalCutter {
   CutterGeometry geometry_;
   double tan_cone_;
   double tan_spiral_;
-  double sin_rake_;
+  double z_per_y_;
   double edge_per_travel_;
   double cos_helix_to_generatrix_;
 };

@@ -42,7 +42,7 @@ inline constexpr EnumRow<WheelFace> kWheelFaces[]{
 };
 /// How Z follows X along a stroke.
 enum class ZLaw {
-  kPublished,     ///< Z = X tan C sin r
+  kPublished,     ///< Z = X tan C sin r, mirrored for a left-hand cutter
   kConstantRake,  ///< that and a smooth correction, with which the rake is the same over the whole flute
 };
 inline constexpr EnumRow<ZLaw> kZLaws[]{

@@ -45,8 +45,7 @@ class GroundCutter {
   /// @param flutes the distinct ones, for a tooth at angle 0.
   /// @param teeth in ascending angles within one turn.
   /// @throw std::invalid_argument if a flute has no strokes, or a tooth's is not there.
-  GroundCutter(const ConicalCutter& cutter, CutDirection direction, std::vector<Flute> flutes,
-               std::vector<GroundTooth> teeth);
+  GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth);
 
   /// @param x of the section, where the blank has a radius [m].
   GroundSection section(double x) const;
@@ -66,7 +65,7 @@ class GroundCutter {
   std::optional<Arc> arc(const Flute& flute, double x, double r) const;
 
   const ConicalCutter& cutter() const noexcept { return cutter_; }
-  CutDirection direction() const noexcept { return direction_; }
+  CutDirection direction() const noexcept { return cutter_.geometry().cut; }
   const std::vector<Flute>& flutes() const noexcept { return flutes_; }
   const std::vector<GroundTooth>& teeth() const noexcept { return teeth_; }
 
@@ -82,7 +81,6 @@ class GroundCutter {
   std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
 
   ConicalCutter cutter_;
-  CutDirection direction_;
   std::vector<Flute> flutes_;
   std::vector<GroundTooth> teeth_;
 };

@@ -23,8 +23,8 @@ struct RakeCorrection {
 /// @return the best correction found, whose rake the caller compares with what is allowed; nothing if the flute is not
 ///         ground over its whole length.
 /// @throw core::ReasonError if it has given up.
-std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, CutDirection direction,
-                                          const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
-                                          const GrindStroke& stroke, double rake, const PlanWatch& watch = {});
+std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
+                                          const WheelSetup& setup, const GrindStroke& stroke, double rake,
+                                          const PlanWatch& watch = {});
 
 }  // namespace flute_grinder

@@ -21,8 +21,7 @@ constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
 
 /// What the tool shall be, and what there is to grind it with.
 struct SetupRequest {
-  CutterGeometry cutter;  ///< its rake angle is the one in Z = X tan C sin r
-  CutDirection direction = CutDirection::kRightHand;
+  CutterGeometry cutter;                                    ///< its rake angle is the one in Z = X tan C sin r
   double rake = 0;                                          ///< radial, asked at both ends of the flute [rad]
   std::vector<double> tooth_angles;                         ///< ascending within one turn [rad]
   WheelProfile wheel = WheelProfile::straight(0.1, 0.003);  ///< as it is, with its wear

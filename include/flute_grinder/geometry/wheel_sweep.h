@@ -94,7 +94,11 @@ class WheelSweep {
   double lowestPoint(double axis_x) const noexcept;
   /// Where an endless stroke could reach a circle, and the part of it that the stroke has.
   Window reach(double x, double r) const noexcept;
+  /// Where on an endless stroke a circle is not above or below the whole wheel.
+  Window betweenFaces(double x, double r) const noexcept;
   std::optional<Window> window(double x, double r) const noexcept;
+  /// How many steps a window is gone through in: of the size of the cutter, not of the wheel.
+  int posesOf(double x, const Window& window) const noexcept;
   std::optional<double> endAt(const Pose& pose, double r, bool high) const;
   double endOver(double x, double axis_x, double r, bool high) const;
   double outside(const Pose& pose, double r, double theta) const noexcept;
@@ -125,9 +129,11 @@ class WheelSweep {
   WheelProfile wheel_;
   GrindStroke stroke_;
   double height_, sin_, cos_;
+  double radius_;  ///< of the small end [m]
   double centre_, y_per_x_, z_per_x_;
   Window open_;                   ///< where the cone is open
   double deepest_deviation_ = 0;  ///< the least of Y [m]
+  Window z_off_{0, 0};            ///< between which Z is off the published law [m]
 };
 
 }  // namespace flute_grinder

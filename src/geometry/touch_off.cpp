@@ -10,21 +10,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kPlaces = 400;              ///< at which the wheel's largest radius is looked for
-constexpr double kShortfall = 1e-6;       ///< of the radius, that the largest one may fall short
 constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that touches, and of its radius [m]
-
-/// The middle of where a wheel's circumference is largest, along its spindle [m].
-double middleLargestPlace(const WheelProfile& wheel) {
-  const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
-  const auto is_largest = [&](int i) {
-    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kShortfall);
-  };
-  int first = 0, last = kPlaces;
-  while (first < kPlaces && !is_largest(first)) ++first;
-  while (last > first && !is_largest(last)) --last;
-  return from + length * (first + last) / 2 / kPlaces;
-}
 
 }  // namespace
 
@@ -33,7 +19,8 @@ TouchReadings touchReadings(const GrindJob& job) {
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
-  touch.z_for_y = -(p.setup_height + middleLargestPlace(wheel) * std::cos(p.setup_swivel));
+  const Range& largest = wheel.largestPlace();
+  touch.z_for_y = -(p.setup_height + (largest.from + largest.to) / 2 * std::cos(p.setup_swivel));
   touch.z = -wheel.lowerFace() - p.setup_height;
   return touch;
 }

@@ -53,6 +53,8 @@ std::string asked(const char* path, double value, Unit unit) {
 }
 
 std::string range(const SetupRefusal& r, Unit unit) {
+  const auto shown = [&](double si) { return text({si, unit}, UnitSystem::kShop, 5); };
+  if (r.least < r.asked && r.asked < r.largest) return "up to " + shown(r.least) + ", and from " + shown(r.largest);
   return text(Quantity{r.least, unit}, Quantity{r.largest, unit}, UnitSystem::kShop, 5);
 }
 

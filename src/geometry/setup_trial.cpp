@@ -22,6 +22,8 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       wheel_(wheel),
       nominal_radius_(nominal_radius),
       y_per_x_(y_per_x),
+      deepest_(std::min(cutter.radius(0),
+                        cutter.radius(cutter.geometry().flute_length) + y_per_x * cutter.geometry().flute_length)),
       face_from_(wheel.largestPlace().to) {
   // Farther than a wheel reaches at any depth.
   const double far = 4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length;
@@ -48,7 +50,7 @@ double SetupTrial::coreRadius(const SetupPoint& point) const {
 
 double SetupTrial::depthFor(double swivel, double height, double core_radius) const {
   const double depth = sweep({swivel, height, 0}).deeperFor(0, core_radius);
-  return std::isfinite(depth) ? depth : kNowhere;
+  return isSound(depth) ? depth : kNowhere;
 }
 
 double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {

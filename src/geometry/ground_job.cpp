@@ -119,7 +119,7 @@ WheelProfile wheelOf(const GrindJob& job) {
   switch (p.wheel_profile) {
     case WheelShape::kStraight: return WheelProfile::straight(p.wheel_diameter, p.wheel_width, cornerRadii(p));
     case WheelShape::kFullRadius: return WheelProfile::fullRadius(p.wheel_diameter, p.wheel_width);
-    case WheelShape::kPoints: return WheelProfile(job.wheel_points, cornerRadii(p));
+    case WheelShape::kPoints: return WheelProfile(job.wheel_points, cornerRadii(p)).withDiameter(p.wheel_diameter);
     case WheelShape::kAngled:
     case WheelShape::kCup: break;
   }

@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/setup_solver.h"
 
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/even_rake.h"
 #include "flute_grinder/geometry/plane_roots.h"
 #include "flute_grinder/geometry/setup_trial.h"
 
@@ -21,11 +22,10 @@ constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns 
 constexpr int kFinerOnLine = 8;                        ///< where one unknown is looked for
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr int kFaceSteps = 64;
-constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the small end's radius
+constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the deepest one
 constexpr int kDepthSteps = 48;
 constexpr double kQuarter = units::kPi / 2;
 constexpr int kLeastColumns = 4;
-constexpr int kJudgedSections = 8;     ///< in which a set-up is judged
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
 constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
@@ -67,39 +67,59 @@ class Search {
   /// Why there is no solution: how far rake or core can be had.
   SetupRefusal unreachable() const {
     const Unknowns unknowns = this->unknowns(request_.least_swivel, request_.largest_swivel);
-    Range rakes, seconds, cores;
+    Reached rakes, seconds, cores;
     for (int i = 0; i <= (unknowns.u ? unknowns.u->steps : 0); ++i) {
       const double u = unknowns.u ? unknowns.u->at(i) : 0;
       for (int j = 0; j <= unknowns.v.steps; ++j) {
         SetupPoint point = unknowns.point(u, unknowns.v.at(j));
         rakes.add(trial_.rake(point, 0));
         if (!request_.core_diameter) continue;
-        point.depth = 2 * radius_;
+        point.depth = trial_.deepest();
         cores.add(2 * trial_.coreRadius(point));
       }
       if (!unknowns.u) continue;
       for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
     }
     if (rakes.empty() && request_.core_diameter) {
-      return {SetupProblem::kCore, *request_.core_diameter, cores.least, request_.cutter.end_diameter};
+      return {SetupProblem::kCore, *request_.core_diameter, cores.around(0).least, request_.cutter.end_diameter};
     }
-    if (seconds.empty()) return {SetupProblem::kRake, request_.rake, rakes.least, rakes.largest};
-    if (!isCylinder()) {
-      return {SetupProblem::kRake, request_.rake, request_.rake + seconds.least, request_.rake + seconds.largest};
+    if (seconds.empty()) {
+      const auto [least, largest] = rakes.around(request_.rake);
+      return {SetupProblem::kRake, request_.rake, least, largest};
     }
+    const auto [least, largest] = seconds.around(0);
+    if (!isCylinder()) return {SetupProblem::kRake, request_.rake, request_.rake + least, request_.rake + largest};
     const double core = *request_.core_diameter;
-    return {SetupProblem::kCore, core, core * (1 + seconds.least), core * (1 + seconds.largest)};
+    return {SetupProblem::kCore, core, core * (1 + least), core * (1 + largest)};
   }
 
  private:
-  struct Range {
-    double least = std::numeric_limits<double>::infinity(), largest = -least;
+  /// Values that were reached.
+  class Reached {
+   public:
+    struct Ends {
+      double least, largest;
+    };
+
     void add(double value) {
-      if (std::isnan(value)) return;
-      least = std::min(least, value);
-      largest = std::max(largest, value);
+      if (!std::isnan(value)) values_.push_back(value);
     }
-    bool empty() const { return least > largest; }
+    bool empty() const { return values_.empty(); }
+
+    /// The least and the largest value, or the nearest ones if the asked one lies between them, and was jumped over.
+    Ends around(double asked) const {
+      constexpr double kFar = std::numeric_limits<double>::infinity();
+      Ends all{kFar, -kFar}, nearest{-kFar, kFar};
+      for (const double value : values_) {
+        all = {std::min(all.least, value), std::max(all.largest, value)};
+        (value < asked ? nearest.least : nearest.largest) =
+            value < asked ? std::max(nearest.least, value) : std::min(nearest.largest, value);
+      }
+      return all.least < asked && asked < all.largest ? nearest : all;
+    }
+
+   private:
+    std::vector<double> values_;
   };
 
   bool keeps(SetupFigure figure) const { return request_.keep == figure; }
@@ -108,7 +128,7 @@ class Search {
     const int columns = static_cast<int>(std::ceil((largest_swivel - least_swivel) / kSwivelStep));
     const SearchRange swivels{least_swivel, largest_swivel, std::max(kLeastColumns, columns)};
     const SearchRange faces{-1, 1, kFaceSteps};
-    const SearchRange depths{kLeastDepth * radius_, kMostDepth * radius_, kDepthSteps};
+    const SearchRange depths{kLeastDepth * trial_.deepest(), kMostDepth * trial_.deepest(), kDepthSteps};
     const SearchRange line{least_swivel, largest_swivel, kFinerOnLine * swivels.steps};
     const SearchRange face_line{-1, 1, kFinerOnLine * kFaceSteps};
     const double swivel = request_.kept.swivel, height = request_.kept.height, depth = request_.depth;
@@ -222,6 +242,7 @@ double leastPitch(const std::vector<double>& angles) {
 struct Judged {
   SolvedSetup solved;
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
+  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete
   std::optional<SetupProblem> problem;
 };
 
@@ -263,7 +284,6 @@ void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
 }
 
 Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
-  const double length = request.cutter.flute_length;
   const double pitch = leastPitch(request.tooth_angles);
   const WheelSweep sweep = trial.sweep(point);
   Judged judged;
@@ -272,8 +292,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   s.depth = point.depth;
   s.least_rake = s.land = std::numeric_limits<double>::infinity();
   s.largest_rake = -s.least_rake;
-  for (int i = 0; i <= kJudgedSections; ++i) {
-    const double x = length * i / kJudgedSections;
+  for (int i = 0; i <= SetupTrial::kSections; ++i) {
+    const double x = trial.section(i);
     const double r = trial.cutter().radius(x);
     const auto high = sweep.wall(x, r, true), low = sweep.wall(x, r, false);
     if (!high || !low) {
@@ -288,6 +308,7 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   }
   s.core_diameter = 2 * trial.coreRadius(point);
   measureReach(trial, sweep, s);
+  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length;
   findLimit(request, pitch, s);
   if (!(judged.formed_by_face >= kFormedByFace)) {
     judged.problem = SetupProblem::kWall;
@@ -299,12 +320,13 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   return judged;
 }
 
-/// The better of two: with the lesser problem, then with the steadier rake, then with more of the rake face formed by
-/// the wheel's face. Differences of the rake that nobody measures do not count.
+/// The better of two: with the lesser problem, then with a complete flute, then with the steadier rake, then with more
+/// of the rake face formed by the wheel's face. Differences of the rake that nobody measures do not count.
 bool isBetter(const Judged& a, const Judged& b) {
   const auto order = [](const Judged& j) {
-    const double spread = j.solved.largest_rake - j.solved.least_rake;
-    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(),
+    const SolvedSetup& s = j.solved;
+    const double spread = s.largest_rake - s.least_rake;
+    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short,
                       std::floor(spread / kSameRake), -j.formed_by_face, spread);
   };
   return order(a) < order(b);
@@ -318,6 +340,13 @@ std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
     if (!best || isBetter(judged, *best)) best = judged;
   }
   return best;
+}
+
+/// A good set-up with its errors spread evenly over the flute.
+SolvedSetup evened(const SetupTrial& trial, const SetupRequest& request, const Judged& exact) {
+  const SolvedSetup& s = exact.solved;
+  const Judged even = judge(trial, request, evenRake(trial, request, {s.setup.swivel, s.setup.height, s.depth}));
+  return even.problem || even.cut_short > exact.cut_short ? s : even.solved;
 }
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
@@ -352,7 +381,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
-  if (here && !here->problem) return here->solved;
+  if (here && !here->problem) return search.isCylinder() ? here->solved : evened(trial, request, *here);
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
     if (!(least < largest)) continue;

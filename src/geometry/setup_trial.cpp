@@ -12,20 +12,8 @@ constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOfApex = 0.98;  ///< of the way to the apex, the stroke may go
 constexpr int kWallRings = 10;    ///< of a wall, on which is asked what forms it
 constexpr int kRingsOfReach = 6;
-constexpr double kFloor = 1e-5;             ///< of the depth: where a wall passes into the floor
-constexpr int kPlacesOfProfile = 400;       ///< at which the wheel's largest radius is looked for
-constexpr double kLargestShortfall = 1e-6;  ///< of the radius, that the largest one may fall short
-constexpr double kOnFace = 1e-8;            ///< how far below the edge still is the edge [m]
-
-/// The place of the largest radius that is nearest to the upper face.
-double upperLargestPlace(const WheelProfile& wheel) {
-  const double step = (wheel.upperFace() - wheel.lowerFace()) / kPlacesOfProfile;
-  for (int i = kPlacesOfProfile; i > 0; --i) {
-    const double w = wheel.lowerFace() + i * step;
-    if (wheel.radius(w) >= wheel.largestRadius() * (1 - kLargestShortfall)) return w;
-  }
-  return wheel.lowerFace();
-}
+constexpr double kFloor = 1e-5;   ///< of the depth: where a wall passes into the floor
+constexpr double kOnFace = 1e-8;  ///< how far below the edge still is the edge [m]
 
 }  // namespace
 
@@ -34,7 +22,9 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       wheel_(wheel),
       nominal_radius_(nominal_radius),
       y_per_x_(y_per_x),
-      face_from_(upperLargestPlace(wheel)) {
+      deepest_(std::min(cutter.radius(0),
+                        cutter.radius(cutter.geometry().flute_length) + y_per_x * cutter.geometry().flute_length)),
+      face_from_(wheel.largestPlace().to) {
   // Farther than a wheel reaches at any depth.
   const double far = 4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length;
   const double apex = -cutter.radius(0) / cutter.tanCone();
@@ -60,7 +50,7 @@ double SetupTrial::coreRadius(const SetupPoint& point) const {
 
 double SetupTrial::depthFor(double swivel, double height, double core_radius) const {
   const double depth = sweep({swivel, height, 0}).deeperFor(0, core_radius);
-  return std::isfinite(depth) ? depth : kNowhere;
+  return isSound(depth) ? depth : kNowhere;
 }
 
 double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {

@@ -1,6 +1,8 @@
 #include "flute_grinder/geometry/touch_off.h"
 
+#include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
+#include "flute_grinder/core/wheel_file.h"
 #include "flute_grinder/geometry/ground_job.h"
 
 #include <algorithm>
@@ -10,32 +12,28 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kPlaces = 400;              ///< at which the wheel's largest radius is looked for
-constexpr double kShortfall = 1e-6;       ///< of the radius, that the largest one may fall short
 constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that touches, and of its radius [m]
-
-/// The middle of where a wheel's circumference is largest, along its spindle [m].
-double middleLargestPlace(const WheelProfile& wheel) {
-  const double from = wheel.lowerFace(), length = wheel.upperFace() - from;
-  const auto is_largest = [&](int i) {
-    return wheel.radius(from + length * i / kPlaces) >= wheel.largestRadius() * (1 - kShortfall);
-  };
-  int first = 0, last = kPlaces;
-  while (first < kPlaces && !is_largest(first)) ++first;
-  while (last > first && !is_largest(last)) --last;
-  return from + length * (first + last) / 2 / kPlaces;
-}
 
 }  // namespace
 
-TouchReadings touchReadings(const GrindJob& job) {
+TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
   const GrindProcess& p = job.process;
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
-  touch.z_for_y = -(p.setup_height + middleLargestPlace(wheel) * std::cos(p.setup_swivel));
-  touch.z = -wheel.lowerFace() - p.setup_height;
+  const Range& largest = wheel.largestPlace();
+  touch.z_for_y = -(p.setup_height + (largest.from + largest.to) / 2 * std::cos(p.setup_swivel));
+  touch.z = -wheel.lowerFace() - p.setup_height - above_swivel * (1 - std::cos(p.setup_swivel));
   return touch;
+}
+
+std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine) {
+  const std::string wheel = wheelFileOf(file);
+  const std::optional<double> flange = wheel.empty() ? std::nullopt : readWheelFile(wheel).flange;
+  if (!flange) return std::nullopt;
+  GrindProcess upright = job.process;
+  upright.setup_swivel = 0;
+  return (wheelCentre(machine, upright, *flange) - machine.swivel_centre).z();
 }
 
 double touchY(const GrindJob& job, double diameter) {

@@ -16,6 +16,8 @@ void require(bool good, const char* name, double value, const char* allowed) {
   throw std::invalid_argument(text.str());
 }
 
+constexpr double kShortfall = 1e-6;  ///< of the radius, that the largest one may fall short
+
 }  // namespace
 
 WheelProfile::WheelProfile(std::vector<ProfilePoint> corners, const std::array<double, 2>& corner_radii)
@@ -30,10 +32,7 @@ WheelProfile::WheelProfile(std::vector<ProfilePoint> corners, const std::array<d
   fillets_ = {fillet(false, corner_radii[0]), fillet(true, corner_radii[1])};
   require(fillets_[0].to <= fillets_[1].from, "corner_radius", std::max(corner_radii[0], corner_radii[1]),
           "small enough for both corners to fit");
-  for (const ProfilePoint& corner : corners_) largest_radius_ = std::max(largest_radius_, radius(corner.w));
-  for (const Fillet& f : fillets_) {
-    if (f.size > 0) largest_radius_ = std::max(largest_radius_, radius(std::clamp(f.w, f.from, f.to)));
-  }
+  findLargest();
 }
 
 WheelProfile WheelProfile::straight(double diameter, double width, const std::array<double, 2>& corner_radii) {
@@ -45,7 +44,7 @@ WheelProfile WheelProfile::angled(double diameter, double width, double angle,
   const double drop = width * std::tan(std::abs(angle));
   const double lower = diameter / 2 - (angle > 0 ? drop : 0);
   const double upper = diameter / 2 - (angle > 0 ? 0 : drop);
-  return WheelProfile({{-width / 2, lower}, {width / 2, upper}}, corner_radii);
+  return WheelProfile({{-width / 2, lower}, {width / 2, upper}}, corner_radii).withDiameter(diameter);
 }
 
 WheelProfile WheelProfile::fullRadius(double diameter, double width) {
@@ -103,6 +102,20 @@ WheelProfile::Fillet WheelProfile::fillet(bool upper, double size) const {
   return upper ? Fillet{touch, corner.w + 1, w, radius, size} : Fillet{corner.w - 1, touch, w, radius, size};
 }
 
+void WheelProfile::findLargest() {
+  std::vector<double> places;  // between two of them there is a line, or a circle that rises or falls
+  for (const ProfilePoint& corner : corners_) places.push_back(corner.w);
+  for (const Fillet& f : fillets_) {
+    if (f.size > 0) places.push_back(std::clamp(f.w, lowerFace(), upperFace()));
+  }
+  std::sort(places.begin(), places.end());
+  for (const double w : places) largest_radius_ = std::max(largest_radius_, radius(w));
+  const auto is_largest = [&](double w) { return radius(w) >= largest_radius_ * (1 - kShortfall); };
+  const auto last = std::find_if(places.rbegin(), places.rend(), is_largest);
+  const auto before = std::find_if_not(last, places.rend(), is_largest);
+  largest_place_ = {*std::prev(before), *last};
+}
+
 WheelProfile WheelProfile::mirrored() const {
   std::vector<ProfilePoint> corners(corners_.rbegin(), corners_.rend());
   for (ProfilePoint& corner : corners) corner.w = -corner.w;
@@ -114,5 +127,7 @@ WheelProfile WheelProfile::worn(double wear) const {
   for (ProfilePoint& corner : corners) corner.radius -= wear;
   return WheelProfile(std::move(corners), corner_radii_);
 }
+
+WheelProfile WheelProfile::withDiameter(double diameter) const { return worn(largest_radius_ - diameter / 2); }
 
 }  // namespace flute_grinder

@@ -40,7 +40,11 @@ TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
   for (const double angle : {-40.0, -10.0, 0.0, 25.0}) {
     const double size = 0.0008;
     const auto wheel = WheelProfile::angled(0.08, 0.005, angle * kDegree, {size, size});
-    const auto sharp = WheelProfile::angled(0.08, 0.005, angle * kDegree);
+    // The corner of the larger face lies outside the circle that rounds it.
+    const double a = std::abs(angle) * kDegree;
+    const double outside = size * (std::tan(a) + 1 / std::cos(a) - 1);
+    const auto sharp = WheelProfile::angled(0.08 + 2 * outside, 0.005, angle * kDegree);
+    EXPECT_NEAR(wheel.largestRadius(), 0.04, 1e-15) << angle;
     const double centre_w = wheel.upperFace() - size;
     const double centre_r = wheel.radius(wheel.upperFace());
     const double touch = centre_w - size * std::sin(angle * kDegree);
@@ -49,7 +53,7 @@ TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
       EXPECT_NEAR(std::hypot(w - centre_w, wheel.radius(w) - centre_r), size, 1e-9) << angle;
       EXPECT_LE(wheel.radius(w), sharp.radius(w)) << angle;
     }
-    EXPECT_DOUBLE_EQ(wheel.radius(0), sharp.radius(0)) << angle;
+    EXPECT_NEAR(wheel.radius(0), sharp.radius(0), 1e-15) << angle;
     // Smooth: no step in slope where the circle meets the profile.
     double last = wheel.radius(0), slope = wheel.radius(1e-6) - last;
     for (double w = 1e-6; w < centre_w + 0.5 * size; w += 1e-6) {

@@ -22,7 +22,7 @@ constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
 /// What the tool shall be, and what there is to grind it with.
 struct SetupRequest {
   CutterGeometry cutter;                                    ///< its rake angle is the one in Z = X tan C sin r
-  double rake = 0;                                          ///< radial, asked at both ends of the flute [rad]
+  double rake = 0;                                          ///< radial, asked over the whole flute [rad]
   std::vector<double> tooth_angles;                         ///< ascending within one turn [rad]
   WheelProfile wheel = WheelProfile::straight(0.1, 0.003);  ///< as it is, with its wear
   double nominal_radius = 0;                                ///< of the wheel, for which Y = 0 touches the small end [m]
@@ -60,7 +60,7 @@ enum class SetupProblem : std::uint8_t {
   kOverdetermined,  ///< rake and core take all three figures; none can be kept
   kSwivel,          ///< only beyond the machine's swivel: asked is the nearest, reachable the machine's
   kRake,            ///< asked is the rake at both ends, reachable what the far end gets with it at the small end
-  kCore,            ///< asked is the core's diameter, reachable those with this wheel
+  kCore,            ///< asked is the core's diameter, reachable those with this wheel at a depth short of the axis
   kWall,            ///< the wheel's circumference forms the rake face, not its face or edge
   kLand,            ///< the flutes meet: asked is a land above 0, reachable what is left, negative
 };
@@ -78,15 +78,17 @@ constexpr SetupProblemRow kSetupProblems[] = {
     {{SetupProblem::kLand, "land"}, "process.wheel_width"}};
 constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
 
-/// No set-up gives what is asked, and what could be had. Without a figure the last three are 0.
+/// No set-up gives what is asked, and what could be had: from least to largest, or if what is asked lies between them,
+/// up to least and from largest. Without a figure the last three are 0.
 struct SetupRefusal {
   SetupProblem problem = SetupProblem::kRake;
   double asked = 0;               ///< [rad] or [m]
   double least = 0, largest = 0;  ///< reachable [rad] or [m]
 };
 
-/// Solves a set-up: the rake at both ends of the flute, and at X = 0 the core if it is asked. Of several solutions,
-/// that whose rake face the wheel's face or edge forms the deepest. Takes some tenths of a second.
+/// Solves a set-up: the rake with the least largest error over the flute, and at X = 0 the core if it is asked. Of
+/// several solutions, that with the steadiest rake whose rake face the wheel's face or edge forms the deepest. A depth
+/// that is found lies above 0 and short of the cutter's axis. Takes some tenths of a second.
 /// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.
 std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request);
 

@@ -23,6 +23,15 @@ class SetupTrial {
   const ConicalCutter& cutter() const noexcept { return cutter_; }
   const WheelProfile& wheel() const noexcept { return wheel_; }
 
+  static constexpr int kSections = 8;
+
+  /// X of the sections in which a flute is judged, from 0 at the small end to kSections at the flute's end [m].
+  double section(int i) const noexcept { return cutter_.geometry().flute_length * i / kSections; }
+
+  /// Whether a depth at X = 0 is one, and leaves the cutter's axis at both ends of the flute.
+  bool isSound(double depth) const noexcept { return depth > 0 && depth < deepest_; }
+  double deepest() const noexcept { return deepest_; }  ///< where the axis is reached, at one of the ends [m]
+
   WheelSweep sweep(const SetupPoint& point) const;
 
   /// Radial, at the edge; NaN where the wheel does not reach the outer circle, or the point is none [rad].
@@ -31,7 +40,7 @@ class SetupTrial {
   /// Of the section at X = 0; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
   double coreRadius(const SetupPoint& point) const;
 
-  /// The depth that leaves a core at X = 0; NaN if none does [m].
+  /// The depth that leaves a core at X = 0; NaN if no sound one does [m].
   double depthFor(double swivel, double height, double core_radius) const;
 
   /// How much of the rake face's depth the wheel's upper face and edge form, from the outer circle inward, in a
@@ -49,6 +58,7 @@ class SetupTrial {
   ConicalCutter cutter_;
   WheelProfile wheel_;
   double nominal_radius_, y_per_x_;
+  double deepest_;                 ///< [m]
   std::array<double, 2> longest_;  ///< ends of the stroke [m]
   double face_from_;               ///< w on the wheel from which on its profile belongs to the upper face [m]
 };

@@ -7,7 +7,8 @@
 
 namespace flute_grinder {
 
-/// A grinding wheel: a filled solid of revolution between two flat faces. Evaluation is real-time safe.
+/// A grinding wheel: a filled solid of revolution between two flat faces. A diameter is the largest one of the wheel as
+/// it is, with its rounded corners: what a micrometer measures. Evaluation is real-time safe.
 class WheelProfile {
  public:
   /// A profile of straight lines between corners, the ends rounded where asked.
@@ -31,6 +32,9 @@ class WheelProfile {
   double upperFace() const noexcept { return corners_.back().w; }   ///< w of the upper face [m]
   double largestRadius() const noexcept { return largest_radius_; }
 
+  /// Where the radius is the largest: a place, or a cylinder's length; of several, the one nearest to the upper face.
+  const Range& largestPlace() const noexcept { return largest_place_; }
+
   /// Where the profile's lines meet, before the ends are rounded.
   const std::vector<ProfilePoint>& corners() const noexcept { return corners_; }
 
@@ -46,6 +50,9 @@ class WheelProfile {
   /// The wheel after its radius has worn by `wear` [m].
   WheelProfile worn(double wear) const;
 
+  /// The wheel with the same profile farther out or in, so that its largest diameter is this [m].
+  WheelProfile withDiameter(double diameter) const;
+
  private:
   /// Where a circle rounds the profile off.
   struct Fillet {
@@ -59,11 +66,13 @@ class WheelProfile {
 
   std::size_t lineAt(double w) const noexcept;  ///< the corner at its upper end
   Fillet fillet(bool upper, double size) const;
+  void findLargest();
 
   std::vector<ProfilePoint> corners_;
   std::array<double, 2> corner_radii_;
   std::array<Fillet, 2> fillets_;
   double largest_radius_ = 0;
+  Range largest_place_;  ///< w [m]
 };
 
 }  // namespace flute_grinder

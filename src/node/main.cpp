@@ -1,3 +1,4 @@
+#include "flute_grinder/connection/init_ros.h"
 #include "flute_grinder/connection/master_watch.h"
 #include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/realtime.h"
@@ -63,7 +64,7 @@ int main(int argc, char** argv) {
   flute_grinder::dropBlockedOutput();
   flute_grinder::boundThreadStacks();
 
-  ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  flute_grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
   if (!waitForMaster(signals)) return 0;
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;

@@ -2,13 +2,15 @@
 """Shows what those commands of `grind` print that need the grinder, and their exit status: 0 done, 1 the machine or the job
 said no, 2 an unreadable file."""
 
+import os
 import re
 import signal
 import subprocess
+import unittest.mock
 
 import rospy
 import rostest
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 import path_checks as checks
@@ -161,6 +163,18 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
         for state in ('running', 'held', 'retracted'):
             self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, shown)
+
+    def test_stops_need_no_home(self):
+        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
+            self.grind(0, 'hold')
+            grinder().wait_state(GrinderState.HELD)
+            self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^state +held$')
+            self.grind(0, 'resume')
+            grinder().wait_state(GrinderState.RUNNING)
+            self.grind(0, 'cancel')
+            self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
+        self.assertEqual(run.wait().code, GrindResult.CANCELED)
 
     def test_status_tells_why_the_job_is_held(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)

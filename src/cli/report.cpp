@@ -4,6 +4,7 @@
 #include "flute_grinder/cli/history.h"
 #include "flute_grinder/cli/machine_file.h"
 #include "flute_grinder/core/format.h"
+#include "flute_grinder/core/regular_file.h"
 
 #include <ros/package.h>
 
@@ -60,6 +61,9 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
   if (options.html.empty() && options.pdf.empty() && !options.json)
     throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
+  for (const std::string& path : {options.file, options.tolerances}) {
+    if (!path.empty()) requireRegularFile(path);
+  }
   const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
   const std::string own_tolerances = ros::package::getPath("flute_grinder") + "/config/tolerances.yaml";
   std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath(), "--grind", ownPath()};

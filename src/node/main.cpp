@@ -5,6 +5,7 @@
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/node/grinder_node.h"
 #include "flute_grinder/node/output.h"
+#include "flute_grinder/node/own_address.h"
 
 #include <ros/ros.h>
 
@@ -65,6 +66,11 @@ int main(int argc, char** argv) {
   flute_grinder::boundThreadStacks();
 
   flute_grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  const std::string refusal = flute_grinder::ownAddressRefusal();
+  if (!refusal.empty()) {
+    ROS_FATAL_STREAM(refusal);
+    return 1;
+  }
   if (!waitForMaster(signals)) return 0;
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;

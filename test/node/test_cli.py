@@ -196,6 +196,24 @@ class TestPlan(CommandLine):
     def test_folder_is_no_file(self):
         self.assertEqual(self.grind(2, 'plan', self.folder).stderr, self.folder + ': cannot be read: Is a directory\n')
 
+    def test_fifo_is_no_file(self):
+        fifo = self.path('fifo.yaml')
+        os.mkfifo(fifo)
+        wheel = self.write('wheel.yaml', re.sub(r'(?ms)^  wheel:.*?^(?=\S|  \w)', '  wheel:\n    file: fifo.yaml\n',
+                                                open(PAPER_JOB).read()))
+        said = fifo + ': cannot be read: not a regular file; allowed: a file on a disk, no FIFO and no device\n'
+        for arguments in (['plan', fifo], ['plan', wheel], ['plan', PAPER_JOB, '--machine', fifo], ['wheel', 'show', fifo],
+                          ['plan', PAPER_JOB, '--urdf', fifo], ['simulate', fifo], ['report', fifo, '--json'],
+                          ['report', PAPER_JOB, '--json', '--tolerances', fifo]):
+            with self.subTest(arguments):
+                self.assertTrue(self.grind(2, *arguments).stderr.endswith(said))
+        os.mkdir(self.path('history'))
+        for make, name in ((os.mkfifo, '20261122T170413.000Z.json'), (os.mkdir, '20261122T170413.001Z.json')):
+            make(self.path('history/' + name))
+        done = self.grind(0, 'history', '--folder', self.path('history'))
+        self.assertRegex(done.stderr, r'(.*\d\d[01]Z\.json: skipped: named like a record, but not a regular file\n){2}$')
+        self.assertIn('has no record', self.grind(2, 'report', '--last', '--folder', self.path('history'), '--json').stderr)
+
     def test_empty_file(self):
         job = self.write('empty.yaml', '')
         self.assertEqual(self.grind(2, 'plan', job).stderr, job + ': is empty\n')

@@ -77,12 +77,14 @@ class TestNodeWithoutMaster(unittest.TestCase):
         self.log.seek(0)
         return self.log.read()
 
+    def end(self, node, number):
+        node.send_signal(number)
+        self.assertEqual(node.wait(gc.PATIENCE), 0, self.output())
+
     def check_signals(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
-                node = self.start_waiting()
-                node.send_signal(number)
-                self.assertEqual(node.wait(gc.PATIENCE), 0, self.output())
+                self.end(self.start_waiting(), number)
             self.log.truncate(0)
 
     def test_signals_where_nothing_listens(self):
@@ -93,6 +95,20 @@ class TestNodeWithoutMaster(unittest.TestCase):
             silent.bind(('127.0.0.1', self.port))
             silent.listen()
             self.check_signals()
+
+    def test_address_that_would_open_all_ports_is_refused(self):
+        own = socket.gethostname()
+        for name, why in (('', 'is empty'), ('LOCALHOST', '= LOCALHOST is loopback in words that ROS does not know'),
+                          ('no_such.invalid', '= no_such.invalid has no address: '), ('0x7f.1', '= 0x7f.1 is loopback')):
+            with self.subTest(name):
+                self.environment['ROS_HOSTNAME'] = name
+                self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
+                self.assertIn('ROS_HOSTNAME ' + why, self.output())
+        for name in ('localhost', '127.0.0.1', '::1', own, '0.0.0.0'):
+            with self.subTest(name):
+                self.log.truncate(0)
+                self.environment['ROS_HOSTNAME'] = name
+                self.end(self.start_waiting(), signal.SIGTERM)
 
     def test_goes_on_with_the_master(self):
         node = self.start_waiting()

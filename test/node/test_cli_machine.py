@@ -106,7 +106,7 @@ class TestMachine(CommandLine):
 
     def check_refused(self, command):
         self.assertEqual(self.grind(1, command).stderr,
-                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog\n'
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog\n'
                          % command)
 
     def test_hold_without_a_job_is_refused(self):
@@ -202,6 +202,13 @@ class TestMachine(CommandLine):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), batches)
         self.assertEqual(grinder().positions(), rest)
+
+    def test_dry_run_tells_what_plan_tells(self):
+        grinder().make_ready_at_park()
+        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match('flutes complete|closest', line)]
+                 for words in (['run', PAPER_JOB, '--dry-run'], ['plan', PAPER_JOB])]
+        self.assertEqual(len(lines[0]), 2)
+        self.assertEqual(*lines)
 
     def test_run_while_disabled(self):
         self.grind(0, 'disable')

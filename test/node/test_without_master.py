@@ -161,11 +161,15 @@ class TestWithoutMaster(RunTest):
     def test_commands_say_that_the_master_is_missing(self):
         self.start_master()
         self.master.end(self.master.process)
-        self.check_all_say('^no ROS master answers at %s\n$' % re.escape(self.master.environment['ROS_MASTER_URI']))
+        missing = 'no ROS master answers at %s; ' % re.escape(self.master.environment['ROS_MASTER_URI'])
+        self.check_all_say('^%swaiting for one\n%slaunch the grinder, or correct ROS_MASTER_URI\n$' % (missing, missing))
 
     def test_commands_say_that_the_grinder_is_missing(self):
         self.start_master()
-        self.check_all_say('^no grinder answers as /grinder\n$')
+        left = rosgraph.Master('/left/grinder', self.master.environment['ROS_MASTER_URI'])
+        for topic, kind in (('state', 'GrinderState'), ('offsets', 'WorkOffsets')):
+            left.registerPublisher('/left/grinder/' + topic, 'flute_grinder/' + kind, 'http://127.0.0.1:1')
+        self.check_all_say('^no grinder answers as /grinder; the ROS master knows /left/grinder: name one with --node\n$')
 
     def test_commands_say_that_the_clock_is_missing(self):
         self.start_master(use_sim_time=True)

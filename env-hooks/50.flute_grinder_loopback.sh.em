@@ -1,3 +1,5 @@
+# An empty name would count, and all addresses with it.
+[ -n "${ROS_HOSTNAME:-}" ] || unset ROS_HOSTNAME
 # Keeps ROS on this computer, unless the shell says otherwise; a launch file would be too late for the master.
 if [ -z "${ROS_IP:-}" ] && [ -z "${ROS_HOSTNAME:-}" ]; then
   export ROS_IP=127.0.0.1

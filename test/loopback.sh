@@ -86,17 +86,19 @@ nothing_reached() {
   echo "$1: nothing is reached of $(ports | wc -l) ports"
 }
 
-# refused ADDRESS ARGUMENT...: launching says no where the shell's address and the argument are not of one mind.
+# refused ADDRESS ARGUMENT...: launching says no where the shell's address, ROS_HOSTNAME's if that is set, and the argument
+# are not of one mind.
 refused() {
   local answer
   answer=$(ROS_IP=$1 roslaunch --nodes flute_grinder grinder.launch "${@:2}" 2>&1) &&
     { echo "launched with ROS_IP=$1 ${*:2}"; exit 1; }
-  grep -q "the address in ROS_HOSTNAME or ROS_IP is '$1'; allowed: " <<<"$answer" || { echo "$answer"; exit 1; }
+  grep -q "the address in ROS_HOSTNAME or ROS_IP is '${ROS_HOSTNAME-$1}'; allowed: " <<<"$answer" || { echo "$answer"; exit 1; }
 }
 
 refused "$own"
 refused 127.0.0.1 loopback_only:=false
 refused '' loopback_only:=true
+ROS_HOSTNAME='' refused 127.0.0.1
 
 launch_grinder --
 nothing_reached 'as README says'

@@ -1,9 +1,8 @@
 #include "flute_grinder/cli/arguments.h"
 
 #include "flute_grinder/cli/completion.h"
+#include "flute_grinder/cli/machine_file.h"
 #include "flute_grinder/cli/offsets.h"
-
-#include <ros/package.h>
 
 #include <vector>
 
@@ -31,9 +30,8 @@ void addMachine(CLI::App& command, std::string& parameters, std::string& urdf) {
       ->type_name(kYamlFile);
   command.add_option("--urdf", urdf, "robot description (default: urdf/grinder.urdf)")->type_name(kUrdfFile);
   command.final_callback([&parameters, &urdf] {
-    const std::string package = ros::package::getPath("flute_grinder");
-    if (parameters.empty()) parameters = package + "/config/grinder.yaml";
-    if (urdf.empty()) urdf = package + "/urdf/grinder.urdf";
+    if (parameters.empty()) parameters = packageFile("config/grinder.yaml");
+    if (urdf.empty()) urdf = packageFile("urdf/grinder.urdf");
   });
 }
 

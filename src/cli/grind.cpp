@@ -4,6 +4,7 @@
 #include "flute_grinder/cli/online.h"
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/cli/usage.h"
+#include "flute_grinder/connection/init_ros.h"
 
 #include <ros/ros.h>
 
@@ -14,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <vector>
 
 namespace {
 
@@ -33,8 +35,9 @@ void addCompletion(Commands& commands) {
 }
 
 int run(int argc, char** argv) {
-  ros::init(argc, argv, "grind",
-            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
+  const std::vector<char*> arguments =
+      initRos(argc, argv, "grind",
+              ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   // If the master goes away during a call, wait for it as long as for one that is missing.
   ros::master::setRetryTimeout(kPatience);
   CLI::App app{"Plans jobs for conical end mills and operates the grinder.", "grind"};
@@ -49,7 +52,7 @@ int run(int argc, char** argv) {
   addOffsetCommands(commands);
   addCompletion(commands);
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
   } catch (const CLI::ParseError& error) {
     // A word that nobody knows is told before what is missing, which it may have been meant for.
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app);

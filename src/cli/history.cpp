@@ -103,9 +103,14 @@ void printTable(const std::vector<Entry>& entries) {
   }
 }
 
+/// Of the records, the newest last. Prints what is skipped.
 std::vector<std::string> pathsIn(const std::string& folder) {
   try {
-    return recordsIn(folder);
+    const RecordFiles files = recordFilesIn(folder);
+    for (const std::string& path : files.others) {
+      std::fprintf(stderr, "%s: skipped: named like a record, but not a regular file\n", path.c_str());
+    }
+    return files.records;
   } catch (const std::filesystem::filesystem_error& error) {
     throw FileError(folder + ": cannot be read: " + error.code().message() +
                     "; allowed: --folder, if the grinder keeps its records elsewhere");

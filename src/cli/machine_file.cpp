@@ -3,6 +3,8 @@
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/core/yaml_text.h"
 
+#include <ros/package.h>
+
 namespace flute_grinder {
 
 namespace {
@@ -32,7 +34,26 @@ XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
 
 LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf) {
   const YAML::Node root = parseYaml(readTextFile(parameters), parameters);
-  return readMachineConfig(readTextFile(urdf, kMaxUrdfFile), ParameterReader(toXmlRpc(root), parameters));
+  return readMachineConfig(readUrdfFile(urdf), ParameterReader(toXmlRpc(root), parameters));
+}
+
+std::string readUrdfFile(const std::string& path) {
+  std::string text = readTextFile(path, kMaxUrdfFile);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos || text[first] != '<') {
+    throw JobFileError(path +
+                       ": is not a URDF, which is XML and begins with '<'; the machine's YAML goes with --machine");
+  }
+  return text;
+}
+
+std::string packageFile(const std::string& path) {
+  const std::string package = ros::package::getPath("flute_grinder");
+  if (package.empty()) {
+    throw JobFileError("the package flute_grinder is not found, nor its " + path +
+                       "; source build/devel/setup.bash of the clone in this shell");
+  }
+  return package + "/" + path;
 }
 
 }  // namespace flute_grinder

@@ -105,6 +105,17 @@ void printStatistics(const core::PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
+void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest) {
+  if (complete) {
+    std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", complete->from / kMillimetre,
+                complete->to / kMillimetre);
+  }
+  if (closest) {
+    std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", closest->first.c_str(), closest->second.c_str(),
+                closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
+  }
+}
+
 int runPlan(const PlanOptions& options) {
   const GrindJob job = readJobFile(options.job);
   const Machine machine = readMachineFiles(options.parameters, options.urdf).machine;
@@ -115,21 +126,13 @@ int runPlan(const PlanOptions& options) {
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
   JobPlan plan = planGroundJob(job, machine, machine.park, {}, visit);
-  checkCollision(plan, MachineShapes(readTextFile(options.urdf, kMaxUrdfFile)));
+  checkCollision(plan, MachineShapes(readUrdfFile(options.urdf)));
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
-    if (plan.complete) {
-      std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", plan.complete->from / kMillimetre,
-                  plan.complete->to / kMillimetre);
-    }
-    if (plan.closest) {
-      std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", plan.closest->first.c_str(),
-                  plan.closest->second.c_str(), plan.closest->distance / kMillimetre,
-                  plan.closest->axes[kX] / kMillimetre);
-    }
+    printChecks(plan.complete, plan.closest);
   }
   for (const core::Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());

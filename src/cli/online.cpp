@@ -33,6 +33,7 @@ namespace flute_grinder {
 namespace {
 
 const ros::WallDuration kSettling(1);    ///< longest time for an axis to stand still after a jog
+const ros::WallDuration kQuiet(1);       ///< without a word, while the ROS master does not answer
 constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
 
 /// Whether there is something to cancel.
@@ -40,7 +41,22 @@ bool takesCancel(const GrinderState& state) {
   return after(static_cast<MachineState>(state.state), MachineEvent::kCancel).has_value();
 }
 
-int noMaster() { return fail("no ROS master answers at " + ros::master::getURI()); }
+int noMaster() {
+  return fail("no ROS master answers at " + ros::master::getURI() + "; launch the grinder, or correct ROS_MASTER_URI");
+}
+
+/// What there is in place of a grinder that does not answer, as the ROS master knows it: "; ...", or nothing.
+std::string otherGrinders(const std::string& node) {
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  std::string others;
+  for (const ros::master::TopicInfo& topic : topics) {
+    const std::string other = ros::names::parentNamespace(topic.name);
+    if (topic.datatype != ros::message_traits::datatype<GrinderState>() || other == node) continue;
+    others += (others.empty() ? "" : ", ") + other;
+  }
+  return others.empty() ? "" : "; the ROS master knows " + others + ": name one with --node";
+}
 
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
   std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
@@ -99,13 +115,16 @@ int fail(const std::string& text) {
 
 int noGrinder(const ros::NodeHandle& nh) {
   if (!ros::master::check()) return noMaster();
-  return fail("no grinder answers as " + nh.getNamespace());
+  return fail("no grinder answers as " + nh.getNamespace() + otherGrinders(nh.getNamespace()));
 }
 
 bool joinRos() {
-  if (!await(kPatience, [] { return ros::master::check(); })) {
-    noMaster();
-    return false;
+  if (!await(kQuiet, ros::master::check)) {
+    std::fprintf(stderr, "no ROS master answers at %s; waiting for one\n", ros::master::getURI().c_str());
+    if (!await(kPatience - kQuiet, ros::master::check)) {
+      noMaster();
+      return false;
+    }
   }
   // By itself, so that the last NodeHandle does not end with ros::shutdown(), which takes 0.1 to 0.3 s.
   ros::start();

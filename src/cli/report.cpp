@@ -4,8 +4,7 @@
 #include "flute_grinder/cli/history.h"
 #include "flute_grinder/cli/machine_file.h"
 #include "flute_grinder/core/format.h"
-
-#include <ros/package.h>
+#include "flute_grinder/core/regular_file.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -60,8 +59,10 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
   if (options.html.empty() && options.pdf.empty() && !options.json)
     throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
+  for (const std::string& path : {options.file, options.tolerances}) {
+    if (!path.empty()) requireRegularFile(path);
+  }
   const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
-  const std::string own_tolerances = ros::package::getPath("flute_grinder") + "/config/tolerances.yaml";
   std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath(), "--grind", ownPath()};
   const auto add = [&](const char* option, const std::string& value) {
     // In one word, since a value may begin with a dash.
@@ -70,7 +71,7 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   add("--output", options.html);
   add("--pdf", options.pdf);
   add("--note", options.note);
-  add("--tolerances", options.tolerances.empty() ? own_tolerances : options.tolerances);
+  add("--tolerances", options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
   add("--job", std::to_string(options.job));
   if (options.json) arguments.emplace_back("--json");
   append(arguments, "--max-velocity", config.machine.limits.max_velocity);

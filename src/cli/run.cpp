@@ -1,4 +1,6 @@
 #include "flute_grinder/GrindAction.h"
+#include "flute_grinder/Plan.h"
+#include "flute_grinder/cli/call.h"
 #include "flute_grinder/cli/interrupt.h"
 #include "flute_grinder/cli/offline.h"
 #include "flute_grinder/cli/online.h"
@@ -134,6 +136,28 @@ int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder
   return fail(resultText(*result) + " (code " + std::to_string(result->error_code) + ")");
 }
 
+/// Prints what the grinder has found in a dry run beside the path; it has kept the plan.
+/// @return the exit status.
+int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal) {
+  Plan::Request request;
+  request.goal = goal;
+  const auto plan = ask<Plan>(nh, "plan", request);
+  if (!plan) return 1;
+  for (const std::string& reason : plan->reasons) fail(reason);
+  if (!plan->valid) return 1;
+  std::optional<ClosestPlace> closest;
+  if (plan->closest_bodies.size() == 2) {
+    closest.emplace();
+    closest->first = plan->closest_bodies[0];
+    closest->second = plan->closest_bodies[1];
+    closest->distance = plan->closest_distance;
+    closest->axes[kX] = plan->closest_x;
+  }
+  const bool somewhere = plan->complete_from <= plan->complete_to;  // not so for NaN
+  printChecks(somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt, closest);
+  return 0;
+}
+
 /// Closes the CSV file, after everything about the job has been printed. @param status so far. @return the exit status.
 int closeRecord(Recorder& recorder, const std::string& csv, int status) {
   try {
@@ -185,7 +209,9 @@ int runJob(const std::string& node, const RunOptions& options) {
   keys.start([&] { client.cancelGoal(); });
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
-  return closeRecord(recorder, options.csv, printOutcome(watched, connected, recorder));
+  int status = printOutcome(watched, connected, recorder);
+  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal);
+  return closeRecord(recorder, options.csv, status);
 }
 
 }  // namespace flute_grinder

@@ -3,6 +3,7 @@
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/cli/csv.h"
+#include "flute_grinder/core/regular_file.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
 
@@ -103,6 +104,7 @@ class Fields {
 }  // namespace
 
 FileKind kindOf(const std::string& path) {
+  requireRegularFile(path);
   std::ifstream file(path, std::ios::binary);
   std::string head(sizeof kBagHead - 1, '\0');
   if (!file || file.read(head.data(), static_cast<std::streamsize>(head.size())).bad())

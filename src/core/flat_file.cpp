@@ -1,5 +1,7 @@
 #include "flute_grinder/core/flat_file.h"
 
+#include "flute_grinder/core/did_you_mean.h"
+
 #include <cctype>
 #include <cstdlib>
 #include <set>
@@ -124,6 +126,11 @@ void FlatFile::refuseBeside(const std::string& key, const std::string& section, 
 void FlatFile::refuseTheRest() {
   for (const auto& entry : entries_) {
     const std::string& key = entry.first;
+    const std::string suggestion = error_count_ < kMostTold ? didYouMean(key, known_) : "";
+    if (!suggestion.empty()) {
+      fail(line(key), key + " is not a key of a " + kind_ + suggestion);
+      continue;
+    }
     const std::string section = key.substr(0, key.find('.') + 1);
     std::string allowed;
     for (const std::string& known : known_) {

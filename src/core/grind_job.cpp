@@ -268,7 +268,9 @@ std::vector<double> wearOfPasses(const GrindJob& job) {
 
 double askedDepth(const GrindJob& job, double x) {
   const GrindProcess& p = job.process;
-  return p.depth + (p.depthEnd() - p.depth) * x / job.cutter.flute_length;
+  const CutterGeometry& c = job.cutter;
+  const double at_end = c.core_diameter > 0 ? (c.end_diameter - c.core_diameter) / 2 : p.depth;
+  return at_end + (p.depthEnd() - p.depth) * x / c.flute_length;
 }
 
 DepthLaw depthLaw(const GrindJob& job, double depth) {

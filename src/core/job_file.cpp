@@ -56,6 +56,17 @@ std::string wheelPath(const std::string& job, const std::string& wheel) {
   return (std::filesystem::path(job).parent_path() / wheel).string();
 }
 
+/// Refuses a text where the wheel's keys belong, which is most likely the path of a wheel file. @return whether it is
+/// so.
+bool refuseWheelPath(FlatFile& file) {
+  const std::string key = "process.wheel";
+  const std::string allowed = "keys of a wheel below it, as file: PATH for a wheel file";
+  std::string path;
+  if (!file.has(key)) return false;
+  if (file.take(key, allowed, path)) file.fail(file.line(key), key + " = " + path + "; allowed: " + allowed);
+  return true;
+}
+
 /// @param path_of_job as its messages name it.
 void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job) {
   const std::string key = kWheelFile;
@@ -73,7 +84,10 @@ void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job
   try {
     text = readTextFile(path);
   } catch (const JobFileError& error) {
-    return file.fail(file.line(key), key + " = " + name + ": " + error.what());
+    const std::filesystem::path folder = std::filesystem::absolute(path_of_job).parent_path();
+    return file.fail(file.line(key), key + " = " + name + ": " + error.what() +
+                                         "; allowed: a path from the job file's folder, " +
+                                         folder.lexically_normal().string());
   }
   try {
     mountWheel(parseWheel(text, path), job);
@@ -111,7 +125,8 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   FlatFile file(text, name, kKind, kContent);
   GrindJob job;
   takeSpirals(file, job);
-  const bool has_wheel_file = file.mentions(kWheelFile);
+  const bool has_wheel_path = refuseWheelPath(file);
+  const bool has_wheel_file = has_wheel_path || file.mentions(kWheelFile);
   visitJobFields([&](const JobField& field, auto of) {
     double value = 0;
     if (has_wheel_file && isOfWheelFile(field)) return;
@@ -127,7 +142,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   });
   takeTeeth(file, job);
   if (has_wheel_file) {
-    takeWheelFile(file, name, job);
+    if (!has_wheel_path) takeWheelFile(file, name, job);
   } else {
     file.know(kWheelFile);
     takeWheelShape(file, kWheel, job);

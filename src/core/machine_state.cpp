@@ -125,7 +125,9 @@ bool isInJob(MachineState state) noexcept { return after(state, E::kCancel) == S
 std::string allowedIn(MachineState state) {
   std::string text;
   for (const Transition& t : kTransitions) {
-    if (t.from == state && isRequest(t.event)) text += (text.empty() ? "" : ", ") + std::string(toString(t.event));
+    if (t.from != state || !isRequest(t.event)) continue;
+    text += (text.empty() ? "" : ", ") + std::string(toString(t.event));
+    if (t.event == E::kStart) text += " (grind run)";  // the others are commands by their names
   }
   return text;
 }

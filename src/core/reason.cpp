@@ -48,9 +48,7 @@ class Writer {
                     : std::string("nowhere")) +
                "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
       case ReasonKind::kCollision:
-        if (r_.field.empty()) return "collision_clearance = " + limit() + ": " + apart();
-        return name(r_.field) + " = " + low() + ": " + apart() + " outside the cut; allowed: " + limit() +
-               " or more; raise it";
+        return collision();
       case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
       case ReasonKind::kUnevenRake:
         return name("process.z_law") + " = constant_rake: tooth " + tooth() +
@@ -98,7 +96,7 @@ class Writer {
   }
 
   /// Whether place() comes after what(), and not within it.
-  bool placeAtEnd() const { return r_.kind != ReasonKind::kTolerance; }
+  bool placeAtEnd() const { return r_.kind != ReasonKind::kTolerance && r_.kind != ReasonKind::kCollision; }
 
   std::string others() const {
     if (!ofSetpoint() || r_.count < 2) return "";
@@ -132,8 +130,23 @@ class Writer {
     return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
   }
 
-  std::string apart() const {
-    return r_.detail + (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
+  std::string collision() const {
+    const std::string apart =
+        r_.detail + (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
+    if (r_.field.empty()) return "collision_clearance = " + limit() + ": " + apart + place() + wayOut();
+    return name(r_.field) + " = " + low() + ": " + apart + " outside the cut" + place() + "; allowed: " + limit() +
+           " or more; raise it";
+  }
+
+  /// What to do about a collision of two bodies, of which the cutter's own are named so by CollisionCheck.
+  std::string wayOut() const {
+    const auto is_of = [&](const char* body) { return r_.detail.find(body) != std::string::npos; };
+    if (is_of("shank")) {
+      return "; change " + name("cutter.shank_diameter") + ", " + name("cutter.neck_length") + " or " +
+             name("process.overtravel_shank");
+    }
+    if (is_of("cutter")) return "; change " + name("process.setup_swivel") + " or " + name("process.wheel_diameter");
+    return "; stick the blank out further, and set the zero of X anew";
   }
 
   /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.

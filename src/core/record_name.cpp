@@ -59,13 +59,19 @@ bool isUnfinishedRecordName(std::string_view name) {
          name[kNameForm.size()] == '.';
 }
 
-std::vector<std::string> recordsIn(const std::string& folder) {
-  std::vector<std::string> paths;
+RecordFiles recordFilesIn(const std::string& folder) {
+  RecordFiles files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (isRecordName(entry.path().filename().string())) paths.push_back(entry.path().string());
+    const std::string name = entry.path().filename().string();
+    const bool finished = isRecordName(name);
+    if (!finished && !isUnfinishedRecordName(name)) continue;
+    std::vector<std::string>& list = !std::filesystem::is_regular_file(entry.symlink_status()) ? files.others
+                                     : finished                                                ? files.records
+                                                                                               : files.unfinished;
+    list.push_back(entry.path().string());
   }
-  std::sort(paths.begin(), paths.end());
-  return paths;
+  for (auto* list : {&files.records, &files.unfinished, &files.others}) std::sort(list->begin(), list->end());
+  return files;
 }
 
 }  // namespace flute_grinder

@@ -1,5 +1,7 @@
 #include "flute_grinder/core/yaml_text.h"
 
+#include "flute_grinder/core/regular_file.h"
+
 #include <yaml-cpp/eventhandler.h>
 
 #include <cerrno>
@@ -54,6 +56,7 @@ class YamlCheck : public YAML::EventHandler {
 }  // namespace
 
 std::string readTextFile(const std::string& path, std::size_t most) {
+  requireRegularFile(path);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   std::string text(most + 1, '\0');
   if (file) text.resize(std::fread(text.data(), 1, text.size(), file.get()));

@@ -9,6 +9,8 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -51,19 +53,22 @@ struct History::Folder {
 };
 
 /// @param but the record just written: the clock may have been set back, so that it looks the oldest.
+/// @throw std::exception if one cannot be removed, and naming what is skipped, once the limit is held.
 void History::Folder::removeOldest(const fs::path& but) const {
-  std::vector<fs::path> files;
-  std::uint64_t size = 0;
-  for (const auto& entry : fs::directory_iterator(path)) {
-    const std::string name = entry.path().filename().string();
-    if (!isRecordName(name) && !isUnfinishedRecordName(name)) continue;
-    size += entry.file_size();
-    if (entry.path() != but) files.push_back(entry.path());
-  }
+  RecordFiles found = recordFilesIn(path);
+  std::vector<std::string>& files = found.records;
+  files.insert(files.end(), found.unfinished.begin(), found.unfinished.end());
   std::sort(files.begin(), files.end());
+  std::uint64_t size = 0;
+  for (const std::string& file : files) size += fs::file_size(file);
   for (std::size_t i = 0; i < files.size() && size > limit; ++i) {
+    if (fs::path(files[i]) == but) continue;
     size -= fs::file_size(files[i]);
     fs::remove(files[i]);
+  }
+  if (!found.others.empty()) {
+    throw std::runtime_error(fs::path(found.others.front()).filename().string() +
+                             " is named like a record but is not a regular file: skipped; move it elsewhere");
   }
 }
 

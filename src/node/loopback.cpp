@@ -4,13 +4,14 @@
 /// This bind() overrides the C library's, and applies the same rule to every server. Preloaded as a library, it does
 /// the same for other nodes.
 
+#include "flute_grinder/node/own_address.h"
+
 #include <dlfcn.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <string>
 
 namespace {
 
@@ -18,9 +19,7 @@ namespace {
 bool loopbackOnly() {
   const char* host = std::getenv("ROS_HOSTNAME");
   if (!host) host = std::getenv("ROS_IP");
-  if (!host) return false;
-  const std::string name = host;
-  return name == "localhost" || name == "::1" || name.rfind("127.", 0) == 0;
+  return host && flute_grinder::isLoopbackName(host);
 }
 
 /// An address with loopback instead of all interfaces.

@@ -1,9 +1,11 @@
+#include "flute_grinder/connection/init_ros.h"
 #include "flute_grinder/connection/master_watch.h"
 #include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/node/grinder_node.h"
 #include "flute_grinder/node/output.h"
+#include "flute_grinder/node/own_address.h"
 
 #include <ros/ros.h>
 
@@ -63,7 +65,12 @@ int main(int argc, char** argv) {
   flute_grinder::dropBlockedOutput();
   flute_grinder::boundThreadStacks();
 
-  ros::init(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  flute_grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  const std::string refusal = flute_grinder::ownAddressRefusal();
+  if (!refusal.empty()) {
+    ROS_FATAL_STREAM(refusal);
+    return 1;
+  }
   if (!waitForMaster(signals)) return 0;
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;

@@ -164,7 +164,7 @@ std::string requestName(const testing::TestParamInfo<RequestCase>& info) {
 /// Every request in every state that does not allow it.
 std::vector<RequestCase> refusedRequests() {
   const std::vector<std::pair<S, const char*>> allowed{{S::kDisabled, "enable, disable, reset"},
-                                                       {S::kReady, "enable, disable, home, start, lift, jog"},
+                                                       {S::kReady, "enable, disable, home, start (grind run), lift, jog"},
                                                        {S::kHoming, "disable, hold, cancel"},
                                                        {S::kStarting, "disable, hold, resume, cancel"},
                                                        {S::kRunning, "disable, hold, cancel"},

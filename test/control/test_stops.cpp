@@ -282,7 +282,7 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   const auto answer = rig.loop->stopReply(E::kCancel, ticket);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->text,
-            "cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog");
+            "cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog");
 }
 
 TEST(Stops, WhatIsNoneIsNotTaken) {

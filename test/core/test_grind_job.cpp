@@ -465,6 +465,21 @@ TEST(PassOrder, IsThatOfTeethOrOfPasses) {
   EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
 }
 
+// The wheel may reach deeper than its depth, so that a set-up for a core of 3.9 mm may leave a depth of 1.058 mm.
+TEST(AskedDepth, IsThatOfTheCoreWhereOneIsAsked) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = 6e-3;
+  job.cutter.flute_length = 20e-3;
+  job.process.depth = 1.058e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.058e-3);
+  job.cutter.core_diameter = 3.9e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
+  job.process.depth_end = 1.558e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
+  EXPECT_DOUBLE_EQ(askedDepth(job, 10e-3), 1.3e-3);
+  EXPECT_DOUBLE_EQ(askedDepth(job, 20e-3), 1.55e-3);
+}
+
 RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
   GrindProcess p;
   p.depth = *test_support::logUniform(0.01e-3, 10e-3);

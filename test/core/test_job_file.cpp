@@ -182,6 +182,15 @@ TEST(JobFile, TellsHowAMissingSetUpIsFound) {
             "cutter.core_diameter_mm");
 }
 
+TEST(JobFile, NamesTheKeyThatIsNearestToAnUnknownOne) {
+  EXPECT_NE(errorOf(with("  depth_mm: 1.5\n", "  detph_mm: 1.5\n"))
+                .find("process.detph_mm is not a key of a job file; did you mean 'process.depth_mm'?"),
+            std::string::npos);
+  EXPECT_NE(errorOf(with("  depth_mm: 1.5\n", "  depth_mm: 1.5\n  colour: red\n"))
+                .find("process.colour is not a key of a job file; allowed: process."),
+            std::string::npos);
+}
+
 TEST(JobFile, ReadsASpiralAnglePerTooth) {
   const GrindJob job = parseJob(with("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]"), "job.yaml");
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);

@@ -165,7 +165,7 @@ TEST(MachineState, EveryStateUnderPowerCanFault) {
 
 TEST(MachineState, AllowedInListsTheRequestsOfTheState) {
   EXPECT_EQ(allowedIn(S::kDisabled), "enable, disable, reset");
-  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start, lift, jog");
+  EXPECT_EQ(allowedIn(S::kReady), "enable, disable, home, start (grind run), lift, jog");
   EXPECT_EQ(allowedIn(S::kHoming), "disable, hold, cancel");
   EXPECT_EQ(allowedIn(S::kStarting), "disable, hold, resume, cancel");
   EXPECT_EQ(allowedIn(S::kRunning), "disable, hold, cancel");

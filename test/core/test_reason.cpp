@@ -126,11 +126,25 @@ const Row kRows[]{
        r.detail = "wheel and collet";
        atStroke(r);
      },
-     "collision_clearance = 0.001 m: wheel and collet hit each other (at stroke of tooth 1, pass 2, X = 0.0123 m)",
-     "collision_clearance = 1 mm: wheel and collet hit each other (stroke, tooth 1, pass 2, X = 12.3 mm)"},
+     "collision_clearance = 0.001 m: wheel and collet hit each other (at stroke of tooth 1, pass 2, X = 0.0123 m); "
+     "stick the blank out further, and set the zero of X anew",
+     "collision_clearance = 1 mm: wheel and collet hit each other (stroke, tooth 1, pass 2, X = 12.3 mm); stick the "
+     "blank out further, and set the zero of X anew"},
+    {Kind::kCollision, "HitsTheShank", Unit::kMetre, 0, 0.001, field("", "wheel and shank"),
+     "collision_clearance = 0.001 m: wheel and shank hit each other; change cutter.shank_diameter, cutter.neck_length "
+     "or process.overtravel_shank",
+     "collision_clearance = 1 mm: wheel and shank hit each other; change cutter.shank_diameter_mm, "
+     "cutter.neck_length_mm or process.overtravel_mm[1]"},
+    {Kind::kCollision, "HitsTheCutter", Unit::kMetre, 0, 0.001, field("", "spindle and cutter"),
+     "collision_clearance = 0.001 m: spindle and cutter hit each other; change process.setup_swivel or "
+     "process.wheel_diameter",
+     "collision_clearance = 1 mm: spindle and cutter hit each other; change process.setup.swivel_deg or "
+     "process.wheel.diameter_mm"},
     {Kind::kCollision, "TooClose", Unit::kMetre, 0.0004, 0.001, field("", "spindle and work_head"),
-     "collision_clearance = 0.001 m: spindle and work_head come within 0.0004 m of each other",
-     "collision_clearance = 1 mm: spindle and work_head come within 0.4 mm of each other"},
+     "collision_clearance = 0.001 m: spindle and work_head come within 0.0004 m of each other; stick "
+     "the blank out further, and set the zero of X anew",
+     "collision_clearance = 1 mm: spindle and work_head come within 0.4 mm of each other; stick the "
+     "blank out further, and set the zero of X anew"},
     {Kind::kCollision, "OutsideTheCut", Unit::kMetre, 0.0001, 0.00025,
      [](Reason& r) {
        r.field = "process.clearance";

@@ -219,9 +219,18 @@ TEST_F(WheelOfAJob, StandsAloneInTheJob) {
 TEST_F(WheelOfAJob, ThatIsNotThereIsToldAtTheJobsLine) {
   const std::string path = write("jobs/job.yaml", jobText("    file: ../wheels/none.yaml\n"));
   EXPECT_EQ(jobErrorOf(path), path + ":14: process.wheel.file = ../wheels/none.yaml: " + folder_ +
-                                  "/jobs/../wheels/none.yaml: cannot be read: No such file or directory");
+                                  "/jobs/../wheels/none.yaml: cannot be read: No such file or directory; allowed: "
+                                  "a path from the job file's folder, " +
+                                  folder_ + "/jobs");
   const std::string list = write("jobs/job.yaml", jobText("    file: [1, 2]\n"));
   EXPECT_EQ(jobErrorOf(list).find(list + ":14: process.wheel.file"), 0u) << jobErrorOf(list);
+}
+
+TEST_F(WheelOfAJob, IsNamedByItsKey) {
+  const std::string path = write("jobs/job.yaml", jobText("    ../wheels/wheel.yaml\n"));
+  EXPECT_EQ(jobErrorOf(path), path +
+                                  ":13: process.wheel = ../wheels/wheel.yaml; allowed: keys of a wheel below it, as "
+                                  "file: PATH for a wheel file");
 }
 
 TEST_F(WheelOfAJob, TellsItsMistakesBesideThoseOfTheJob) {

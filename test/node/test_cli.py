@@ -196,6 +196,36 @@ class TestPlan(CommandLine):
     def test_folder_is_no_file(self):
         self.assertEqual(self.grind(2, 'plan', self.folder).stderr, self.folder + ': cannot be read: Is a directory\n')
 
+    def test_fifo_is_no_file(self):
+        fifo = self.path('fifo.yaml')
+        os.mkfifo(fifo)
+        wheel = self.write('wheel.yaml', re.sub(r'(?ms)^  wheel:.*?^(?=\S|  \w)', '  wheel:\n    file: fifo.yaml\n',
+                                                open(PAPER_JOB).read()))
+        said = fifo + ': cannot be read: not a regular file; allowed: a file on a disk, no FIFO and no device'
+        for arguments in (['plan', fifo], ['plan', wheel], ['plan', PAPER_JOB, '--machine', fifo], ['wheel', 'show', fifo],
+                          ['plan', PAPER_JOB, '--urdf', fifo], ['simulate', fifo], ['report', fifo, '--json'],
+                          ['report', PAPER_JOB, '--json', '--tolerances', fifo]):
+            with self.subTest(arguments):
+                self.assertIn(said, self.grind(2, *arguments).stderr)
+        os.mkdir(self.path('history'))
+        for make, name in ((os.mkfifo, '20261122T170413.000Z.json'), (os.mkdir, '20261122T170413.001Z.json')):
+            make(self.path('history/' + name))
+        done = self.grind(0, 'history', '--folder', self.path('history'))
+        self.assertRegex(done.stderr, r'(.*\d\d[01]Z\.json: skipped: named like a record, but not a regular file\n){2}$')
+        self.assertIn('has no record', self.grind(2, 'report', '--last', '--folder', self.path('history'), '--json').stderr)
+
+    def test_shell_without_the_package(self):
+        done = subprocess.run([gc.program('grind'), 'plan', PAPER_JOB], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              env=dict(os.environ, ROS_PACKAGE_PATH='', CMAKE_PREFIX_PATH=''), universal_newlines=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertTrue(done.stderr.endswith(
+            'the package flute_grinder is not found, nor its config/grinder.yaml; source build/devel/setup.bash of the clone '
+            'in this shell\n'), done.stderr)
+
+    def test_yaml_is_no_urdf(self):
+        self.assertEqual(self.grind(2, 'plan', PAPER_JOB, '--urdf', PAPER_JOB).stderr,
+                         PAPER_JOB + ": is not a URDF, which is XML and begins with '<'; the machine's YAML goes with --machine\n")
+
     def test_empty_file(self):
         job = self.write('empty.yaml', '')
         self.assertEqual(self.grind(2, 'plan', job).stderr, job + ': is empty\n')
@@ -229,7 +259,8 @@ class TestPlan(CommandLine):
         lines.insert(line, '  fead_mm_min: 600')
         job = self.write('bad.yaml', '\n'.join(lines))
         reason = self.grind(2, 'plan', job).stderr
-        self.assertIn('%s:%d: process.fead_mm_min is not a key' % (job, line + 1), reason)
+        self.assertIn("%s:%d: process.fead_mm_min is not a key of a job file; did you mean 'process.feed_mm_min'?\n"
+                      % (job, line + 1), reason)
 
     def test_missing_key(self):
         with open(PAPER_JOB) as file:

@@ -2,13 +2,15 @@
 """Shows what those commands of `grind` print that need the grinder, and their exit status: 0 done, 1 the machine or the job
 said no, 2 an unreadable file."""
 
+import os
 import re
 import signal
 import subprocess
+import unittest.mock
 
 import rospy
 import rostest
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 import path_checks as checks
@@ -104,7 +106,7 @@ class TestMachine(CommandLine):
 
     def check_refused(self, command):
         self.assertEqual(self.grind(1, command).stderr,
-                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog\n'
+                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog\n'
                          % command)
 
     def test_hold_without_a_job_is_refused(self):
@@ -162,6 +164,18 @@ class TestMachine(CommandLine):
         for state in ('running', 'held', 'retracted'):
             self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, shown)
 
+    def test_stops_need_no_home(self):
+        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
+            self.grind(0, 'hold')
+            grinder().wait_state(GrinderState.HELD)
+            self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^state +held$')
+            self.grind(0, 'resume')
+            grinder().wait_state(GrinderState.RUNNING)
+            self.grind(0, 'cancel')
+            self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
+        self.assertEqual(run.wait().code, GrindResult.CANCELED)
+
     def test_status_tells_why_the_job_is_held(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
         told, _ = self.json(0, 'status')
@@ -188,6 +202,13 @@ class TestMachine(CommandLine):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), batches)
         self.assertEqual(grinder().positions(), rest)
+
+    def test_dry_run_tells_what_plan_tells(self):
+        grinder().make_ready_at_park()
+        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match('flutes complete|closest', line)]
+                 for words in (['run', PAPER_JOB, '--dry-run'], ['plan', PAPER_JOB])]
+        self.assertEqual(len(lines[0]), 2)
+        self.assertEqual(*lines)
 
     def test_run_while_disabled(self):
         self.grind(0, 'disable')

@@ -3,6 +3,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -27,6 +28,11 @@ class HistoryTest : public ::testing::Test {
   void open(std::uint64_t limit) { history_ = std::make_unique<History>(folder_ / "a" / "b", limit); }
   void keep(const std::string& name, const std::string& text) {
     history_->keep(name, [text] { return text; });
+  }
+  /// Waits until there is an error, or none.
+  void waitForError(bool is) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (history_->error().empty() == is && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   }
   /// Waits until all is on the disk.
   void close() { history_.reset(); }
@@ -96,6 +102,25 @@ TEST_F(HistoryTest, RemovesNothingThatIsNotItsOwn) {
   EXPECT_EQ(files(), left);
 }
 
+TEST_F(HistoryTest, SkipsWhatIsNamedLikeARecordButIsNoFile) {
+  const fs::path folder = folder_ / "a" / "b";
+  fs::create_directories(folder / "20201122T170413.000Z.json" / "inside");
+  fs::create_symlink("nowhere", folder / "20201122T170413.001Z.json");
+  fs::create_symlink("/proc/self/exe", folder / "20201122T170413.002Z.json");
+  ASSERT_EQ(mkfifo((folder / "20201122T170413.003Z.json.aB3xY9").c_str(), 0600), 0);
+  const std::vector<std::string> others = files();
+  open(250);
+  for (int i = 0; i < 4; ++i) keep(nameOf(i), std::string(100, 'x'));
+  waitForError(true);
+  EXPECT_EQ(history_->error(), "history " + folder.string() +
+                                   ": 20201122T170413.000Z.json is named like a record but is not a regular file: "
+                                   "skipped; move it elsewhere");
+  close();
+  std::vector<std::string> left = others;
+  left.insert(left.end(), {nameOf(2), nameOf(3)});
+  EXPECT_EQ(files(), left);
+}
+
 TEST_F(HistoryTest, IsNeverReadHalf) {
   open(kPlenty);
   const std::string whole(1 << 20, 'x');
@@ -116,13 +141,12 @@ TEST_F(HistoryTest, TellsAFolderThatCannotBe) {
   std::ofstream(folder_ / "a") << "a file";
   open(kPlenty);
   keep(nameOf(0), "x");
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  waitForError(true);
   EXPECT_NE(history_->error().find((folder_ / "a" / "b").string()), std::string::npos) << history_->error();
   // It is well again as soon as a record is kept.
   fs::remove(folder_ / "a");
   keep(nameOf(1), "y");
-  while (!history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  waitForError(false);
   EXPECT_EQ(history_->error(), "");
   close();
   EXPECT_EQ(files().back(), nameOf(1));
@@ -131,8 +155,7 @@ TEST_F(HistoryTest, TellsAFolderThatCannotBe) {
 TEST_F(HistoryTest, ARecordThatCannotBeMadeIsTold) {
   open(kPlenty);
   history_->keep(nameOf(0), []() -> std::string { throw std::runtime_error("no such thing"); });
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (history_->error().empty() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  waitForError(true);
   EXPECT_NE(history_->error().find("no such thing"), std::string::npos);
   close();
   EXPECT_TRUE(files().empty());

@@ -330,7 +330,7 @@ class TestOverrideBeforeTheJob(unittest.TestCase):
 # What each state allows, in the order in which it is told.
 ALLOWED = {
     'disabled': 'enable, disable, reset',
-    'ready': 'enable, disable, home, start, lift, jog',
+    'ready': 'enable, disable, home, start (grind run), lift, jog',
     'running': 'disable, hold, cancel',
     'held': 'disable, hold, resume, retract, cancel',
     'retracted': 'disable, resume, cancel, jog',

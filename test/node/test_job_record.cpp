@@ -291,7 +291,7 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
       if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.record);
     }
   }
-  const std::vector<std::string> files = recordsIn(folder);
+  const std::vector<std::string> files = recordFilesIn(folder).records;
   ASSERT_EQ(files.size(), 1U);
   EXPECT_EQ(std::filesystem::path(files[0]).filename(), recordName(cycles_.front().record.time));
   std::ifstream stream(files[0]);
@@ -320,7 +320,7 @@ TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
     if (!result_first) recorder.conclude(1, {"canceled", "by hand", 9});
     recorder.conclude(1, {"fault", "too late", 0});
   }
-  const std::vector<std::string> files = recordsIn(folder);
+  const std::vector<std::string> files = recordFilesIn(folder).records;
   ASSERT_EQ(files.size(), 2U);
   for (const std::string& file : files) {
     std::ifstream stream(file);

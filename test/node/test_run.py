@@ -186,7 +186,7 @@ class TestEnd(RunTest):
         done = gc.grind('cancel')
         self.assertEqual(done.returncode, 1)
         self.assertEqual(done.stderr,
-                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start, lift, jog; '
+                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog; '
                          'a job that was being planned is canceled\n')
 
 

@@ -77,12 +77,14 @@ class TestNodeWithoutMaster(unittest.TestCase):
         self.log.seek(0)
         return self.log.read()
 
+    def end(self, node, number):
+        node.send_signal(number)
+        self.assertEqual(node.wait(gc.PATIENCE), 0, self.output())
+
     def check_signals(self):
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
-                node = self.start_waiting()
-                node.send_signal(number)
-                self.assertEqual(node.wait(gc.PATIENCE), 0, self.output())
+                self.end(self.start_waiting(), number)
             self.log.truncate(0)
 
     def test_signals_where_nothing_listens(self):
@@ -93,6 +95,20 @@ class TestNodeWithoutMaster(unittest.TestCase):
             silent.bind(('127.0.0.1', self.port))
             silent.listen()
             self.check_signals()
+
+    def test_address_that_would_open_all_ports_is_refused(self):
+        own = socket.gethostname()
+        for name, why in (('', 'is empty'), ('LOCALHOST', '= LOCALHOST is loopback in words that ROS does not know'),
+                          ('no_such.invalid', '= no_such.invalid has no address: '), ('0x7f.1', '= 0x7f.1 is loopback')):
+            with self.subTest(name):
+                self.environment['ROS_HOSTNAME'] = name
+                self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
+                self.assertIn('ROS_HOSTNAME ' + why, self.output())
+        for name in ('localhost', '127.0.0.1', '::1', own, '0.0.0.0'):
+            with self.subTest(name):
+                self.log.truncate(0)
+                self.environment['ROS_HOSTNAME'] = name
+                self.end(self.start_waiting(), signal.SIGTERM)
 
     def test_goes_on_with_the_master(self):
         node = self.start_waiting()
@@ -145,11 +161,15 @@ class TestWithoutMaster(RunTest):
     def test_commands_say_that_the_master_is_missing(self):
         self.start_master()
         self.master.end(self.master.process)
-        self.check_all_say('^no ROS master answers at %s\n$' % re.escape(self.master.environment['ROS_MASTER_URI']))
+        missing = 'no ROS master answers at %s; ' % re.escape(self.master.environment['ROS_MASTER_URI'])
+        self.check_all_say('^%swaiting for one\n%slaunch the grinder, or correct ROS_MASTER_URI\n$' % (missing, missing))
 
     def test_commands_say_that_the_grinder_is_missing(self):
         self.start_master()
-        self.check_all_say('^no grinder answers as /grinder\n$')
+        left = rosgraph.Master('/left/grinder', self.master.environment['ROS_MASTER_URI'])
+        for topic, kind in (('state', 'GrinderState'), ('offsets', 'WorkOffsets')):
+            left.registerPublisher('/left/grinder/' + topic, 'flute_grinder/' + kind, 'http://127.0.0.1:1')
+        self.check_all_say('^no grinder answers as /grinder; the ROS master knows /left/grinder: name one with --node\n$')
 
     def check_all_say(self, text):
         commands = [self.grind(*words.split(), environment=self.master.environment)

@@ -36,4 +36,8 @@ int runPlan(const PlanOptions& options);
 /// Prints a job's statistics in the operator's units.
 void printStatistics(const core::PathStatistics& statistics);
 
+/// Prints where along X the flutes are complete, and which two bodies come closest to each other, in the operator's
+/// units; what is not known is left out.
+void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest);
+
 }  // namespace flute_grinder

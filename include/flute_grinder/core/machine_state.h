@@ -74,7 +74,7 @@ enum class EventKind : std::uint8_t {
   kJog,      ///< a request that moves an axis
 };
 
-/// The name of a request is also its sub-command of `grind`.
+/// The name of a request is also its sub-command of `grind`; only the start's is `run`.
 struct EventRow : EnumRow<MachineEvent> {
   EventKind kind = EventKind::kSeen;
   const char* service = nullptr;  ///< name in the node's own namespace; null for none
@@ -122,7 +122,7 @@ constexpr bool isPowered(MachineState state) noexcept {
 /// Whether a job is in progress, so that a cancel would end it.
 bool isInJob(MachineState state) noexcept;
 
-/// The requests that a state allows, e.g. "disable, start".
+/// The requests that a state allows, e.g. "enable, start (grind run)".
 std::string allowedIn(MachineState state);
 
 }  // namespace flute_grinder

@@ -25,8 +25,14 @@ bool isRecordName(std::string_view name);
 /// Whether it has the name under which a record is written before it gets its own; one stays if the power fails.
 bool isUnfinishedRecordName(std::string_view name);
 
-/// The paths of the records in a folder, the newest last.
+/// The paths in a folder that are named like records, each list with the newest last.
+struct RecordFiles {
+  std::vector<std::string> records;
+  std::vector<std::string> unfinished;
+  std::vector<std::string> others;  ///< named like one of these, but no regular files: folders, links, FIFOs
+};
+
 /// @throw std::filesystem::filesystem_error if the folder cannot be read.
-std::vector<std::string> recordsIn(const std::string& folder);
+RecordFiles recordFilesIn(const std::string& folder);
 
 }  // namespace flute_grinder

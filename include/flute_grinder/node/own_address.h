@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace flute_grinder {
+
+/// Whether roscpp takes a name in ROS_HOSTNAME or ROS_IP for loopback.
+inline bool isLoopbackName(const std::string& name) {
+  return name == "localhost" || name == "::1" || name.rfind("127.", 0) == 0;
+}
+
+/// Why the node must not start under the address that the environment gives it: roscpp would listen on all addresses of
+/// this computer, without a word, for a name that is empty, is unknown, or means loopback but is not written as roscpp
+/// expects it. May ask the resolver.
+/// @return a message; empty if the address is good, or if there is none, for ROS's default.
+std::string ownAddressRefusal();
+
+}  // namespace flute_grinder

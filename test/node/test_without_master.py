@@ -122,7 +122,7 @@ class TestWithoutMaster(RunTest):
         for words in (['enable'], ['confirm-swivel', '31.769']):
             done = self.master.grind(*words)
             self.assertEqual(done.returncode, 0, done.stderr)
-        command = self.grind('run', PAPER_JOB, environment=self.master.environment)
+        command = self.grind('run', PAPER_JOB, '--offsets-are-right', environment=self.master.environment)
         command.wait_text('  running  ')
         self.master.end(self.master.process)
         return command
@@ -166,7 +166,7 @@ class TestWithoutMaster(RunTest):
     def test_run_says_that_the_clock_is_missing_and_a_stop_needs_none(self):
         self.start_grinder(use_sim_time=True)
         self.assertEqual(self.master.grind('enable').returncode, 0)
-        command = self.grind('run', PAPER_JOB, environment=self.master.environment)
+        command = self.grind('run', PAPER_JOB, '--offsets-are-right', environment=self.master.environment)
         self.assertEqual(command.end(), 1)
         self.assertEqual(command.text, '/use_sim_time is set, but no time comes on /clock\n')
         self.assertRegex(self.master.grind('status').stdout, r'(?m)^state +ready$')

@@ -13,7 +13,7 @@
 namespace flute_grinder {
 
 /// Calls a service of the grinder, and prints why if it is refused or not answered.
-/// @param answer if given, gets the response of a call that succeeded.
+/// @param answer if given, gets the response, if there is one.
 /// @param patience for the answer. @param give_up ends the wait for it earlier. @return the exit status.
 template <typename Service>
 int call(
@@ -32,9 +32,8 @@ int call(
     return fail(service + ": no answer from the grinder " + nh.getNamespace() +
                 "; the request may or may not have been carried out");
   }
-  if (!response->success) return fail(response->message);
   if (answer) *answer = *response;
-  return 0;
+  return response->success ? 0 : fail(response->message);
 }
 
 }  // namespace flute_grinder

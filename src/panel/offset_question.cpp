@@ -1,25 +1,22 @@
 #include "flute_grinder/panel/offset_question.h"
 
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/panel/text_view.h"
 
 #include <QHBoxLayout>
-#include <QScrollArea>
 #include <QVBoxLayout>
 
 namespace flute_grinder {
 
-OffsetQuestion::OffsetQuestion(QWidget* parent) : QWidget(parent), text_(new QLabel), fit_(new QPushButton) {
+namespace {
+
+constexpr int kQuestionLines = 3;  ///< of the question that have room; the others are scrolled to
+
+}  // namespace
+
+OffsetQuestion::OffsetQuestion(QWidget* parent)
+    : QWidget(parent), text_(textView("offsets_to_set", kQuestionLines)), fit_(new QPushButton) {
   setObjectName("offset_question");
-  text_->setObjectName("offsets_to_set");
-  text_->setWordWrap(true);
-  text_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  // A long text must not make the panel grow.
-  auto* scrolled = new QScrollArea;
-  scrolled->setWidget(text_);
-  scrolled->setWidgetResizable(true);
-  scrolled->setFrameShape(QFrame::NoFrame);
-  scrolled->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
-  scrolled->setMinimumHeight(2 * fontMetrics().lineSpacing());
   fit_->setObjectName("fit_offsets");
   fit_->setToolTip("Computed from what they were set for: the wheel and the swivel are the same. Plans the job again");
   auto* right = new QPushButton("They are right");
@@ -32,7 +29,7 @@ OffsetQuestion::OffsetQuestion(QWidget* parent) : QWidget(parent), text_(new QLa
   for (QPushButton* button : {fit_, right, decline}) buttons->addWidget(button, 1);
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(scrolled, 1);
+  layout->addWidget(text_, 1);
   layout->addLayout(buttons);
   connect(fit_, &QPushButton::clicked, this, &OffsetQuestion::fitted);
   connect(right, &QPushButton::clicked, this, &OffsetQuestion::foundRight);
@@ -40,9 +37,11 @@ OffsetQuestion::OffsetQuestion(QWidget* parent) : QWidget(parent), text_(new QLa
 }
 
 void OffsetQuestion::ask(const std::vector<core::OffsetMisfit>& misfits) {
-  QString text = "Zero points are not of this job:";
-  for (const core::OffsetMisfit& misfit : misfits) text += "\n" + QString::fromStdString(misfit.reason) + ".";
-  text_->setText(text);
+  QString text;
+  for (const core::OffsetMisfit& misfit : misfits) {
+    text += (text.isEmpty() ? "" : "\n") + QString::fromStdString(misfit.reason) + ".";
+  }
+  showText(*text_, text, true);
   const QString axes = QString::fromStdString(computable(misfits));
   fit_->setText("Fit " + axes);
   fit_->setVisible(!axes.isEmpty());

@@ -71,10 +71,10 @@ TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
   panel.click("start");
   WAIT_FOR(asks());
-  EXPECT_NE(panel.label("offsets_to_set")
+  EXPECT_NE(panel.text("offsets_to_set")
                 .find("Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"),
             std::string::npos)
-      << panel.label("offsets_to_set");
+      << panel.text("offsets_to_set");
   panel.picture("offset_question");
   panel.click("decline_offsets");
   WAIT_FOR(!asks());
@@ -110,7 +110,7 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   panel.click("start");
   WAIT_FOR(asks());
   EXPECT_FALSE(panel.the<QPushButton>("fit_offsets").isVisible());
-  EXPECT_NE(panel.label("offsets_to_set").find("Y was never set"), std::string::npos);
+  EXPECT_NE(panel.text("offsets_to_set").find("Y was never set"), std::string::npos);
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!asks());

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/core/offset_fit.h"
 
-#include <QLabel>
+#include <QPlainTextEdit>
 #include <QPushButton>
 #include <QWidget>
 
@@ -26,7 +26,7 @@ class OffsetQuestion : public QWidget {
   void declined();
 
  private:
-  QLabel* text_;
+  QPlainTextEdit* text_;
   QPushButton* fit_;
 };
 

@@ -54,6 +54,7 @@ class TestMachine(CommandLine):
                 self.assertAlmostEqual(at[key] * unit, position, delta=2e-6)
         self.assertEqual(told, {
             'grinder': '/grinder', 'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
+            'zero_points': dict.fromkeys('xyza'),
             'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
             'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})

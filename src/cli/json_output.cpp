@@ -2,6 +2,7 @@
 
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <cstdio>
@@ -38,6 +39,16 @@ Json lastJobObject(const JobProgress& progress) {
           {"x_mm", progress.x / kMillimetre}};
 }
 
+/// What each was set for; null if it was never set.
+Json zeroPoints(const WorkOffsets& offsets) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < offsets.basis.size(); ++i) {
+    const bool set = !offsets.set_at[i].isZero();
+    json[std::string(1, "xyza"[i])] = set ? flute_grinder::toJson(fromMessage(offsets.basis[i])) : Json(nullptr);
+  }
+  return json;
+}
+
 Json toJson(const ClosestPlace& place) {
   return {{"bodies", {place.first, place.second}},
           {"distance_mm", place.distance / kMillimetre},
@@ -70,7 +81,7 @@ Json toJson(const JobPlan& plan) {
           {"odd_even_ripple", toJson(s.ripple_acceleration, "_s2")}};
 }
 
-Json toJson(const std::string& node, const GrinderState& state) {
+Json toJson(const std::string& node, const GrinderState& state, const WorkOffsets::ConstPtr& offsets) {
   const bool job = inJob(state);
   return {{"grinder", node},
           {"state", state.state_name},
@@ -84,6 +95,7 @@ Json toJson(const std::string& node, const GrinderState& state) {
           {"swivel_measured", state.swivel_measured != 0},
           {"machine", toJson(Axes(state.position.data()), "")},
           {"work", toJson(Axes(state.work_position.data()), "")},
+          {"zero_points", offsets ? zeroPoints(*offsets) : Json(nullptr)},
           {"feed_mm_min", state.feed / kMillimetrePerMinute},
           {"override_percent", state.override * 100},
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},

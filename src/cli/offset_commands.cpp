@@ -10,14 +10,26 @@ namespace flute_grinder {
 
 namespace {
 
+void addYes(CLI::App& command, bool& yes) {
+  command.add_flag("--yes", yes, "set it even if it changes by more than the parameter offset_change_limit");
+}
+
 void addOffsets(Commands& commands) {
   const auto options = std::make_shared<OffsetsOptions>();
   auto& command = commands.add(
       "offsets", "print the work offsets, with who set them and when, and the positions of the axes; or set them",
-      "--set y=45.2", Commands::online([&commands, options] { return runOffsets(commands.node, *options); }));
+      "--set y=45.2 --job jobs/paper.yaml",
+      Commands::online([&commands, options] { return runOffsets(commands.node, *options); }));
   command.add_option("--set", options->set, "set the offset of an axis, in mm or deg")
       ->type_name("AXIS=VALUE")
       ->check(offsetRefusal);
+  command.add_option("--job", options->job, "with --set: job for which it is set; y and z need it")
+      ->type_name(kYamlFile);
+  command
+      .add_option("--fit", options->fit,
+                  "fit Y and Z to this job, of the same wheel and swivel as the job for which they were set")
+      ->type_name(kYamlFile);
+  addYes(command, options->yes);
   addJson(command, options->json);
 }
 
@@ -34,7 +46,8 @@ void addTouchOff(Commands& commands) {
       ->check([](const std::string& text) {
         return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; allowed: a finite number";
       });
-  command.add_option("--job", options->job, "y: job to be ground")->type_name(kYamlFile);
+  command.add_option("--job", options->job, "job to be ground; y and z need it")->type_name(kYamlFile);
+  addYes(command, options->yes);
 }
 
 void addProbe(Commands& commands) {

@@ -2,20 +2,19 @@
 
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/cli/call.h"
 #include "flute_grinder/cli/json_output.h"
+#include "flute_grinder/cli/offset_watch.h"
 #include "flute_grinder/cli/time_text.h"
 #include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
-#include "flute_grinder/core/work_offsets.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/messages/offset_basis.h"
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <mutex>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -30,28 +29,28 @@ int axisOf(const std::string& text) {
 
 double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
 
-/// Receives the work offsets.
-class OffsetWatch {
- public:
-  explicit OffsetWatch(ros::NodeHandle& nh) {
-    const boost::function<void(const WorkOffsets::ConstPtr&)> on_offsets =
-        [this](const WorkOffsets::ConstPtr& offsets) {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          newest_ = offsets;
-        };
-    subscriber_ = nh.subscribe<WorkOffsets>("offsets", 10, on_offsets);
+/// Whether Y and Z have a job, on which their zero points depend. @throw std::invalid_argument if not.
+void requireJob(int axis, const std::string& job, const std::string& command) {
+  if ((axis == kY || axis == kZ) && job.empty()) {
+    throw std::invalid_argument(command +
+                                " needs --job JOB: where Y and Z are 0 depends on its diameter, height and wheel");
   }
-  /// Null before the first.
-  WorkOffsets::ConstPtr newest() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return newest_;
-  }
+}
 
- private:
-  mutable std::mutex mutex_;
-  WorkOffsets::ConstPtr newest_;
-  ros::Subscriber subscriber_;
-};
+/// What an offset is set for. @param job file, or empty for no particular one. @throw JobFileError
+core::OffsetBasis basisFor(const std::string& job, OffsetMethod method) {
+  if (!job.empty()) return basisOf(goalFromFile(job), method);
+  core::OffsetBasis basis;
+  basis.method = method;
+  return basis;
+}
+
+/// @param response of a call that failed with this status, or did not. @return the status.
+template <typename Response>
+int withHint(int status, const Response& response) {
+  if (status != 0 && response.large_change) std::fprintf(stderr, "--yes sets it all the same\n");
+  return status;
+}
 
 /// @param node resolved name.
 Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
@@ -65,13 +64,15 @@ Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderSt
         {"machine" + unit, toShop(axis, state.position[i])},
         {"work" + unit, toShop(axis, state.work_position[i])},
         {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
-        {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)}};
+        {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)},
+        {"set_for", flute_grinder::toJson(fromMessage(offsets.basis[i]))}};
   }
   return {{"grinder", node}, {"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }
 
 /// @param node resolved name.
 void printTable(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
+  const core::WorkOffsets all = fromMessage(offsets);
   std::printf("work offsets of %s\n", node.c_str());
   std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
   for (int axis = 0; axis < kAxisCount; ++axis) {
@@ -81,7 +82,8 @@ void printTable(const std::string& node, const WorkOffsets& offsets, const Grind
     if (offsets.set_at[i].isZero()) {
       std::printf("  never set\n");
     } else {
-      std::printf("  set by %s, %s\n", offsets.set_by[i].c_str(), timeText(offsets.set_at[i].toSec(), false).c_str());
+      std::printf("  set by %s, %s; %s\n", offsets.set_by[i].c_str(),
+                  timeText(offsets.set_at[i].toSec(), false).c_str(), core::basisText(axis, all.axes[i]).c_str());
     }
   }
   if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");
@@ -110,14 +112,37 @@ int show(ros::NodeHandle& nh, bool json) {
   return 0;
 }
 
+/// Fits the offsets to a job that can be computed from what they were set for.
+/// @return the exit status; 1 if an offset must be set anew.
+int fit(ros::NodeHandle& nh, const std::string& job) {
+  const GrindGoal goal = goalFromFile(job);
+  const std::optional<WorkOffsets> message = workOffsets(nh);
+  if (!message) return noGrinder(nh);
+  const core::WorkOffsets offsets = fromMessage(*message);
+  int status = 0;
+  for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
+    const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
+    if (!misfit.change) {
+      status = fail(misfit.reason + "; set it anew");
+    } else if (const int refused =
+                   setWorkOffset(nh, misfit.axis, was.value + *misfit.change, basisOf(goal, was.basis.method), true)) {
+      return refused;
+    }
+  }
+  return status;
+}
+
 }  // namespace
 
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value) {
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::OffsetBasis& basis, bool large_change_ok) {
   SetOffset::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.value = value;
   request.set_by = userAtHost();
-  return call<SetOffset>(nh, "set_offset", request);
+  request.basis = toMessage(basis);
+  request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
+  SetOffset::Response response;
+  return withHint(call<SetOffset>(nh, "set_offset", request, &response), response);
 }
 
 std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh) {
@@ -135,27 +160,31 @@ std::string offsetRefusal(const std::string& argument) {
 }
 
 int runOffsets(const std::string& node, const OffsetsOptions& options) {
+  for (const std::string& argument : options.set) requireJob(axisOf(argument), options.job, "--set " + argument);
+  const core::OffsetBasis basis = basisFor(options.job, OffsetMethod::kByHand);
   ros::NodeHandle nh(node);
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
     const double value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
-    if (const int status = setWorkOffset(nh, axis, value)) return status;
+    if (const int status = setWorkOffset(nh, axis, value, basis, options.yes)) return status;
   }
-  return show(nh, options.json);
+  const int fitted = options.fit.empty() ? 0 : fit(nh, options.fit);
+  const int shown = show(nh, options.json);
+  return fitted != 0 ? fitted : shown;
 }
 
 int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   const int axis = axisOf(options.axis);
-  if (axis == kY && !(options.at && !options.job.empty())) {
-    throw std::invalid_argument(
-        "touch-off y needs --at DIAMETER, of the blank that the wheel touches, and --job JOB, for which Y = 0 is where "
-        "the wheel touches the small end");
+  requireJob(axis, options.job, "touch-off " + options.axis);
+  if (axis == kY && !options.at) {
+    throw std::invalid_argument("touch-off y needs --at DIAMETER, of the blank that the wheel touches");
   }
-  if (axis != kY && !options.job.empty()) throw std::invalid_argument("--job; allowed: for y alone");
   TouchOff::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
   request.set_by = userAtHost();
+  request.basis = toMessage(basisFor(options.job, OffsetMethod::kTouchOff));
+  request.large_change_ok = static_cast<std::uint8_t>(options.yes);
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job);
@@ -166,7 +195,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     request.position = touchY(job, request.position);
   }
   TouchOff::Response response;
-  if (const int status = call<TouchOff>(nh, "touch_off", request, &response)) return status;
+  const int status = withHint(call<TouchOff>(nh, "touch_off", request, &response), response);
+  if (status != 0) return status;
   const auto shown = [&](double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop, 9); };
   std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis, UnitSystem::kShop).c_str(),
               shown(response.value).c_str(), shown(request.position).c_str());

@@ -7,12 +7,14 @@
 #include "flute_grinder/cli/interrupt.h"
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/cli/last_job.h"
+#include "flute_grinder/cli/offset_watch.h"
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/cli/stop_keys.h"
 #include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <actionlib_msgs/GoalID.h>
@@ -32,9 +34,10 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kSettling(1);    ///< longest time for an axis to stand still after a jog
-const ros::WallDuration kQuiet(1);       ///< without a word, while the ROS master does not answer
-constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
+const ros::WallDuration kSettling(1);        ///< longest time for an axis to stand still after a jog
+const ros::WallDuration kQuiet(1);           ///< without a word, while the ROS master does not answer
+const ros::WallDuration kOffsetPatience(1);  ///< with the work offsets, once the state is known
+constexpr double kJogTolerance = 10e-6;      ///< within which a jog has reached its end [m], A [rad]
 
 /// Whether there is something to cancel.
 bool takesCancel(const GrinderState& state) {
@@ -69,8 +72,17 @@ std::string swivelText(const GrinderState& state) {
          (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
-/// @param node resolved name.
-void printState(const std::string& node, const GrinderState& state) {
+/// What the work offsets were set for. @param offsets null if they are not known.
+void printZeroPoints(const WorkOffsets::ConstPtr& offsets) {
+  const core::WorkOffsets all = offsets ? fromMessage(*offsets) : core::WorkOffsets();
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string basis = core::basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
+    std::printf("zero point %c    %s\n", "XYZA"[axis], offsets ? basis.c_str() : "not known");
+  }
+}
+
+/// @param node resolved name. @param offsets null if they are not known.
+void printState(const std::string& node, const GrinderState& state, const WorkOffsets::ConstPtr& offsets) {
   std::printf("grinder         %s\n", node.c_str());
   std::printf("state           %s\n", state.state_name.c_str());
   std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
@@ -82,6 +94,7 @@ void printState(const std::string& node, const GrinderState& state) {
   std::printf("swivel          %s\n", swivelText(state).c_str());
   printPosition("work position", state.work_position);
   printPosition("of the machine", state.position);
+  printZeroPoints(offsets);
   std::printf("feed            %.1f mm/min, override %.0f %%\n", state.feed / units::kMillimetrePerMinute,
               state.override * 100);
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
@@ -143,11 +156,14 @@ void leaveRos() {
 int printStatus(const std::string& node, bool json) {
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);
+  const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
+  // The state counts more than they do.
+  await(kOffsetPatience, [&] { return offsets.newest() != nullptr; });
   if (json) {
-    print(toJson(nh.getNamespace(), watch.newest()));
+    print(toJson(nh.getNamespace(), watch.newest(), offsets.newest()));
   } else {
-    printState(nh.getNamespace(), watch.newest());
+    printState(nh.getNamespace(), watch.newest(), offsets.newest());
   }
   return 0;
 }

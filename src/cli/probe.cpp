@@ -12,6 +12,7 @@
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/messages/offset_basis.h"
 
 #include <std_msgs/Header.h>
 
@@ -107,10 +108,11 @@ class ProbedMachine {
     if (!(std::abs(state().position[kA] - end) <= kTurned)) throw Failed{fail("A was stopped before its end")};
   }
 
-  /// @throw Failed
-  void setOffset(int axis, double value) {
+  /// @param job file, for which it is set. @throw Failed
+  void setOffset(int axis, double value, const std::string& job) {
     checkStop();
-    if (const int status = setWorkOffset(nh_, axis, value)) throw Failed{status};
+    const core::OffsetBasis basis = basisOf(goalFromFile(job), OffsetMethod::kProbe);
+    if (const int status = setWorkOffset(nh_, axis, value, basis, true)) throw Failed{status};
     std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis],
                 text({value, unitOf(axis, 0)}, UnitSystem::kShop, 9).c_str());
   }
@@ -167,7 +169,7 @@ int probeEndFace(const std::string& node, const ProbeOptions& options) {
       throw Failed{fail("stick-out = " + shown(stickout) + "; allowed: the flutes' length or more, " +
                         shown(job.cutter.flute_length))};
     }
-    machine.setOffset(kX, workZero(machine.geometry(), job, {flange, stickout}).x());
+    machine.setOffset(kX, workZero(machine.geometry(), job, {flange, stickout}).x(), options.job);
   });
 }
 
@@ -193,7 +195,7 @@ int probeDiameter(const std::string& node, const ProbeOptions& options) {
     if (!job) return;
     // By how much the machine's Y is off, as this diameter shows.
     const double off = (diameter - *options.at_mm * kMillimetre) / 2;
-    machine.setOffset(kY, workZero(machine.geometry(), *job, {}).y() + off);
+    machine.setOffset(kY, workZero(machine.geometry(), *job, {}).y() + off, options.job);
   });
 }
 
@@ -213,7 +215,8 @@ int probeTooth(const std::string& node, const ProbeOptions& options) {
     ball.x() -= offsets->values[kX] + wheelCentre(machine.geometry(), job.process, flange).x();
     printTouch("tooth 1", touch.position, touch.spread, kA);
     try {
-      machine.setOffset(kA, touch.position - rakeTouchAngle(job, ball, machine.geometry().probe->diameter));
+      const double first_tooth = rakeTouchAngle(job, ball, machine.geometry().probe->diameter);
+      machine.setOffset(kA, touch.position - first_tooth, options.job);
     } catch (const core::ReasonError& error) {
       throw Failed{fail(core::text(error.reason(), UnitSystem::kShop))};
     }

@@ -8,15 +8,14 @@
 #include "flute_grinder/cli/recorder.h"
 #include "flute_grinder/cli/state_watch.h"
 #include "flute_grinder/cli/stop_keys.h"
-#include "flute_grinder/core/job_file.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <actionlib/client/simple_action_client.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -129,6 +128,9 @@ void printStream(const Recorder& recorder, std::uint64_t written) {
 int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder) {
   const GrindResultConstPtr result = goal.result();
   if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
+  if (result) {
+    for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
   printStream(recorder, result ? result->setpoints_written : 0);
   if (!connected) return fail(kLinkLost);
   if (!result) return fail("the grinder no longer knows the job: it has been restarted");
@@ -169,18 +171,19 @@ int closeRecord(Recorder& recorder, const std::string& csv, int status) {
   return status;
 }
 
-GrindGoal goalFor(const GrindJob& job, const RunOptions& options) {
-  GrindGoal goal = goalFromJob(job);
+GrindGoal goalFor(const RunOptions& options) {
+  GrindGoal goal = goalFromFile(options.job);
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;
-  goal.job_name = std::filesystem::path(options.job).filename();
+  goal.offsets_are_right = options.offsets_are_right;
   return goal;
 }
 
 }  // namespace
 
 int runJob(const std::string& node, const RunOptions& options) {
-  const GrindJob job = readJobFile(options.job);
+  GrindGoal goal = goalFor(options);
+  const GrindJob job = jobFromGoal(goal);
   ros::NodeHandle nh(node);
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);
@@ -191,7 +194,6 @@ int runJob(const std::string& node, const RunOptions& options) {
              [&] { return watch.begun() && client.isServerConnected() && recorder.connected() && keys.connected(); })) {
     return noGrinder(nh);
   }
-  GrindGoal goal = goalFor(job, options);
   if (options.go_on) {
     const std::string refusal = continueFrom(watch.newest().progress, job, goal);
     if (!refusal.empty()) return fail(refusal);

@@ -9,6 +9,7 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/core/wheel_file.h"
+#include "flute_grinder/messages/offset_basis.h"
 
 #include <cstdio>
 #include <stdexcept>
@@ -69,8 +70,9 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!await(kPatience, [&] { return nh.hasParam("geometry"); })) return noGrinder(nh);
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometryOf(nh));
   if (!zero) return 1;
+  const core::OffsetBasis basis = basisOf(goalFromFile(options.job), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
-    if (const int status = setWorkOffset(nh, axis, (*zero)[axis])) return status;
+    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, true)) return status;
   }
   printZero(*zero, options.json);
   return 0;

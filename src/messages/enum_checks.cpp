@@ -6,6 +6,7 @@
 #include "flute_grinder/core/grind_job.h"
 #include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/core/work_offsets.h"
 #include "message_texts.h"
 
 #include <string_view>
@@ -72,6 +73,7 @@ constexpr bool has(std::string_view text) {
 static_assert(has<EvenStepRule>(message_text::kInterpolation));
 static_assert(has<CutDirection>(message_text::kCutter));
 static_assert(has<GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(message_text::kProcess));
+static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<MachineState>(message_text::kGrinderState));
 static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
 static_assert(PathStatistics::_move_duration_type::static_size == kMoveKindCount, "PathStatistics.move_duration");

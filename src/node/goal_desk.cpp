@@ -2,6 +2,7 @@
 
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/node/plain_name.h"
 
@@ -122,10 +123,18 @@ std::optional<core::Reason> GoalDesk::swivelRefusal(const GrindJob& job) const {
   return reasonOf(swivel, job.process.setup_swivel);
 }
 
-std::string GoalDesk::offsetRefusal(const GrindGoal& goal, const std::string& digest, const Axes& offset) const {
+std::string GoalDesk::offsetRefusal(const GrindGoal& goal, const std::string& digest,
+                                    const core::WorkOffsets& offsets) const {
   std::string unknown = offsets_.unknown();
-  if (!unknown.empty() || goal.dry_run || goal.discard) return unknown;
-  return tracker_.offsetRefusal(digest, offset);
+  if (!unknown.empty() || goal.dry_run) return unknown;
+  if (!goal.discard) {
+    std::string changed = tracker_.offsetRefusal(digest, offsets.values());
+    // A job goes on with what it began with, whatever was said then.
+    if (!changed.empty() || tracker_.continues(digest, offsets.values())) return changed;
+  }
+  if (goal.offsets_are_right) return "";
+  const std::string misfit = text(misfits(offsets, goal));
+  return misfit.empty() ? "" : misfit + "; set them for this job, or start it with --offsets-are-right";
 }
 
 void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
@@ -139,8 +148,9 @@ void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, cons
   }
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request;
-  request.offset = offsets_.offsets().values();
-  const std::string refused = offsetRefusal(*handle.getGoal(), digest, request.offset);
+  const core::WorkOffsets offsets = offsets_.offsets();
+  request.offset = offsets.values();
+  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, GrindResult::NOT_READY, refused);
@@ -157,7 +167,7 @@ void GoalDesk::startPlanning(const GoalHandle& handle, const GrindJob& job, cons
     gate_.close();
     return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
   }
-  goal_ = Goal{handle, digest, control};
+  goal_ = Goal{handle, digest, offsets, control};
   busy_ = true;
   thread_.setPeriod(kPollPeriod);
   publishPlanningFeedback();
@@ -178,11 +188,16 @@ void GoalDesk::onPlanned(std::shared_ptr<Preview> preview) {
     return reject(handle, result(errorCode(plan.fault), plan.reasons));
   }
   if (handle.getGoal()->dry_run) {
+    const std::vector<std::string> warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
     handle.setAccepted();
     release();
     telemetry_.show(preview);
-    return handle.setSucceeded(result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics));
+    GrindResult checked = result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
+    checked.warnings = warnings;
+    return handle.setSucceeded(checked);
   }
+  preview->offsets = goal_->offsets;
+  preview->offsets_are_right = handle.getGoal()->offsets_are_right != 0;
   startJob(std::move(preview));
 }
 

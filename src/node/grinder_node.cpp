@@ -70,6 +70,11 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   const auto history_limit = static_cast<std::uint64_t>(parameters.number("history_limit", 0, kLargestHistory));
   history_ = std::make_unique<History>(filePath(parameters.text("history"), name, "/"), history_limit);
+  Axes offset_change_limit;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    offset_change_limit[axis] = parameters.number("offset_change_limit/" + joint, 0, 2 * kLargestOffset);
+  }
   loadDrive(parameters);
   const MachineInfo machine = machineInfo(config, parameters.text("hardware/type"));
   machine_ = publishMachine(private_nh_, machine);
@@ -82,7 +87,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   stopAxesOnCrash(*loop_);
   telemetry_->start();
   requests_ = std::make_unique<RequestDesk>(private_nh_, *loop_, gate_);
-  offset_desk_ = std::make_unique<OffsetDesk>(private_nh_, *loop_, gate_, *offsets_);
+  offset_desk_ = std::make_unique<OffsetDesk>(private_nh_, *loop_, gate_, *offsets_,
+                                              offsetLimits(config.machine.limits, offset_change_limit));
   probes_ = std::make_unique<ProbeDesk>(private_nh_, *loop_, gate_);
   plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
   goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);

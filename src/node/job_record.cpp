@@ -3,6 +3,7 @@
 #include "flute_grinder/core/record_name.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/node/cycle_figures.h"
 
 #include <algorithm>
@@ -130,6 +131,23 @@ Json JobRecord::jobJson() const {
   return {{"name", name_}, {"digest", jobDigest(job)}, {"file", flute_grinder::toJson(job)}};
 }
 
+void JobRecord::setZeroPoints(const core::WorkOffsets& offsets, bool said_right) {
+  offsets_ = offsets;
+  offsets_said_right_ = said_right;
+}
+
+Json JobRecord::zeroPointsJson() const {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < offsets_.axes.size(); ++i) {
+    const core::WorkOffset& offset = offsets_.axes[i];
+    json[std::string(1, "xyza"[i])] = {{"set_by", offset.wasSet() ? Json(offset.set_by) : Json(nullptr)},
+                                       {"set_at", offset.wasSet() ? Json(utcText(offset.set_at)) : Json(nullptr)},
+                                       {"set_for", flute_grinder::toJson(offset.basis)}};
+  }
+  json["said_right"] = offsets_said_right_;
+  return json;
+}
+
 Json JobRecord::strokesJson() const {
   Json list = Json::array();
   for (const Stroke& stroke : strokes_) {
@@ -171,6 +189,7 @@ Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) con
               {"reason", conclusion_.reason},
               {"first", placed(Json::object(), first_)},
               {"work_offsets", flute_grinder::toJson(program_->machine().work_offset, "")},
+              {"zero_points", zeroPointsJson()},
               {"planned",
                {{"setpoints", planned_.setpoints},
                 {"duration_s", planned_.duration},

@@ -13,8 +13,10 @@ JobRecorder::~JobRecorder() {
   for (const auto& entry : jobs_) keep(entry.second.record);
 }
 
-void JobRecorder::announce(std::uint64_t number, const JobPlan& plan, const ToothPass& first, const std::string& name) {
-  jobs_[number].record = std::make_shared<JobRecord>(plan, first, name);
+void JobRecorder::announce(std::uint64_t number, const Preview& job, const std::string& name) {
+  const auto record = std::make_shared<JobRecord>(job.plan, job.first, name);
+  record->setZeroPoints(job.offsets, job.offsets_are_right);
+  jobs_[number].record = record;
 }
 
 void JobRecorder::end(std::uint64_t number) {

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 namespace flute_grinder {
@@ -12,15 +13,39 @@ namespace {
 
 constexpr double kLatest = 4e9;  ///< time that a ROS message can hold [s]
 
+OffsetMethod methodOf(const std::string& key, const std::string& name) {
+  const auto method = valueOf<OffsetMethod>(name);
+  requireAllowed(method.has_value(), key, name, namesOf<OffsetMethod>());
+  return *method;
+}
+
+/// Calls visit(key, value) for every field of what an offset was set for.
+template <typename AnyBasis, typename Visit>
+void visitBasis(AnyBasis& basis, const std::string& joint, const Visit& visit) {
+  std::string method = toString(basis.method);
+  visit(joint + "_method", method);
+  if constexpr (!std::is_const_v<AnyBasis>) basis.method = methodOf(joint + "_method", method);
+  visit(joint + "_job", basis.job_name);
+  visit(joint + "_wheel", basis.wheel_name);
+  visit(joint + "_wheel_digest", basis.wheel_digest);
+  visit(joint + "_end_diameter_m", basis.end_diameter);
+  visit(joint + "_wheel_diameter_m", basis.wheel_diameter);
+  visit(joint + "_wheel_width_m", basis.wheel_width);
+  visit(joint + "_swivel_rad", basis.swivel);
+  visit(joint + "_height_m", basis.height);
+}
+
 /// Calls visit(key, value) for every field of the file.
+/// @param with_basis whether the file has what the offsets were set for; older ones have not.
 template <typename AnyOffsets, typename Visit>
-void visitOffsets(AnyOffsets& offsets, const Visit& visit) {
+void visitOffsets(AnyOffsets& offsets, bool with_basis, const Visit& visit) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     auto& offset = offsets.axes[static_cast<std::size_t>(axis)];
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
     visit(joint + "_" + axisUnit(axis), offset.value);
     visit(joint + "_set_by", offset.set_by);
     visit(joint + "_set_at", offset.set_at);
+    if (with_basis) visitBasis(offset.basis, joint, visit);
   }
 }
 
@@ -33,18 +58,24 @@ void requireSound(const core::WorkOffsets& offsets) {
     requireAllowed(!isKnown(offset) || std::abs(offset.value) <= kLargestOffset, joint + "_" + axisUnit(axis),
                    offset.value, "-1000 to 1000");
     requireAllowed(offset.set_at >= 0 && offset.set_at <= kLatest, joint + "_set_at", offset.set_at, "0 to 4e9");
+    visitBasis(offset.basis, joint, [](const std::string& key, const auto& value) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {
+        requireAllowed(std::isfinite(value), key, value, "a finite number");
+      }
+    });
   }
 }
 
 std::string offsetsText(const core::WorkOffsets& offsets) {
   requireSound(offsets);
   return toYaml("The grinder's work offsets: machine position - work position; .nan is unknown.",
-                [&](const auto& visit) { visitOffsets(offsets, visit); });
+                [&](const auto& visit) { visitOffsets(offsets, true, visit); });
 }
 
 core::WorkOffsets offsetsFromText(const std::string& text) {
   core::WorkOffsets offsets;
-  fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, visit); });
+  const bool with_basis = text.find("\naxis_x_method: ") != std::string::npos;
+  fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, with_basis, visit); });
   requireSound(offsets);
   return offsets;
 }

@@ -1,6 +1,7 @@
 #include "flute_grinder/node/plan_desk.h"
 
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <future>
@@ -45,7 +46,8 @@ bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
   auto answer = promise.get_future();
   Planner::Request plan_request;
   plan_request.job = jobFromGoal(request.goal);
-  plan_request.offset = offsets_.offsets().values();
+  const core::WorkOffsets offsets = offsets_.offsets();
+  plan_request.offset = offsets.values();
   plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
   plan_request.control = control_;
@@ -69,6 +71,7 @@ bool PlanDesk::onPlan(Plan::Request& request, Plan::Response& response) {
     response.closest_distance = plan.closest->distance;
     response.closest_x = plan.closest->axes[kX];
   }
+  response.warnings = offsetWarnings(offsets, request.goal);
   response.violations = toMessage(plan.reasons);
   for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
   if (plan.good()) telemetry_.show(preview);

@@ -38,6 +38,18 @@ std::string ProgressTracker::refusal(const std::string& digest, const ToothPass&
 
 std::string ProgressTracker::offsetRefusal(const std::string& digest, const Axes& offset) const {
   if (progress_.finished || digest != progress_.job_digest) return "";
+  const std::string changes = offsetChanges(offset);
+  if (changes.empty()) return "";
+  return "the job is not finished, and it began with other work offsets" + changes +
+         "; set them as they were, or discard the job";
+}
+
+bool ProgressTracker::continues(const std::string& digest, const Axes& offset) const {
+  return !progress_.finished && digest == progress_.job_digest && offsetChanges(offset).empty();
+}
+
+/// For the operator; empty if they are those of the last entry.
+std::string ProgressTracker::offsetChanges(const Axes& offset) const {
   std::string changes;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     if (std::abs(offset[axis] - progress_.offset[axis]) <= (axis == kA ? kSameAngle : kSameOffset)) continue;
@@ -45,9 +57,7 @@ std::string ProgressTracker::offsetRefusal(const std::string& digest, const Axes
     changes += "; that of " + axisName(axis, UnitSystem::kShop) + " was " + shown(progress_.offset[axis]) + " and is " +
                shown(offset[axis]);
   }
-  if (changes.empty()) return "";
-  return "the job is not finished, and it began with other work offsets" + changes +
-         "; set them as they were, or discard the job";
+  return changes;
 }
 
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,

@@ -95,7 +95,7 @@ void Telemetry::announceJob(std::uint64_t number, const actionlib_msgs::GoalID& 
                             std::shared_ptr<const Preview> preview, const std::string& name) {
   thread_.post([this, number, goal, preview = std::move(preview), name] {
     jobs_.push_back({number, goal, preview});
-    recorder_.announce(number, preview->plan, preview->first, name);
+    recorder_.announce(number, *preview, name);
   });
 }
 

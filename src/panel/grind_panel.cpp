@@ -2,6 +2,7 @@
 
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
@@ -95,6 +96,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
   connect(job_, &JobBox::swivelConfirmed, this, &GrindPanel::confirmSwivel);
+  connect(job_, &JobBox::offsetFitWanted, this, &GrindPanel::fitOffsets);
   connect(job_, &JobBox::startDelayed, this, [this] { tabs_->setCurrentWidget(job_); });
   connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
   connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
@@ -259,7 +261,7 @@ void GrindPanel::refresh() {
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
-  job_->refresh(view.state, idle && master == Master::kAnswers);
+  job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   jog_->refresh(view.state, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);
@@ -390,21 +392,49 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
   });
 }
 
-void GrindPanel::touchOff(int axis, double at) {
+void GrindPanel::touchOff(int axis, double at, bool confirmed) {
   try {
+    const core::OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
-    link_->touchOff(axis, position, [this](const std::string& refusal) {
+    link_->touchOff(axis, position, basis, confirmed, [this](const std::string& refusal, bool large_change) {
       if (!refusal.empty()) showMessage(refusal);
+      if (large_change) touch_off_->askToConfirm();
     });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());
   }
 }
 
-double GrindPanel::touchedY(double diameter) const {
-  if (job_->file().isEmpty()) {
+/// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be told.
+core::OffsetBasis GrindPanel::touchedFor(int axis) const {
+  core::OffsetBasis basis;
+  basis.method = OffsetMethod::kTouchOff;
+  if (!job_->file().isEmpty()) return basisOf(goalFromFile(job_->file().toStdString()), basis.method);
+  if (axis == kY) {
     throw std::invalid_argument("Y is 0 where the wheel touches the small end of a job's cutter; open the job first");
   }
+  if (axis == kZ) throw std::invalid_argument("Z is 0 at the height of a job's set-up; open the job first");
+  return basis;
+}
+
+void GrindPanel::fitOffsets(const GrindGoal& goal) {
+  const auto message = link_->view().offsets;
+  if (!message) return;
+  const core::WorkOffsets offsets = fromMessage(*message);
+  auto left = std::make_shared<int>(0);
+  for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
+    if (!misfit.change) continue;
+    const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
+    ++*left;
+    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, was.basis.method),
+                     [this, left](const std::string& refusal) {
+                       if (!refusal.empty()) showMessage(refusal);
+                       if (--*left == 0) job_->planAnew();
+                     });
+  }
+}
+
+double GrindPanel::touchedY(double diameter) const {
   const GrindJob job = readJobFile(job_->file().toStdString());
   const auto state = link_->view().state;
   if (!state) throw std::invalid_argument("no position comes from the grinder");

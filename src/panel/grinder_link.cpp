@@ -5,9 +5,11 @@
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/SetOffset.h"
 #include "flute_grinder/Stop.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/connection/user_at_host.h"
+#include "flute_grinder/messages/offset_basis.h"
 
 #include <std_srvs/Trigger.h>
 
@@ -190,14 +192,30 @@ void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
                       });
 }
 
-void GrinderLink::touchOff(int axis, double position, const OnAnswer& on_answer) {
+void GrinderLink::touchOff(int axis, double position, const core::OffsetBasis& basis, bool large_change_ok,
+                           const std::function<void(const std::string& refusal, bool large_change)>& on_answer) {
   TouchOff::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.position = position;
   request.set_by = userAtHost();
+  request.basis = toMessage(basis);
+  request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
   call<TouchOff>("touch_off", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
-    if (!response) return on_answer("touch-off: " + silence);
-    on_answer(response->success ? "" : "touch-off: " + response->message);
+    if (!response) return on_answer("touch-off: " + silence, false);
+    on_answer(response->success ? "" : "touch-off: " + response->message, response->large_change != 0);
+  });
+}
+
+void GrinderLink::setOffset(int axis, double value, const core::OffsetBasis& basis, const OnAnswer& on_answer) {
+  SetOffset::Request request;
+  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.value = value;
+  request.set_by = userAtHost();
+  request.basis = toMessage(basis);
+  request.large_change_ok = 1;
+  call<SetOffset>("set_offset", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
+    if (!response) return on_answer("set-offset: " + silence);
+    on_answer(response->success ? "" : "set-offset: " + response->message);
   });
 }
 

@@ -3,6 +3,7 @@
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/setup_dialog.h"
 #include "flute_grinder/panel/text_view.h"
@@ -37,16 +38,20 @@ JobBox::JobBox(QWidget* parent)
       choose_(button("choose", "Open...", "Choose a job file")),
       setup_(button("setup", "Set up...", "Find out how to set the wheel for the job's rake and core")),
       continue_(new QCheckBox(kContinue)),
+      zeros_(new QLabel),
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
       verdict_(textView("verdict", 4)),
       question_(new DiscardQuestion),
+      offset_question_(new OffsetQuestion),
       swivel_question_(new SwivelQuestion),
       answer_(new QStackedWidget) {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
+  zeros_->setObjectName("zero_points");
+  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);
@@ -59,8 +64,10 @@ JobBox::JobBox(QWidget* parent)
   layout->addLayout(file);
   layout->addWidget(continue_);
   layout->addLayout(plan);
+  layout->addWidget(zeros_);
   answer_->addWidget(verdict_);
   answer_->addWidget(question_);
+  answer_->addWidget(offset_question_);
   answer_->addWidget(swivel_question_);
   layout->addWidget(answer_);
 
@@ -73,8 +80,17 @@ JobBox::JobBox(QWidget* parent)
   connect(dry_run_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
   });
-  connect(question_, &DiscardQuestion::discarded, this, [this] { askForSwivel(true); });
+  connect(question_, &DiscardQuestion::discarded, this, [this] { askForOffsets(true); });
   connect(question_, &DiscardQuestion::kept, this, &JobBox::keepUnfinished);
+  connect(offset_question_, &OffsetQuestion::fitted, this, [this] {
+    answer_->setCurrentWidget(verdict_);
+    if (planned_) Q_EMIT offsetFitWanted(*planned_);
+  });
+  connect(offset_question_, &OffsetQuestion::foundRight, this, [this] {
+    offsets_are_right_ = true;
+    askForSwivel();
+  });
+  connect(offset_question_, &OffsetQuestion::declined, this, [this] { answer_->setCurrentWidget(verdict_); });
   connect(swivel_question_, &SwivelQuestion::confirmed, this, [this](double angle) {
     answer_->setCurrentWidget(verdict_);
     Q_EMIT swivelConfirmed(angle);
@@ -122,6 +138,7 @@ void JobBox::setFile(const QString& file) {
 void JobBox::read() {
   try {
     job_ = std::make_shared<const GrindJob>(readJobFile(file_.toStdString()));
+    wheel_ = QFileInfo(QString::fromStdString(wheelFileOf(file_.toStdString()))).fileName().toStdString();
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -139,6 +156,7 @@ void JobBox::discardPlan() {
 GrindGoal JobBox::goal() const {
   GrindGoal goal = goalFromJob(*job_);
   goal.job_name = QFileInfo(file_).fileName().toStdString();
+  goal.wheel_name = wheel_;
   return goal;
 }
 
@@ -165,14 +183,30 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
 
 void JobBox::start() {
   if (!planned_) return;
-  if (!discardsUnfinished(*planned_, progress_)) return askForSwivel(false);
+  if (!discardsUnfinished(*planned_, progress_)) return askForOffsets(false);
   question_->ask(progress_, where_left_.has_value());
   answer_->setCurrentWidget(question_);
   Q_EMIT startDelayed();
 }
 
-void JobBox::askForSwivel(bool discard) {
+void JobBox::askForOffsets(bool discard) {
   discard_ = discard;
+  offsets_are_right_ = false;
+  const auto misfits = offsetMisfits();
+  if (misfits.empty()) return askForSwivel();
+  offset_question_->ask(misfits);
+  answer_->setCurrentWidget(offset_question_);
+  Q_EMIT startDelayed();
+}
+
+/// Those of the job as it would be started now. One that is continued needs those with which it began, which the
+/// grinder knows.
+std::vector<core::OffsetMisfit> JobBox::offsetMisfits() const {
+  if (!job_ || !offsets_ || continue_->isChecked()) return {};
+  return misfits(*offsets_, goal());
+}
+
+void JobBox::askForSwivel() {
   if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
   swivel_question_->ask(planned_->process.setup_swivel);
   answer_->setCurrentWidget(swivel_question_);
@@ -187,6 +221,7 @@ void JobBox::startConfirmed() {
     return;
   }
   goal->discard = static_cast<std::uint8_t>(discard_);
+  goal->offsets_are_right = static_cast<std::uint8_t>(offsets_are_right_);
   Q_EMIT startWanted(*goal);
 }
 
@@ -194,6 +229,10 @@ void JobBox::keepUnfinished() {
   answer_->setCurrentWidget(verdict_);
   if (!where_left_) return;
   continue_->setChecked(true);
+  planAnew();
+}
+
+void JobBox::planAnew() {
   if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
 }
 
@@ -206,7 +245,10 @@ std::optional<GrindGoal> JobBox::takePlanned() {
   return std::nullopt;
 }
 
-void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
+void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
+  offsets_.reset();
+  if (offsets) offsets_ = fromMessage(*offsets);
+  showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
   if (!idle || !asksWithReason()) answer_->setCurrentWidget(verdict_);
@@ -220,8 +262,30 @@ void JobBox::refresh(const std::optional<GrinderState>& state, bool idle) {
 /// Whether the question shown, if there is one, still has to be answered.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
+  if (answer_->currentWidget() == offset_question_) return !offsetMisfits().empty();
   if (answer_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
   return discardsUnfinished(*planned_, progress_);
+}
+
+void JobBox::showZeroPoints() {
+  QString text = "Zero points: not known";
+  QString hint;
+  if (offsets_) {
+    std::string axes;
+    for (const core::OffsetMisfit& misfit : offsetMisfits()) {
+      axes += (axes.empty() ? "" : ", ") + std::string(1, "XYZA"[misfit.axis]);
+    }
+    text = !job_          ? "Zero points"
+           : axes.empty() ? "Zero points: set for this job"
+                          : "Zero points: not of this job: " + QString::fromStdString(axes);
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
+      hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);
+    }
+  }
+  if (text == zeros_->text() && hint == zeros_->toolTip()) return;
+  zeros_->setText(text);
+  zeros_->setToolTip(hint);
 }
 
 void JobBox::refreshContinue(const std::optional<GrinderState>& state) {

@@ -11,6 +11,8 @@ namespace flute_grinder {
 
 namespace {
 
+constexpr const char* kTouchOff = "Touch off";
+constexpr double kMoved = 10e-6;    ///< by which an axis at rest does not move [m], A [rad]
 constexpr int kDecimals = 4;        ///< of positions and offsets
 constexpr double kFarthest = 9999;  ///< [mm or deg]
 
@@ -28,7 +30,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
     : QWidget(parent),
       axis_(new QComboBox),
       at_(new QDoubleSpinBox),
-      touch_(new QPushButton("Touch off")),
+      touch_(new QPushButton(kTouchOff)),
       offset_(new QLabel) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
@@ -50,11 +52,29 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(offset_, 1, 0, 1, 3);
   layout->setColumnStretch(1, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
-  connect(touch_, &QPushButton::clicked, this, [this] { Q_EMIT wanted(axis(), at_->value() * scaleOf(axis())); });
+  connect(touch_, &QPushButton::clicked, this, &TouchOffBox::touch);
+  connect(at_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &TouchOffBox::forgetQuestion);
   chooseAxis();
 }
 
+void TouchOffBox::touch() {
+  const bool confirmed = asked_at_.has_value();
+  forgetQuestion();
+  Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()), confirmed);
+}
+
+void TouchOffBox::askToConfirm() {
+  asked_at_ = position_;
+  touch_->setText("All the same");
+}
+
+void TouchOffBox::forgetQuestion() {
+  asked_at_.reset();
+  touch_->setText(kTouchOff);
+}
+
 void TouchOffBox::chooseAxis() {
+  forgetQuestion();
   const bool diameter = axis() == kY;
   at_->setRange(diameter ? 0 : -kFarthest, kFarthest);
   at_->setValue(0);
@@ -65,6 +85,8 @@ void TouchOffBox::chooseAxis() {
 }
 
 void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
+  if (view.state) position_ = view.state->position[static_cast<std::size_t>(axis())];
+  if (asked_at_ && !(std::abs(position_ - *asked_at_) <= kMoved)) forgetQuestion();
   const bool given = axis() != kY || at_->value() > 0;
   touch_->setEnabled(has_services && given && view.state && mayTouchOff(*view.state));
   const QString text = offsetText(view);

@@ -33,6 +33,8 @@ MESSAGES = {
     'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
     'src/control/swivel_range.cpp': (),
     'src/core/loop_fault.cpp': (),
+    'src/core/offset_fit.cpp': ('width of the wheel',),
+    'src/core/offset_limits.cpp': (),
     'src/core/reason.cpp': (),
     'src/drive/hal_component.cpp': (),
     'src/drive/hal_fifo.cpp': (),
@@ -48,7 +50,7 @@ MESSAGES = {
     'src/node/grinder_node.cpp': (),
     'src/node/journal_writer.cpp': (),
     'src/node/kept_file.cpp': (),
-    'src/node/offset_desk.cpp': ('(not printable)', ', set by'),
+    'src/node/offset_desk.cpp': ('(not printable)',),
     'src/node/offset_store.cpp': ("The grinder's work offsets: machine position - work position; .nan is unknown.",),
     'src/node/plan_desk.cpp': (),
     'src/node/probe_desk.cpp': (),

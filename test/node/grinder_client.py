@@ -21,8 +21,9 @@ import rospkg
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from flute_grinder.msg import GrindAction, GrindActionResult, GrinderState, GrindGoal, SetpointBatch, WrittenSetpoint
-from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, Probe, SetFeedOverride
+from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, SetpointBatch,
+                               WrittenSetpoint)
+from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, Probe, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
@@ -109,9 +110,9 @@ SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
 
 
 def goal_of(job, **fields):
-    """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten
-    unless they say otherwise."""
-    goal = GrindGoal(**dict({'discard': True}, **fields))
+    """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
+    and the work offsets are right, unless they say otherwise."""
+    goal = GrindGoal(**dict({'discard': True, 'offsets_are_right': True}, **fields))
     for path, value in job.items():
         part, name = path.split('.')
         setattr(getattr(goal, part), name, value)
@@ -358,6 +359,17 @@ class Grinder:
         name = '/%s/%s' % (self.name, service)
         rospy.wait_for_service(name, PATIENCE)
         return rospy.ServiceProxy(name, kind)(*arguments)
+
+    def set_offset(self, axis, value, by='anna@grinder', basis=None, large_change_ok=True):
+        """@param axis of JOINTS, or a joint's name."""
+        return self._offset('set_offset', SetOffset, axis, value, by, basis, large_change_ok)
+
+    def touch_off(self, axis, position, by='anna@grinder', basis=None, large_change_ok=True):
+        return self._offset('touch_off', TouchOff, axis, position, by, basis, large_change_ok)
+
+    def _offset(self, service, kind, axis, value, by, basis, large_change_ok):
+        joint = axis if isinstance(axis, str) else JOINTS[axis]
+        return self._call(service, kind, joint, value, by, basis or OffsetBasis(), large_change_ok)
 
     def enable(self):
         return self._call('enable', Trigger)

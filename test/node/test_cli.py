@@ -383,7 +383,7 @@ class TestUsage(CommandLine):
                               universal_newlines=True, timeout=gc.PATIENCE, cwd=self.folder)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         if command in ('offsets', 'touch-off'):
-            self.grind(0, 'offsets', '--set', 'y=0')
+            self.grind(0, 'offsets', '--set', 'y=0', '--job', PAPER_JOB, '--yes')
 
     def check_wrong(self, *arguments):
         self.grind(2, *arguments)
@@ -394,7 +394,7 @@ COMMANDS = {
     'table': ['JOB', '--step-length', '--even-step', 'published|third_order|exact', '--csv', '--json'],
     'plan': ['JOB', '--csv', '--machine', '--urdf', '--json'],
     'simulate': ['FILE', '--at', '--sections', '--csv', '--stl', '--svg', '--job', '--run', '--json'],
-    'run': ['JOB', '--dry-run', '--continue', '--discard', '--csv', 'Ctrl-Z'],
+    'run': ['JOB', '--dry-run', '--continue', '--discard', '--offsets-are-right', '--csv', 'Ctrl-Z'],
     'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
     'wheel': ['show', 'measure', 'dress'],
     'zeros': ['JOB', '--stickout', '--flange', '--set', '--machine', '--urdf', '--json'],
@@ -402,8 +402,8 @@ COMMANDS = {
     'override': ['PERCENT', '0 to 120'],
     'confirm-swivel': ['DEG', '-90 to 90', 'swivel'],
     'status': ['--json'],
-    'offsets': ['--set', 'AXIS=VALUE', '--json'],
-    'touch-off': ['AXIS', 'x|y|z|a', '--at', '--job'],
+    'offsets': ['--set', 'AXIS=VALUE', '--job', '--fit', '--yes', '--json'],
+    'touch-off': ['AXIS', 'x|y|z|a', '--at', '--job', '--yes'],
     'enable': ['power on'],
     'disable': ['power off'],
     'home': ['reference'],

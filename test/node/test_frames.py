@@ -11,7 +11,6 @@ import numpy
 import rospy
 import rostest
 import tf2_ros
-from flute_grinder.srv import SetOffset
 from tf2_msgs.msg import TFMessage
 
 import grinder_client as gc
@@ -78,7 +77,7 @@ class Story:
         self.contact_before = self.frames.buffer.can_transform('work', 'contact', rospy.Time())
         g.make_ready()
         for joint, offset in zip(gc.JOINTS, OFFSETS):
-            answer = g._call('set_offset', SetOffset, joint, offset, 'test')
+            answer = g.set_offset(joint, offset)
             assert answer.success, answer.message
         self.of_axes = []
         subscriber = rospy.Subscriber('/tf', TFMessage, self.of_axes.append, queue_size=10000)
@@ -205,7 +204,7 @@ class TestSetUp(unittest.TestCase):
         self.check_frame(late, 'wheel', 'wheel_head', [0, 0, 0], swivel)
 
     def move_work(self, x):
-        self.assertTrue(grinder()._call('set_offset', SetOffset, 'axis_x', x, 'test').success)
+        self.assertTrue(grinder().set_offset('axis_x', x).success)
         for frame, within in (('work', 'table'), ('cutter', 'chuck')):
             gc.poll(lambda: abs(story().late.find(frame, within)[0][0] - x) < EXACT, 'the new place of ' + frame)
 

@@ -77,6 +77,18 @@ class JobRecordTest : public ::testing::Test {
   }
 
   /// A hold of some cycles, which retracts as may be. @return the number of its cycles.
+  /// Of a job whose X was probed, and whose other offsets were never set.
+  Preview preview() const {
+    Preview job;
+    job.plan = plan_;
+    job.offsets.axes[kX] = {0.012, "anna@grinder", 1.7e9};
+    job.offsets.axes[kX].basis.method = OffsetMethod::kProbe;
+    job.offsets.axes[kX].basis.wheel_digest = "a";
+    job.offsets.axes[kX].basis.swivel = units::kPi / 6;
+    job.offsets_are_right = true;
+    return job;
+  }
+
   void hold(Interlock interlock) {
     for (const MachineState state : {MachineState::kHolding, MachineState::kHeld, MachineState::kRetracting,
                                      MachineState::kRetracted, MachineState::kJoggingRetracted}) {
@@ -284,8 +296,8 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
   {
     History history(folder, 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
-    recorder.announce(7, plan_, {0, 0}, "short.yaml");
-    recorder.announce(8, plan_, {0, 0}, "has not moved.yaml");
+    recorder.announce(7, preview(), "short.yaml");
+    recorder.announce(8, preview(), "has not moved.yaml");
     for (const Cycle& c : cycles_) {
       recorder.of(7).addCycle(c.record);
       if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.record);
@@ -299,6 +311,14 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
   EXPECT_EQ(record["outcome"], "fault");
   EXPECT_EQ(record["reason"], "the grinder's program ended before the job did");
   EXPECT_FALSE(record["strokes"].back()["complete"]);
+  const Json& zeros = record["zero_points"];
+  EXPECT_TRUE(zeros["said_right"]);
+  EXPECT_EQ(zeros["x"]["set_by"], "anna@grinder");
+  EXPECT_EQ(zeros["x"]["set_for"]["method"], "probe");
+  EXPECT_NEAR(zeros["x"]["set_for"]["swivel_deg"].get<double>(), 30, 1e-12);
+  EXPECT_TRUE(zeros["y"]["set_by"].is_null());
+  EXPECT_EQ(zeros["y"]["set_for"]["method"], "unknown");
+  EXPECT_TRUE(zeros["y"]["set_for"]["end_diameter_mm"].is_null());
   std::filesystem::remove_all(folder);
 }
 
@@ -309,7 +329,7 @@ TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
   for (const bool result_first : {true, false}) {
     History history(folder, 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
-    recorder.announce(1, plan_, {0, 0}, "");
+    recorder.announce(1, preview(), "");
     for (Cycle& c : cycles_) {
       c.record.time += result_first ? 0 : 100;
       recorder.of(1).addCycle(c.record);

@@ -333,7 +333,7 @@ class TestContinue(JournalTest):
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
         self.assertNotIn('last job', self.grind(0, 'status').stdout)
         self.assertEqual(self.client.batches, [])
-        self.grind(0, 'run', self.job_path)
+        self.grind(0, 'run', self.job_path, '--offsets-are-right')
         self.wait_finished()
 
 

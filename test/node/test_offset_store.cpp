@@ -17,7 +17,9 @@ namespace test_offset_store {
 
 using namespace test_support;
 
-const core::WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3};
+const core::OffsetBasis kBasis{
+    OffsetMethod::kProbe, "my \"job\".yaml", "a: b.yaml", std::string(64, 'f'), 0.006, 0.1, 0.003, 1.0 / 3, -0.0015};
+const core::WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
 const core::WorkOffset kOther{-1000, "", 0};
 
 class OffsetStoreTest : public JournalTest {
@@ -70,10 +72,42 @@ TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
   EXPECT_EQ(offsets.axes[kY].value, kSome.value);
   EXPECT_EQ(offsets.axes[kY].set_by, kSome.set_by);
   EXPECT_EQ(offsets.axes[kY].set_at, kSome.set_at);
+  const core::OffsetBasis& basis = offsets.axes[kY].basis;
+  EXPECT_EQ(basis.method, OffsetMethod::kProbe);
+  EXPECT_EQ(basis.job_name, kBasis.job_name);
+  EXPECT_EQ(basis.wheel_name, kBasis.wheel_name);
+  EXPECT_EQ(basis.wheel_digest, kBasis.wheel_digest);
+  EXPECT_EQ(basis.end_diameter, 0.006);
+  EXPECT_EQ(basis.wheel_diameter, 0.1);
+  EXPECT_EQ(basis.wheel_width, 0.003);
+  EXPECT_EQ(basis.swivel, 1.0 / 3);
+  EXPECT_EQ(basis.height, -0.0015);
+  EXPECT_EQ(offsets.axes[kA].basis.method, OffsetMethod::kUnknown);
+  EXPECT_FALSE(offsets.axes[kA].basis.hasJob());
   EXPECT_EQ(offsets.axes[kA].value, -1000);
   EXPECT_EQ(offsets.axes[kX].value, 0);
   EXPECT_EQ(offsets.axes[kX].set_by, "");
   EXPECT_TRUE((offsets.values() == Axes(0, 0.1 + 0.2, 0, -1000)).all());
+}
+
+TEST_F(OffsetStoreTest, OfAFileWithoutItIsUnknownForWhatTheyWereSet) {
+  std::string old;
+  for (const char axis : {'x', 'y', 'z', 'a'}) {
+    const std::string joint = std::string("axis_") + axis;
+    old += joint + (axis == 'a' ? "_rad" : "_m") + ": 0.0015\n" + joint + "_set_by: \"anna axis_x_method: probe\"\n" +
+           joint + "_set_at: 1700000000\n";
+  }
+  EXPECT_EQ(unknownWith(sealed(old)), "");
+  OffsetStore store(path_, "/grinder");
+  for (const core::WorkOffset& offset : store.offsets().axes) {
+    EXPECT_EQ(offset.value, 0.0015);
+    EXPECT_TRUE(offset.wasSet());
+    EXPECT_EQ(offset.basis.method, OffsetMethod::kUnknown);
+    EXPECT_FALSE(offset.basis.hasJob());
+  }
+  store.set(kY, kSome);
+  EXPECT_EQ(store.offsets().axes[kX].basis.method, OffsetMethod::kUnknown);
+  EXPECT_EQ(store.offsets().axes[kY].basis.method, OffsetMethod::kProbe);
 }
 
 TEST_F(OffsetStoreTest, IsOnTheDiskWhenSetReturns) {
@@ -85,17 +119,17 @@ TEST_F(OffsetStoreTest, IsOnTheDiskWhenSetReturns) {
   EXPECT_NE(contentOf(path_).find("axis_x_m: -1000\n"), std::string::npos) << contentOf(path_);
 }
 
-TEST_F(OffsetStoreTest, EveryFlippedBitMakesThemUnknown) {
+TEST_F(OffsetStoreTest, AFlippedBitOfAnyByteMakesThemUnknown) {
   const std::string good = written();
-  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+  for (std::size_t byte = 0; byte < good.size(); ++byte) {
     std::string bad = good;
-    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    bad[byte] = static_cast<char>(bad[byte] ^ (1 << byte % 8));
     const std::string unknown = unknownWith(bad);
     ASSERT_EQ(unknown.rfind("unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets " + path_ +
                                 ": its checksum is ",
                             0),
               0U)
-        << "bit " << bit << ": " << unknown;
+        << "byte " << byte << ": " << unknown;
   }
 }
 
@@ -121,6 +155,10 @@ TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumToo) {
       {"axis_a_rad", "axis_a_rad: -.inf\n", "axis_a_rad = -inf; allowed: -1000 to 1000"},
       {"axis_x_set_at", "axis_x_set_at: -1\n", "axis_x_set_at = -1; allowed: 0 to 4e9"},
       {"axis_x_set_at", "axis_x_set_at: .nan\n", "axis_x_set_at = nan; allowed: 0 to 4e9"},
+      {"axis_y_method", "axis_y_method: guessed\n",
+       "axis_y_method = guessed; allowed: unknown, touch_off, probe, by_hand"},
+      {"axis_y_height_m", "axis_y_height_m: .nan\n", "axis_y_height_m = nan; allowed: a finite number"},
+      {"axis_y_job", "", "axis_y_job is missing"},
       {"axis_x_m", "axis_x_m: 0\naxis_x_m: 0\n", "key axis_x_m is unknown or duplicate"},
       {"axis_x_m", "axis_x_m: 0\naxis_b_m: 0\n", "key axis_b_m is unknown or duplicate"},
   };

@@ -14,8 +14,7 @@ import unittest
 
 import rospy
 import rostest
-from flute_grinder.msg import GrinderState, GrindResult, WorkOffsets
-from flute_grinder.srv import SetOffset, TouchOff
+from flute_grinder.msg import GrinderState, GrindResult, OffsetBasis, WorkOffsets
 
 import grinder_client as gc
 import path_checks as checks
@@ -56,11 +55,11 @@ class OffsetsTest(unittest.TestCase):
         self.start()
         self.client.make_ready()
 
-    def set_offset(self, axis, value, by='anna@grinder'):
-        return self.client._call('set_offset', SetOffset, gc.JOINTS[axis], value, by)
+    def set_offset(self, axis, value, *arguments, **options):
+        return self.client.set_offset(axis, value, *arguments, **options)
 
-    def touch_off(self, axis, position, by='anna@grinder'):
-        return self.client._call('touch_off', TouchOff, gc.JOINTS[axis], position, by)
+    def touch_off(self, axis, position, *arguments, **options):
+        return self.client.touch_off(axis, position, *arguments, **options)
 
     def set_offsets(self, values):
         for axis, value in enumerate(values):
@@ -119,11 +118,11 @@ class TestJob(OffsetsTest):
     def test_limits_are_the_machines(self):
         self.start_ready()
         deepest = checks.Helix(gc.SHORT).y(-1 * MM) - 0.5 * MM
-        self.set_offsets([0, -0.0206, 0, 0])
+        self.set_offsets([0, -0.0196, 0, 0])
         plan = self.client.plan(gc.goal_of(gc.SHORT))
         self.assertFalse(plan.valid)
         self.assertRegex(plan.reasons[0], r'^axis_y position %.6g m is %.6g m beyond its limit -0\.02 m '
-                                          r'\(infeed, cycle \d+, X = -0\.001 m\)' % (deepest - 0.0206, 0.0006 - deepest))
+                                          r'\(infeed, cycle \d+, X = -0\.001 m\)' % (deepest - 0.0196, -0.0004 - deepest))
         run = self.client.send(gc.SHORT).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.LIMIT_VIOLATED))
         self.set_offsets([0, -0.0194, 0, 0])
@@ -178,17 +177,39 @@ class TestSetting(OffsetsTest):
 
     def test_wrong_ones_are_refused(self):
         self.start_ready()
-        self.check_refused(self.client._call('set_offset', SetOffset, 'axis_b', 0, ''),
+        self.check_refused(self.set_offset('axis_b', 0),
                            'axis = axis_b; allowed: axis_x, axis_y, axis_z, axis_a')
-        self.check_refused(self.client._call('touch_off', TouchOff, '\x1b[2J', 0, ''), 'allowed: axis_x')
-        self.check_refused(self.set_offset(X, 1000.1), 'work offset of axis_x = 1000.1 m; allowed: -1000 to 1000 m')
+        self.check_refused(self.touch_off('\x1b[2J', 0), 'allowed: axis_x')
+        self.check_refused(self.set_offset(X, 0.3001),
+                           'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
+        self.check_refused(self.touch_off(Y, -6.203), 'work offset of axis Y = 6253 mm; allowed: -20 to 150 mm')
         for value in (math.nan, math.inf, -math.inf):
-            self.check_refused(self.set_offset(A, value), 'allowed: -1000 to 1000 rad')
-            self.check_refused(self.touch_off(A, value), 'allowed: -1000 to 1000 rad')
+            self.check_refused(self.set_offset(A, value), ' deg, the travel of the axis')
+            self.check_refused(self.touch_off(A, value), ' deg, the travel of the axis')
+        for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'swivel': math.nan}, 'not finite'),
+                            ({'wheel_digest': 'A' * 64}, 'allowed: 64 hexadecimal digits'),
+                            ({'job_name': '\n'}, 'basis.job_name'), ({'wheel_name': 256 * 'w'}, 'basis.wheel_name')):
+            self.check_refused(self.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)
         self.check_refused(self.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
         self.check_refused(self.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
         self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
         self.assertFalse(os.path.exists(self.file))
+
+    def test_a_large_change_wants_a_confirmation(self):
+        self.start_ready()
+        for axis, value in ((Y, 0.05), (A, 3.0)):
+            self.assertTrue(self.set_offset(axis, value, large_change_ok=False).success, 'the first is no change')
+        self.assertTrue(self.set_offset(Y, 0.0452, large_change_ok=False).success)
+        told = 'work offset of axis Y would change by 45 mm, from 45.2 mm to 0.2 mm; allowed without a confirmation: 5 mm'
+        refused = self.set_offset(Y, 0.0002, large_change_ok=False)
+        self.check_refused(refused, told)
+        self.assertTrue(refused.large_change)
+        self.assertTrue(self.touch_off(Y, 0, large_change_ok=False).success, 'by 4.8 mm')
+        refused = self.touch_off(A, 8.0, large_change_ok=False)
+        self.check_refused(refused, 'work offset of axis A would change by 630')
+        self.assertTrue(refused.large_change)
+        self.assertFalse(self.set_offset(Y, 1.0, large_change_ok=False).large_change, 'no confirmation would help')
+        self.assertTrue(self.touch_off(A, 8.0).success)
 
     def check_both_refused(self, text):
         self.check_refused(self.set_offset(Y, 0.01), text)
@@ -319,7 +340,75 @@ class TestRestart(OffsetsTest):
                                        r'was 23\.7 mm and is 23\.8 mm; set them as they were, or discard the job$')
         # As somebody sets it who has read its four decimals of a millimetre.
         self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 5e-8).success)
-        self.assertEqual(self.client.send(job, first_tooth=1, discard=False).wait().status, 'SUCCEEDED')
+        # Nobody has said what they were set for, but that they are right was said when it began.
+        run = self.client.send(job, first_tooth=1, discard=False, offsets_are_right=False).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+
+
+class TestZeroPoints(OffsetsTest):
+    """An offset is known for what it was set."""
+
+    def check_rejected(self, text, **fields):
+        run = self.client.send(gc.SHORT, offsets_are_right=False, **fields).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+        self.assertIn(text, run.text)
+
+    def check_told(self, *texts):
+        """As a warning where nothing moves."""
+        plan = self.client.plan(gc.goal_of(gc.SHORT))
+        self.assertTrue(plan.valid, plan.reasons)
+        run = self.client.send(gc.SHORT, dry_run=True).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        for warnings in (plan.warnings, run.result.warnings):
+            self.assertEqual(len(warnings), len(texts), warnings)
+            for warning, text in zip(warnings, texts):
+                self.assertIn(text, warning)
+
+    def test_of_another_diameter(self):
+        self.start_ready()
+        never = 'X was never set; Y was never set; Z was never set'
+        self.check_told(never)
+        self.check_rejected(never + '; set them for this job, or start it with --offsets-are-right')
+        self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    never set$')
+
+        d6 = gc.job_file(os.path.join(self.folder, 'd6.yaml'), end_diameter_mm=6)
+        d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
+        done = self.grind('offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        told = 'Y was set by hand for D 6 mm, wheel D 100 mm (d6.yaml); this job has D 10 mm; ' \
+               "'grind offsets --fit JOB' computes Y"
+        self.check_told(told)
+        self.check_rejected(told)
+        self.check_rejected('Y was set by hand', first_tooth=0, discard=False)
+
+        done = self.grind('offsets', '--fit', d10)
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertRegex(done.stdout, r'(?m)^Y +3\.0000 .*; set by hand for D 10 mm, wheel D 100 mm \(d10\.yaml\)$')
+        for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
+            self.assertAlmostEqual(got, expected, delta=1e-15)
+        self.check_told()
+        run = self.client.send(gc.SHORT, offsets_are_right=False).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    set by hand for D 10 mm, wheel')
+        told = json.loads(self.grind('status', '--json').stdout)['zero_points']
+        self.assertEqual((told['a'], told['y']['method'], told['y']['job']), (None, 'by_hand', 'd10.yaml'))
+
+        # Of a wheel that has become thinner Y alone can be computed.
+        other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
+        done = self.grind('offsets', '--fit', other)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r'(?m)^X was set by hand for .*; this job has width of the wheel 2 mm; set it anew$')
+        self.assertAlmostEqual(self.offsets().values[Y], 4 * MM, delta=1e-15)
+
+    def test_computed_ones_fit_their_job(self):
+        self.start_ready()
+        job = gc.package_file('jobs/paper.yaml')
+        done = self.grind('zeros', job, '--stickout', '62', '--flange', '2', '--set')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        done = self.grind('run', job, '--dry-run')
+        self.assertEqual((done.returncode, done.stderr.count('warning')), (0, 0), done.stderr)
+        self.check_told()
+        self.assertEqual(json.loads(self.grind('offsets', '--json').stdout)['axes']['z']['set_for']['method'], 'computed')
 
 
 class TestCommandLine(OffsetsTest):
@@ -360,9 +449,13 @@ class TestCommandLine(OffsetsTest):
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.assertEqual(done.stdout, 'axis X: work offset -51.5 mm; it stands at 1.5 mm of the work\n')
         self.assertEqual(self.grind('touch-off', 'a', '--at', '30').returncode, 0)
-        self.assertEqual(self.grind('touch-off', 'z').returncode, 0)
+        self.assertEqual(self.grind('touch-off', 'z', '--job', gc.package_file('jobs/paper.yaml')).returncode, 0)
+        done = self.grind('touch-off', 'x', '--at', '30')
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r'would change by 28\.5 mm.*\n--yes sets it all the same$')
+        self.assertEqual(self.grind('touch-off', 'x', '--at', '30', '--yes').returncode, 0)
         values = self.offsets().values
-        self.assertAlmostEqual(values[X], self.rest[X] - 1.5 * MM, delta=1e-12)
+        self.assertAlmostEqual(values[X], self.rest[X] - 30 * MM, delta=1e-12)
         self.assertAlmostEqual(values[A], self.rest[A] - 30 * DEG, delta=1e-12)
         self.assertAlmostEqual(values[Z], self.rest[Z], delta=1e-12)
 
@@ -371,20 +464,22 @@ class TestCommandLine(OffsetsTest):
         job = gc.job_file(os.path.join(self.folder, 'job.yaml'), end_diameter_mm=10, wear_mm=0.025)
         self.check_fails(['touch-off', 'y', '--at', '12.02', '--job', job], 1,
                          "the wheel's centre stands 2.788 mm above the cutter's axis")
-        self.assertEqual(self.grind('touch-off', 'z', '--at', '-2.788').returncode, 0)
+        self.assertEqual(self.grind('touch-off', 'z', '--at', '-2.788', '--job', job).returncode, 0)
         done = self.grind('touch-off', 'y', '--at', '12.02', '--job', job)
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         centre = (12.02 * MM + 2 * (50 - 0.025) * MM) / 2
         self.assertAlmostEqual(self.offsets().values[Y], self.rest[Y] - (centre - (5 + 50) * MM), delta=1e-12)
 
     def test_wrong_usage(self):
-        self.check_fails(['touch-off', 'y', '--at', '12'], 2, 'touch-off y needs --at DIAMETER')
-        self.check_fails(['touch-off', 'x', '--job', 'jobs/paper.yaml'], 2, '--job; allowed: for y alone')
+        self.check_fails(['touch-off', 'y', '--at', '12'], 2, 'touch-off y needs --job JOB')
+        self.check_fails(['touch-off', 'z'], 2, 'touch-off z needs --job JOB')
+        self.check_fails(['touch-off', 'y', '--job', 'jobs/paper.yaml'], 2, 'touch-off y needs --at DIAMETER')
+        self.check_fails(['offsets', '--set', 'x=1', '--set', 'z=1'], 2, '--set z=1 needs --job JOB')
         self.check_fails(['touch-off', 'b'], 2, 'AXIS')
         self.check_fails(['touch-off', 'x', '--at', 'nan'], 2, 'nan; allowed: a finite number')
         for wrong in ('x', 'x=', 'b=1', 'x=1mm', 'x=nan', '=1'):
             self.check_fails(['offsets', '--set', wrong], 2, wrong + '; allowed: AXIS=VALUE')
-        self.check_fails(['offsets', '--set', 'x=2e6'], 1, 'work offset of axis_x = 2000 m; allowed: -1000 to 1000 m')
+        self.check_fails(['offsets', '--set', 'x=2e6'], 1, 'work offset of axis X = 2000000 mm; allowed: -100 to 300 mm')
 
 
 if __name__ == '__main__':

@@ -75,7 +75,8 @@ class Recording:
 
     def grind_with_hold_and_override(self):
         """The job by the command line; in its stroke it is held, and then ground at half the feed."""
-        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--csv', self.csv],
+        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--offsets-are-right', '--csv',
+                                self.csv],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
         try:
             self.wait_beyond(4 * MM)

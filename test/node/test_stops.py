@@ -288,7 +288,8 @@ class TestTheWayDown(NodeTest):
         """Its job goes on, and others are told of it."""
         path = os.path.join(self.node.folder, 'job.yaml')
         gc.job_file(path, flute_length_mm=10)
-        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--discard'],
+        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--discard',
+                                   '--offsets-are-right'],
                                   stdout=subprocess.DEVNULL)
         try:
             self.client.wait_for(lambda: self.client.batches, 'the first setpoints')

@@ -76,7 +76,7 @@ class TestConfirmed(OwnNode):
         state = self.grinder.fresh_state()
         self.assertTrue(math.isnan(state.swivel))
         self.assertFalse(state.swivel_measured)
-        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'))
+        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'), '--offsets-are-right')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: the swivel is not confirmed; ' + TO_SET, done.stderr)
 
     def test_dry_run_needs_none(self):
@@ -95,7 +95,7 @@ class TestConfirmed(OwnNode):
         for off in (-0.06, 0.06):
             self.assertTrue(self.grinder.confirm_swivel((ASKED + off) * DEG).success)
             self.check_refused('confirmed', ASKED + off)
-        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'))
+        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'), '--offsets-are-right')
         self.assertIn('the swivel is confirmed at 31.829 deg; allowed: within 0.05 deg of that; ' + TO_SET, done.stderr)
 
     def test_command_line_confirms_it(self):
@@ -200,7 +200,7 @@ class TestMeasuredElsewhere(OwnNode):
     def test_job_is_refused(self):
         run = self.check_refused('measured', 31.83)
         self.assertIn('the swivel stands at ', run.text)
-        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'))
+        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'), '--offsets-are-right')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: the swivel stands at 31.83 deg; allowed: within 0.05 deg of '
                       'that; set it to 31.769 deg (code -7)', done.stderr)
 

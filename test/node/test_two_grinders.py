@@ -69,7 +69,8 @@ class TestTwoJobsAtOnce(unittest.TestCase):
                                         queue_size=10000) for name in NAMES]
         gc.poll(lambda: all(s.get_num_connections() for s in subscribers), 'transforms')
         cls.first_joints = {client.name: len(client.joints) for client in (cls.left, cls.right)}
-        runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--discard', '--csv',
+        runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--discard',
+                                  '--offsets-are-right', '--csv',
                                   cls.csv(name)],
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
                 for name in NAMES]

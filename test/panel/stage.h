@@ -10,6 +10,7 @@
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/SetFeedOverride.h"
+#include "flute_grinder/SetOffset.h"
 #include "flute_grinder/Stop.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/WorkOffsets.h"
@@ -42,6 +43,7 @@ class Stage {
     services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
     services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
     services_.push_back(nh_.advertiseService("touch_off", &Stage::onTouchOff, this));
+    services_.push_back(nh_.advertiseService("set_offset", &Stage::onSetOffset, this));
     services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
     services_.push_back(nh_.advertiseService("confirm_swivel", &Stage::onConfirmSwivel, this));
     goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
@@ -107,6 +109,8 @@ class Stage {
   std::vector<Jog> jogs;
   std::vector<TouchOff::Request> touches;
   std::string touch_refusal;
+  bool large_change = false;  ///< the reason of that
+  std::vector<SetOffset::Request> offsets_set;
   std::string goal_id;  ///< of the progress
   Plan::Response plan;
 
@@ -148,7 +152,13 @@ class Stage {
       touches.push_back(request);
       response.success = static_cast<std::uint8_t>(touch_refusal.empty());
       response.message = touch_refusal;
+      response.large_change = static_cast<std::uint8_t>(large_change);
     });
+    return true;
+  }
+  bool onSetOffset(SetOffset::Request& request, SetOffset::Response& response) {
+    change([&] { offsets_set.push_back(request); });
+    response.success = 1;
     return true;
   }
   void onJog(const Jog::ConstPtr& jog) {

@@ -60,10 +60,12 @@ class WithGrinder : public ::testing::Test {
     panel.click("enable");
     WAIT_FOR(panel.state() == "Ready");
   }
-  /// Gives up a job that a test before has left, and confirms the swivel if it is asked for.
+  /// Gives up a job that a test before has left, leaves the zero points, which nobody has set, and confirms the swivel
+  /// if it is asked for.
   static void startAndDiscard(Panel& of) {
     of.click("start");
     if (of.the<QPushButton>("discard").isVisible()) of.click("discard");
+    if (of.the<QPushButton>("offsets_are_right").isVisible()) of.click("offsets_are_right");
     if (of.the<QPushButton>("confirm_swivel").isVisible()) of.click("confirm_swivel");
   }
   void start() {

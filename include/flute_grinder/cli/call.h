@@ -37,7 +37,7 @@ std::optional<typename Service::Response> ask(
 }
 
 /// The same for a service that may refuse, and prints why if it does.
-/// @param answer if given, gets the response of a call that succeeded. @return the exit status.
+/// @param answer if given, gets the response, if there is one. @return the exit status.
 template <typename Service>
 int call(
     ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
@@ -45,9 +45,8 @@ int call(
     const std::function<bool()>& give_up = [] { return false; }) {
   const std::optional<typename Service::Response> response = ask<Service>(nh, service, request, patience, give_up);
   if (!response) return 1;
-  if (!response->success) return fail(response->message);
   if (answer) *answer = *response;
-  return 0;
+  return response->success ? 0 : fail(response->message);
 }
 
 }  // namespace flute_grinder

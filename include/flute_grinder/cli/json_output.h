@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/messages/json.h"
 
@@ -10,7 +11,8 @@ namespace flute_grinder {
 Json toJson(const JobPlan& plan);
 
 /// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
-Json toJson(const std::string& node, const GrinderState& state);
+/// @param offsets null if they are not known.
+Json toJson(const std::string& node, const GrinderState& state, const WorkOffsets::ConstPtr& offsets);
 
 /// Prints it to stdout.
 void print(const Json& json);

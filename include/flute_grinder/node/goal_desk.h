@@ -42,6 +42,7 @@ class GoalDesk {
   struct Goal {
     GoalHandle handle;
     std::string digest;
+    core::WorkOffsets offsets;
     std::shared_ptr<PlanControl> control;
     Phase phase = Phase::kPlanning;
     std::shared_ptr<const Preview> preview{};
@@ -55,7 +56,7 @@ class GoalDesk {
   void onCancel(const GoalHandle& handle);
   std::string refusal(const GrindGoal& goal, const std::string& digest) const;
   std::optional<core::Reason> swivelRefusal(const GrindJob& job) const;
-  std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const Axes& offset) const;
+  std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const core::WorkOffsets& offsets) const;
   void startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();

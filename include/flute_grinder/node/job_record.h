@@ -3,6 +3,7 @@
 #include "flute_grinder/control/cycle_record.h"
 #include "flute_grinder/core/grind_program.h"
 #include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/core/work_offsets.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/node/machine_info.h"
 
@@ -34,6 +35,8 @@ class JobRecord {
   void addSetpoint(const Setpoint& setpoint, const CycleRecord& record);
   /// Adds setpoints that were written, but are not known.
   void addLost(std::uint64_t setpoints) { lost_ += setpoints; }
+  /// For what, and by whom, the work offsets were set. @param said_right the goal says that they are right.
+  void setZeroPoints(const core::WorkOffsets& offsets, bool said_right);
   void conclude(const JobConclusion& conclusion) { conclusion_ = conclusion; }
 
   /// Whether anything moved.
@@ -74,11 +77,14 @@ class JobRecord {
   void addToStroke(const Setpoint& setpoint, const CycleRecord& record);
   Json jobJson() const;
   Json strokesJson() const;
+  Json zeroPointsJson() const;
 
   std::shared_ptr<const GrindProgram> program_;
   core::PathStatistics planned_;
   ToothPass first_;
   std::string name_;
+  core::WorkOffsets offsets_;
+  bool offsets_said_right_ = false;
   std::vector<double> depths_;  ///< of every pass, where the flute is deepest [m]
 
   std::uint64_t cycles_ = 0;

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/node/history.h"
 #include "flute_grinder/node/job_record.h"
+#include "flute_grinder/node/planner.h"
 
 #include <cstdint>
 #include <map>
@@ -21,8 +22,8 @@ class JobRecorder {
   /// Jobs that have not ended, or whose result nobody told, are kept as far as they came.
   ~JobRecorder();
 
-  /// @param number the loop's number for the job. The rest as for JobRecord.
-  void announce(std::uint64_t number, const JobPlan& plan, const ToothPass& first, const std::string& name);
+  /// @param number the loop's number for the job. @param name as for JobRecord.
+  void announce(std::uint64_t number, const Preview& job, const std::string& name);
   /// The job will not start.
   void withdraw(std::uint64_t number) { jobs_.erase(number); }
   /// The record of a job that was announced and has not ended.

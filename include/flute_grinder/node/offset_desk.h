@@ -3,6 +3,7 @@
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/core/offset_limits.h"
 #include "flute_grinder/node/job_gate.h"
 #include "flute_grinder/node/offset_store.h"
 #include "flute_grinder/node/served_queue.h"
@@ -21,7 +22,8 @@ class OffsetDesk {
  public:
   /// @param private_nh the node's own namespace.
   /// @param loop,gate,store must outlive this object.
-  OffsetDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store);
+  OffsetDesk(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store,
+             const OffsetLimits& limits);
 
  private:
   /// The offset of an axis whose position is as given [m or rad].
@@ -29,13 +31,16 @@ class OffsetDesk {
 
   bool onSet(SetOffset::Request& request, SetOffset::Response& response);
   bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response);
-  std::string set(const std::string& axis, const std::string& set_by, const OffsetAt& offset_at);
-  std::string setWithoutJob(int axis, const std::string& set_by, const OffsetAt& offset_at);
+  template <typename Request, typename Response>
+  void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
+  std::string setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
+                            bool& large_change);
   void publish();
 
   const ControlLoop& loop_;
   JobGate& gate_;
   OffsetStore& store_;
+  const OffsetLimits limits_;
   ServedQueue thread_;
   ros::Publisher offsets_;
   std::vector<ros::ServiceServer> services_;

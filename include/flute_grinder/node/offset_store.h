@@ -9,7 +9,8 @@
 namespace flute_grinder {
 
 /// The work offsets, kept on disk as by KeptFile. Without a file they were never set and are 0. If the file cannot be
-/// read they are unknown, and each remains so until it is set.
+/// read they are unknown, and each remains so until it is set. Of offsets in a file that does not have it, it is
+/// unknown what they were set for.
 class OffsetStore {
  public:
   /// Reads the file. Blocks on the disk.

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/collision/machine_shapes.h"
 #include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/core/work_offsets.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -19,6 +20,8 @@ struct Preview {
   JobPlan plan;
   ToothPass first;                         ///< to grind
   std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is valid
+  core::WorkOffsets offsets;               ///< of a goal's job, whose values are the program's
+  bool offsets_are_right = false;          ///< the goal says so
 };
 
 /// Shared between the planner and whoever waits for the plan. Thread safe.

@@ -27,6 +27,9 @@ class ProgressTracker {
   /// @param offset see Machine::work_offset [m], A [rad].
   std::string offsetRefusal(const std::string& digest, const Axes& offset) const;
 
+  /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
+  bool continues(const std::string& digest, const Axes& offset) const;
+
   /// Enters a job before it starts.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
   void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first,
@@ -44,6 +47,7 @@ class ProgressTracker {
   std::string error() const { return writer_.status().error; }
 
  private:
+  std::string offsetChanges(const Axes& offset) const;
   void write();
   void updatePlace(const LoopStatus& status);
 

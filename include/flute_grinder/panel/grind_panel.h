@@ -66,7 +66,9 @@ class GrindPanel : public rviz::Panel {
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
-  void touchOff(int axis, double at);
+  void touchOff(int axis, double at, bool confirmed);
+  core::OffsetBasis touchedFor(int axis) const;
+  void fitOffsets(const GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
   double touchedY(double diameter) const;
   void showMessage(const std::string& text);

@@ -9,6 +9,7 @@
 #include "flute_grinder/connection/service_call.h"
 #include "flute_grinder/core/axes.h"
 #include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/core/work_offsets.h"
 
 #include <actionlib/goal_id_generator.h>
 #include <ros/callback_queue.h>
@@ -73,7 +74,12 @@ class GrinderLink {
   /// Tells the grinder where the swivel stands. @param angle [rad].
   void confirmSwivel(double angle, const OnAnswer& on_answer);
   /// Sets an axis' work offset from where it stands. @param position in work coordinates [m], A [rad].
-  void touchOff(int axis, double position, const OnAnswer& on_answer);
+  /// @param basis what it is set for. @param large_change_ok it may change by any amount.
+  /// @param on_answer as OnAnswer, and whether it was refused because it would change by much.
+  void touchOff(int axis, double position, const core::OffsetBasis& basis, bool large_change_ok,
+                const std::function<void(const std::string& refusal, bool large_change)>& on_answer);
+  /// Sets an axis' work offset, however much it changes. @param value [m], A [rad].
+  void setOffset(int axis, double value, const core::OffsetBasis& basis, const OnAnswer& on_answer);
   /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
   void jogStep(int axis, double distance, double speed, const OnAnswer& on_answer);
   /// Moves an axis for as long as this is called again and again, by a connection that survives the ROS master.

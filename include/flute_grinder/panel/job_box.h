@@ -4,7 +4,9 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/work_offsets.h"
 #include "flute_grinder/panel/discard_question.h"
+#include "flute_grinder/panel/offset_question.h"
 #include "flute_grinder/panel/swivel_question.h"
 
 #include <QCheckBox>
@@ -17,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -33,14 +36,18 @@ class JobBox : public QWidget {
   void setFile(const QString& file);
 
   /// @param state nothing if the grinder does not answer.
+  /// @param offsets nothing if they are not known.
   /// @param idle whether the grinder can plan now.
-  void refresh(const std::optional<GrinderState>& state, bool idle);
+  void refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle);
 
   /// @param name resolved name of the grinder's node, whose robot description counts and which the dialogs name.
   void setGrinder(const std::string& name) { grinder_ = name; }
 
   /// Shows the result of a plan, if it is for the goal that would be started now.
   void setPlan(const GrindGoal& goal, const Plan::Response& plan);
+
+  /// Plans the job once more, as it would be started now.
+  void planAnew();
 
   /// The plan is no longer valid.
   void discardPlan();
@@ -64,13 +71,18 @@ class JobBox : public QWidget {
   void startWanted(const flute_grinder::GrindGoal& goal);
   /// The operator has set the swivel for the job to be started. @param angle [rad].
   void swivelConfirmed(double angle);
+  /// The work offsets that can be computed are to be fitted to a goal.
+  void offsetFitWanted(const flute_grinder::GrindGoal& goal);
 
  private:
   void choose();
   void openSetup();
   void read();
   std::optional<GrindGoal> takePlanned();
-  void askForSwivel(bool discard);
+  void askForOffsets(bool discard);
+  void askForSwivel();
+  std::vector<core::OffsetMisfit> offsetMisfits() const;
+  void showZeroPoints();
   bool asksWithReason() const;
   void keepUnfinished();
   GrindGoal goal() const;
@@ -82,19 +94,24 @@ class JobBox : public QWidget {
   QString file_;
   std::string grinder_;  ///< name of its node
   std::shared_ptr<const GrindJob> job_;
-  std::optional<GrindGoal> planned_;     ///< without violations
-  std::optional<GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
-  JobProgress progress_;                 ///< as last received from the grinder
-  Swivel swivel_;                        ///< as last received from the grinder
-  bool discard_ = false;                 ///< the unfinished job, by the start that waits for the swivel
+  std::optional<GrindGoal> planned_;          ///< without violations
+  std::optional<GrindGoal> where_left_;       ///< the job as it would be continued, if it can be
+  JobProgress progress_;                      ///< as last received from the grinder
+  Swivel swivel_;                             ///< as last received from the grinder
+  std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
+  std::string wheel_;                         ///< name of the file's wheel file; empty if it has none
+  bool discard_ = false;                      ///< the unfinished job, by the start that waits for an answer
+  bool offsets_are_right_ = false;            ///< said for that start
   QLabel* name_;
   QPushButton* choose_;
   QPushButton* setup_;
   QCheckBox* continue_;
+  QLabel* zeros_;  ///< whether the zero points are the job's
   QPushButton* plan_;
   QPushButton* dry_run_;
   QPlainTextEdit* verdict_;
   DiscardQuestion* question_;
+  OffsetQuestion* offset_question_;
   SwivelQuestion* swivel_question_;
   QStackedWidget* answer_;  ///< verdict or a question
 };

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "flute_grinder/WorkOffsets.h"
+
+#include <ros/ros.h>
+
+#include <mutex>
+
+namespace flute_grinder {
+
+/// Receives the work offsets. Thread safe.
+class OffsetWatch {
+ public:
+  /// @param nh the grinder's namespace.
+  explicit OffsetWatch(ros::NodeHandle& nh) {
+    const boost::function<void(const WorkOffsets::ConstPtr&)> on_offsets =
+        [this](const WorkOffsets::ConstPtr& offsets) {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          newest_ = offsets;
+        };
+    subscriber_ = nh.subscribe<WorkOffsets>("offsets", 10, on_offsets);
+  }
+  /// Null before the first.
+  WorkOffsets::ConstPtr newest() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return newest_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  WorkOffsets::ConstPtr newest_;
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,137 @@
+#include "flute_grinder/messages/offset_basis.h"
+
+#include "flute_grinder/core/format.h"
+#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/sha256.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename(); }
+
+bool isOfWheel(std::string_view path) {
+  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
+  return begins("process.wheel_") && !begins("process.wheel_wear") && path != "process.wheel_width";
+}
+
+/// Copies between core and message; the members have the same names.
+template <typename From, typename To>
+To convertedBasis(const From& from) {
+  To to;
+  to.job_name = from.job_name;
+  to.wheel_name = from.wheel_name;
+  to.wheel_digest = from.wheel_digest;
+  to.end_diameter = from.end_diameter;
+  to.wheel_diameter = from.wheel_diameter;
+  to.wheel_width = from.wheel_width;
+  to.swivel = from.swivel;
+  to.height = from.height;
+  return to;
+}
+
+}  // namespace
+
+GrindGoal goalFromFile(const std::string& path) {
+  GrindGoal goal = goalFromJob(readJobFile(path));
+  goal.job_name = nameOf(path);
+  goal.wheel_name = nameOf(wheelFileOf(path));
+  return goal;
+}
+
+std::string wheelDigest(const GrindJob& job) {
+  std::string figures;
+  const auto add = [&](const char* name, double value) {
+    // A figure that a later version adds, and that is 0, leaves the digest as it was.
+    if (value != 0) figures += format("%s %a\n", name, value);
+  };
+  visitJobFields([&](const JobField& field, auto of) {
+    if (isOfWheel(field.path)) add(field.path, of(job));
+  });
+  visitJobChoices([&](const char* path, int, auto of) {
+    if (isOfWheel(path)) add(path, static_cast<double>(of(job)));
+  });
+  for (const ProfilePoint& point : job.wheel_points) figures += format("point %a %a\n", point.w, point.radius);
+  return sha256Hex(figures.data(), figures.size());
+}
+
+core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method) {
+  core::OffsetBasis basis;
+  basis.method = method;
+  basis.job_name = goal.job_name;
+  basis.wheel_name = goal.wheel_name;
+  basis.wheel_digest = wheelDigest(jobFromGoal(goal));
+  basis.end_diameter = goal.cutter.end_diameter;
+  basis.wheel_diameter = goal.process.wheel_diameter;
+  basis.wheel_width = goal.process.wheel_width;
+  basis.swivel = goal.process.setup_swivel;
+  basis.height = goal.process.setup_height;
+  return basis;
+}
+
+Json toJson(const core::OffsetBasis& basis) {
+  const auto figure = [&](double si, double unit) { return basis.hasJob() ? Json(si / unit) : Json(nullptr); };
+  return {{"method", toString(basis.method)},
+          {"job", basis.job_name},
+          {"wheel", basis.wheel_name},
+          {"wheel_digest", basis.wheel_digest},
+          {"end_diameter_mm", figure(basis.end_diameter, units::kMillimetre)},
+          {"wheel_diameter_mm", figure(basis.wheel_diameter, units::kMillimetre)},
+          {"wheel_width_mm", figure(basis.wheel_width, units::kMillimetre)},
+          {"swivel_deg", figure(basis.swivel, units::kDegree)},
+          {"height_mm", figure(basis.height, units::kMillimetre)}};
+}
+
+OffsetBasis toMessage(const core::OffsetBasis& basis) {
+  auto message = convertedBasis<core::OffsetBasis, OffsetBasis>(basis);
+  message.method = static_cast<std::uint8_t>(basis.method);
+  return message;
+}
+
+core::OffsetBasis fromMessage(const OffsetBasis& message) {
+  auto basis = convertedBasis<OffsetBasis, core::OffsetBasis>(message);
+  if (message.method < countOf<OffsetMethod>()) basis.method = static_cast<OffsetMethod>(message.method);
+  return basis;
+}
+
+core::WorkOffsets fromMessage(const WorkOffsets& message) {
+  core::WorkOffsets offsets;
+  for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
+    offsets.axes[i] = {message.values[i], message.set_by[i], message.set_at[i].toSec(), fromMessage(message.basis[i])};
+  }
+  return offsets;
+}
+
+std::vector<core::OffsetMisfit> misfits(const core::WorkOffsets& offsets, const GrindGoal& goal) {
+  return core::misfits(offsets, basisOf(goal, OffsetMethod::kUnknown));
+}
+
+std::string text(const std::vector<core::OffsetMisfit>& misfits) {
+  if (misfits.empty()) return "";
+  std::string all;
+  for (const core::OffsetMisfit& misfit : misfits) all += (all.empty() ? "" : "; ") + misfit.reason;
+  const std::string axes = computable(misfits);
+  if (!axes.empty()) all += "; 'grind offsets --fit JOB' computes " + axes;
+  return all;
+}
+
+std::vector<std::string> offsetWarnings(const core::WorkOffsets& offsets, const GrindGoal& goal) {
+  std::string warning = text(misfits(offsets, goal));
+  return warning.empty() ? std::vector<std::string>{} : std::vector<std::string>{std::move(warning)};
+}
+
+std::string computable(const std::vector<core::OffsetMisfit>& misfits) {
+  std::string axes;
+  for (const core::OffsetMisfit& misfit : misfits) {
+    if (misfit.change) axes += (axes.empty() ? "" : " and ") + std::string(1, "XYZA"[misfit.axis]);
+  }
+  return axes;
+}
+
+}  // namespace flute_grinder

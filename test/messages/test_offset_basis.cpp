@@ -1,0 +1,95 @@
+#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+/// @file
+/// What a goal's zero points depend on.
+
+namespace flute_grinder {
+namespace test_offset_basis {
+
+const std::string kJob = SOURCE_DIR "/jobs/unequal_d12_t4.yaml";
+
+TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
+  const core::OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kProbe);
+  EXPECT_EQ(basis.method, OffsetMethod::kProbe);
+  EXPECT_EQ(basis.job_name, "unequal_d12_t4.yaml");
+  EXPECT_EQ(basis.wheel_name, "straight_d100_w3.yaml");
+  EXPECT_EQ(basis.end_diameter, 0.012);
+  EXPECT_EQ(basis.wheel_diameter, 0.1);
+  EXPECT_EQ(basis.wheel_width, 0.003);
+  EXPECT_TRUE(basis.hasJob());
+  EXPECT_EQ(goalFromFile(SOURCE_DIR "/jobs/paper.yaml").wheel_name, "");
+}
+
+/// The job that asks for nothing but what its wheel is.
+TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
+  const GrindJob job = readJobFile(kJob);
+  const std::string digest = wheelDigest(job);
+  int of_wheel = 0;
+  visitJobFields([&](const JobField& field, auto of) {
+    GrindJob other = job;
+    of(other) += 0.001;
+    const std::string path = field.path;
+    const bool counts =
+        path.find("process.wheel_") == 0 && path.find("wear") == std::string::npos && path != "process.wheel_width";
+    of_wheel += counts ? 1 : 0;
+    EXPECT_EQ(wheelDigest(other) != digest, counts) << path;
+  });
+  EXPECT_EQ(of_wheel, 4) << "diameter, angle, two corners";
+  GrindJob other = job;
+  other.process.wheel_profile = WheelShape::kFullRadius;
+  EXPECT_NE(wheelDigest(other), digest);
+  other = job;
+  other.process.wheel_side = WheelFace::kLower;
+  EXPECT_NE(wheelDigest(other), digest);
+  other = job;
+  other.wheel_points.push_back({0, 0.05});
+  EXPECT_NE(wheelDigest(other), digest);
+}
+
+TEST(OffsetBasis, SurvivesItsMessageAndAnUnknownMethodIsUnknown) {
+  const core::OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kByHand);
+  OffsetBasis message = toMessage(basis);
+  EXPECT_TRUE(toMessage(fromMessage(message)) == message);
+  message.method = 200;
+  EXPECT_EQ(fromMessage(message).method, OffsetMethod::kUnknown);
+}
+
+/// Y touched off for D 6, then a D 10 and a D 20 job: the wheel would stand 2 and 7 mm too deep.
+TEST(OffsetBasis, ADeeperCutThanAskedIsAMisfit) {
+  GrindGoal small = goalFromFile(kJob);
+  small.cutter.end_diameter = 0.006;
+  core::WorkOffsets offsets;
+  for (core::WorkOffset& offset : offsets.axes) {
+    offset = {0.001, "anna@grinder", 1.7e9, basisOf(small, OffsetMethod::kTouchOff)};
+  }
+  EXPECT_TRUE(misfits(offsets, small).empty());
+  EXPECT_TRUE(offsetWarnings(offsets, small).empty());
+  for (const double diameter : {0.01, 0.02}) {
+    GrindGoal large = small;
+    large.cutter.end_diameter = diameter;
+    const auto found = misfits(offsets, large);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_EQ(found[0].axis, kY);
+    EXPECT_NEAR(found[0].change.value_or(0), (diameter - 0.006) / 2, 1e-15);
+    EXPECT_NE(text(found).find("; 'grind offsets --fit JOB' computes Y"), std::string::npos) << text(found);
+    ASSERT_EQ(offsetWarnings(offsets, large).size(), 1U);
+  }
+}
+
+TEST(OffsetBasis, DoesNotEnterTheDigestOfAJob) {
+  GrindGoal goal = goalFromFile(kJob);
+  const std::string digest = jobDigest(jobFromGoal(goal));
+  goal.wheel_name = "other.yaml";
+  goal.offsets_are_right = 1;
+  EXPECT_EQ(jobDigest(jobFromGoal(goal)), digest);
+}
+
+}  // namespace test_offset_basis
+}  // namespace flute_grinder

@@ -1,0 +1,160 @@
+// The panel and zero points that were set for another job, against a grinder of the test's own.
+
+#include "flute_grinder/messages/offset_basis.h"
+#include "panel_fixture.h"
+#include "stage.h"
+
+#include <ros/package.h>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_panel_offsets {
+
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+
+/// With the paper's job, of D 10 mm, planned.
+class ZeroPoints : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    stage.change([&] {
+      stage.plan.valid = 1;
+      stage.plan.duration = 12;
+    });
+    stage.be(GrinderState::READY, "ready");
+    panel.widget().show();
+    WAIT_FOR(panel.enabled("plan"));
+    panel.click("plan");
+    WAIT_FOR(panel.enabled("start"));
+  }
+
+  /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter. @param diameter [m].
+  void setFor(double diameter) {
+    GrindGoal goal = goalFromFile(kPaper.toStdString());
+    goal.cutter.end_diameter = diameter;
+    goal.job_name = "other.yaml";
+    WorkOffsets offsets;
+    offsets.values = {0.001, 0.002, 0.003, 0};
+    for (const int axis : {kX, kY, kZ}) {
+      const auto i = static_cast<std::size_t>(axis);
+      offsets.set_by[i] = "anna@cell-3";
+      offsets.set_at[i] = ros::Time(1.7e9);
+      offsets.basis[i] = toMessage(basisOf(goal, OffsetMethod::kTouchOff));
+    }
+    stage.tellOffsets(offsets);
+  }
+  bool asks() { return panel.the<QPushButton>("offsets_are_right").isVisible(); }
+  std::vector<GrindActionGoal> goals() {
+    return stage.get([&] { return stage.goals; });
+  }
+  std::vector<SetOffset::Request> offsetsSet() {
+    return stage.get([&] { return stage.offsets_set; });
+  }
+
+  Stage stage;
+  Panel panel{"cell/stage", kPaper};
+};
+
+TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
+  setFor(0.01);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: set for this job");
+  panel.click("start");
+  WAIT_FOR(goals().size() == 1);
+  EXPECT_FALSE(goals()[0].goal.offsets_are_right);
+}
+
+TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
+  setFor(0.006);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
+  panel.click("start");
+  WAIT_FOR(asks());
+  EXPECT_NE(panel.text("offsets_to_set")
+                .find("Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"),
+            std::string::npos)
+      << panel.text("offsets_to_set");
+  panel.picture("offset_question");
+  panel.click("decline_offsets");
+  WAIT_FOR(!asks());
+  EXPECT_TRUE(goals().empty());
+  panel.click("start");
+  WAIT_FOR(asks());
+  panel.click("offsets_are_right");
+  WAIT_FOR(goals().size() == 1);
+  EXPECT_TRUE(goals()[0].goal.offsets_are_right);
+  EXPECT_TRUE(offsetsSet().empty());
+}
+
+TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
+  setFor(0.006);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
+  panel.click("start");
+  WAIT_FOR(asks());
+  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
+  panel.click("fit_offsets");
+  WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
+  const SetOffset::Request set = offsetsSet()[0];
+  EXPECT_EQ(set.axis, "axis_y");
+  EXPECT_NEAR(set.value, 0.004, 1e-15);
+  EXPECT_EQ(set.basis.job_name, "paper.yaml");
+  EXPECT_EQ(set.basis.end_diameter, 0.01);
+  EXPECT_EQ(set.basis.method, OffsetBasis::TOUCH_OFF);
+  EXPECT_TRUE(goals().empty()) << "only planned";
+}
+
+TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
+  stage.tellOffsets({});
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+  panel.click("start");
+  WAIT_FOR(asks());
+  EXPECT_FALSE(panel.the<QPushButton>("fit_offsets").isVisible());
+  EXPECT_NE(panel.text("offsets_to_set").find("Y was never set"), std::string::npos);
+  panel.picture("offset_question_never");
+  setFor(0.01);
+  WAIT_FOR(!asks());
+}
+
+TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
+  const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
+  auto& touch = panel.the<QPushButton>("touch_off");
+  panel.the<QComboBox>("touch_axis").setCurrentText("Z");
+  auto& at = panel.the<QDoubleSpinBox>("touch_at");
+  WAIT_FOR(touch.isEnabled());
+  stage.change([&] { stage.touch_refusal = "it would change by much", stage.large_change = true; });
+  panel.click("touch_off");
+  WAIT_FOR(touch.text() == "All the same");
+  ASSERT_EQ(touches().size(), 1U);
+  EXPECT_EQ(touches()[0].basis.job_name, "paper.yaml");
+  EXPECT_NEAR(touches()[0].basis.height, 0.002788, 1e-12);
+  EXPECT_FALSE(touches()[0].large_change_ok);
+  at.setValue(1);
+  EXPECT_EQ(touch.text(), "Touch off") << "another value is another question";
+  panel.click("touch_off");
+  WAIT_FOR(touch.text() == "All the same");
+  stage.change([&] { stage.state.position[kZ] += 0.001; });
+  WAIT_FOR(touch.text() == "Touch off");
+  panel.click("touch_off");
+  WAIT_FOR(touch.text() == "All the same");
+  stage.change([&] { stage.touch_refusal = "", stage.large_change = false; });
+  panel.click("touch_off");
+  WAIT_FOR(touches().size() == 4);
+  EXPECT_TRUE(touches()[3].large_change_ok);
+  EXPECT_EQ(touch.text(), "Touch off");
+}
+
+TEST_F(ZeroPoints, OfYAndZNeedAJob) {
+  Panel without("cell/stage");
+  without.the<QComboBox>("touch_axis").setCurrentText("Z");
+  WAIT_FOR(without.enabled("touch_off"));
+  without.click("touch_off");
+  WAIT_FOR(without.text("messages").find("open the job first") != std::string::npos);
+  without.the<QComboBox>("touch_axis").setCurrentText("X");
+  without.click("touch_off");
+  WAIT_FOR(stage.get([&] { return stage.touches.size(); }) == 1);
+  EXPECT_EQ(stage.get([&] { return stage.touches[0].basis.wheel_digest; }), "");
+}
+
+}  // namespace test_panel_offsets
+}  // namespace flute_grinder

@@ -605,7 +605,7 @@ class TestVerdict(ReportCase):
         self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
         self.assertEqual([(c['name'], c['result']) for c in data['criteria']], [
             ('path deviation', 'passed'), ('rake', 'passed'), ('core diameter', 'not asked'), ('land', 'passed'),
-            ('spiral angle', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
+            ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
             ('late cycles', 'passed')])
 
     def test_each_tolerance_fails_what_is_beyond_it(self):

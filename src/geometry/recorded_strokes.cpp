@@ -77,6 +77,7 @@ void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
 
 void RecordedStrokes::finish() {
   endStroke();
+  reading_.reset();
   const std::size_t strokes = strokes_.size();
   for (const Poses& poses : poses_) addOutside(poses, strokes);
   poses_.clear();
@@ -86,13 +87,28 @@ void RecordedStrokes::take(const Part& part, const Axes& actual) {
   const bool same = reading_ && reading_->place == part.place && reading_->move == part.move;
   if (!same) endStroke();
   if (part.move == MoveKind::kStroke) {
-    if (!same) path_.emplace(pathOf(part.place));
+    if (!same) beginStroke(part.place, actual[kX]);
     in_blank_ = false;
     sample(actual);
   } else {
     addPose(part, actual);
   }
   reading_ = part;
+}
+
+void RecordedStrokes::beginStroke(const ToothPass& place, double x) {
+  const bool goes_on = !strokes_.empty() && strokes_.back().place == place;
+  path_.emplace(pathOf(place));
+  if (!goes_on) {
+    samples_.clear();
+    return;
+  }
+  // After a lift: the stroke counts as far as it had come, and once more with what follows in place of what is
+  // repeated.
+  const bool rises = path_->stroke.from < path_->stroke.to;
+  const auto repeated = samples_.lower_bound(std::lround(x / kCell));
+  samples_.erase(rises ? repeated : samples_.begin(), rises ? samples_.end() : repeated);
+  (rises ? range_.to : range_.from) = x;
 }
 
 void RecordedStrokes::sample(const Axes& actual) {
@@ -121,9 +137,8 @@ std::vector<PathDeviation> RecordedStrokes::deviations() const {
 }
 
 void RecordedStrokes::endStroke() {
-  if (samples_.empty()) return;
+  if (!reading_ || reading_->move != MoveKind::kStroke) return;
   if (range_.to > range_.from) strokes_.push_back({reading_->place, MoveKind::kStroke, range_, deviations()});
-  samples_.clear();
 }
 
 RecordedStrokes::Path::Path(const GrindJob& job, int tooth, double wear)

@@ -45,7 +45,8 @@ class RecordedStrokes {
   /// To be called after the last setpoint.
   void finish();
 
-  /// All strokes in the order of the record. Behind them, the parts of other moves.
+  /// All strokes in the order of the record; one that was broken off by a lift and went on is there twice, up to the
+  /// lift and as a whole. Behind them, the parts of other moves.
   const std::vector<RecordedStroke>& strokes() const noexcept { return strokes_; }
 
   /// What the wheel removed in one of these, as if the tooth were at angle 0.
@@ -89,6 +90,7 @@ class RecordedStrokes {
   double wearOf(const ToothPass& place) const;
   double depthOf(const RecordedStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
+  void beginStroke(const ToothPass& place, double x);
   void sample(const Axes& actual);
   std::vector<PathDeviation> deviations() const;
   void endStroke();
@@ -108,7 +110,7 @@ class RecordedStrokes {
   std::optional<Part> last_;          ///< of the last setpoint
   std::optional<Part> reading_;       ///< what the last position belongs to
   std::optional<Path> path_;          ///< of the stroke that is being read
-  std::map<long, Sample> samples_;    ///< of that stroke, by its place on X
+  std::map<long, Sample> samples_;    ///< of the last stroke, by its place on X
   Range range_;                       ///< of that stroke
   std::vector<Poses> poses_;
   bool in_blank_ = false;  ///< whether the last position is in the last of these

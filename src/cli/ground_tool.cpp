@@ -17,6 +17,8 @@ using namespace units;
 constexpr int kVolumeSections = 12;
 constexpr std::size_t kOutlineRings = 32;
 constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth together
+constexpr double kLeastGouge = 1e-6;          ///< below that it is the averaging of positions [m]
+constexpr double kBadGouge = 10e-6;           ///< above that it is not the following error alone [m]
 
 /// A tooth in a section.
 struct Place {
@@ -171,29 +173,76 @@ void printExtremes(const GroundTool& tool) {
   }
 }
 
-/// Of a record, which strokes formed each tooth; those that are missing are told as well.
+std::string text(const Range& range) {
+  return format("X %.3f to %.3f mm", range.from / kMillimetre, range.to / kMillimetre);
+}
+
+/// Of a record, the strokes of each tooth; that there are none is printed as well. Passes as long share a line.
 void printStrokes(const GroundTool& tool) {
   for (std::size_t i = 0; i < tool.job.tooth_angles.size(); ++i) {
-    std::string passes;
+    std::vector<RecordedStroke> strokes;
     for (const RecordedStroke& stroke : tool.strokes) {
-      if (stroke.place.tooth != static_cast<int>(i)) continue;
-      passes += format("%spass %d, X %.3f to %.3f mm", passes.empty() ? "" : "; ", stroke.place.pass + 1,
-                       stroke.range.from / kMillimetre, stroke.range.to / kMillimetre);
+      if (stroke.move == MoveKind::kStroke && stroke.place.tooth == static_cast<int>(i)) strokes.push_back(stroke);
+    }
+    std::string passes;
+    for (std::size_t first = 0, next; first < strokes.size(); first = next) {
+      const std::string range = text(strokes[first].range);
+      for (next = first + 1; next < strokes.size() && text(strokes[next].range) == range;) ++next;
+      passes += passes.empty() ? "pass " : "; pass ";
+      passes += std::to_string(strokes[first].place.pass + 1);
+      if (next > first + 1) passes += "-" + std::to_string(strokes[next - 1].place.pass + 1);
+      passes += ", " + range;
     }
     std::printf("%-18s  %s\n", format("tooth %zu", i + 1).c_str(),
                 passes.empty() ? "not in the record" : passes.c_str());
   }
 }
 
+void printGouges(const GroundTool& tool) {
+  for (const Gouge& gouge : tool.gouges) {
+    if (!(gouge.depth > kBadGouge)) continue;
+    std::printf("%-18s  tooth %d, pass %d, %s: %.3f mm at X %.3f mm\n", "beyond the flute", gouge.place.tooth + 1,
+                gouge.place.pass + 1, toString(gouge.move), gouge.depth / kMillimetre, gouge.x / kMillimetre);
+  }
+}
+
 Json strokes(const GroundTool& tool) {
   Json strokes = Json::array();
   for (const RecordedStroke& stroke : tool.strokes) {
+    if (stroke.move != MoveKind::kStroke) continue;
     strokes.push_back({{"tooth", stroke.place.tooth},
                        {"pass", stroke.place.pass},
                        {"from_x_mm", stroke.range.from / kMillimetre},
                        {"to_x_mm", stroke.range.to / kMillimetre}});
   }
   return strokes;
+}
+
+Json gouges(const GroundTool& tool) {
+  Json gouges = Json::array();
+  for (const Gouge& gouge : tool.gouges) {
+    gouges.push_back({{"tooth", gouge.place.tooth},
+                      {"pass", gouge.place.pass},
+                      {"move", toString(gouge.move)},
+                      {"x_mm", gouge.x / kMillimetre},
+                      {"depth_mm", gouge.depth / kMillimetre}});
+  }
+  return gouges;
+}
+
+/// The deepest, if it is worth a reason.
+std::optional<core::Reason> reasonOf(const std::vector<Gouge>& gouges) {
+  const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
+  const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
+  if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kOther;
+  reason.detail = format(
+      "tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
+      "%.3f mm; allowed: up to %.3f mm",
+      deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
+      deepest->x / kMillimetre, kBadGouge / kMillimetre);
+  return reason;
 }
 
 Json number(Value value) { return value ? Json(*value) : Json(nullptr); }
@@ -248,13 +297,23 @@ Json toJson(const GroundTool& tool, const MeasuredSection& section) {
 }  // namespace
 
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
-  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}};
+  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}, {}};
   tool.check = checkGroundCutter(job, tool.cutter);
   for (const double x : at) {
     const GroundSection section = tool.cutter.section(x);
     tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
   }
   tool.volume_removed = tool.cutter.volumeRemoved(0, job.cutter.flute_length, kVolumeSections);
+  return tool;
+}
+
+GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
+                   const std::vector<double>& at) {
+  GroundTool tool = measure(job, source, strokes.cutter(), at);
+  tool.recorded = true;
+  tool.strokes = strokes.strokes();
+  tool.gouges = gougesOf(job, strokes, kLeastGouge);
+  if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
   return tool;
 }
 
@@ -276,7 +335,9 @@ void printText(const GroundTool& tool) {
   std::printf("%-18s  %.3f mm^3, X 0 to %.3f mm\n", "volume removed",
               tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre),
               tool.job.cutter.flute_length / kMillimetre);
-  if (tool.recorded) printStrokes(tool);
+  if (!tool.recorded) return;
+  printStrokes(tool);
+  printGouges(tool);
 }
 
 Json toJson(const GroundTool& tool) {
@@ -298,6 +359,7 @@ Json toJson(const GroundTool& tool) {
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
           {"rake_tolerance_deg", tool.job.cutter.rake_tolerance / kDegree},
           {"strokes", tool.recorded ? strokes(tool) : Json(nullptr)},
+          {"gouges", tool.recorded ? gouges(tool) : Json(nullptr)},
           {"sections", sections}};
 }
 

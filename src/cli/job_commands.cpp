@@ -113,6 +113,8 @@ void addReport(Commands& commands) {
   command.add_option("--pdf", options->pdf, "PDF file to write, by Chromium")->type_name(kAnyFile);
   addJson(command, options->json);
   command.add_option("--note", options->note, "the operator's words for the first page")->type_name("TEXT");
+  command.add_option("--operator", options->operator_name, "who ground the tool, for every page")->type_name("NAME");
+  command.add_option("--serial", options->serial, "serial number of the tool, for every page")->type_name("NUMBER");
   command
       .add_option("--tolerances", options->tolerances, "what the tool is passed by (default: config/tolerances.yaml)")
       ->type_name(kYamlFile);

@@ -71,6 +71,8 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   add("--output", options.html);
   add("--pdf", options.pdf);
   add("--note", options.note);
+  add("--operator", options.operator_name);
+  add("--serial", options.serial);
   add("--tolerances", options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
   add("--job", std::to_string(options.job));
   if (options.json) arguments.emplace_back("--json");

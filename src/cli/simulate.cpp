@@ -111,10 +111,7 @@ GroundTool simulate(const Source& source, const std::vector<double>& at) {
   RecordedStrokes strokes(job);
   source.visit([&](const Setpoint& setpoint, const Axes& actual) { strokes.add(setpoint, actual); });
   strokes.finish();
-  GroundTool tool = measure(job, source.name, strokes.cutter(), at);
-  tool.recorded = true;
-  tool.strokes = strokes.strokes();
-  return tool;
+  return measure(job, source.name, strokes, at);
 }
 
 /// @return the exit status.

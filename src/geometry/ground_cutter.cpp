@@ -16,6 +16,7 @@ constexpr double kDifference = 1e-4;
 constexpr int kRings = 64;        ///< for the area of a section
 constexpr int kRingsOfDepth = 6;  ///< on which a flute must be complete
 constexpr double kRangeAccuracy = 10e-6;
+constexpr double kSameEnd = 1e-6;  ///< of arcs of several strokes [m]
 
 /// An angle within one turn.
 double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
@@ -62,10 +63,13 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
       all = one;
       continue;
     }
-    // Whether an end is complete is for the stroke to say that goes farther there.
-    const bool complete = (one->low < all->low ? one->complete : all->complete) &&
-                          (one->high > all->high ? one->complete : all->complete);
-    all = Arc{std::min(all->low, one->low), std::max(all->high, one->high), complete};
+    // Whether an end is complete is for the stroke to say that goes farther there; of two that go as far, for either.
+    const auto complete = [&](double farther) {
+      if (std::abs(farther) * r <= kSameEnd) return all->complete || one->complete;
+      return farther > 0 ? one->complete : all->complete;
+    };
+    all = Arc{std::min(all->low, one->low), std::max(all->high, one->high),
+              complete(all->low - one->low) && complete(one->high - all->high)};
   }
   return all;
 }

@@ -13,73 +13,122 @@ namespace {
 
 /// Of X, over which samples are averaged: the sawtooth of odd and even points would turn the wall that is measured [m].
 constexpr double kCell = 0.2e-3;
+constexpr double kApart = 5e-6;           ///< of the positions that are kept outside strokes [m]
+constexpr std::size_t kPosesOfPart = 32;  ///< as many as WheelSweep looks at
+constexpr double kShortest = 1e-6;        ///< a move in which X rests counts as this long [m]
 
 PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) {
   return {a.y + part * (b.y - a.y), a.z + part * (b.z - a.z), a.a + part * (b.a - a.a)};
 }
 
+/// X of a stroke's deviation.
+double xOf(const RecordedStroke& stroke, std::size_t i) {
+  const auto parts = static_cast<double>(std::max<std::size_t>(1, stroke.deviations.size() - 1));
+  return stroke.range.from + (stroke.range.to - stroke.range.from) * static_cast<double>(i) / parts;
+}
+
+PathDeviation deviationAt(const RecordedStroke& stroke, double x) {
+  const std::vector<PathDeviation>& all = stroke.deviations;
+  const double length = stroke.range.to - stroke.range.from;
+  const double at = length > 0 ? std::clamp((x - stroke.range.from) / length, 0.0, 1.0) : 0;
+  const double place = at * static_cast<double>(all.size() - 1);
+  const auto i = static_cast<std::size_t>(place);
+  return i + 1 < all.size() ? between(all[i], all[i + 1], place - static_cast<double>(i)) : all.back();
+}
+
+bool holds(const Range& range, double x) {
+  return x >= range.from - RecordedStrokes::kSame && x <= range.to + RecordedStrokes::kSame;
+}
+
+double largestRadius(const GrindJob& job) {
+  const ConicalCutter cutter(job.cutter);
+  return std::max(cutter.radius(0), cutter.radius(job.cutter.flute_length + job.process.overtravel_shank));
+}
+
 }  // namespace
 
 RecordedStrokes::RecordedStrokes(const GrindJob& job)
-    : job_(job), order_(passOrder(job)), wear_(wearOfPasses(job)), depths_(passDepths(job.process)) {}
+    : job_(job),
+      order_(passOrder(job)),
+      wear_(wearOfPasses(job)),
+      depths_(passDepths(job.process)),
+      radius_(largestRadius(job)) {}
 
-std::size_t RecordedStrokes::placeInOrder(const ToothPass& place) const {
-  return static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin());
+double RecordedStrokes::wearOf(const ToothPass& place) const {
+  return wear_[static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin())];
 }
 
 void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
-  const ToothPass place{setpoint.tooth, setpoint.pass};
-  if (!(place.tooth < static_cast<int>(job_.tooth_angles.size()) && place.pass < static_cast<int>(depths_.size()))) {
+  const Part part{{setpoint.tooth, setpoint.pass}, setpoint.move, setpoint.cycle};
+  if (!(part.place.tooth < static_cast<int>(job_.tooth_angles.size()) &&
+        part.place.pass < static_cast<int>(depths_.size()))) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + " grinds tooth " +
-                                std::to_string(place.tooth + 1) + ", pass " + std::to_string(place.pass + 1) +
+                                std::to_string(part.place.tooth + 1) + ", pass " + std::to_string(part.place.pass + 1) +
                                 "; the job has " + std::to_string(job_.tooth_angles.size()) + " teeth and " +
                                 std::to_string(depths_.size()) + " passes");
   }
   if (!actual.isFinite().all()) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + ": the position read is not finite");
   }
-  const bool stroke = setpoint.move == MoveKind::kStroke;
-  if (stroke && !(reading_ && reading_->place == place)) {
-    endStroke();
-    reading_.emplace(Reading(job_, place, wear_[placeInOrder(place)]));
-  }
-  // What was read belongs to the setpoint before: a stroke begins at the end of its infeed, and ends one cycle later.
-  const bool last = reading_ && in_stroke_ && setpoint.cycle == cycle_ + 1;
-  if (stroke || last) sample(actual);
-  in_stroke_ = stroke;
-  cycle_ = setpoint.cycle;
+  // What was read belongs to the setpoint before.
+  take(last_ && last_->cycle + 1 == part.cycle ? *last_ : part, actual);
+  last_ = part;
 }
 
-void RecordedStrokes::finish() { endStroke(); }
+void RecordedStrokes::finish() {
+  endStroke();
+  reading_.reset();
+  const std::size_t strokes = strokes_.size();
+  for (const Poses& poses : poses_) addOutside(poses, strokes);
+  poses_.clear();
+}
 
-RecordedStrokes::Reading::Reading(const GrindJob& job, const ToothPass& tooth_pass, double wear)
-    : place(tooth_pass),
-      cutter(cutterOf(job, tooth_pass.tooth)),
-      curve(cutter),
-      path(strokeOf(job, tooth_pass.tooth, job.process.deepest(), wear)),
-      angle(job.tooth_angles[static_cast<std::size_t>(tooth_pass.tooth)]) {}
+void RecordedStrokes::take(const Part& part, const Axes& actual) {
+  const bool same = reading_ && reading_->place == part.place && reading_->move == part.move;
+  if (!same) endStroke();
+  if (part.move == MoveKind::kStroke) {
+    if (!same) beginStroke(part.place, actual[kX]);
+    in_blank_ = false;
+    sample(actual);
+  } else {
+    addPose(part, actual);
+  }
+  reading_ = part;
+}
+
+void RecordedStrokes::beginStroke(const ToothPass& place, double x) {
+  const bool goes_on = !strokes_.empty() && strokes_.back().place == place;
+  path_.emplace(pathOf(place));
+  if (!goes_on) {
+    samples_.clear();
+    return;
+  }
+  // After a lift: the stroke counts as far as it had come, and once more with what follows in place of what is
+  // repeated.
+  const bool rises = path_->stroke.from < path_->stroke.to;
+  const auto repeated = samples_.lower_bound(std::lround(x / kCell));
+  samples_.erase(rises ? repeated : samples_.begin(), rises ? samples_.end() : repeated);
+  (rises ? range_.to : range_.from) = x;
+}
 
 void RecordedStrokes::sample(const Axes& actual) {
   const double x = actual[kX];
-  const GrindStroke& path = reading_->path;
-  const PathDeviation off{actual[kY] - (path.y + reading_->cutter.y(x) + x * path.y_per_x),
-                          actual[kZ] - (reading_->cutter.z(x) + path.z_correction.at(x).z),
-                          actual[kA] - reading_->angle - reading_->curve.a(x)};
-  reading_->range.from = std::min(reading_->range.from, x);
-  reading_->range.to = std::max(reading_->range.to, x);
+  const PathDeviation off = path_->deviation(x, actual);
+  range_ = samples_.empty() ? Range{x, x} : Range{std::min(range_.from, x), std::max(range_.to, x)};
   Sample& cell = samples_[std::lround(x / kCell)];
   ++cell.count;
   cell.x += (x - cell.x) / cell.count;
   cell.off = between(cell.off, off, 1.0 / cell.count);
 }
 
-std::vector<PathDeviation> RecordedStrokes::deviations(const Range& range) const {
-  const double length = range.to - range.from;
+std::vector<PathDeviation> RecordedStrokes::deviations() const {
+  if (samples_.size() == 1) return {samples_.begin()->second.off};
+  const double length = range_.to - range_.from;
   const auto parts = std::max(1L, std::lround(length / kCell));
   std::vector<PathDeviation> deviations;
   auto right = std::next(samples_.begin());
   for (long i = 0; i <= parts; ++i) {
-    const double x = range.from + length * static_cast<double>(i) / static_cast<double>(parts);
+    const double x = range_.from + length * static_cast<double>(i) / static_cast<double>(parts);
     while (right->second.x < x && std::next(right) != samples_.end()) ++right;
     const Sample &a = std::prev(right)->second, &b = right->second;
     deviations.push_back(between(a.off, b.off, std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0)));
@@ -88,44 +137,123 @@ std::vector<PathDeviation> RecordedStrokes::deviations(const Range& range) const
 }
 
 void RecordedStrokes::endStroke() {
-  if (samples_.size() > 1) {
-    RecordedStroke stroke{reading_->place, reading_->range, deviations(reading_->range)};
-    const auto covering = [&](const RecordedStroke& other) { return covers(other, stroke); };
-    const auto covered = [&](const RecordedStroke& other) { return covers(stroke, other); };
-    if (std::none_of(strokes_.begin(), strokes_.end(), covering)) {
-      strokes_.erase(std::remove_if(strokes_.begin(), strokes_.end(), covered), strokes_.end());
-      strokes_.push_back(std::move(stroke));
-    }
-  }
-  samples_.clear();
-  reading_.reset();
+  if (!reading_ || reading_->move != MoveKind::kStroke) return;
+  if (range_.to > range_.from) strokes_.push_back({reading_->place, MoveKind::kStroke, range_, deviations()});
 }
 
-bool RecordedStrokes::covers(const RecordedStroke& deep, const RecordedStroke& shallow) const {
-  const auto depth = [&](const RecordedStroke& s) { return depths_[static_cast<std::size_t>(s.place.pass)]; };
-  return deep.place.tooth == shallow.place.tooth && depth(deep) >= depth(shallow) &&
-         deep.range.from <= shallow.range.from + kCell && deep.range.to >= shallow.range.to - kCell;
+RecordedStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
+    : cutter(cutterOf(job, tooth)),
+      curve(cutter),
+      stroke(flute_grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
+      angle(job.tooth_angles[static_cast<std::size_t>(tooth)]) {}
+
+PathDeviation RecordedStrokes::Path::deviation(double x, const Axes& at) const {
+  return {at[kY] - (stroke.y + cutter.y(x) + x * stroke.y_per_x), at[kZ] - (cutter.z(x) + stroke.z_correction.at(x).z),
+          at[kA] - angle - curve.a(x)};
+}
+
+void RecordedStrokes::addPose(const Part& part, const Axes& actual) {
+  const bool goes_on =
+      in_blank_ && reading_->place == part.place && reading_->move == part.move && reading_->cycle + 1 == part.cycle;
+  in_blank_ = job_.cutter.end_diameter / 2 + actual[kY] < radius_;
+  if (!in_blank_) return;
+  if (!goes_on) poses_.push_back({part.place, part.move, {}});
+  std::vector<Axes>& at = poses_.back().at;
+  if (!at.empty()) {
+    Axes way = (actual - at.back()).abs();
+    way[kA] *= radius_;
+    if (way.maxCoeff() < kApart) return;
+  }
+  at.push_back(actual);
+}
+
+bool RecordedStrokes::covers(const RecordedStroke& stroke, const ToothPass& place, double x,
+                             const PathDeviation& off) const {
+  if (!holds(stroke.range, x)) return false;
+  const PathDeviation own = deviationAt(stroke, x);
+  // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
+  const double wear = wearOf(stroke.place);
+  const double smaller = std::max(0.0, wear - wearOf(place)) / (job_.process.wheel_diameter / 2 - wear);
+  // Along the wheel's radius it only has to be as deep: what the other one removes above is removed as well.
+  return off.y - own.y >= 2 * radius_ * smaller - kSame &&
+         std::abs(off.z - own.z) + radius_ * std::abs(off.a - own.a) <= kSame;
+}
+
+bool RecordedStrokes::covers(const RecordedStroke& stroke, const RecordedStroke& other) const {
+  if (stroke.place.tooth != other.place.tooth) return false;
+  const auto at = [&](double x) { return covers(stroke, other.place, x, deviationAt(other, x)); };
+  // In between, both are linear.
+  for (std::size_t i = 0; i < other.deviations.size(); ++i) {
+    if (!at(xOf(other, i))) return false;
+  }
+  for (std::size_t i = 0; i < stroke.deviations.size(); ++i) {
+    const double x = xOf(stroke, i);
+    if (x > other.range.from && x < other.range.to && !at(x)) return false;
+  }
+  return at(other.range.from) && at(other.range.to);
+}
+
+void RecordedStrokes::addOutside(const Poses& poses, std::size_t strokes) {
+  const Path path = pathOf(poses.place);
+  const auto covered = [&](const Axes& at) {
+    const PathDeviation off = path.deviation(at[kX], at);
+    return std::any_of(strokes_.begin(), strokes_.begin() + static_cast<std::ptrdiff_t>(strokes),
+                       [&](const RecordedStroke& stroke) {
+                         return stroke.place.tooth == poses.place.tooth && covers(stroke, poses.place, at[kX], off);
+                       });
+  };
+  std::vector<bool> outside;
+  for (const Axes& at : poses.at) outside.push_back(!covered(at));
+  // Each part with a neighbour on either side.
+  const std::size_t last = poses.at.size() - 1;
+  for (std::size_t i = 0; i <= last; ++i) {
+    if (!outside[i]) continue;
+    const std::size_t from = std::max<std::size_t>(i, 1) - 1;
+    while (i < last && outside[i + 1] && i + 2 < from + kPosesOfPart) ++i;
+    strokes_.push_back(strokeOf(poses, from, std::min(i + 1, last)));
+  }
+}
+
+RecordedStroke RecordedStrokes::strokeOf(const Poses& poses, std::size_t from, std::size_t to) const {
+  std::vector<Axes> at(poses.at.begin() + static_cast<std::ptrdiff_t>(from),
+                       poses.at.begin() + static_cast<std::ptrdiff_t>(to) + 1);
+  if (at.front()[kX] > at.back()[kX]) std::reverse(at.begin(), at.end());
+  RecordedStroke stroke{poses.place, poses.move, {at.front()[kX], at.back()[kX]}, {}};
+  stroke.range.to = std::max(stroke.range.to, stroke.range.from + kShortest);
+  const Path path = pathOf(poses.place);
+  stroke.deviations.resize(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) stroke.deviations[i] = path.deviation(xOf(stroke, i), at[i]);
+  return stroke;
+}
+
+WheelSweep RecordedStrokes::sweep(const RecordedStroke& recorded) const {
+  const int tooth = recorded.place.tooth;
+  const double wear = wearOf(recorded.place);
+  GrindStroke stroke = flute_grinder::strokeOf(job_, tooth, job_.process.deepest(), wear);
+  stroke.from = recorded.range.from;
+  stroke.to = recorded.range.to;
+  stroke.deviations = recorded.deviations;
+  return sweepOf(job_, tooth, wear, stroke);
 }
 
 GroundCutter RecordedStrokes::cutter() const {
-  std::vector<Flute> flutes;
+  std::vector<const RecordedStroke*> deepest_first;
+  for (const RecordedStroke& stroke : strokes_) deepest_first.push_back(&stroke);
+  std::stable_sort(deepest_first.begin(), deepest_first.end(),
+                   [&](const RecordedStroke* a, const RecordedStroke* b) { return depthOf(*a) > depthOf(*b); });
+  std::vector<const RecordedStroke*> kept;
+  for (const RecordedStroke* stroke : deepest_first) {
+    const auto covering = [&](const RecordedStroke* other) { return covers(*other, *stroke); };
+    if (std::none_of(kept.begin(), kept.end(), covering)) kept.push_back(stroke);
+  }
+  std::vector<Flute> flutes(job_.tooth_angles.size());
+  for (const RecordedStroke* stroke : kept)
+    flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
   std::vector<GroundTooth> teeth;
-  for (std::size_t i = 0; i < job_.tooth_angles.size(); ++i) {
-    const int tooth = static_cast<int>(i);
-    Flute flute;
-    for (const RecordedStroke& recorded : strokes_) {
-      if (recorded.place.tooth != tooth) continue;
-      const double wear = wear_[placeInOrder(recorded.place)];
-      GrindStroke stroke = strokeOf(job_, tooth, job_.process.deepest(), wear);
-      stroke.from = recorded.range.from;
-      stroke.to = recorded.range.to;
-      stroke.deviations = recorded.deviations;
-      flute.push_back(sweepOf(job_, tooth, wear, stroke));
-    }
+  for (std::size_t i = 0; i < flutes.size(); ++i) {
     // A stroke without a length removes nothing.
-    if (flute.empty()) flute.push_back(sweepOf(job_, tooth, 0, GrindStroke{}));
-    teeth.push_back({job_.tooth_angles[i], flutes.size()});
-    flutes.push_back(std::move(flute));
+    if (flutes[i].empty()) flutes[i].push_back(sweepOf(job_, static_cast<int>(i), 0, GrindStroke{}));
+    teeth.push_back({job_.tooth_angles[i], i});
   }
   return GroundCutter(ConicalCutter(job_.cutter), std::move(flutes), std::move(teeth));
 }

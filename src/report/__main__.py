@@ -13,6 +13,7 @@ from record import Record, SourceError
 from verdict import read_tolerances
 
 SECTIONS = 17  # of the tool
+WORDS = ('note', 'operator', 'serial')  # of whoever asks for the report
 
 
 def arguments():
@@ -21,7 +22,8 @@ def arguments():
     parser.add_argument('--output')
     parser.add_argument('--pdf')
     parser.add_argument('--json', action='store_true')
-    parser.add_argument('--note', default='')
+    for words in WORDS:
+        parser.add_argument('--' + words, default='')
     parser.add_argument('--tolerances', required=True)
     parser.add_argument('--job', type=int, required=True)
     parser.add_argument('--grind', required=True, help='the program itself, which simulates the tool')
@@ -127,7 +129,8 @@ def make(given, tolerances, record, tool, no_tool):
     draws = given.output or given.pdf
     figures, plots = survey(record, job_file, draws)
     limits = dict(zip(LIMITS, (given.max_velocity, given.max_acceleration, given.max_following_error)))
-    findings = Findings(os.path.basename(given.file), record, figures, tool, no_tool, job_file, limits, tolerances, given.note)
+    findings = Findings(os.path.basename(given.file), record, figures, tool, no_tool, job_file, limits, tolerances,
+                        {key: getattr(given, key) for key in WORDS if getattr(given, key)})
     if draws:
         from page import page
         from pictures import draw

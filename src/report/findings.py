@@ -49,13 +49,12 @@ def overrides(changes):
 
 
 class Findings:
-    """data: see above. figures, limits: for the pictures; None and {} without rows. limits are in SI units."""
+    """data: see above. words: by their keys. figures, limits: for the pictures; None and {} without rows. limits are in SI units."""
 
-    def __init__(self, name, record, figures, tool, no_tool, job_file, given_limits, tolerances, note):
+    def __init__(self, name, record, figures, tool, no_tool, job_file, given_limits, tolerances, words):
         self.figures = figures
         self.data = data = {'file': name, 'kind': record.kind, 'type': KINDS[record.kind]}
-        if note:
-            data['note'] = note
+        data.update(words)
         data.update(record.head)
         if job_file:
             data.setdefault('job', {'name': data.pop('job_name', ''), 'file': job_file})

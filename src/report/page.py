@@ -2,6 +2,7 @@
 
 import html
 import os
+import re
 
 from cutter import spiral_angles, tooth_angles
 from figures import QUANTITIES
@@ -80,6 +81,8 @@ def local(stamp):
 def clock(seconds):
     minutes, rest = divmod(round(seconds, 1), 60)
     hours, minutes = divmod(int(minutes), 60)
+    if not hours and not minutes:
+        return '%g s' % (round(seconds) if seconds >= 1 else round(seconds, 1))
     return '%d:%02d:%04.1f h' % (hours, minutes, rest) if hours else '%d:%04.1f min' % (minutes, rest)
 
 
@@ -124,6 +127,7 @@ def run_facts(data):
     machine, offsets = data.get('machine', {}), data.get('work_offsets')
     setpoints = data.get('setpoints', {})
     return [('file', '%s (%s)' % (data['file'], data['type'])), ('job in the bag', data.get('in_bag')),
+            ('operator', data.get('operator')), ('serial number', data.get('serial')),
             ('begun', local(data['started']) if 'started' in data else None),
             ('ended', local(data['ended']) if 'ended' in data else None),
             ('duration', clock(data['duration_s']) if data.get('duration_s') is not None else None),
@@ -236,10 +240,26 @@ def loop_facts(data):
                   ('late cycles', '%d over 1.5 periods' % late['count'])])
 
 
+def name_of(data):
+    return data.get('job', {}).get('name') or data['file']
+
+
+def css_string(words):
+    return '"%s"' % re.sub(r'[^\w .,·:/-]', lambda found: '\\%06x ' % ord(found.group()), words)
+
+
+def running_head(data):
+    """What stands on top of each printed page."""
+    left = [name_of(data), data.get('tool', {}).get('tool')]
+    right = ['No. ' + data['serial'] if 'serial' in data else None, data.get('operator'),
+             local(data['started'])[:16] if 'started' in data else None]
+    return '@page { @top-left { content: %s } @top-right { content: %s } }' % tuple(
+        css_string(' · '.join(filter(None, parts))) for parts in (left, right))
+
+
 def first_page(data, parts):
     job = data.get('job')
-    job_name = (job or {}).get('name') or data['file']
-    body = ['<h1>%s</h1>' % text(job_name)]
+    body = ['<h1>%s</h1>' % text(name_of(data))]
     if 'tool' in data:
         body.append('<p class="quiet">%s</p>' % text(data['tool']['tool']))
     if 'verdict' in data:
@@ -288,5 +308,5 @@ def page(data, parts):
         body += ['<h2>Left out</h2>', '<ul>%s</ul>' % ''.join('<li>%s</li>' % text(reason) for reason in data['left_out'])]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'page.css'), encoding='utf-8') as file:
         style = file.read()
-    return PAGE.format(title=text('Report: ' + ((data.get('job') or {}).get('name') or data['file'])), style=style,
+    return PAGE.format(title=text('Report: ' + name_of(data)), style=style + running_head(data) + '\n',
                        body='\n'.join(part for part in body if part))

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 Picture = namedtuple('Picture', 'name title caption svg')
 
 WIDTH = 4.6  # of a picture [in]
+NARROW = 3.0  # of one of three side by side
 
 # Colours differ in lightness too. In a page each is a variable of its style sheet, which has another value in the dark.
 INK, GRID, THEORY, CURVE = '#222222', '#dddddd', '#888888', '#1f4e8c'
@@ -29,8 +30,8 @@ matplotlib.rcParams.update({
     'svg.hashsalt': 'grind report', 'text.color': INK, 'xtick.color': INK, 'ytick.color': INK})
 
 
-def new_figure(height):
-    return Figure((WIDTH, height), constrained_layout=True)
+def new_figure(height, width=WIDTH):
+    return Figure((width, height), constrained_layout=True)
 
 
 def svg_of(figure):

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 from matplotlib.figure import Figure
 
-from style import CURVE, INK, LIMIT, METAL, TEETH, THEORY, new_figure, picture, svg_of
+from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
 
 # Key, asked key, title; of the section or of each tooth.
 CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
@@ -113,7 +113,7 @@ def tool_pictures(tool):
     """For a report."""
     pictures = []
     for i, section in enumerate(shown_sections(tool), 1):
-        figure = new_figure(5)
+        figure = new_figure(3.6, NARROW)
         draw_section(figure.add_subplot(), tool, section)
         pictures.append(picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
                                 'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the rake asked. The '

@@ -72,6 +72,10 @@ def place_of(stroke, x=None):
     return 'tooth %d, pass %d' % (stroke['tooth'], stroke['pass']) + ('' if x is None else ', X = %.3f mm' % x)
 
 
+def pass_of(gouge):
+    return 'tooth %d, pass %d, %s' % (gouge['tooth'] + 1, gouge['pass'] + 1, gouge['move'])
+
+
 def of_strokes(job_file, strokes, feed_limits, tolerances):
     deviation = Criterion('path deviation', 'µm', None, 0, job_file['interpolation']['tolerance_um'])
     following = Criterion('following error in strokes', 'µm', 2, 0, tolerances['following_error_um'])
@@ -119,6 +123,22 @@ def of_tool(job_file, tool, tolerances):
     return rake, core, land, spiral
 
 
+def of_gouges(tool, tolerances):
+    """tool: of a record, as far as it was ground; or None."""
+    # The core's tolerance, which is of a diameter, holds for the whole flute.
+    gouge = Criterion('gouge', 'mm', 3, 0, tolerances['core_diameter_mm'] / 2)
+    if not tool or tool['gouges'] is None:
+        return gouge
+    gouge.add(0, '')
+    for found in tool['gouges']:
+        gouge.add(found['depth_mm'], '%s, X = %.3f mm' % (pass_of(found), found['x_mm']))
+    others = [pass_of(found) for found in tool['gouges']
+              if found['depth_mm'] > gouge.tolerance and not gouge.place.startswith(pass_of(found))]
+    if others:
+        gouge.place += '; also ' + '; '.join(others)
+    return gouge
+
+
 def all_teeth_ground(tool):
     """Whether the record has a stroke of each tooth: of a job that was continued it has not."""
     return len({stroke['tooth'] for stroke in tool['strokes'] or []}) == tool['teeth']
@@ -141,10 +161,10 @@ def criteria(data, tolerances):
         count, longest = data['late_cycles']['count'], data['late_cycles']['longest_ms']
         late.add(100 * count / cycles, '%d of %d cycles%s' % (count, cycles, ', the longest %.3f ms' % longest if longest else ''))
     # A record of the grinder has no positions of which a tool could be computed: its tool is the one that the job asks for.
-    ground = data.get('tool')
-    if data['kind'] == 'record' or ground and not all_teeth_ground(ground):
-        ground = None
-    return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), following, feed, late)]
+    recorded = None if data['kind'] == 'record' else data.get('tool')
+    ground = recorded if recorded and all_teeth_ground(recorded) else None
+    return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), of_gouges(recorded, tolerances), following,
+                               feed, late)]
 
 
 def verdict(data):

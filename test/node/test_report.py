@@ -606,7 +606,7 @@ class TestVerdict(ReportCase):
         self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
         self.assertEqual([(c['name'], c['result']) for c in data['criteria']], [
             ('path deviation', 'passed'), ('rake', 'passed'), ('core diameter', 'not asked'), ('land', 'passed'),
-            ('spiral angle', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
+            ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
             ('late cycles', 'passed')])
 
     def test_each_tolerance_fails_what_is_beyond_it(self):
@@ -781,7 +781,8 @@ class TestLayout(ReportCase):
     @classmethod
     def setUpClass(cls):
         paper = os.path.join(FILES['folder'], 'report.pdf')
-        cls.page = cls.report(cls(), FILES['recording'].bag, '--job', '1', '--pdf', paper)
+        cls.page = cls.report(cls(), FILES['recording'].bag, '--job', '1', '--pdf', paper, '--operator', 'Ö "X" \\</style>',
+                              '--serial', '4711-03')
         # A form feed ends each sheet.
         cls.sheets = subprocess.check_output(['pdftotext', paper, '-'], universal_newlines=True).split('\f')[:-1]
         told = subprocess.check_output(['pdfinfo', '-l', '-1', paper], universal_newlines=True)
@@ -809,6 +810,21 @@ class TestLayout(ReportCase):
             self.assertAlmostEqual(float(height), 842, delta=1)
         self.assertEqual(len(self.sizes), len(self.sheets))
         self.assertEqual(len(self.sheets), int(re.search(r'1/(\d+)$', self.flat(self.sheets[0])).group(1)))
+
+    def test_every_sheet_says_whose_it_is(self):
+        self.assertEqual((self.page.rows['operator'], self.page.rows['serial number']), (['Ö "X" \\</style>'], ['4711-03']))
+        begun = self.page.rows['begun'][0][:len('2000-01-01 00:00')]
+        for sheet in self.sheets:
+            for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · Ö "X" \\</style> · ' + begun):
+                self.assertIn(self.flat(text), self.flat(sheet))
+
+    def test_labels_of_sections_can_be_read_on_paper(self):
+        # Three share the sheet's width.
+        for name in ('section-1', 'section-2', 'section-3'):
+            width = float(self.page.pictures[name].root.get('viewBox').split()[2])
+            for text in self.page.pictures[name].root.iter(SVG + 'text'):
+                size = float(re.search(r'([\d.]+)px', text.get('style')).group(1))
+                self.assertGreater(size * 0.31 * (595 - 2 * 14 / 25.4 * 72) / width, 6, ''.join(text.itertext()))  # pt
 
     def test_picture_for_the_documentation(self):
         picture = os.path.join(PICTURES, 'report.png')

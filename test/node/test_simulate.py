@@ -331,9 +331,26 @@ class TestRecord(TestSimulate):
         record = self.record(self.plan(job))
         self.check_same(self.sections(0, record, job), self.planned(job))
         told, _ = self.json(0, 'simulate', record, '--job', job, '--at', '5')
-        # The first pass at full depth covers those before and after it.
-        self.assertEqual(len({stroke['pass'] for stroke in told['strokes']}), 1)
-        self.assertEqual([stroke['tooth'] for stroke in told['strokes']], [0, 1, 2])
+        self.assertEqual([(stroke['tooth'], stroke['pass']) for stroke in told['strokes']],
+                         sorted({(int(row['tooth']), int(row['pass'])) for row in self.csv(self.path('plan.csv'))}))
+        self.assertEqual(told['gouges'], [])
+
+    def test_gouge_of_a_spark_out_is_in_tool_and_verdict(self):
+        job = gc.package_file('jobs/left_hand_d8_t3.yaml')
+        rows = self.plan(job)
+        last = max(rows, key=lambda row: int(row['pass']))['pass']
+        gouged = [dict(row, y_mm=str(float(row['y_mm']) - 0.1)) if (row['tooth'], row['pass'], row['move']) == ('1', last, 'stroke')
+                  else row for row in rows]
+        told, reasons = self.json(1, 'simulate', self.record(gouged), '--job', job, '--at', '5')
+        gouge, = told['gouges']
+        self.assertEqual((gouge['tooth'], gouge['pass'], gouge['move']), (1, int(last), 'stroke'))
+        self.assertAlmostEqual(gouge['depth_mm'], 0.1, delta=1e-4)
+        place = 'tooth 2, pass %d, stroke: ' % (int(last) + 1)
+        self.assertRegex(reasons, r'(?m)^%sthe wheel went 0\.100 mm beyond the flute' % place)
+        planned, = self.json(0, 'simulate', job, '--at', '5')[0]['sections']
+        self.assertLess(told['sections'][0]['core_diameter_mm'], planned['core_diameter_mm'] - 0.19)
+        self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job).stdout,
+                         r'(?m)^beyond the flute +%s0\.100 mm at X ' % place)
 
     def test_error_of_y_is_in_the_core(self):
         # Of a straight flute under the middle of the wheel, the floor follows Y exactly.

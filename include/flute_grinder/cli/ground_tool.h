@@ -3,6 +3,7 @@
 #include "flute_grinder/cli/csv.h"
 #include "flute_grinder/cli/json_output.h"
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
 
@@ -25,13 +26,18 @@ struct GroundTool {
   GroundCutter cutter;
   CutterCheck check;
   std::vector<MeasuredSection> sections;
-  double volume_removed = 0;            ///< over the flute's length [m^3]
-  bool recorded = false;                ///< as ground in a run
-  std::vector<RecordedStroke> strokes;  ///< of a record, those that formed the cutter
+  double volume_removed = 0;  ///< over the flute's length [m^3]
+  bool recorded = false;      ///< as ground in a run
+  std::vector<RecordedStroke> strokes;
+  std::vector<Gouge> gouges;  ///< those deeper than what sampling leaves
 };
 
 /// Measures a cutter. @param at X of the sections [m].
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
+
+/// Measures the cutter of a record; gouges are among the reasons why nobody would want it.
+GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
+                   const std::vector<double>& at);
 
 /// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.
 void printText(const GroundTool& tool);

@@ -6,16 +6,18 @@ namespace flute_grinder {
 
 /// Arguments of `grind report`.
 struct ReportOptions {
-  std::string file;        ///< a bag, a record of the grinder, or points or setpoints (CSV)
-  bool last = false;       ///< the newest record of the grinder instead
-  std::string folder;      ///< of these records; empty for the default folder of the grinder
-  std::string html;        ///< file to write; empty for none
-  std::string pdf;         ///< file to write; empty for none
-  bool json = false;       ///< print the data
-  std::string note;        ///< the operator's, for the first page
-  std::string tolerances;  ///< YAML of what the tool is passed by; empty for the package's own
-  int job = 0;             ///< which of a bag's jobs, from 1; 0 for the last
-  std::string parameters;  ///< YAML of the machine, for files that do not tell its limits
+  std::string file;           ///< a bag, a record of the grinder, or points or setpoints (CSV)
+  bool last = false;          ///< the newest record of the grinder instead
+  std::string folder;         ///< of these records; empty for the default folder of the grinder
+  std::string html;           ///< file to write; empty for none
+  std::string pdf;            ///< file to write; empty for none
+  bool json = false;          ///< print the data
+  std::string note;           ///< the operator's, for the first page
+  std::string operator_name;  ///< name of who ground the tool
+  std::string serial;         ///< of the tool
+  std::string tolerances;     ///< YAML of what the tool is passed by; empty for the package's own
+  int job = 0;                ///< which of a bag's jobs, from 1; 0 for the last
+  std::string parameters;     ///< YAML of the machine, for files that do not tell its limits
   std::string urdf;
 };
 

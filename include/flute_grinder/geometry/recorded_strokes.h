@@ -15,17 +15,24 @@
 
 namespace flute_grinder {
 
-/// Of a stroke in a record, what was ground.
+/// A stroke in a record; or a part of another move in which the wheel was in the blank where no stroke of the tooth
+/// was.
 struct RecordedStroke {
   ToothPass place;
+  MoveKind move = MoveKind::kStroke;
   Range range;                            ///< of X [m]
   std::vector<PathDeviation> deviations;  ///< as GrindStroke has them
 };
 
-/// The strokes of a run from the positions that the drive read, and the cutter as they ground it. What is not in the
-/// record is not removed. Setpoints that are missing within a stroke are taken to lie between their neighbours.
+/// The strokes of a run from the positions that the drive read, and the cutter as they ground it: all that they and the
+/// other moves, as infeed and retract, removed together. What is not in the record is not removed. Setpoints that are
+/// missing within a stroke are taken to lie between their neighbours.
 class RecordedStrokes {
  public:
+  /// How far a stroke may lie beyond another one and still count as covered by it: what it removes in addition is
+  /// thinner than twice that [m].
+  static constexpr double kSame = 0.5e-6;
+
   /// @param job a job that validate() accepts, from withZLaw().
   explicit RecordedStrokes(const GrindJob& job);
 
@@ -38,10 +45,15 @@ class RecordedStrokes {
   /// To be called after the last setpoint.
   void finish();
 
-  /// Those that formed the cutter: of every tooth each stroke that no deeper one covers.
+  /// All strokes in the order of the record; one that was broken off by a lift and went on is there twice, up to the
+  /// lift and as a whole. Behind them, the parts of other moves.
   const std::vector<RecordedStroke>& strokes() const noexcept { return strokes_; }
 
-  /// The cutter as ground; a tooth without a stroke removes nothing.
+  /// What the wheel removed in one of these, as if the tooth were at angle 0.
+  WheelSweep sweep(const RecordedStroke& stroke) const;
+
+  /// The cutter as ground; a tooth without a stroke removes nothing. Strokes that another one covers are left out: they
+  /// cost time and remove nothing more.
   GroundCutter cutter() const;
 
  private:
@@ -51,32 +63,57 @@ class RecordedStrokes {
     double x = 0;
     PathDeviation off;
   };
-  /// The stroke that is being read, with its path.
-  struct Reading {
-    Reading(const GrindJob& job, const ToothPass& tooth_pass, double wear);
-
+  /// What a setpoint belongs to.
+  struct Part {
     ToothPass place;
+    MoveKind move;
+    std::uint64_t cycle;
+  };
+  /// Positions outside strokes with the wheel in the blank, without a gap in between.
+  struct Poses {
+    ToothPass place;
+    MoveKind move;
+    std::vector<Axes> at;
+  };
+  /// The job's deepest path of a tooth.
+  struct Path {
+    Path(const GrindJob& job, int tooth, double wear);
+    PathDeviation deviation(double x, const Axes& at) const;
+
     ConicalCutter cutter;
     LogCurve curve;
-    GrindStroke path;
+    GrindStroke stroke;
     double angle;
-    Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   };
 
-  std::size_t placeInOrder(const ToothPass& place) const;
+  Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
+  double wearOf(const ToothPass& place) const;
+  double depthOf(const RecordedStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
+  void take(const Part& part, const Axes& actual);
+  void beginStroke(const ToothPass& place, double x);
   void sample(const Axes& actual);
-  std::vector<PathDeviation> deviations(const Range& range) const;
+  std::vector<PathDeviation> deviations() const;
   void endStroke();
-  bool covers(const RecordedStroke& deep, const RecordedStroke& shallow) const;
+  void addPose(const Part& part, const Axes& actual);
+  /// Whether a stroke's wheel at an X takes with it what the wheel of another pass takes while it is off the path by
+  /// `off`.
+  bool covers(const RecordedStroke& stroke, const ToothPass& place, double x, const PathDeviation& off) const;
+  bool covers(const RecordedStroke& stroke, const RecordedStroke& other) const;
+  void addOutside(const Poses& poses, std::size_t strokes);
+  RecordedStroke strokeOf(const Poses& poses, std::size_t from, std::size_t to) const;
 
   const GrindJob job_;
   const std::vector<ToothPass> order_;
   const std::vector<double> wear_;    ///< in that order [m]
   const std::vector<double> depths_;  ///< of the passes [m]
-  std::optional<Reading> reading_;
-  std::map<long, Sample> samples_;  ///< of that stroke, by its place on X
-  std::uint64_t cycle_ = 0;         ///< of the last setpoint
-  bool in_stroke_ = false;          ///< whether that belongs to a stroke
+  const double radius_;               ///< the largest of the blank [m]
+  std::optional<Part> last_;          ///< of the last setpoint
+  std::optional<Part> reading_;       ///< what the last position belongs to
+  std::optional<Path> path_;          ///< of the stroke that is being read
+  std::map<long, Sample> samples_;    ///< of the last stroke, by its place on X
+  Range range_;                       ///< of that stroke
+  std::vector<Poses> poses_;
+  bool in_blank_ = false;  ///< whether the last position is in the last of these
   std::vector<RecordedStroke> strokes_;
 };
 

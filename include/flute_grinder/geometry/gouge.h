@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flute_grinder/geometry/recorded_strokes.h"
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// How far a recorded move went into what its job leaves of the blank.
+struct Gouge {
+  ToothPass place;
+  MoveKind move = MoveKind::kStroke;
+  double x = 0;      ///< of the section in which it is deepest [m]
+  double depth = 0;  ///< normal to the flute that the job asks for [m]
+};
+
+/// The gouges of a record, each the deepest of its move, in the order of RecordedStrokes::strokes(). Looks at sections
+/// where the axes were farthest off the path and at some in between, from the small end up to the overtravel.
+/// @param least depth that counts [m]. @param job as for RecordedStrokes. @param strokes finished.
+std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double least);
+
+}  // namespace flute_grinder

@@ -1,0 +1,284 @@
+// From the positions that a drive read to the cutter as ground, against brute force over every position.
+
+#include "flute_grinder/core/grind_program.h"
+#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/core/units.h"
+#include "flute_grinder/geometry/gouge.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/recorded_strokes.h"
+
+#include "core/generators.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_recorded_strokes {
+
+using units::kDegree;
+using units::kMillimetre;
+using units::kPi;
+
+/// A position that was read, and the setpoint it belongs to.
+struct Read {
+  Setpoint setpoint;
+  Axes at;
+};
+using Error = std::function<Axes(const Setpoint&)>;
+
+Axes along(int axis, double error) {
+  Axes axes = Axes::Zero();
+  axes[axis] = error;
+  return axes;
+}
+
+/// Of a move of a pass.
+Error errorOf(int pass, MoveKind move, const Axes& error) {
+  return [=](const Setpoint& p) { return p.pass == pass && p.move == move ? error : Axes(Axes::Zero()); };
+}
+
+/// One tooth of the shipped roughing cutter in six passes: 0.4 to 1.6 mm, then a finishing pass and a spark-out.
+GrindJob roughing() {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/roughing_d10_t4.yaml");
+  job.tooth_angles = {0};
+  job.process.wheel_wear_per_pass = 0;
+  job.process.feed *= 3;
+  return job;
+}
+
+/// A straight flute under the middle of the wheel: its floor is the wheel's, its walls are planes.
+GrindJob straight() {
+  GrindJob job = roughing();
+  job.cutter.spiral_angle = 0;
+  job.process.setup_swivel = 0;
+  job.process.setup_height = 0;
+  return job;
+}
+
+/// All that a drive reads in a job, with errors of the axes.
+std::vector<Read> readOf(const GrindJob& job, const Error& error) {
+  Machine machine = test_support::plainMachine();
+  machine.park << -0.02, 0.08, 0, 0;
+  std::vector<Read> all;
+  SetpointStream stream(std::make_shared<GrindProgram>(job, machine, machine.park));
+  Setpoint p;
+  while (stream.next(p)) all.push_back({p, p.position + error(p)});
+  return all;
+}
+
+RecordedStrokes recordOf(const GrindJob& job, const std::vector<Read>& read) {
+  RecordedStrokes strokes(job);
+  for (std::size_t i = 1; i < read.size(); ++i) strokes.add(read[i].setpoint, read[i - 1].at);
+  strokes.finish();
+  return strokes;
+}
+
+RecordedStrokes recordOf(const GrindJob& job, const Error& error) { return recordOf(job, readOf(job, error)); }
+
+const Error kExact = [](const Setpoint&) { return Axes(Axes::Zero()); };
+
+/// Whether a straight wheel, as worn by then but larger by `grown`, took a point away in one of the positions.
+bool removed(const GrindJob& job, const std::vector<Read>& read, double x, double r, double theta, double grown) {
+  const GrindProcess& p = job.process;
+  const double sn = std::sin(p.setup_swivel), cs = std::cos(p.setup_swivel);
+  const double half = p.wheel_width / 2 + grown;
+  for (const Read& one : read) {
+    const double radius = p.wheel_diameter / 2 - one.setpoint.pass * p.wheel_wear_per_pass + grown;
+    const double angle = theta - one.at[kA];
+    const double dx = x - one.at[kX];
+    const double dy = r * std::cos(angle) - (job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + one.at[kY]);
+    if (dy < -radius || std::abs(dx) > radius) continue;
+    const double dz = r * std::sin(angle) - (p.setup_height + one.at[kZ]);
+    const double w = dz * cs - dx * sn, t = dz * sn + dx * cs;
+    if (std::abs(w) <= half && dy * dy + t * t <= radius * radius) return true;
+  }
+  return false;
+}
+
+bool removed(const GroundCutter& cutter, double x, double r, double theta) {
+  const auto arc = cutter.arc(cutter.flutes().front(), x, r);
+  if (!arc) return false;
+  const double turns = std::floor((theta - arc->low) / (2 * kPi));
+  return theta - turns * 2 * kPi <= arc->high;
+}
+
+double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).core_radius; }
+
+TEST(RecordedStrokes, ASparkOutThatWasDeeperIsInTheCore) {
+  const GrindJob job = straight();
+  const double planned = coreAt(groundCutterOf(job), 0.01);
+  const double ground = coreAt(recordOf(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4))).cutter(), 0.01);
+  EXPECT_NEAR(planned - ground, 1e-4, 1e-8);
+}
+
+TEST(RecordedStrokes, AFirstPassThatWasDeeperThanTheLastIsInTheCore) {
+  const GrindJob job = straight();
+  const double first = passDepths(job.process).front();
+  const double ground = coreAt(recordOf(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3))).cutter(), 0.01);
+  EXPECT_NEAR(ground, job.cutter.end_diameter / 2 - first - 1.6e-3, 1e-8);
+}
+
+TEST(RecordedStrokes, AnExactRecordIsThePlanAndKeepsEveryStroke) {
+  const GrindJob job = roughing();
+  const RecordedStrokes strokes = recordOf(job, kExact);
+  ASSERT_EQ(strokes.strokes().size(), passDepths(job.process).size());
+  for (const RecordedStroke& stroke : strokes.strokes()) EXPECT_EQ(stroke.move, MoveKind::kStroke);
+  const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(job);
+  EXPECT_EQ(cutter.flutes().front().size(), 1u);
+  for (const double x : {0.0, 0.011, 0.022}) {
+    const ToothSection one = cutter.section(x).teeth.front(), other = planned.section(x).teeth.front();
+    EXPECT_NEAR(one.depth, other.depth, 1e-8);
+    EXPECT_NEAR(one.edge.value(), other.edge.value(), 4e-6);
+    EXPECT_NEAR(one.rake.value(), other.rake.value(), 4e-5);
+    EXPECT_EQ(one.complete, other.complete);
+  }
+  EXPECT_TRUE(gougesOf(job, strokes, 1e-6).empty());
+}
+
+// The wheel wears, errors of the axes are other in every move, and some are small enough for strokes to be left out.
+TEST(RecordedStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
+  constexpr int kCases = 3, kPoints = 100;
+  constexpr double kMargin = 12e-6;  // samples are averaged
+  std::mt19937 random(7);
+  const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<>(from, to)(random); };
+  int taken = 0;
+  for (int i = 0; i < kCases; ++i) {
+    GrindJob job = roughing();
+    job.process.feed *= 2;
+    job.process.wheel_wear_per_pass = i % 2 * 20e-6;
+    std::vector<std::vector<Axes>> errors;
+    for (std::size_t pass = 0; pass < passDepths(job.process).size(); ++pass) {
+      errors.emplace_back();
+      for (int move = 0; move < kMoveKindCount; ++move) {
+        const double size = std::pow(10.0, uniform(-7.5, -3.5));
+        errors.back().push_back(Axes(0, uniform(-size, size), uniform(-size, size), uniform(-size, size) / 0.005));
+      }
+    }
+    const auto read = readOf(job, [&](const Setpoint& p) {
+      return p.move == MoveKind::kReturn ? Axes(Axes::Zero()) : errors[p.pass][static_cast<std::size_t>(p.move)];
+    });
+    const GroundCutter cutter = recordOf(job, read).cutter();
+    for (int k = 0; k < kPoints; ++k) {
+      const double x = uniform(0, 0.022), edge = cutter.section(x).teeth.front().edge.value();
+      const double r = uniform(0.6, 1) * 0.005;
+      const auto arc = cutter.arc(cutter.flutes().front(), x, r);
+      // About one of the ends.
+      const double end = arc ? (k % 2 == 0 ? arc->low : arc->high) : edge;
+      const double theta = end + uniform(-1, 1) * (k % 3 == 0 ? 0.5 : 0.005);
+      const bool is = removed(cutter, x, r, theta);
+      taken += is;
+      if (is) {
+        EXPECT_TRUE(removed(job, read, x, r, theta, kMargin)) << i << " x " << x << " r " << r << " theta " << theta;
+      } else {
+        EXPECT_FALSE(removed(job, read, x, r, theta, -kMargin)) << i << " x " << x << " r " << r << " theta " << theta;
+      }
+    }
+  }
+  EXPECT_GT(taken, kCases * kPoints / 10);
+}
+
+TEST(RecordedStrokes, AStrokeIsLeftOutOnlyIfAnotherCoversIt) {
+  const GrindJob job = straight();
+  const auto flutes = [&](int pass, const Axes& error) {
+    return recordOf(job, errorOf(pass, MoveKind::kStroke, error)).cutter().flutes().front().size();
+  };
+  const double little = 0.8 * RecordedStrokes::kSame, more = 1.2 * RecordedStrokes::kSame;
+  EXPECT_EQ(flutes(2, along(kZ, little)), 1u);
+  EXPECT_EQ(flutes(2, along(kZ, more)), 2u);
+  EXPECT_EQ(flutes(2, along(kA, little / 0.005)), 1u);
+  EXPECT_EQ(flutes(2, along(kA, -more / 0.005)), 2u);
+  EXPECT_EQ(flutes(5, along(kY, -little)), 1u);
+  EXPECT_EQ(flutes(5, along(kY, -more)), 2u);
+  EXPECT_EQ(flutes(2, along(kY, -1e-4)), 1u);
+}
+
+Gouge onlyGouge(const GrindJob& job, const Error& error) {
+  const std::vector<Gouge> gouges = gougesOf(job, recordOf(job, error), 2e-6);
+  EXPECT_EQ(gouges.size(), 1u);
+  return gouges.empty() ? Gouge{} : gouges.front();
+}
+
+TEST(Gouges, TellTheStrokeAndHowFar) {
+  const GrindJob job = straight();
+  Gouge gouge = onlyGouge(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4)));
+  EXPECT_EQ(gouge.place, (ToothPass{0, 5}));
+  EXPECT_EQ(gouge.move, MoveKind::kStroke);
+  EXPECT_NEAR(gouge.depth, 1e-4, 1e-7);
+  gouge = onlyGouge(job, errorOf(5, MoveKind::kStroke, along(kZ, 3e-4)));
+  EXPECT_NEAR(gouge.depth, 3e-4, 1e-7);
+  gouge = onlyGouge(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3)));
+  EXPECT_EQ(gouge.place, (ToothPass{0, 0}));
+  EXPECT_NEAR(gouge.depth, passDepths(job.process).front() + 1.6e-3 - passDepths(job.process).back(), 1e-7);
+}
+
+TEST(Gouges, AreFoundWhereTheyAre) {
+  const GrindJob job = straight();
+  const Gouge gouge = onlyGouge(job, [](const Setpoint& p) {
+    const bool there = p.pass == 3 && p.move == MoveKind::kStroke && std::abs(p.position[kX] - 7.7e-3) < 0.4e-3;
+    return there ? along(kY, -1.6e-3) : Axes(Axes::Zero());
+  });
+  EXPECT_EQ(gouge.place.pass, 3);
+  EXPECT_NEAR(gouge.x, 7.7e-3, 0.6e-3);
+  EXPECT_GT(gouge.depth, 0.9e-3);
+}
+
+TEST(Gouges, OfInfeedAndRetractAreFound) {
+  const GrindJob job = straight();
+  Gouge gouge = onlyGouge(job, errorOf(5, MoveKind::kInfeed, along(kZ, 2e-4)));
+  EXPECT_EQ(gouge.move, MoveKind::kInfeed);
+  EXPECT_NEAR(gouge.depth, 2e-4, 5e-6);
+  EXPECT_EQ(gouge.x, 0);
+  gouge = onlyGouge(job, errorOf(2, MoveKind::kRetract, along(kA, 0.1)));
+  EXPECT_EQ(gouge.move, MoveKind::kRetract);
+  EXPECT_EQ(gouge.place.pass, 2);
+  EXPECT_GT(gouge.depth, 2e-4);
+}
+
+TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
+  const GrindJob job = straight();
+  // Y hangs after the third pass; A turns by a quarter meanwhile.
+  const std::vector<Gouge> gouges = gougesOf(job,
+                                             recordOf(job,
+                                                      [&](const Setpoint& p) {
+                                                        Axes off = Axes::Zero();
+                                                        if (p.pass == 2 && p.move == MoveKind::kRetract) {
+                                                          off[kY] = -1.2e-3 - p.position[kY];
+                                                          off[kA] = p.move_fraction * kPi / 2;
+                                                        }
+                                                        return off;
+                                                      }),
+                                             2e-6);
+  ASSERT_EQ(gouges.size(), 1u);
+  EXPECT_EQ(gouges.front().move, MoveKind::kRetract);
+  EXPECT_GT(gouges.front().depth, 1e-3);
+}
+
+// After a stop in the stroke it goes on a little before; the first part was deeper there.
+TEST(RecordedStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
+  const GrindJob job = straight();
+  std::vector<Read> read = readOf(job, kExact);
+  const auto in_last = [](const Read& r) { return r.setpoint.pass == 5 && r.setpoint.move == MoveKind::kStroke; };
+  const auto from =
+      std::find_if(read.begin(), read.end(), [&](const Read& r) { return in_last(r) && r.at[kX] > 9e-3; });
+  const auto to = std::find_if(from, read.end(), [&](const Read& r) { return r.at[kX] > 10e-3; });
+  std::vector<Read> with_lift(read.begin(), from);
+  for (auto i = from; i != to; ++i) with_lift.push_back({i->setpoint, i->at + along(kY, -1e-4)});
+  Read lift = *std::prev(to);
+  lift.setpoint.move = MoveKind::kLift;
+  lift.at[kY] += 0.01;
+  with_lift.push_back(lift);
+  with_lift.insert(with_lift.end(), from, read.end());
+  for (std::size_t i = 0; i < with_lift.size(); ++i) with_lift[i].setpoint.cycle = i + 1;
+  const GroundCutter cutter = recordOf(job, with_lift).cutter();
+  EXPECT_NEAR(coreAt(groundCutterOf(job), 9.5e-3) - coreAt(cutter, 9.5e-3), 1e-4, 1e-7);
+}
+
+}  // namespace test_recorded_strokes
+}  // namespace flute_grinder

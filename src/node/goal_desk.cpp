@@ -95,6 +95,9 @@ void GoalDesk::onGoal(GoalHandle handle) {
   if (!isPlainName(goal->job_name)) {
     return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
   }
+  if (!isPlainName(goal->wheel_name)) {
+    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
+  }
   const GrindJob job = jobFromGoal(*goal);
   const std::string digest = jobDigest(job);
   if (!goal->dry_run) {

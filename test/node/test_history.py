@@ -35,8 +35,8 @@ CYCLE = 0.001
 STAMP = 0.001  # to which a record tells its start
 
 MACHINE_KEYS = ['name', 'software', 'drive', 'period_ms', 'max_velocity', 'max_acceleration', 'max_following_error']
-KEYS = ['record', 'grinder', 'machine', 'job', 'started', 'ended', 'outcome', 'reason', 'first', 'work_offsets', 'planned',
-        'setpoints', 'late_cycles', 'strokes', 'holds', 'overrides']
+KEYS = ['record', 'grinder', 'machine', 'job', 'started', 'ended', 'outcome', 'reason', 'first', 'work_offsets',
+        'zero_points', 'planned', 'setpoints', 'late_cycles', 'strokes', 'holds', 'overrides']
 STROKE_KEYS = ['tooth', 'pass', 'depth_mm', 'started_s', 'duration_s', 'complete', 'feed_min_mm_min', 'feed_max_mm_min',
                'deviation_um', 'following_error']
 

@@ -371,6 +371,10 @@ class TestZeroPoints(OffsetsTest):
         self.check_rejected(never + '; set them for this job, or start it with --offsets-are-right')
         self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    never set$')
 
+        run = self.client.send(gc.SHORT, wheel_name='\x1b[2J').wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))
+        self.assertIn('wheel_name has 4 characters; allowed: up to 255, and none that controls a terminal', run.text)
+
         d6 = gc.job_file(os.path.join(self.folder, 'd6.yaml'), end_diameter_mm=6)
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
         done = self.grind('offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)

@@ -2,24 +2,21 @@
 
 #include "flute_grinder/core/yaml_text.h"
 
-#include <sys/stat.h>
-
-#include <cerrno>
-#include <cstring>
+#include <filesystem>
+#include <system_error>
 
 namespace flute_grinder {
 
 void requireRegularFile(const std::string& path) {
-  struct stat about {};
-  std::string why;
-  if (::stat(path.c_str(), &about) != 0) {
-    why = std::strerror(errno);
-  } else if (S_ISDIR(about.st_mode)) {
-    why = std::strerror(EISDIR);
-  } else if (!S_ISREG(about.st_mode)) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::is_directory(status)) error = std::make_error_code(std::errc::is_a_directory);
+  std::string why = error.message();
+  if (!error) {
+    if (std::filesystem::is_regular_file(status)) return;
     why = "not a regular file; allowed: a file on a disk, no FIFO and no device";
   }
-  if (!why.empty()) throw JobFileError(path + ": cannot be read: " + why);
+  throw JobFileError(path + ": cannot be read: " + why);
 }
 
 }  // namespace flute_grinder

@@ -1,10 +1,13 @@
 #include "flute_grinder/panel/grind_panel.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
+#include "flute_grinder/panel/wheel_guard.h"
 
 #include <rviz/panel_dock_widget.h>
 #include <QGridLayout>
@@ -20,7 +23,6 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
-constexpr int kMessages = 200;                  ///< that are kept
 constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
 constexpr int kSpacing = 4;  ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
@@ -36,7 +38,6 @@ QString capitalized(const std::string& text) {
 bool isDone(MachineState state, MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return state == MachineState::kReady;
-    case MachineEvent::kHold: return state == MachineState::kHolding || state == MachineState::kHeld;
     case MachineEvent::kCancel: return state == MachineState::kCanceling;
     default: return false;
   }
@@ -86,11 +87,11 @@ GrindPanel::GrindPanel(QWidget* parent)
       position_(new PositionBox),
       messages_(textView("messages", 2)),
       node_edit_(new QLineEdit) {
-  messages_->setMaximumBlockCount(kMessages);
   messages_->setPlaceholderText("Replies from the grinder");
   node_edit_->setObjectName("node");
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
+  guardFromWheel(*this);
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
@@ -187,6 +188,10 @@ QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   button->setToolTip(capitalized(request.help));
   button->setEnabled(false);
   button->setMinimumWidth(10);
+  // Space must not press what the focus has only come to.
+  if (request.value == MachineEvent::kCancel || request.value == MachineEvent::kDisable) {
+    button->setFocusPolicy(Qt::NoFocus);
+  }
   if (large) {
     QFont bold = font();
     bold.setBold(true);
@@ -212,6 +217,14 @@ void GrindPanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
   config.mapSetValue("Node", node_);
   config.mapSetValue("Job", job_->file());
+}
+
+bool GrindPanel::focusNextPrevChild(bool next) {
+  const QWidget* from = window()->focusWidget();
+  if (!from || (from->isEnabled() && from->isVisible())) return rviz::Panel::focusNextPrevChild(next);
+  QPushButton* hold = buttons_.at(MachineEvent::kHold);
+  (hold->isEnabled() ? hold : static_cast<QWidget*>(this))->setFocus();
+  return true;
 }
 
 void GrindPanel::setNode(const QString& node) {
@@ -259,8 +272,12 @@ void GrindPanel::refresh() {
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
+  showOtherJob(view, job_runs);
+  // Hold before the others are disabled, of which one may have the focus.
+  const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
+  enable(MachineEvent::kHold);
+  for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, idle && master == Master::kAnswers);
-  for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   jog_->refresh(view.state, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);
   override_->setEnabled(master == Master::kAnswers);
@@ -319,11 +336,8 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
 
 void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
-  const auto on_answer = [this](const std::string& refusal) {
-    if (!refusal.empty()) showMessage(refusal);
-  };
-  if (isStop(event)) return link_->stop(event, on_answer);
-  link_->request(event, on_answer);
+  if (isStop(event)) return link_->stop(event, reply(done(event)));
+  link_->request(event, reply(done(event)));
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {
@@ -343,13 +357,17 @@ void GrindPanel::dryRun(const GrindGoal& goal) {
 
 void GrindPanel::send(const GrindGoal& goal) {
   const auto id = link_->send(goal);
-  if (id) sent_ = Sent{*id, goal};
-  if (!id) showMessage("the job was not sent: no answer from the grinder " + name_);
+  if (id) {
+    sent_ = Sent{*id, goal};
+    last_sent_ = *id;
+  }
+  showMessage(id ? "the job was sent" : "the job was not sent: no answer from the grinder " + name_);
 }
 
 void GrindPanel::confirmSwivel(double angle) {
-  link_->confirmSwivel(angle, [this](const std::string& refusal) {
+  link_->confirmSwivel(angle, [this, angle](const std::string& refusal) {
     if (!refusal.empty()) return showMessage(refusal);
+    showMessage("confirm-swivel: the swivel is set to " + text(Quantity{angle, Unit::kRadian}, UnitSystem::kShop));
     job_->startConfirmed();
   });
 }
@@ -378,24 +396,23 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
-  link_->setFeedOverride(fraction, [this](const std::string& refusal) {
+  const GrinderLink::OnAnswer show = reply(format("feed override: %.0f %%", fraction * 100));
+  link_->setFeedOverride(fraction, [this, show](const std::string& refusal) {
     override_->answered();
-    if (!refusal.empty()) showMessage(refusal);
+    show(refusal);
   });
 }
 
 void GrindPanel::jogStep(int axis, double distance, double speed) {
-  link_->jogStep(axis, distance, speed, [this](const std::string& refusal) {
-    if (!refusal.empty()) showMessage(refusal);
-  });
+  const std::string way = text(Quantity{distance, unitOf(axis, 0)}, UnitSystem::kShop);
+  link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis, UnitSystem::kShop) + " by " + way));
 }
 
 void GrindPanel::touchOff(int axis, double at) {
   try {
     const double position = axis == kY ? touchedY(at) : at;
-    link_->touchOff(axis, position, [this](const std::string& refusal) {
-      if (!refusal.empty()) showMessage(refusal);
-    });
+    link_->touchOff(axis, position,
+                    reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set"));
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());
   }
@@ -413,8 +430,19 @@ double GrindPanel::touchedY(double diameter) const {
   return touchY(job, diameter);
 }
 
+void GrindPanel::showOtherJob(const GrinderView& view, bool job_runs) {
+  const bool other = job_runs && view.job && view.job->goal_id.id != last_sent_;
+  job_->showOtherJob(
+      other ? QString::fromStdString("Running: " + describe(view.job->goal) + ". It was not started in this panel.")
+            : QString());
+}
+
+GrinderLink::OnAnswer GrindPanel::reply(const std::string& done) {
+  return [this, done](const std::string& refusal) { showMessage(refusal.empty() ? done : refusal); };
+}
+
 void GrindPanel::showMessage(const std::string& text) {
-  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
+  messages_->setPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
 }
 
 }  // namespace flute_grinder

@@ -47,7 +47,8 @@ const char* colourOf(const GrinderState& grinder) {
 
 constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
-constexpr int kBarHeight = 8;  ///< [px]
+constexpr int kBarHeight = 8;   ///< [px]
+constexpr int kNameWidth = 96;  ///< of a job's name [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
@@ -120,15 +121,18 @@ ProgressBox::ProgressBox(QWidget* parent)
       stroke_(makeBar("stroke", "stroke_text")),
       job_(makeBar("job", "job_text")) {
   place_->setObjectName("place");
+  place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
+  auto* place = new QHBoxLayout;
+  place->addWidget(place_, 1);
+  place->addWidget(feed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(3);
   layout->setColumnStretch(0, 1);
   layout->setColumnStretch(1, 2);
-  layout->addWidget(place_, 0, 0);
-  layout->addWidget(feed_, 0, 1);
+  layout->addLayout(place, 0, 0, 1, 2);
   layout->addWidget(stroke_.text, 1, 0);
   layout->addWidget(job_.text, 1, 1);
   layout->addWidget(stroke_.bar, 2, 0);
@@ -162,12 +166,22 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
     feed_->clear();
     return set(job_, kJobDone, f.job_fraction, job_runs);
   }
-  place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
+  showPlace(view, f);
   feed_->setText(feedText(f.feed));
   // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
   const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 % feed");
   set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
+}
+
+void ProgressBox::showPlace(const GrinderView& view, const GrindFeedback& feedback) {
+  const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
+  const QString job = place_->fontMetrics().elidedText(name, Qt::ElideMiddle, kNameWidth);
+  place_->setText(QString("%1ooth %2, pass %3")
+                      .arg(name.isEmpty() ? "T" : job + ", t")
+                      .arg(feedback.tooth + 1)
+                      .arg(feedback.pass + 1));
+  place_->setToolTip(name);
 }
 
 void ProgressBox::showPlanning(double planned) {

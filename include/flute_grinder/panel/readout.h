@@ -31,7 +31,7 @@ class StateBox : public QWidget {
   QLabel* meaning_;
 };
 
-/// Progress of the stroke and of the job.
+/// Progress of the stroke and of the job, which is named, whoever started it.
 class ProgressBox : public QWidget {
   Q_OBJECT
 
@@ -41,6 +41,7 @@ class ProgressBox : public QWidget {
   void show(const GrinderView& view, bool job_runs);
 
  private:
+  void showPlace(const GrinderView& view, const GrindFeedback& feedback);
   void showPlanning(double planned);
 
   /// A bar with its text above it, where it is legible whatever the bar's colours.

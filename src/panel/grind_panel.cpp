@@ -121,6 +121,7 @@ void GrindPanel::layOut() {
   hand_layout->setContentsMargins(6, 6, 6, 6);
   hand_layout->addWidget(jog_);
   hand_layout->addWidget(touch_off_);
+  hand_layout->addLayout(layOutSwitches());
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
   tabs_->addTab(job_, "Job");
@@ -157,13 +158,21 @@ QLayout* GrindPanel::layOutButtons() {
     place += last - first + 1;
   };
   for (const EventRow& request : kMachineEvents) {
-    const bool offered = isRequest(request.value) && request.value != MachineEvent::kJog;
+    const bool offered = isRequest(request.value) && !isSwitch(request.value) && request.value != MachineEvent::kJog;
     if (offered && request.value != MachineEvent::kCancel) add(request);
   }
   // Last, so that nobody who wants to resume hits it.
   add(rowOf(MachineEvent::kCancel));
   for (const int column : {0, 1, 2, kButtonColumns}) buttons->setColumnStretch(column, 1);
   return buttons;
+}
+
+QLayout* GrindPanel::layOutSwitches() {
+  auto* switches = new QHBoxLayout;
+  for (const EventRow& request : kMachineEvents) {
+    if (isSwitch(request.value)) switches->addWidget(addButton(request, false));
+  }
+  return switches;
 }
 
 QWidget* GrindPanel::viewTab() {
@@ -184,7 +193,7 @@ QWidget* GrindPanel::viewTab() {
 
 QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   auto* button = new QPushButton(capitalized(request.name));
-  button->setObjectName(request.name);
+  button->setObjectName(QString(request.name).replace(' ', '_'));
   button->setToolTip(capitalized(request.help));
   button->setEnabled(false);
   button->setMinimumWidth(10);
@@ -330,6 +339,10 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
     case MachineEvent::kHome: return !view.state->wheel_in_work;
     case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
     case MachineEvent::kLift: return view.state->wheel_in_work != 0;
+    case MachineEvent::kSpindleOn: return !view.state->wheel_in_work && !view.state->spindle_commanded;
+    case MachineEvent::kCoolantOn: return !view.state->wheel_in_work && !view.state->coolant_commanded;
+    case MachineEvent::kSpindleOff: return view.state->spindle_commanded != 0;
+    case MachineEvent::kCoolantOff: return view.state->coolant_commanded != 0;
     default: return true;
   }
 }

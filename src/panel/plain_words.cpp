@@ -76,6 +76,7 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
+  if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
   // In the other states of a job it belongs there.
   if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
@@ -93,6 +94,10 @@ std::string done(MachineEvent event) {
     case MachineEvent::kRetract:
     case MachineEvent::kLift: return toString(event) + std::string(": the wheel is being lifted");
     case MachineEvent::kResume: return "resume: the job continues";
+    case MachineEvent::kSpindleOn: return "the spindle is on; keep clear of the wheel";
+    case MachineEvent::kSpindleOff: return "the spindle is off; the wheel runs down";
+    case MachineEvent::kCoolantOn: return "the coolant is on";
+    case MachineEvent::kCoolantOff: return "the coolant is off";
     default: return toString(event) + std::string(" was sent");
   }
 }

@@ -26,7 +26,7 @@ constexpr const char* kRed = "#b00020";
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
   switch (static_cast<MachineState>(grinder.state)) {
-    case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
+    case MachineState::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case MachineState::kLifting:
     case MachineState::kJogging:
     case MachineState::kJoggingRetracted:
@@ -201,8 +201,13 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDe
     auto* value = new QLabel;
     value->setObjectName(QString("position_%1").arg("xyza"[axis]));
     value->setFont(font);
-    layout->addWidget(value, axis / 2, axis % 2);
+    auto* to_go = new QLabel;
+    to_go->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
+    to_go->setToolTip("Distance to go to the end of the running move");
+    layout->addWidget(value, axis / 2 * 2, axis % 2);
+    layout->addWidget(to_go, axis / 2 * 2 + 1, axis % 2);
     values_[static_cast<std::size_t>(axis)] = value;
+    to_go_[static_cast<std::size_t>(axis)] = to_go;
   }
 }
 
@@ -225,6 +230,10 @@ void PositionBox::show(const GrinderView& view) {
     const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
     label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), decimals_ + 6).arg(unit));
+    const double to_go = view.state ? view.state->distance_to_go[static_cast<std::size_t>(axis)] : 0;
+    // At rest there is none; a little is left of each move.
+    const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
+    to_go_[static_cast<std::size_t>(axis)]->setText(moves ? QString("to go %1 %2").arg(shown(to_go), unit) : "");
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
                          .arg(shown(machine), shown(machine - work), unit));
   }

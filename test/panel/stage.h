@@ -41,7 +41,9 @@ class Stage {
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
     services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
     services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
-    for (const char* name : {"enable", "home", "reset_fault", "retract"}) {
+    services_.push_back(nh_.advertiseService("spindle_on", &Stage::onSpindleOn, this));
+    services_.push_back(nh_.advertiseService("spindle_off", &Stage::onSpindleOff, this));
+    for (const char* name : {"enable", "home", "reset_fault", "retract", "coolant_on", "coolant_off"}) {
       services_.push_back(nh_.advertiseService(name, &Stage::onTrigger, this));
     }
     services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
@@ -145,6 +147,14 @@ class Stage {
   bool onLift(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
     change([&] { ++lifts; });
     response.success = 1;
+    return true;
+  }
+  bool onSpindleOn(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] { response.success = state.spindle_commanded = 1; });
+    return true;
+  }
+  bool onSpindleOff(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] { response.success = 1, state.spindle_commanded = 0; });
     return true;
   }
   bool onTrigger(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {

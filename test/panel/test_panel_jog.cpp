@@ -214,6 +214,51 @@ TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
   WAIT_FOR(!panel.enabled("touch_off"));
 }
 
+TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
+  const Names switches{"spindle_on", "spindle_off", "coolant_on", "coolant_off"};
+  const auto enabled = [&] {
+    Names names;
+    for (const std::string& name : switches) {
+      if (panel.enabled(name.c_str())) names.insert(name);
+    }
+    return names;
+  };
+  WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
+  panel.click("spindle_on");
+  WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_on"}));
+  EXPECT_EQ(panel.label("meaning").find("The spindle is on. "), 0U) << panel.label("meaning");
+  WAIT_FOR(panel.text("messages").find("The spindle is on; keep clear of the wheel") != std::string::npos);
+  panel.picture("spindle_on");
+  panel.click("spindle_off");
+  WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
+  stage.change([&] { stage.state.wheel_in_work = 1; });
+  WAIT_FOR(enabled().empty());
+  stage.change([&] { stage.state.wheel_in_work = 0; });
+  WAIT_FOR(enabled().size() == 2);
+  // While a job runs they are its own.
+  stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.state() == "Running");
+  EXPECT_TRUE(enabled().empty());
+  stage.be(GrinderState::DISABLED, "disabled");
+  WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
+}
+
+TEST_F(Jogging, TheDistanceToGoIsShownWhileSomethingMoves) {
+  WAIT_FOR(panel.enabled("jog_x_plus"));
+  EXPECT_EQ(panel.label("to_go_x"), "");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {0, 0, 0, 0};
+    stage.state.distance_to_go = {-0.0125, 0, 0, M_PI};
+  });
+  WAIT_FOR(panel.label("to_go_x") == "to go -12.500 mm");
+  EXPECT_EQ(panel.label("to_go_y"), "to go 0.000 mm");
+  EXPECT_EQ(panel.label("to_go_a"), "to go 180.000 deg");
+  panel.picture("to_go");
+}
+
 TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
   WAIT_FOR(panel.enabled("jog_y_minus"));
   choose("while pressed");

@@ -56,6 +56,7 @@ class GrindPanel : public rviz::Panel {
 
   void layOut();
   QLayout* layOutButtons();
+  QLayout* layOutSwitches();
   QWidget* viewTab();
   QPushButton* addButton(const EventRow& request, bool large);
   void setNode(const QString& node);

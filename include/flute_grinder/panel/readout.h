@@ -58,7 +58,8 @@ class ProgressBox : public QWidget {
   Bar stroke_, job_;
 };
 
-/// Work position of the axes in mm and deg; the machine's and the work offset in the tool tip.
+/// Work position of the axes in mm and deg, with the distance to go of the running move; the machine's and the work
+/// offset in the tool tip.
 class PositionBox : public QWidget {
   Q_OBJECT
 
@@ -70,6 +71,7 @@ class PositionBox : public QWidget {
 
  private:
   std::array<QLabel*, kAxisCount> values_{};
+  std::array<QLabel*, kAxisCount> to_go_{};
   int decimals_;
 };
 

@@ -4,7 +4,9 @@
 #include "flute_grinder/cli/online.h"
 #include "flute_grinder/core/feed_schedule.h"
 
+#include <map>
 #include <memory>
+#include <string>
 
 namespace flute_grinder {
 
@@ -78,9 +80,23 @@ std::string waiting(MachineEvent event) {
 /// The requests without arguments.
 void addRequests(Commands& commands) {
   for (const EventRow& row : kMachineEvents) {
-    if (!isTrigger(row.value) && !isStop(row.value)) continue;
+    if (isSwitch(row.value) || (!isTrigger(row.value) && !isStop(row.value))) continue;
     commands.add(row.name, row.help + waiting(row.value), "",
                  Commands::online([&commands, event = row.value] { return request(commands.node, event); }));
+  }
+}
+
+/// `spindle on` and the like: a command of each first word, with the second as its sub-command.
+void addSwitches(Commands& commands) {
+  std::map<std::string, CLI::App*> parents;
+  for (const EventRow& row : kMachineEvents) {
+    if (!isSwitch(row.value)) continue;
+    const std::string name = row.name;
+    const std::string part = name.substr(0, name.find(' '));
+    CLI::App*& parent = parents[part];
+    if (!parent) parent = &commands.add(part, "switch the " + part + " by hand, without a job", "on", nullptr);
+    commands.addTo(*parent, name.substr(part.size() + 1), row.help, "",
+                   Commands::online([&commands, event = row.value] { return request(commands.node, event); }));
   }
 }
 
@@ -92,6 +108,7 @@ void addMachineCommands(Commands& commands) {
   addJog(commands);
   addStatus(commands);
   addRequests(commands);
+  addSwitches(commands);
 }
 
 }  // namespace flute_grinder

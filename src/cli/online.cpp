@@ -87,13 +87,16 @@ void printState(const std::string& node, const GrinderState& state, const WorkOf
   std::printf("state           %s\n", state.state_name.c_str());
   std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
   std::printf("homed           %s\n", state.homed ? "yes" : "no");
-  std::printf("spindle         %s\n", state.spindle_at_speed ? "at speed" : "not at speed");
+  std::printf("spindle         %s\n", state.spindle_at_speed    ? "at speed"
+                                      : state.spindle_commanded ? "on, not at speed"
+                                                                : "not at speed");
   std::printf("coolant         %s\n", state.coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state.emergency_stop ? "pressed" : "released");
   std::printf("wheel in work   %s\n", state.wheel_in_work ? "yes" : "no");
   std::printf("swivel          %s\n", swivelText(state).c_str());
   printPosition("work position", state.work_position);
   printPosition("of the machine", state.position);
+  if (!(Axes(state.distance_to_go.data()) == 0).all()) printPosition("to go", state.distance_to_go);
   printZeroPoints(offsets);
   std::printf("feed            %.1f mm/min, override %.0f %%\n", state.feed / units::kMillimetrePerMinute,
               state.override * 100);
@@ -170,6 +173,21 @@ int printStatus(const std::string& node, bool json) {
 
 namespace {
 
+/// Prints that a request was carried out. @return the exit status for it.
+int succeed(const std::string& text) {
+  std::printf("%s\n", text.c_str());
+  return 0;
+}
+
+/// The success of a request that is answered when it is done, or has begun.
+std::string doneText(MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kEnable: return "the power is on";
+    case MachineEvent::kReset: return "the fault is reset; the power is off";
+    default: return toString(event) + std::string(": done");
+  }
+}
+
 /// Waits until homing is over; Ctrl-C breaks it off by switching the power off.
 int home(const std::string& node) {
   ros::NodeHandle nh(node);
@@ -186,7 +204,7 @@ int home(const std::string& node) {
     const int refused = call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kDisable), {});
     return refused != 0 ? refused : fail("homing was aborted; the power is off");
   }
-  if (state.homed) return 0;
+  if (state.homed) return succeed("homed");
   return fail(state.fault.empty() ? "homing was aborted" : faultText(state));
 }
 
@@ -307,14 +325,17 @@ int request(const std::string& node, MachineEvent event) {
     default: break;
   }
   ros::NodeHandle nh(node);
-  return call<std_srvs::Trigger>(nh, serviceOf(event), {});
+  const int status = call<std_srvs::Trigger>(nh, serviceOf(event), {});
+  return status != 0 ? status : succeed(doneText(event));
 }
 
 int confirmSwivel(const std::string& node, double degrees) {
   ros::NodeHandle nh(node);
   ConfirmSwivel::Request request;
   request.swivel = degrees * units::kDegree;
-  return call<ConfirmSwivel>(nh, "confirm_swivel", request);
+  const int status = call<ConfirmSwivel>(nh, "confirm_swivel", request);
+  if (status != 0) return status;
+  return succeed("the swivel is confirmed at " + text({request.swivel, Unit::kRadian}, UnitSystem::kShop));
 }
 
 int setFeedOverride(const std::string& node, double percent) {

@@ -81,7 +81,11 @@ void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period)
   // Put together here and copied as a whole, like record and status.
   DriveCommand drive_command = drive_command_;
   drive_command.home = state_ == MachineState::kHoming;
-  drive_command.spindle = drive_command.coolant = stream_ != nullptr;
+  // A job takes over what was switched on by hand; a fault, a lost power, homing and a lift switch it off.
+  if (!after(state_, MachineEvent::kSpindleOn)) spindle_by_hand_ = coolant_by_hand_ = false;
+  if (!record_.drive.probe_free) spindle_by_hand_ = false;
+  record_.spindle_commanded = drive_command.spindle = stream_ || spindle_by_hand_;
+  record_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
   drive_.setCommand(drive_command);
   hw_.write(time, period);
@@ -93,6 +97,7 @@ void ControlLoop::publish() {
   record_.state = state_;
   record_.feed_override = feed_override_;
   record_.wheel_in_work = wheel_.wheel().in_work;
+  record_.distance_to_go = distanceToGo();
 
   ++next_status_.cycles;
   next_status_.time = record_.time;
@@ -115,6 +120,19 @@ void ControlLoop::publish() {
     ++record_.records_lost;  // job_ended stays set for the next record that fits
   }
   status_.store(next_status_);
+}
+
+/// Of a job, in the program's move; the place is that of the setpoint that has reached the axes.
+Axes ControlLoop::distanceToGo() const {
+  if (jogging_ || state_ == MachineState::kLifting) {
+    Axes to_go = Axes::Zero();
+    const int axis = axis_move_.axis();
+    // A continuous jog has no end of its own.
+    if (!(jogging_ && continuous_)) to_go[axis] = axis_move_.to() - record_.position[axis];
+    return to_go;
+  }
+  if (!stream_) return Axes::Zero();
+  return stream_->program().moves()[next_status_.place.move_index].to + job_offset_ - record_.position;
 }
 
 void ControlLoop::awaitHoming() {

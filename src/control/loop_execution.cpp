@@ -33,9 +33,10 @@ void ControlLoop::executeRequest(MachineEvent event) {
 }
 
 Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
-  return {
-      event,          state_,     refusal, openInterlock(), kY, liftTarget(), config_.machine.limits.max_position[kY],
-      record_.swivel, job_swivel_};
+  // The spindle by hand depends on one interlock alone.
+  const Interlock interlock = isSwitch(event) ? Interlock::kProbe : openInterlock();
+  return {event,          state_,     refusal, interlock, kY, liftTarget(), config_.machine.limits.max_position[kY],
+          record_.swivel, job_swivel_};
 }
 
 Refusal ControlLoop::execute(MachineEvent event) {
@@ -48,6 +49,10 @@ Refusal ControlLoop::execute(MachineEvent event) {
     case MachineEvent::kRetract: return retract();
     case MachineEvent::kLift: return lift();
     case MachineEvent::kReset: return reset();
+    case MachineEvent::kSpindleOn: return record_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
+    case MachineEvent::kSpindleOff: spindle_by_hand_ = false; return Refusal::kNone;
+    case MachineEvent::kCoolantOn: return switchOn(coolant_by_hand_);
+    case MachineEvent::kCoolantOff: coolant_by_hand_ = false; return Refusal::kNone;
     default: return Refusal::kState;
   }
 }
@@ -85,6 +90,13 @@ Refusal ControlLoop::enable() {
   drive_command_.enable = true;
   awaiting_power_ = true;
   waited_ = 0;
+  return Refusal::kNone;
+}
+
+/// @param commanded by hand. A wheel that starts in the work breaks.
+Refusal ControlLoop::switchOn(bool& commanded) {
+  if (wheel_.wheel().in_work) return Refusal::kInWork;
+  commanded = true;
   return Refusal::kNone;
 }
 

@@ -109,6 +109,24 @@ constexpr Transition kTransitions[]{
     {S::kJoggingRetracted, E::kJog, S::kJoggingRetracted},
     {S::kJoggingRetracted, E::kAtRest, S::kRetracted},
     {S::kJoggingRetracted, E::kFault, S::kFault},
+
+    // By hand: on with the power, at rest or while an axis is jogged; off in every state without a job.
+    {S::kReady, E::kSpindleOn, S::kReady},
+    {S::kReady, E::kSpindleOff, S::kReady},
+    {S::kReady, E::kCoolantOn, S::kReady},
+    {S::kReady, E::kCoolantOff, S::kReady},
+    {S::kJogging, E::kSpindleOn, S::kJogging},
+    {S::kJogging, E::kSpindleOff, S::kJogging},
+    {S::kJogging, E::kCoolantOn, S::kJogging},
+    {S::kJogging, E::kCoolantOff, S::kJogging},
+    {S::kDisabled, E::kSpindleOff, S::kDisabled},
+    {S::kDisabled, E::kCoolantOff, S::kDisabled},
+    {S::kHoming, E::kSpindleOff, S::kHoming},
+    {S::kHoming, E::kCoolantOff, S::kHoming},
+    {S::kFault, E::kSpindleOff, S::kFault},
+    {S::kFault, E::kCoolantOff, S::kFault},
+    {S::kLifting, E::kSpindleOff, S::kLifting},
+    {S::kLifting, E::kCoolantOff, S::kLifting},
 };
 
 }  // namespace
@@ -125,7 +143,7 @@ bool isInJob(MachineState state) noexcept { return after(state, E::kCancel) == S
 std::string allowedIn(MachineState state) {
   std::string text;
   for (const Transition& t : kTransitions) {
-    if (t.from != state || !isRequest(t.event)) continue;
+    if (t.from != state || !isRequest(t.event) || isSwitch(t.event)) continue;
     text += (text.empty() ? "" : ", ") + std::string(toString(t.event));
     if (t.event == E::kStart) text += " (grind run)";  // the others are commands by their names
   }

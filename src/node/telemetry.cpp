@@ -271,6 +271,8 @@ GrinderState Telemetry::stateMessage() const {
   message.homed = record_.drive.homed;
   message.spindle_at_speed = record_.drive.spindle_at_speed;
   message.coolant_on = record_.drive.coolant_on;
+  message.spindle_commanded = record_.spindle_commanded;
+  message.coolant_commanded = record_.coolant_commanded;
   message.emergency_stop = record_.drive.emergency_stop;
   message.wheel_in_work = record_.wheel_in_work;
   message.swivel = record_.swivel.angle;
@@ -280,6 +282,7 @@ GrinderState Telemetry::stateMessage() const {
   const Axes offset = offsets_.offsets().values();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     message.position[static_cast<std::size_t>(axis)] = record_.position[axis];
+    message.distance_to_go[static_cast<std::size_t>(axis)] = record_.distance_to_go[axis];
     message.work_position[static_cast<std::size_t>(axis)] = record_.position[axis] - offset[axis];
   }
   if (!jobs_.empty()) {

@@ -1,11 +1,14 @@
 #include "flute_grinder/panel/grind_panel.h"
 
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_file.h"
+#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/panel/plain_words.h"
 #include "flute_grinder/panel/text_view.h"
+#include "flute_grinder/panel/wheel_guard.h"
 
 #include <rviz/panel_dock_widget.h>
 #include <QGridLayout>
@@ -21,7 +24,6 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
-constexpr int kMessages = 200;                  ///< that are kept
 constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
 constexpr int kSpacing = 4;  ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
@@ -37,7 +39,6 @@ QString capitalized(const std::string& text) {
 bool isDone(MachineState state, MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return state == MachineState::kReady;
-    case MachineEvent::kHold: return state == MachineState::kHolding || state == MachineState::kHeld;
     case MachineEvent::kCancel: return state == MachineState::kCanceling;
     default: return false;
   }
@@ -87,11 +88,11 @@ GrindPanel::GrindPanel(QWidget* parent)
       position_(new PositionBox),
       messages_(textView("messages", 2)),
       node_edit_(new QLineEdit) {
-  messages_->setMaximumBlockCount(kMessages);
   messages_->setPlaceholderText("Replies from the grinder");
   node_edit_->setObjectName("node");
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
+  guardFromWheel(*this);
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
@@ -122,6 +123,7 @@ void GrindPanel::layOut() {
   hand_layout->setContentsMargins(6, 6, 6, 6);
   hand_layout->addWidget(jog_);
   hand_layout->addWidget(touch_off_);
+  hand_layout->addLayout(layOutSwitches());
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
   tabs_->addTab(job_, "Job");
@@ -158,13 +160,21 @@ QLayout* GrindPanel::layOutButtons() {
     place += last - first + 1;
   };
   for (const EventRow& request : kMachineEvents) {
-    const bool offered = isRequest(request.value) && request.value != MachineEvent::kJog;
+    const bool offered = isRequest(request.value) && !isSwitch(request.value) && request.value != MachineEvent::kJog;
     if (offered && request.value != MachineEvent::kCancel) add(request);
   }
   // Last, so that nobody who wants to resume hits it.
   add(rowOf(MachineEvent::kCancel));
   for (const int column : {0, 1, 2, kButtonColumns}) buttons->setColumnStretch(column, 1);
   return buttons;
+}
+
+QLayout* GrindPanel::layOutSwitches() {
+  auto* switches = new QHBoxLayout;
+  for (const EventRow& request : kMachineEvents) {
+    if (isSwitch(request.value)) switches->addWidget(addButton(request, false));
+  }
+  return switches;
 }
 
 QWidget* GrindPanel::viewTab() {
@@ -185,10 +195,14 @@ QWidget* GrindPanel::viewTab() {
 
 QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   auto* button = new QPushButton(capitalized(request.name));
-  button->setObjectName(request.name);
+  button->setObjectName(QString(request.name).replace(' ', '_'));
   button->setToolTip(capitalized(request.help));
   button->setEnabled(false);
   button->setMinimumWidth(10);
+  // Space must not press what the focus has only come to.
+  if (request.value == MachineEvent::kCancel || request.value == MachineEvent::kDisable) {
+    button->setFocusPolicy(Qt::NoFocus);
+  }
   if (large) {
     QFont bold = font();
     bold.setBold(true);
@@ -214,6 +228,14 @@ void GrindPanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
   config.mapSetValue("Node", node_);
   config.mapSetValue("Job", job_->file());
+}
+
+bool GrindPanel::focusNextPrevChild(bool next) {
+  const QWidget* from = window()->focusWidget();
+  if (!from || (from->isEnabled() && from->isVisible())) return rviz::Panel::focusNextPrevChild(next);
+  QPushButton* hold = buttons_.at(MachineEvent::kHold);
+  (hold->isEnabled() ? hold : static_cast<QWidget*>(this))->setFocus();
+  return true;
 }
 
 void GrindPanel::setNode(const QString& node) {
@@ -261,8 +283,12 @@ void GrindPanel::refresh() {
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
+  showOtherJob(view, job_runs);
+  // Hold before the others are disabled, of which one may have the focus.
+  const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
+  enable(MachineEvent::kHold);
+  for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
-  for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   jog_->refresh(view.state, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);
   override_->setEnabled(master == Master::kAnswers);
@@ -315,17 +341,18 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
     case MachineEvent::kHome: return !view.state->wheel_in_work;
     case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
     case MachineEvent::kLift: return view.state->wheel_in_work != 0;
+    case MachineEvent::kSpindleOn: return !view.state->wheel_in_work && !view.state->spindle_commanded;
+    case MachineEvent::kCoolantOn: return !view.state->wheel_in_work && !view.state->coolant_commanded;
+    case MachineEvent::kSpindleOff: return view.state->spindle_commanded != 0;
+    case MachineEvent::kCoolantOff: return view.state->coolant_commanded != 0;
     default: return true;
   }
 }
 
 void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
-  const auto on_answer = [this](const std::string& refusal) {
-    if (!refusal.empty()) showMessage(refusal);
-  };
-  if (isStop(event)) return link_->stop(event, on_answer);
-  link_->request(event, on_answer);
+  if (isStop(event)) return link_->stop(event, reply(done(event)));
+  link_->request(event, reply(done(event)));
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {
@@ -345,13 +372,17 @@ void GrindPanel::dryRun(const GrindGoal& goal) {
 
 void GrindPanel::send(const GrindGoal& goal) {
   const auto id = link_->send(goal);
-  if (id) sent_ = Sent{*id, goal};
-  if (!id) showMessage("the job was not sent: no answer from the grinder " + name_);
+  if (id) {
+    sent_ = Sent{*id, goal};
+    last_sent_ = *id;
+  }
+  showMessage(id ? "the job was sent" : "the job was not sent: no answer from the grinder " + name_);
 }
 
 void GrindPanel::confirmSwivel(double angle) {
-  link_->confirmSwivel(angle, [this](const std::string& refusal) {
+  link_->confirmSwivel(angle, [this, angle](const std::string& refusal) {
     if (!refusal.empty()) return showMessage(refusal);
+    showMessage("confirm-swivel: the swivel is set to " + text(Quantity{angle, Unit::kRadian}, UnitSystem::kShop));
     job_->startConfirmed();
   });
 }
@@ -380,24 +411,25 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
-  link_->setFeedOverride(fraction, [this](const std::string& refusal) {
+  const GrinderLink::OnAnswer show = reply(format("feed override: %.0f %%", fraction * 100));
+  link_->setFeedOverride(fraction, [this, show](const std::string& refusal) {
     override_->answered();
-    if (!refusal.empty()) showMessage(refusal);
+    show(refusal);
   });
 }
 
 void GrindPanel::jogStep(int axis, double distance, double speed) {
-  link_->jogStep(axis, distance, speed, [this](const std::string& refusal) {
-    if (!refusal.empty()) showMessage(refusal);
-  });
+  const std::string way = text(Quantity{distance, unitOf(axis, 0)}, UnitSystem::kShop);
+  link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis, UnitSystem::kShop) + " by " + way));
 }
 
 void GrindPanel::touchOff(int axis, double at, bool confirmed) {
   try {
     const core::OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
-    link_->touchOff(axis, position, basis, confirmed, [this](const std::string& refusal, bool large_change) {
-      if (!refusal.empty()) showMessage(refusal);
+    const auto answered = reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set");
+    link_->touchOff(axis, position, basis, confirmed, [this, answered](const std::string& refusal, bool large_change) {
+      answered(refusal);
       if (large_change) touch_off_->askToConfirm();
     });
   } catch (const std::exception& error) {
@@ -443,8 +475,19 @@ double GrindPanel::touchedY(double diameter) const {
   return touchY(job, diameter);
 }
 
+void GrindPanel::showOtherJob(const GrinderView& view, bool job_runs) {
+  const bool other = job_runs && view.job && view.job->goal_id.id != last_sent_;
+  job_->showOtherJob(
+      other ? QString::fromStdString("Running: " + describe(view.job->goal) + ". It was not started in this panel.")
+            : QString());
+}
+
+GrinderLink::OnAnswer GrindPanel::reply(const std::string& done) {
+  return [this, done](const std::string& refusal) { showMessage(refusal.empty() ? done : refusal); };
+}
+
 void GrindPanel::showMessage(const std::string& text) {
-  messages_->appendPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
+  messages_->setPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
 }
 
 }  // namespace flute_grinder

@@ -1,7 +1,6 @@
 #include "flute_grinder/panel/grinder_link.h"
 
 #include "flute_grinder/ConfirmSwivel.h"
-#include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
@@ -54,6 +53,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefus
   const auto hints = ros::TransportHints().tcpNoDelay();
   subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
+  subscribers_.push_back(nh_.subscribe("job", 1, &GrinderLink::onJob, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
   subscribers_.push_back(nh_.subscribe("jog_refusal", 10, &GrinderLink::onJogRefusal, this, hints));
   subscribers_.push_back(nh_.subscribe("offsets", 10, &GrinderLink::onOffsets, this, hints));
@@ -75,6 +75,7 @@ GrinderView GrinderLink::view() const {
     view.offsets = offsets_;
     view.legend = legend_;
     if (feedback_) view.feedback = feedback_->message.feedback;
+    if (feedback_ && job_ && job_->goal_id.id == feedback_->message.status.goal_id.id) view.job = job_;
   }
   if (isFresh(position_)) view.position = position_->message;
   if (view.position && view.state) {
@@ -95,6 +96,11 @@ void GrinderLink::onState(const GrinderState::ConstPtr& state) {
 void GrinderLink::onFeedback(const GrindActionFeedback::ConstPtr& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
   feedback_ = Received<GrindActionFeedback>{*feedback, ros::SteadyTime::now()};
+}
+
+void GrinderLink::onJob(const GrindActionGoal::ConstPtr& job) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  job_ = job;
 }
 
 void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
@@ -278,6 +284,7 @@ void GrinderLink::sendStops() {
     unsent_.pop_front();
     if (connected) {
       stops_.publish(stopFor(stop.event));
+      stop.on_answer("");
     } else {
       stop.on_answer(toString(stop.event) + (" was not sent: the grinder " + name()) + " is not connected");
     }

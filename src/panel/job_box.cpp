@@ -9,7 +9,6 @@
 #include "flute_grinder/panel/text_view.h"
 
 #include <ros/package.h>
-#include <QFileDialog>
 #include <QFileInfo>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
@@ -46,6 +45,7 @@ JobBox::JobBox(QWidget* parent)
       question_(new DiscardQuestion),
       offset_question_(new OffsetQuestion),
       swivel_question_(new SwivelQuestion),
+      other_job_(textView("other_job", 4)),
       answer_(new QStackedWidget) {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
@@ -69,6 +69,7 @@ JobBox::JobBox(QWidget* parent)
   answer_->addWidget(question_);
   answer_->addWidget(offset_question_);
   answer_->addWidget(swivel_question_);
+  answer_->addWidget(other_job_);
   layout->addWidget(answer_);
 
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
@@ -99,18 +100,26 @@ JobBox::JobBox(QWidget* parent)
   setFile("");
 }
 
+/// Not modal, since the buttons that stop the grinder must work meanwhile.
 void JobBox::choose() {
+  if (file_dialog_) {
+    file_dialog_->raise();
+    return file_dialog_->activateWindow();
+  }
   const QString folder = file_.isEmpty() ? QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"
                                          : QFileInfo(file_).path();
-  auto* dialog = new QFileDialog(this, "Choose a job file for " + QString::fromStdString(grinder_), folder,
+  file_dialog_ = new QFileDialog(this, "Choose a job file for " + QString::fromStdString(grinder_), folder,
                                  "Jobs (*.yaml *.yml);;All files (*)");
-  dialog->setFileMode(QFileDialog::ExistingFile);
-  dialog->setAttribute(Qt::WA_DeleteOnClose);
-  connect(dialog, &QFileDialog::fileSelected, this, [this](const QString& file) {
+  // Qt's own: the desktop's is modal, and so are the messages that the others of these would open.
+  file_dialog_->setOption(QFileDialog::DontUseNativeDialog);
+  file_dialog_->setOption(QFileDialog::ReadOnly);
+  file_dialog_->setFileMode(QFileDialog::AnyFile);
+  file_dialog_->setAttribute(Qt::WA_DeleteOnClose);
+  connect(file_dialog_, &QFileDialog::fileSelected, this, [this](const QString& file) {
     setFile(file);
     Q_EMIT fileChosen();
   });
-  dialog->open();
+  file_dialog_->show();
 }
 
 void JobBox::openSetup() {
@@ -245,13 +254,23 @@ std::optional<GrindGoal> JobBox::takePlanned() {
   return std::nullopt;
 }
 
+void JobBox::showOtherJob(const QString& text) {
+  if (text != other_job_->toPlainText()) other_job_->setPlainText(text);
+  if (!text.isEmpty()) {
+    answer_->setCurrentWidget(other_job_);
+  } else if (answer_->currentWidget() == other_job_) {
+    answer_->setCurrentWidget(verdict_);
+  }
+}
+
 void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
   offsets_.reset();
   if (offsets) offsets_ = fromMessage(*offsets);
   showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
-  if (!idle || !asksWithReason()) answer_->setCurrentWidget(verdict_);
+  const bool asks = idle && asksWithReason();
+  if (answer_->currentWidget() != other_job_ && !asks) answer_->setCurrentWidget(verdict_);
   choose_->setEnabled(idle);
   setup_->setEnabled(!file_.isEmpty());
   continue_->setEnabled(idle && where_left_);

@@ -21,15 +21,14 @@ constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< [mm], A [
 /// Speeds at first; the operator's are not kept.
 constexpr double kLinearSpeed = 600;   ///< [mm/min]
 constexpr double kRotarySpeed = 1800;  ///< [deg/min]
-constexpr double kLargestSpeed = 99999;
+constexpr double kMaxSpeed = 99999;
+constexpr int kSpeedDecimals = 3;
 
 double unitOf(int axis) { return axis == kA ? units::kDegree : units::kMillimetre; }
 
-QDoubleSpinBox* speedBox(const char* name, const QString& unit, double value) {
-  auto* box = new QDoubleSpinBox;
-  box->setObjectName(name);
-  box->setDecimals(0);
-  box->setRange(1, kLargestSpeed);
+NumberBox* speedBox(const char* name, const QString& unit, double value) {
+  auto* box = new NumberBox(name, kSpeedDecimals);
+  box->setRange(1, kMaxSpeed);
   box->setStepType(QAbstractSpinBox::AdaptiveDecimalStepType);
   box->setSuffix(" " + unit);
   box->setToolTip("Speed of the jog");
@@ -85,7 +84,7 @@ QPushButton* JogBox::addButton(int axis, int direction) {
 bool JogBox::isContinuous() const { return step_->currentData().toDouble() == kContinuous; }
 
 double JogBox::speed(int axis) const {
-  const QDoubleSpinBox& box = axis == kA ? *rotary_speed_ : *linear_speed_;
+  const NumberBox& box = axis == kA ? *rotary_speed_ : *linear_speed_;
   return box.value() * unitOf(axis) / 60;
 }
 

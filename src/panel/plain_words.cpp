@@ -1,7 +1,6 @@
 #include "flute_grinder/panel/plain_words.h"
 
 #include "flute_grinder/core/format.h"
-#include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
@@ -55,6 +54,12 @@ std::string feedText(const PathStatistics& s) {
   return feed + (s.feed_limits.empty() ? "; no axis limits it." : ", limited by");
 }
 
+/// A job by its file and tool.
+std::string named(const std::string& name, const Cutter& cutter) {
+  return (name.empty() ? "a job without a name" : name) + " (" +
+         toolText(fromMessage(cutter), cutter.tooth_angles.size()) + ")";
+}
+
 }  // namespace
 
 std::string duration(double seconds) {
@@ -71,6 +76,7 @@ std::string describe(const GrinderState& state) {
   if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
+  if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
   // In the other states of a job it belongs there.
   if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)
@@ -80,9 +86,26 @@ std::string describe(const GrinderState& state) {
   return text + sentence(machine);
 }
 
+std::string done(MachineEvent event) {
+  switch (event) {
+    case MachineEvent::kEnable: return "enable: the power is on";
+    case MachineEvent::kHome: return "home: the drive is homing the axes";
+    case MachineEvent::kReset: return "reset: the fault is cleared; the power is off";
+    case MachineEvent::kRetract:
+    case MachineEvent::kLift: return toString(event) + std::string(": the wheel is being lifted");
+    case MachineEvent::kResume: return "resume: the job continues";
+    case MachineEvent::kSpindleOn: return "the spindle is on; keep clear of the wheel";
+    case MachineEvent::kSpindleOff: return "the spindle is off; the wheel runs down";
+    case MachineEvent::kCoolantOn: return "the coolant is on";
+    case MachineEvent::kCoolantOff: return "the coolant is off";
+    default: return toString(event) + std::string(" was sent");
+  }
+}
+
+std::string describe(const GrindGoal& goal) { return named(goal.job_name, goal.cutter); }
+
 std::string describe(const JobProgress& progress) {
-  const std::string name = progress.job_name.empty() ? "a job without a name" : progress.job_name;
-  return name + " (" + toolText(fromMessage(progress.cutter), progress.cutter.tooth_angles.size()) + ")" +
+  return named(progress.job_name, progress.cutter) +
          format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
 }
 

@@ -26,7 +26,7 @@ constexpr const char* kRed = "#b00020";
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
   switch (static_cast<MachineState>(grinder.state)) {
-    case MachineState::kReady: return grinder.wheel_in_work ? kAmber : kGreen;
+    case MachineState::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case MachineState::kLifting:
     case MachineState::kJogging:
     case MachineState::kJoggingRetracted:
@@ -47,7 +47,8 @@ const char* colourOf(const GrinderState& grinder) {
 
 constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
-constexpr int kBarHeight = 8;  ///< [px]
+constexpr int kBarHeight = 8;   ///< [px]
+constexpr int kNameWidth = 96;  ///< of a job's name [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
@@ -120,15 +121,18 @@ ProgressBox::ProgressBox(QWidget* parent)
       stroke_(makeBar("stroke", "stroke_text")),
       job_(makeBar("job", "job_text")) {
   place_->setObjectName("place");
+  place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
+  auto* place = new QHBoxLayout;
+  place->addWidget(place_, 1);
+  place->addWidget(feed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(3);
   layout->setColumnStretch(0, 1);
   layout->setColumnStretch(1, 2);
-  layout->addWidget(place_, 0, 0);
-  layout->addWidget(feed_, 0, 1);
+  layout->addLayout(place, 0, 0, 1, 2);
   layout->addWidget(stroke_.text, 1, 0);
   layout->addWidget(job_.text, 1, 1);
   layout->addWidget(stroke_.bar, 2, 0);
@@ -162,12 +166,22 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
     feed_->clear();
     return set(job_, kJobDone, f.job_fraction, job_runs);
   }
-  place_->setText(QString("Tooth %1, pass %2").arg(f.tooth + 1).arg(f.pass + 1));
+  showPlace(view, f);
   feed_->setText(feedText(f.feed));
   // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
   const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 % feed");
   set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
+}
+
+void ProgressBox::showPlace(const GrinderView& view, const GrindFeedback& feedback) {
+  const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
+  const QString job = place_->fontMetrics().elidedText(name, Qt::ElideMiddle, kNameWidth);
+  place_->setText(QString("%1ooth %2, pass %3")
+                      .arg(name.isEmpty() ? "T" : job + ", t")
+                      .arg(feedback.tooth + 1)
+                      .arg(feedback.pass + 1));
+  place_->setToolTip(name);
 }
 
 void ProgressBox::showPlanning(double planned) {
@@ -187,8 +201,13 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDe
     auto* value = new QLabel;
     value->setObjectName(QString("position_%1").arg("xyza"[axis]));
     value->setFont(font);
-    layout->addWidget(value, axis / 2, axis % 2);
+    auto* to_go = new QLabel;
+    to_go->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
+    to_go->setToolTip("Distance to go to the end of the running move");
+    layout->addWidget(value, axis / 2 * 2, axis % 2);
+    layout->addWidget(to_go, axis / 2 * 2 + 1, axis % 2);
     values_[static_cast<std::size_t>(axis)] = value;
+    to_go_[static_cast<std::size_t>(axis)] = to_go;
   }
 }
 
@@ -211,6 +230,10 @@ void PositionBox::show(const GrinderView& view) {
     const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
     label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), decimals_ + 6).arg(unit));
+    const double to_go = view.state ? view.state->distance_to_go[static_cast<std::size_t>(axis)] : 0;
+    // At rest there is none; a little is left of each move.
+    const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
+    to_go_[static_cast<std::size_t>(axis)]->setText(moves ? QString("to go %1 %2").arg(shown(to_go), unit) : "");
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
                          .arg(shown(machine), shown(machine - work), unit));
   }

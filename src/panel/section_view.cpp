@@ -30,12 +30,10 @@ bool isReady(const std::future<Value>& future) {
 
 SectionView::SectionView(QWidget* parent)
     : QWidget(parent),
-      x_(new QDoubleSpinBox),
+      x_(new NumberBox("section_x", kXDecimals)),
       follow_(new QCheckBox("Follow the wheel")),
       drawing_(new SectionDrawing),
       figures_(new QLabel) {
-  x_->setObjectName("section_x");
-  x_->setDecimals(kXDecimals);
   x_->setSingleStep(0.5);
   x_->setSuffix(" mm");
   x_->setKeyboardTracking(false);

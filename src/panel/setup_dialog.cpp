@@ -6,6 +6,7 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/panel/text_view.h"
+#include "flute_grinder/panel/wheel_guard.h"
 
 #include <ros/master.h>
 #include <ros/names.h>
@@ -66,6 +67,7 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
     working_ = std::async(std::launch::async, [this, setup = *setup_] { return write(setup); });
   });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
+  guardFromWheel(*this);
   beginToSolve();
   poll_timer_.start(kPollInterval);
 }

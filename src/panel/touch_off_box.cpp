@@ -29,13 +29,11 @@ bool mayTouchOff(const GrinderState& state) {
 TouchOffBox::TouchOffBox(QWidget* parent)
     : QWidget(parent),
       axis_(new QComboBox),
-      at_(new QDoubleSpinBox),
+      at_(new NumberBox("touch_at", kDecimals)),
       touch_(new QPushButton(kTouchOff)),
       offset_(new QLabel) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
-  at_->setObjectName("touch_at");
-  at_->setDecimals(kDecimals);
   touch_->setObjectName("touch_off");
   touch_->setToolTip("Set the axis' work offset from where it stands now; nothing moves");
   offset_->setObjectName("work_offset");

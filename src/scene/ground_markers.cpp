@@ -17,7 +17,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
-constexpr double kMostTriangles = 16000;  ///< of 72 bytes each, and what the cut adds
+constexpr double kMostTriangles = 32000;  ///< of 72 bytes each, and what the cut adds
 constexpr double kLabelHeight = 0.03;     ///< of a text's letters, of the flute's length
 constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
 constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
@@ -85,7 +85,8 @@ SolidResolution resolutionOf(const GrindJob& job) {
     turns = std::max(turns, std::abs(curve.a(extent.to)) / (2 * units::kPi));
   }
   const auto teeth = static_cast<double>(job.tooth_angles.size());
-  SolidResolution r{40, 16, 60};
+  // Rings are where flutes are; the facets around show on lands, neck and shank, which are round.
+  SolidResolution r{40, 16, 72};
   const auto triangles = [&] {
     const auto rings = static_cast<double>(r.rings), around = std::max(teeth, static_cast<double>(r.around));
     const auto sections = static_cast<double>(r.sections);
@@ -93,11 +94,46 @@ SolidResolution resolutionOf(const GrindJob& job) {
     const double layers = std::max(sections, turns * around) + sections * shank / extent.to;
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
+  while (triangles() > kMostTriangles && r.rings > 8) --r.rings;
+  while (triangles() > kMostTriangles && r.around > 36) --r.around;
   while (triangles() > kMostTriangles && r.rings > 4) --r.rings;
   while (triangles() > kMostTriangles && r.around > 6) --r.around;
   while (triangles() > kMostTriangles && r.sections > 12) --r.sections;
   return r;
 }
+
+/// Where the last pass of a tooth has been: before it a rake is not the tool's.
+class LastPasses {
+ public:
+  /// @param reached nothing for a job that is done.
+  LastPasses(const GrindJob& job, const std::optional<Reached>& reached)
+      : from_end_(job.process.direction == StrokeDirection::kFromEnd) {
+    const int last = static_cast<int>(passDepths(job.process).size()) - 1;
+    teeth_.resize(job.tooth_angles.size());
+    for (const ToothPass& pass : passOrder(job)) {
+      const bool runs = reached && pass == reached->pass;
+      if (runs && reached->phase != PassPhase::kStroke && reached->phase != PassPhase::kAfter) break;
+      const bool all = !runs || reached->phase == PassPhase::kAfter;
+      if (pass.pass == last) teeth_[static_cast<std::size_t>(pass.tooth)] = {true, all, all ? 0 : reached->x};
+      if (runs) break;
+    }
+  }
+
+  bool at(double x, std::size_t tooth) const {
+    const Reach& reach = teeth_[tooth];
+    return reach.begun && (reach.whole || (from_end_ ? x <= reach.x : x >= reach.x));
+  }
+
+ private:
+  struct Reach {
+    bool begun = false;
+    bool whole = false;
+    double x = 0;  ///< to which the stroke has come [m]
+  };
+
+  bool from_end_;
+  std::vector<Reach> teeth_;
+};
 
 /// How far the rake faces are from the asked rake, as a part of the tolerance.
 class RakeDeviation {
@@ -155,11 +191,23 @@ void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
 
 constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;
 
-void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviation& rake, const char* ns) {
+/// The blank before the first stroke.
+void appendBlank(MarkerArray& array, const GrindJob& job, const char* ns) {
+  const ConicalCutter cutter(job.cutter);
+  const double shank = shankOf(job.cutter).value_or(extentOf(job).to), end = std::max(kEnd, shank);
+  const double radius = job.cutter.shank_diameter / 2;
+  appendSolid(array, ns, "cutter",
+              {{0, 0}, {0, cutter.radius(0)}, {shank, cutter.radius(shank)}, {shank, radius}, {end, radius}, {end, 0}},
+              colourOf(SurfaceKind::kShank));
+}
+
+void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviation& rake, const LastPasses& last,
+                 const char* ns) {
   std::array<std::vector<geometry_msgs::Point>, kSurfaceKinds + kRakeColours> by_colour;
   for (const SolidTriangle& t : solid.triangles) {
-    const auto deviation = t.kind == SurfaceKind::kRakeFace ? rake.at(solid.vertices[t.vertices[0]].x(), t.tooth)
-                                                            : std::optional<double>();
+    const double x = solid.vertices[t.vertices[0]].x();
+    const bool finished = t.kind == SurfaceKind::kRakeFace && last.at(x, t.tooth);
+    const auto deviation = finished ? rake.at(x, t.tooth) : std::optional<double>();
     const std::size_t level =
         static_cast<std::size_t>(std::min(deviation.value_or(0), 1 - 1e-9) * static_cast<double>(kRakeColours));
     auto& points = by_colour[deviation ? kSurfaceKinds + level : static_cast<std::size_t>(t.kind)];
@@ -200,10 +248,16 @@ GroundCutter groundSoFar(const GrindJob& job, const Reached& reached) {
   return {ConicalCutter(job.cutter), std::move(flutes), std::move(teeth)};
 }
 
-MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns) {
+MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns,
+                          const std::optional<Reached>& reached) {
   MarkerArray array = clearedArray();
   try {
-    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), RakeDeviation(cutter, job), ns);
+    if (reached && reached->pass == passOrder(job).front() && reached->phase == PassPhase::kBefore) {
+      appendBlank(array, job, ns);
+      return array;
+    }
+    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), RakeDeviation(cutter, job),
+                LastPasses(job, reached), ns);
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();

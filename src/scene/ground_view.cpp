@@ -28,7 +28,7 @@ std::chrono::duration<double> worked() {
 
 visualization_msgs::MarkerArray markersOf(const GrindJob& job, const std::optional<Reached>& reached) {
   const Reached end{passOrder(job).back(), PassPhase::kAfter, 0};
-  return groundMarkers(groundSoFar(job, reached.value_or(end)), job, reached ? "ground" : "planned");
+  return groundMarkers(groundSoFar(job, reached.value_or(end)), job, reached ? "ground" : "planned", reached);
 }
 
 }  // namespace

@@ -23,28 +23,29 @@ using E = MachineEvent;
 
 /// The state after every event; "-" where it is refused.
 constexpr const char* kTable = R"(
-state             enable disable   home   start    hold              resume   retract    lift    jog               cancel    reset    done    at_rest   fault
-disabled          ready  disabled  -      -        -                 -        -          -       -                 -         disabled -       -         -
-ready             ready  disabled  homing starting -                 -        -          lifting jogging           -         -        -       -         fault
-homing            -      disabled  -      -        disabled          -        -          -       -                 disabled  -        ready   -         fault
-starting          -      canceling -      -        starting          starting -          -       -                 canceling -        running ready     fault
-running           -      canceling -      -        holding           -        -          -       -                 canceling -        -       ready     fault
-holding           -      canceling -      -        holding           resuming -          -       -                 canceling -        -       held      fault
-held              -      canceling -      -        held              resuming retracting -       -                 canceling -        -       -         fault
-retracting        -      canceling -      -        holding           -        -          -       -                 canceling -        -       retracted fault
-retracted         -      canceling -      -        -                 resuming -          -       jogging_retracted canceling -        -       -         fault
-resuming          -      canceling -      -        holding           -        -          -       -                 canceling -        running -         fault
-canceling         -      canceling -      -        canceling         -        -          -       -                 canceling -        -       ready     fault
-fault             -      fault     -      -        -                 -        -          -       -                 -         disabled -       -         -
-lifting           -      lifting   -      -        lifting           -        -          -       -                 lifting   -        -       ready     fault
-jogging           -      jogging   -      -        jogging           -        -          -       jogging           jogging   -        -       ready     fault
-jogging_retracted -      canceling -      -        jogging_retracted -        -          -       jogging_retracted canceling -        -       retracted fault
+state             enable disable   home   start    hold              resume   retract    lift    jog               cancel    reset    done    at_rest   fault   spindle_on spindle_off coolant_on coolant_off
+disabled          ready  disabled  -      -        -                 -        -          -       -                 -         disabled -       -         - -          disabled    -          disabled
+ready             ready  disabled  homing starting -                 -        -          lifting jogging           -         -        -       -         fault ready      ready       ready      ready
+homing            -      disabled  -      -        disabled          -        -          -       -                 disabled  -        ready   -         fault -          homing      -          homing
+starting          -      canceling -      -        starting          starting -          -       -                 canceling -        running ready     fault -          -           -          -
+running           -      canceling -      -        holding           -        -          -       -                 canceling -        -       ready     fault -          -           -          -
+holding           -      canceling -      -        holding           resuming -          -       -                 canceling -        -       held      fault -          -           -          -
+held              -      canceling -      -        held              resuming retracting -       -                 canceling -        -       -         fault -          -           -          -
+retracting        -      canceling -      -        holding           -        -          -       -                 canceling -        -       retracted fault -          -           -          -
+retracted         -      canceling -      -        -                 resuming -          -       jogging_retracted canceling -        -       -         fault -          -           -          -
+resuming          -      canceling -      -        holding           -        -          -       -                 canceling -        running -         fault -          -           -          -
+canceling         -      canceling -      -        canceling         -        -          -       -                 canceling -        -       ready     fault -          -           -          -
+fault             -      fault     -      -        -                 -        -          -       -                 -         disabled -       -         - -          fault       -          fault
+lifting           -      lifting   -      -        lifting           -        -          -       -                 lifting   -        -       ready     fault -          lifting     -          lifting
+jogging           -      jogging   -      -        jogging           -        -          -       jogging           jogging   -        -       ready     fault jogging    jogging     jogging    jogging
+jogging_retracted -      canceling -      -        jogging_retracted -        -          -       jogging_retracted canceling -        -       retracted fault -          -           -          -
 )";
 const std::vector<S> kStates{S::kDisabled,  S::kReady, S::kHoming,     S::kStarting,  S::kRunning,
                              S::kHolding,   S::kHeld,  S::kRetracting, S::kRetracted, S::kResuming,
                              S::kCanceling, S::kFault, S::kLifting,    S::kJogging,   S::kJoggingRetracted};
-const std::vector<E> kEvents{E::kEnable, E::kDisable, E::kHome,   E::kStart, E::kHold, E::kResume, E::kRetract,
-                             E::kLift,   E::kJog,     E::kCancel, E::kReset, E::kDone, E::kAtRest, E::kFault};
+const std::vector<E> kEvents{E::kEnable,  E::kDisable, E::kHome,      E::kStart,      E::kHold,      E::kResume,
+                             E::kRetract, E::kLift,    E::kJog,       E::kCancel,     E::kReset,     E::kDone,
+                             E::kAtRest,  E::kFault,   E::kSpindleOn, E::kSpindleOff, E::kCoolantOn, E::kCoolantOff};
 
 /// The words of the table, row by row.
 std::vector<std::vector<std::string>> words() {
@@ -70,7 +71,7 @@ std::string cellName(const TestParamInfo<std::tuple<std::size_t, std::size_t>>& 
   return words().at(std::get<0>(info.param) + 1).front() + "_" + words().front().at(std::get<1>(info.param) + 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 15), Range<std::size_t>(0, 14)), cellName);
+INSTANTIATE_TEST_SUITE_P(, Table, Combine(Range<std::size_t>(0, 15), Range<std::size_t>(0, 18)), cellName);
 
 TEST(MachineState, StatesHaveNames) {
   for (std::size_t i = 0; i < kStates.size(); ++i) EXPECT_EQ(toString(kStates[i]), words().at(i + 1).front());
@@ -86,7 +87,7 @@ TEST(MachineState, EventsHaveNames) {
 
 TEST(MachineState, RequestsAreWhatComesFromOutside) {
   for (const E event : {E::kEnable, E::kDisable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift,
-                        E::kJog, E::kCancel, E::kReset}) {
+                        E::kJog, E::kCancel, E::kReset, E::kSpindleOn, E::kSpindleOff, E::kCoolantOn, E::kCoolantOff}) {
     EXPECT_TRUE(isRequest(event)) << toString(event);
   }
   for (const E event : {E::kDone, E::kAtRest, E::kFault}) EXPECT_FALSE(isRequest(event)) << toString(event);
@@ -121,8 +122,9 @@ TEST(MachineState, RequestsHaveServicesButThoseThatGoOtherwise) {
   for (const E event : kEvents) {
     const bool otherwise = event == E::kStart || event == E::kCancel || event == E::kJog;
     const bool by_service = isRequest(event) && !otherwise;
-    const char* named = event == E::kReset ? "reset_fault" : toString(event);
-    EXPECT_STREQ(serviceOf(event), by_service ? named : nullptr);
+    std::string named = event == E::kReset ? "reset_fault" : toString(event);
+    std::replace(named.begin(), named.end(), ' ', '_');
+    EXPECT_STREQ(serviceOf(event), by_service ? named.c_str() : nullptr);
   }
 }
 

@@ -413,12 +413,16 @@ COMMANDS = {
     'retract': ['lift'],
     'cancel': ['end the job'],
     'reset': ['fault'],
+    'spindle': ['on', 'off'],
+    'coolant': ['on', 'off'],
     'completion': ['bash'],
 }
 
 # Name, arguments that are wrong.
 WRONG = [
     ('simulate_without_file', ['simulate']),
+    ('spindle_without_on_or_off', ['spindle']),
+    ('spindle_neither_on_nor_off', ['spindle', '1']),
     ('wheel_without_command', ['wheel']),
     ('wheel_without_file', ['wheel', 'show']),
     ('wheel_with_another_command', ['wheel', 'turn', 'wheel.yaml']),

@@ -50,14 +50,15 @@ class TestMachine(CommandLine):
             'spiral_angle_deg': progress.cutter.spiral_angle / DEG, 'rake_angle_deg': progress.cutter.rake_angle / DEG,
             'flute_length_mm': progress.cutter.flute_length / MM})
         self.assertAlmostEqual(told.pop('swivel_deg'), 31.769, delta=1e-12)
+        self.assertEqual(told.pop('to_go'), {'x_mm': 0, 'y_mm': 0, 'z_mm': 0, 'a_deg': 0})
         for coordinates in ('machine', 'work'):  # without offsets the same
             at = told.pop(coordinates)
             for (key, unit), position in zip({'x_mm': MM, 'y_mm': MM, 'z_mm': MM, 'a_deg': DEG}.items(), grinder().park()):
                 self.assertAlmostEqual(at[key] * unit, position, delta=2e-6)
         self.assertEqual(told, {
             'grinder': '/grinder', 'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
-            'zero_points': dict.fromkeys('xyza'),
-            'coolant_on': False, 'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
+            'zero_points': dict.fromkeys('xyza'), 'coolant_on': False, 'spindle_commanded': False, 'coolant_commanded': False,
+            'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
             'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})
 
@@ -65,8 +66,22 @@ class TestMachine(CommandLine):
         self.grind(0, 'disable')
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
         self.assertRegex(self.grind(0, 'status').stdout, r'state +disabled\nenabled +no\n')
-        self.grind(0, 'enable')
+        self.assertEqual(self.grind(0, 'enable').stdout, 'the power is on\n')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def test_spindle_and_coolant_by_hand(self):
+        self.assertEqual(self.grind(0, 'spindle', 'on').stdout, 'spindle on: done\n')
+        self.assertEqual(self.grind(0, 'coolant', 'on').stdout, 'coolant on: done\n')
+        gc.poll(lambda: (lambda s: s.spindle_at_speed and s.coolant_on)(grinder().fresh_state()), 'spindle and coolant')
+        self.assertRegex(self.grind(0, 'status').stdout, r'spindle +at speed\ncoolant +on\n')
+        self.grind(0, 'coolant', 'off')
+        self.assertEqual((grinder().fresh_state().spindle_commanded, grinder().fresh_state().coolant_commanded), (True, False))
+        self.grind(0, 'disable')
+        self.assertFalse(grinder().fresh_state().spindle_commanded)
+        self.assertRegex(self.grind(1, 'spindle', 'on').stderr, r'^spindle on refused: the machine is in state disabled; allowed: ')
+        self.grind(0, 'spindle', 'off')
+        self.grind(0, 'enable')
+        self.assertFalse(grinder().fresh_state().spindle_commanded)
 
     def test_reset(self):
         self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the machine is in state ready; allowed: ')
@@ -125,7 +140,7 @@ class TestMachine(CommandLine):
                          'home refused: the machine is in state disabled; allowed: enable, disable, reset\n')
 
     def test_home(self):
-        self.grind(0, 'home')
+        self.assertEqual(self.grind(0, 'home').stdout, 'homed\n')
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^homed +yes$')
         home = rospy.get_param('/grinder/hardware')
         for joint, position in zip(gc.JOINTS, grinder().wait_rest()):

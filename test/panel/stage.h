@@ -36,11 +36,17 @@ class Stage {
     results_ = nh_.advertise<GrindActionResult>("grind/result", 10);
     offsets_ = nh_.advertise<WorkOffsets>("offsets", 10, true);
     legend_ = nh_.advertise<Legend>("legend", 10, true);
+    job_ = nh_.advertise<GrindActionGoal>("job", 1, true);
     jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
     services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
     services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
+    services_.push_back(nh_.advertiseService("spindle_on", &Stage::onSpindleOn, this));
+    services_.push_back(nh_.advertiseService("spindle_off", &Stage::onSpindleOff, this));
+    for (const char* name : {"enable", "home", "reset_fault", "retract", "coolant_on", "coolant_off"}) {
+      services_.push_back(nh_.advertiseService(name, &Stage::onTrigger, this));
+    }
     services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
     services_.push_back(nh_.advertiseService("touch_off", &Stage::onTouchOff, this));
     services_.push_back(nh_.advertiseService("set_offset", &Stage::onSetOffset, this));
@@ -72,7 +78,7 @@ class Stage {
   }
   /// Lets a call that hangs come to its end.
   void release() {
-    change([&] { resume_hangs = false; });
+    change([&] { resume_hangs = plan_hangs = false; });
   }
   /// Tells the end of a goal.
   void end(const std::string& goal_id, const GrindResult& result) {
@@ -82,6 +88,11 @@ class Stage {
     results_.publish(message);
   }
   void tellOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
+  /// Tells which goal starts, and that the progress is its.
+  void tellJob(const GrindActionGoal& goal) {
+    change([&] { goal_id = goal.goal_id.id; });
+    job_.publish(goal);
+  }
   void tellLegend(const Legend& legend) { legend_.publish(legend); }
   void refuseJog(const std::string& why) {
     std_msgs::String message;
@@ -97,9 +108,11 @@ class Stage {
   bool silent = false;
   bool without_feedback = false;
   bool resume_hangs = false;
+  bool plan_hangs = false;
   int resumes = 0;
   int lifts = 0;
-  std::string swivel_refusal;  ///< of a confirmation; empty to accept it
+  std::string trigger_refusal;  ///< of enable, home, reset and retract; empty to accept them
+  std::string swivel_refusal;   ///< of a confirmation; empty to accept it
   std::vector<double> swivels;
   std::vector<double> overrides;
   std::vector<GrindActionGoal> goals;
@@ -126,6 +139,7 @@ class Stage {
     joint_states_.publish(joints);
   }
   bool onPlan(Plan::Request&, Plan::Response& response) {
+    while (get([&] { return plan_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
     change([&] { response = plan; });
     return true;
   }
@@ -137,6 +151,21 @@ class Stage {
   bool onLift(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
     change([&] { ++lifts; });
     response.success = 1;
+    return true;
+  }
+  bool onSpindleOn(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] { response.success = state.spindle_commanded = 1; });
+    return true;
+  }
+  bool onSpindleOff(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] { response.success = 1, state.spindle_commanded = 0; });
+    return true;
+  }
+  bool onTrigger(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+    change([&] {
+      response.success = static_cast<std::uint8_t>(trigger_refusal.empty());
+      response.message = trigger_refusal;
+    });
     return true;
   }
   bool onJogStep(JogStep::Request& request, JogStep::Response& response) {
@@ -187,7 +216,7 @@ class Stage {
 
   std::mutex mutex_;
   ros::NodeHandle nh_;
-  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, legend_, jog_refusals_;
+  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, legend_, job_, jog_refusals_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;

@@ -12,6 +12,7 @@
 #include <QFile>
 #include <QLineEdit>
 #include <QProgressBar>
+#include <QScrollBar>
 #include <QTemporaryDir>
 
 #include <algorithm>
@@ -63,7 +64,7 @@ Reason feedOutOfRange() {
   return reason;
 }
 
-/// What the states allow, as docs/ros-interface.md draws them, without what is so already.
+/// What the states allow, as docs/ros-interface.md draws them, without what is so already, except Hold.
 struct Row {
   std::uint8_t state;
   const char* name;
@@ -76,8 +77,8 @@ const std::vector<Row> kStates{
     {GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
     {GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
     {GrinderState::RUNNING, "running", {"disable", "hold", "cancel"}, "moves the axes"},
-    {GrinderState::HOLDING, "holding", {"disable", "resume", "cancel"}, "stopping on the path"},
-    {GrinderState::HELD, "held", {"disable", "resume", "retract", "cancel"}, "job is held"},
+    {GrinderState::HOLDING, "holding", {"disable", "hold", "resume", "cancel"}, "stopping on the path"},
+    {GrinderState::HELD, "held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held"},
     {GrinderState::RETRACTING, "retracting", {"disable", "hold", "cancel"}, "being lifted"},
     {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
     {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
@@ -282,7 +283,7 @@ TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsTold) {
   panel.click("hold");
   panel.click("cancel");
   WAIT_FOR(stage.get([&] { return stage.stops.size(); }) == 2);
-  EXPECT_EQ(panel.text("messages"), "");
+  EXPECT_NE(panel.text("messages").find("Cancel was sent"), std::string::npos) << panel.text("messages");
   WAIT_FOR(panel.text("messages").find("Resume: no answer from the grinder /cell/stage") != std::string::npos);
 }
 
@@ -310,7 +311,89 @@ TEST_F(OnStage, StopsGoByTheirTopic) {
   WAIT_FOR(panel.state() == "Ready");
   panel.click("disable");
   WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL, Stop::DISABLE}));
-  EXPECT_EQ(panel.text("messages"), "");
+  EXPECT_NE(panel.text("messages").find("Disable was sent"), std::string::npos) << panel.text("messages");
+}
+
+/// What a reply says behind its time.
+std::string said(Panel& panel) {
+  const std::string text = panel.text("messages");
+  return text.size() > 9 ? text.substr(9) : "";
+}
+
+TEST_F(OnStage, ARequestThatIsDoneSaysSoInALine) {
+  Panel panel("cell/stage");
+  struct Request {
+    std::uint8_t state;
+    const char *name, *button, *done;
+  };
+  for (const Request& r :
+       {Request{GrinderState::DISABLED, "disabled", "enable", "Enable: the power is on"},
+        Request{GrinderState::READY, "ready", "home", "Home: the drive is homing the axes"},
+        Request{GrinderState::FAULT, "fault", "reset", "Reset: the fault is cleared; the power is off"},
+        Request{GrinderState::HELD, "held", "retract", "Retract: the wheel is being lifted"}}) {
+    stage.be(r.state, r.name);
+    WAIT_FOR(panel.enabled(r.button));
+    panel.click(r.button);
+    WAIT_FOR(said(panel) == r.done);
+  }
+}
+
+TEST_F(OnStage, AReplyReplacesTheOneBeforeAndBeginsWithItsFirstLine) {
+  Panel panel("cell/stage");
+  stage.be(GrinderState::DISABLED, "disabled");
+  stage.change([&] { stage.trigger_refusal = "enable refused: one\ntwo\nthree\nfour\nfive\nsix\nseven"; });
+  WAIT_FOR(panel.enabled("enable"));
+  panel.click("enable");
+  WAIT_FOR(said(panel).find("Enable refused: one\ntwo") == 0);
+  const auto& messages = panel.the<QPlainTextEdit>("messages");
+  EXPECT_EQ(messages.verticalScrollBar()->value(), 0) << "the first line is not seen";
+  panel.picture("refused");
+  stage.change([&] { stage.trigger_refusal.clear(); });
+  panel.click("enable");
+  WAIT_FOR(said(panel) == "Enable: the power is on");
+}
+
+TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] { stage.plan.valid = 1, stage.plan.duration = 7.03; });
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.text("verdict").find("Takes 7.0 s") == 0);
+  GrindActionGoal other;
+  other.goal_id.id = "from a terminal";
+  other.goal = goalFromJob(readJobFile(kPaper.toStdString()));
+  other.goal.job_name = "four_teeth_of_the_night_shift.yaml";
+  other.goal.cutter.end_diameter = 0.012;
+  stage.tellJob(other);
+  stage.change([&] { stage.progress.tooth = 3, stage.progress.pass = 19, stage.progress.feed = 0.01; });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.the<QWidget>("other_job").isVisible());
+  EXPECT_EQ(panel.text("other_job"),
+            "Running: four_teeth_of_the_night_shift.yaml (D 12 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth). "
+            "It was not started in this panel.");
+  EXPECT_FALSE(panel.the<QWidget>("verdict").isVisible()) << "the time is another job's";
+  EXPECT_NE(panel.label("place").find(".yaml, tooth 4, pass 20"), std::string::npos) << panel.label("place");
+  EXPECT_EQ(panel.the<QLabel>("place").toolTip().toStdString(), other.goal.job_name);
+  panel.picture("job_of_somebody_else");
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.the<QWidget>("verdict").isVisible());
+  EXPECT_EQ(panel.label("place"), "No job runs");
+}
+
+TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] { stage.plan.valid = 1; });
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.enabled("start"));
+  panel.click("start");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
+  stage.tellJob(stage.get([&] { return stage.goals[0]; }));
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("place").find("paper.yaml, tooth 1") == 0);
+  EXPECT_FALSE(panel.the<QWidget>("other_job").isVisible());
 }
 
 TEST_F(OnStage, AStopThatNobodyHearsIsTold) {

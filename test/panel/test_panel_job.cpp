@@ -118,7 +118,7 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
 
   panel.click("hold");
   WAIT_FOR(panel.state() == "Held");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "resume", "retract", "cancel"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "resume", "retract", "cancel"}));
   const double x = position('x');
   const double y = position('y');
   EXPECT_TRUE(0 < x && x < 30) << x;

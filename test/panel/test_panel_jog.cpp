@@ -112,7 +112,7 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
   EXPECT_DOUBLE_EQ(steps()[1].distance, -0.1 * M_PI / 180);
   EXPECT_DOUBLE_EQ(steps()[1].speed, 15 * M_PI / 180);
   EXPECT_TRUE(jogs().empty());
-  EXPECT_EQ(panel.text("messages"), "");
+  WAIT_FOR(panel.text("messages").find("Jog: axis A by -0.1 deg") != std::string::npos);
   stage.change([&] { stage.step_refusal = "jog refused: because"; });
   panel.click("jog_z_minus");
   WAIT_FOR(panel.text("messages").find("Jog refused: because") != std::string::npos);
@@ -137,7 +137,7 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   for (const TouchOff::Request& touch : touches()) {
     EXPECT_NE(touch.set_by.find('@'), std::string::npos) << touch.set_by;
   }
-  EXPECT_EQ(panel.text("messages"), "");
+  WAIT_FOR(panel.text("messages").find("Touch-off: the work offset of axis A is set") != std::string::npos);
   stage.change([&] { stage.touch_refusal = "the axes are not homed"; });
   panel.click("touch_off");
   WAIT_FOR(panel.text("messages").find("Touch-off: the axes are not homed") != std::string::npos);
@@ -212,6 +212,51 @@ TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
   WAIT_FOR(panel.enabled("touch_off"));
   stage.change([&] { stage.state.homed = 0; });
   WAIT_FOR(!panel.enabled("touch_off"));
+}
+
+TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
+  const Names switches{"spindle_on", "spindle_off", "coolant_on", "coolant_off"};
+  const auto enabled = [&] {
+    Names names;
+    for (const std::string& name : switches) {
+      if (panel.enabled(name.c_str())) names.insert(name);
+    }
+    return names;
+  };
+  WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
+  panel.click("spindle_on");
+  WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_on"}));
+  EXPECT_EQ(panel.label("meaning").find("The spindle is on. "), 0U) << panel.label("meaning");
+  WAIT_FOR(panel.text("messages").find("The spindle is on; keep clear of the wheel") != std::string::npos);
+  panel.picture("spindle_on");
+  panel.click("spindle_off");
+  WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
+  stage.change([&] { stage.state.wheel_in_work = 1; });
+  WAIT_FOR(enabled().empty());
+  stage.change([&] { stage.state.wheel_in_work = 0; });
+  WAIT_FOR(enabled().size() == 2);
+  // While a job runs they are its own.
+  stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.state() == "Running");
+  EXPECT_TRUE(enabled().empty());
+  stage.be(GrinderState::DISABLED, "disabled");
+  WAIT_FOR(panel.state() == "Disabled");
+  EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
+}
+
+TEST_F(Jogging, TheDistanceToGoIsShownWhileSomethingMoves) {
+  WAIT_FOR(panel.enabled("jog_x_plus"));
+  EXPECT_EQ(panel.label("to_go_x"), "");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
+    stage.joints.position = {0, 0, 0, 0};
+    stage.state.distance_to_go = {-0.0125, 0, 0, M_PI};
+  });
+  WAIT_FOR(panel.label("to_go_x") == "to go -12.500 mm");
+  EXPECT_EQ(panel.label("to_go_y"), "to go 0.000 mm");
+  EXPECT_EQ(panel.label("to_go_a"), "to go 180.000 deg");
+  panel.picture("to_go");
 }
 
 TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {

@@ -148,6 +148,42 @@ TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
   }
 }
 
+TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  const int last = static_cast<int>(passDepths(job.process).size()) - 1;
+  ASSERT_GT(last, 0);
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    job.process.direction = direction;
+    const double half = job.cutter.flute_length / 2;
+    // X between which points are coloured; none if the first is larger.
+    const auto coloured = [&](const Reached& reached) {
+      std::pair<double, double> x{1, -1};
+      for (const Marker& m : solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground")) {
+        if (!deviationOf(m)) continue;
+        for (const geometry_msgs::Point& p : m.points) {
+          x = {std::min(x.first, p.x), std::max(x.second, p.x)};
+        }
+      }
+      return x;
+    };
+    const auto roughed = coloured({{1, last - 1}, PassPhase::kAfter, 0});
+    const auto begun = coloured({{0, last}, PassPhase::kBefore, 0});
+    EXPECT_GT(begun.first, begun.second) << "a flute that is only roughed has the rake of no tool";
+    if (passOrder(job)[1].tooth == 1) EXPECT_GT(roughed.first, roughed.second);
+    const auto in_stroke = coloured({{0, last}, PassPhase::kStroke, half});
+    ASSERT_LT(in_stroke.first, in_stroke.second);
+    const double facet = 2 * kMillimetre;
+    if (direction == StrokeDirection::kFromEnd) {
+      EXPECT_LT(in_stroke.second, half + facet);
+    } else {
+      EXPECT_GT(in_stroke.first, half - facet);
+    }
+    const auto done = coloured({passOrder(job).back(), PassPhase::kAfter, 0});
+    EXPECT_LT(done.first, facet);
+    EXPECT_GT(done.second, job.cutter.flute_length - facet);
+  }
+}
+
 /// The largest radius of all points between two X [m]; 0 if there are none.
 double largestRadius(const std::vector<Marker>& solid, double from, double to) {
   double largest = 0;
@@ -157,6 +193,53 @@ double largestRadius(const std::vector<Marker>& solid, double from, double to) {
     }
   }
   return largest;
+}
+
+/// How far the facets between two X are from round: the least distance of a facet's middle from the axis, over the
+/// largest radius.
+double roundness(const std::vector<Marker>& solid, double from, double to) {
+  double least = 1e9, largest = 0;
+  for (const Marker& m : solid) {
+    for (std::size_t i = 0; i + 2 < m.points.size(); i += 3) {
+      const auto in = [&](std::size_t k) { return from < m.points[i + k].x && m.points[i + k].x < to; };
+      if (!in(0) || !in(1) || !in(2)) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto &a = m.points[i + k], &b = m.points[i + (k + 1) % 3];
+        const double radius = std::hypot(a.y, a.z), middle = std::hypot((a.y + b.y) / 2, (a.z + b.z) / 2);
+        largest = std::max(largest, radius);
+        if (std::abs(std::hypot(b.y, b.z) - radius) < 1e-9) least = std::min(least, middle);
+      }
+    }
+  }
+  return least / largest;
+}
+
+TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
+  for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
+    const GrindJob job = jobOf(name);
+    const Reached reached{passOrder(job).front(), PassPhase::kBefore, 0};
+    const std::vector<Marker> solid =
+        solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
+    ASSERT_EQ(solid.size(), 1U);
+    const Marker& m = solid[0];
+    EXPECT_NEAR(largestRadius(solid, -1e-9, 1e-9), job.cutter.end_diameter / 2, 1e-12);
+    EXPECT_NEAR(largestRadius(solid, 60 * kMillimetre, 1), job.cutter.shank_diameter / 2, 1e-12);
+    // Edges across the facets: a circle of so many corners that none shows.
+    std::set<long> angles;
+    for (const geometry_msgs::Point& p : m.points) {
+      if (std::hypot(p.y, p.z) > 0) angles.insert(std::lround(std::atan2(p.z, p.y) / kDegree));
+    }
+    EXPECT_GE(angles.size(), 180U);
+  }
+}
+
+TEST(GroundMarkers, TheShankBehindTheFlutesIsRound) {
+  for (const char* name : {"paper", "roughing_d10_t4"}) {
+    const GrindJob job = jobOf(name);
+    const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
+    // A hexagon's is 0.87, one of 36 corners 0.996.
+    EXPECT_GT(roundness(solid, 62 * kMillimetre, 1), 0.99) << name;
+  }
 }
 
 TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {

@@ -88,6 +88,8 @@ class ControlLoop : public RequestBox {
   Refusal lift();
   double liftTarget() const;
   Refusal setSwivel(double angle);
+  Refusal switchOn(bool& commanded);
+  Axes distanceToGo() const;
   Interlock openInterlock() const;
   Answer executeJog(const JogRequest& jog);
   Refusal jogOn(const JogRequest& jog, Answer& answer);
@@ -149,6 +151,8 @@ class ControlLoop : public RequestBox {
   bool power_off_next_ = false;     ///< once the axes are at rest
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
+  bool spindle_by_hand_ = false;  ///< commanded without a job
+  bool coolant_by_hand_ = false;
   double waited_ = 0;  ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
   bool homing_seen_ = false;

@@ -30,6 +30,9 @@ struct CycleRecord {
   std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a setpoint without a job
   bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next record if this one is lost
   bool wheel_in_work = false;
+  bool spindle_commanded = false;
+  bool coolant_commanded = false;
+  Axes distance_to_go = Axes::Zero();      ///< from the positions to the end of the running move [m], A [rad]
   Swivel swivel;                           ///< where it stands, as far as is known
   LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed

@@ -43,6 +43,7 @@ class AxisMove {
   bool finished() const noexcept { return law_.finished(); }
 
   int axis() const noexcept { return axis_; }
+  double to() const noexcept { return to_; }  ///< where the axis is at the end [m], A [rad]
   /// +1 or -1; +1 if nothing is to be moved.
   int direction() const noexcept { return to_ < from_ ? -1 : 1; }
 

@@ -60,6 +60,10 @@ enum class MachineEvent : std::uint8_t {
   kCancel,
   kLift,
   kJog,
+  kSpindleOn,
+  kSpindleOff,
+  kCoolantOn,
+  kCoolantOff,
   kDone,    ///< the state's task or wait is complete: reference found, spindle and coolant ready, end of the path
   kAtRest,  ///< the axes have come to rest
   kFault,
@@ -72,9 +76,11 @@ enum class EventKind : std::uint8_t {
   kStop,     ///< a request that stops the axes
   kStart,    ///< a request that starts a job
   kJog,      ///< a request that moves an axis
+  kSwitch,   ///< a request without arguments that switches spindle or coolant by hand and changes no state
 };
 
-/// The name of a request is also its sub-command of `grind`; only the start's is `run`.
+/// The name of a request is also its sub-command of `grind`; a name of two words, a command and its sub-command. Only the
+/// start's is `run`.
 struct EventRow : EnumRow<MachineEvent> {
   EventKind kind = EventKind::kSeen;
   const char* service = nullptr;  ///< name in the node's own namespace; null for none
@@ -96,6 +102,19 @@ inline constexpr EventRow kMachineEvents[]{
     {{MachineEvent::kCancel, "cancel"}, EventKind::kStop, nullptr, "stop on the path, lift the wheel and end the job"},
     {{MachineEvent::kLift, "lift"}, EventKind::kTrigger, "lift", "lift the wheel off the work, without a job"},
     {{MachineEvent::kJog, "jog"}, EventKind::kJog, nullptr, "move an axis by hand"},
+    {{MachineEvent::kSpindleOn, "spindle on"},
+     EventKind::kSwitch,
+     "spindle_on",
+     "turn the wheel without a job, for touching off; until it is switched off, or the power"},
+    {{MachineEvent::kSpindleOff, "spindle off"}, EventKind::kSwitch, "spindle_off", "stop the wheel, without a job"},
+    {{MachineEvent::kCoolantOn, "coolant on"},
+     EventKind::kSwitch,
+     "coolant_on",
+     "switch the coolant on without a job; until it is switched off, or the power"},
+    {{MachineEvent::kCoolantOff, "coolant off"},
+     EventKind::kSwitch,
+     "coolant_off",
+     "switch the coolant off, without a job"},
     {{MachineEvent::kDone, "done"}},
     {{MachineEvent::kAtRest, "at rest"}},
     {{MachineEvent::kFault, "fault"}},
@@ -106,8 +125,12 @@ constexpr auto& rowsOf(MachineEvent) noexcept { return kMachineEvents; }
 constexpr bool isRequest(MachineEvent event) noexcept { return rowOf(event).kind != EventKind::kSeen; }
 /// Whether an event is a request that stops the axes.
 constexpr bool isStop(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kStop; }
+/// Whether an event is a request that switches spindle or coolant by hand.
+constexpr bool isSwitch(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kSwitch; }
 /// Whether an event is a request without arguments that does not stop the axes.
-constexpr bool isTrigger(MachineEvent event) noexcept { return rowOf(event).kind == EventKind::kTrigger; }
+constexpr bool isTrigger(MachineEvent event) noexcept {
+  return rowOf(event).kind == EventKind::kTrigger || isSwitch(event);
+}
 /// The node's service for a request; null if there is none.
 constexpr const char* serviceOf(MachineEvent event) noexcept { return rowOf(event).service; }
 
@@ -122,7 +145,7 @@ constexpr bool isPowered(MachineState state) noexcept {
 /// Whether a job is in progress, so that a cancel would end it.
 bool isInJob(MachineState state) noexcept;
 
-/// The requests that a state allows, e.g. "enable, start (grind run)".
+/// The requests that a state allows and that may change it, e.g. "disable, start (grind run)".
 std::string allowedIn(MachineState state);
 
 }  // namespace flute_grinder

@@ -26,7 +26,8 @@
 namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
-/// if the state table allows its request and it would change something; Start also needs a plan without violations.
+/// if the state table allows its request and it would change something; Hold wherever it is allowed, since it keeps the
+/// focus, and Start only with a plan without violations. No key cancels or disables. No window is ever modal.
 /// Without messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the
 /// grinder or the master, and both are found again when they come back.
 ///
@@ -41,6 +42,11 @@ class GrindPanel : public rviz::Panel {
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
 
+ protected:
+  /// Qt passes the focus of what is disabled or hidden on to the next widget, where Space would press a button that
+  /// nobody has chosen. It goes to Hold instead, or to none.
+  bool focusNextPrevChild(bool next) override;
+
  private:
   /// A goal sent by this panel that has not ended.
   struct Sent {
@@ -50,6 +56,7 @@ class GrindPanel : public rviz::Panel {
 
   void layOut();
   QLayout* layOutButtons();
+  QLayout* layOutSwitches();
   QWidget* viewTab();
   QPushButton* addButton(const EventRow& request, bool large);
   void setNode(const QString& node);
@@ -71,7 +78,11 @@ class GrindPanel : public rviz::Panel {
   void fitOffsets(const GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
   double touchedY(double diameter) const;
+  void showOtherJob(const GrinderView& view, bool job_runs);
+  /// Shows a reply instead of the one before. @param text its first line is the one that is seen.
   void showMessage(const std::string& text);
+  /// Shows the answer to a request. @param done its success.
+  GrinderLink::OnAnswer reply(const std::string& done);
 
   const std::shared_ptr<MasterWatch> master_watch_;
   QString node_;                       ///< as entered
@@ -80,6 +91,7 @@ class GrindPanel : public rviz::Panel {
   std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
   bool planning_ = false;
   std::optional<Sent> sent_;
+  std::string last_sent_;  ///< id of the last goal from here
 
   StateBox* state_;
   JobBox* job_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/GrindActionFeedback.h"
+#include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Legend.h"
@@ -31,6 +32,7 @@ struct GrinderView {
   std::optional<GrinderState> state;  ///< nothing if none was received for a second
   /// Of the running job, whoever sent it, or of the last one; nothing without the state, and after it was missing.
   std::optional<GrindFeedback> feedback;
+  GrindActionGoal::ConstPtr job;  ///< of that feedback, once it has started; may be null
   std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing if none is in planning
   /// Of the machine, as read by the drive [m], A [rad]; nothing if none was received for a second.
   std::optional<Axes> position;
@@ -93,7 +95,7 @@ class GrinderLink {
   /// Holds or cancels the running or planned job, whoever sent it, or switches the power off. Uses a connection that
   /// survives the ROS master, and has no answer: the state shows the effect.
   /// @param event kHold, kCancel or kDisable.
-  /// @param on_answer called if no grinder was connected for two seconds; the stop is then dropped.
+  /// @param on_answer called once it is sent, or if no grinder was connected for two seconds; it is then dropped.
   void stop(MachineEvent event, const OnAnswer& on_answer);
   /// Whether stops have a connection now.
   bool stopsConnected() const { return stops_.getNumSubscribers() > 0; }
@@ -116,6 +118,7 @@ class GrinderLink {
   void sendStops();
   void onState(const GrinderState::ConstPtr& state);
   void onFeedback(const GrindActionFeedback::ConstPtr& feedback);
+  void onJob(const GrindActionGoal::ConstPtr& job);
   void onResult(const GrindActionResult::ConstPtr& result);
   void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
   void onOffsets(const WorkOffsets::ConstPtr& offsets);
@@ -139,7 +142,8 @@ class GrinderLink {
   std::optional<WorkOffsets> offsets_;
   std::optional<Legend> legend_;
   std::optional<Received<GrindActionFeedback>> feedback_;
-  std::string sent_;  ///< id of the last goal from here
+  GrindActionGoal::ConstPtr job_;  ///< that was started last
+  std::string sent_;               ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;
 
   ros::Publisher goals_, stops_, jogs_;

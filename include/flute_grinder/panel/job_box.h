@@ -10,8 +10,10 @@
 #include "flute_grinder/panel/swivel_question.h"
 
 #include <QCheckBox>
+#include <QFileDialog>
 #include <QLabel>
 #include <QPlainTextEdit>
+#include <QPointer>
 #include <QPushButton>
 #include <QStackedWidget>
 #include <QWidget>
@@ -39,6 +41,9 @@ class JobBox : public QWidget {
   /// @param offsets nothing if they are not known.
   /// @param idle whether the grinder can plan now.
   void refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle);
+
+  /// Names the job that runs in the grinder where that is not the one from here. @param text empty for none.
+  void showOtherJob(const QString& text);
 
   /// @param name resolved name of the grinder's node, whose robot description counts and which the dialogs name.
   void setGrinder(const std::string& name) { grinder_ = name; }
@@ -113,7 +118,9 @@ class JobBox : public QWidget {
   DiscardQuestion* question_;
   OffsetQuestion* offset_question_;
   SwivelQuestion* swivel_question_;
-  QStackedWidget* answer_;  ///< verdict or a question
+  QPlainTextEdit* other_job_;
+  QStackedWidget* answer_;  ///< verdict, a question, or the job of somebody else
+  QPointer<QFileDialog> file_dialog_;
 };
 
 }  // namespace flute_grinder

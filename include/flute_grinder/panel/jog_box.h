@@ -2,9 +2,9 @@
 
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/core/axes.h"
+#include "flute_grinder/panel/number_box.h"
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QPushButton>
 #include <QTimer>
 #include <QWidget>
@@ -44,8 +44,8 @@ class JogBox : public QWidget {
   double speed(int axis) const;
 
   QComboBox* step_;
-  QDoubleSpinBox* linear_speed_;  ///< [mm/min]
-  QDoubleSpinBox* rotary_speed_;  ///< [deg/min]
+  NumberBox* linear_speed_;  ///< [mm/min]
+  NumberBox* rotary_speed_;  ///< [deg/min]
   std::array<Button, std::size_t{2} * kAxisCount> buttons_{};
   std::optional<Button> pressed_;  ///< of a continuous jog
   QTimer repeat_;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/core/machine_state.h"
 
 #include <string>
 
@@ -12,6 +14,12 @@ std::string duration(double seconds);
 
 /// What the grinder is doing, why, and what to do about it.
 std::string describe(const GrinderState& state);
+
+/// The success of a request, in a line. @param event a request.
+std::string done(MachineEvent event);
+
+/// A job that runs, by its file and tool.
+std::string describe(const GrindGoal& goal);
 
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
 std::string describe(const JobProgress& progress);

@@ -31,7 +31,7 @@ class StateBox : public QWidget {
   QLabel* meaning_;
 };
 
-/// Progress of the stroke and of the job.
+/// Progress of the stroke and of the job, which is named, whoever started it.
 class ProgressBox : public QWidget {
   Q_OBJECT
 
@@ -41,6 +41,7 @@ class ProgressBox : public QWidget {
   void show(const GrinderView& view, bool job_runs);
 
  private:
+  void showPlace(const GrinderView& view, const GrindFeedback& feedback);
   void showPlanning(double planned);
 
   /// A bar with its text above it, where it is legible whatever the bar's colours.
@@ -57,7 +58,8 @@ class ProgressBox : public QWidget {
   Bar stroke_, job_;
 };
 
-/// Work position of the axes in mm and deg; the machine's and the work offset in the tool tip.
+/// Work position of the axes in mm and deg, with the distance to go of the running move; the machine's and the work
+/// offset in the tool tip.
 class PositionBox : public QWidget {
   Q_OBJECT
 
@@ -69,6 +71,7 @@ class PositionBox : public QWidget {
 
  private:
   std::array<QLabel*, kAxisCount> values_{};
+  std::array<QLabel*, kAxisCount> to_go_{};
   int decimals_;
 };
 

@@ -1,10 +1,10 @@
 #pragma once
 
 #include "flute_grinder/panel/grinder_link.h"
+#include "flute_grinder/panel/number_box.h"
 #include "flute_grinder/panel/section_drawing.h"
 
 #include <QCheckBox>
-#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QWidget>
 
@@ -56,7 +56,7 @@ class SectionView : public QWidget {
   Job with_law_;        ///< as in Wanted
   std::string digest_;  ///< of the job
   std::optional<Wanted> wanted_;
-  QDoubleSpinBox* x_;
+  NumberBox* x_;
   QCheckBox* follow_;
   SectionDrawing* drawing_;
   QLabel* figures_;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "flute_grinder/panel/grinder_link.h"
+#include "flute_grinder/panel/number_box.h"
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QLabel>
 #include <QPushButton>
 #include <QWidget>
@@ -39,7 +39,7 @@ class TouchOffBox : public QWidget {
   QString offsetText(const GrinderView& view) const;
 
   QComboBox* axis_;
-  QDoubleSpinBox* at_;  ///< [mm or deg]
+  NumberBox* at_;  ///< [mm or deg]
   QPushButton* touch_;
   std::optional<double> asked_at_;  ///< machine position for which askToConfirm() asks [m], A [rad]
   double position_ = 0;             ///< of the axis, as last received [m], A [rad]

@@ -5,6 +5,8 @@
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/scene/markers.h"
 
+#include <optional>
+
 namespace flute_grinder {
 
 /// How far a job has come: the pass that runs, and the X that its stroke has reached.
@@ -22,10 +24,13 @@ struct Reached {
 GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
 
 /// The ground cutter with its neck and shank as a solid that is cut open, in the frame `cutter`, its rake faces
-/// coloured by how far they are from the rake that is asked. Below 3 MB.
+/// coloured by how far they are from the rake that is asked, where the last pass has been. Before the first stroke the
+/// whole blank. Below 3 MB.
+/// @param reached how far the job has come; nothing for one that is done.
 /// @param ns namespace of the markers.
 /// @return markers; the first deletes what was shown before. Instead of a cutter that cannot be shown, as one with its
 ///         core cut through, there is only the reason, as a label.
-visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns);
+visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns,
+                                              const std::optional<Reached>& reached = std::nullopt);
 
 }  // namespace flute_grinder

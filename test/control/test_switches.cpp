@@ -1,0 +1,224 @@
+#include "control/rig.h"
+
+// Spindle and coolant by hand: only on request, with the power on and without a job, and never for longer.
+namespace flute_grinder::test_support {
+namespace test_switches {
+
+class Switches : public testing::Test {
+ protected:
+  void SetUp() override { rig.cycle(); }
+  /// What the drive is commanded to do, and what the record says of it.
+  std::string on() {
+    const DriveCommand& c = rig.drive.written_drive;
+    EXPECT_EQ(c.spindle, rig.last().spindle_commanded);
+    EXPECT_EQ(c.coolant, rig.last().coolant_commanded);
+    return std::string(c.spindle ? "spindle " : "") + (c.coolant ? "coolant" : "");
+  }
+  void switchBothOn() {
+    rig.enable();
+    ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
+    ASSERT_TRUE(rig.ask(E::kCoolantOn).accepted);
+    rig.run(1000);
+    ASSERT_EQ(on(), "spindle coolant");
+    ASSERT_EQ(rig.last().state, S::kReady);
+  }
+
+  Rig<FakeDrive> rig;
+};
+
+TEST_F(Switches, EachIsSwitchedByItself) {
+  rig.enable();
+  EXPECT_EQ(on(), "") << "the power starts nothing";
+  EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted);
+  EXPECT_EQ(on(), "spindle ");
+  EXPECT_TRUE(rig.ask(E::kCoolantOn).accepted);
+  EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted) << "it is so already";
+  EXPECT_EQ(on(), "spindle coolant");
+  EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted);
+  EXPECT_EQ(on(), "coolant");
+  EXPECT_TRUE(rig.ask(E::kCoolantOff).accepted);
+  EXPECT_TRUE(rig.ask(E::kCoolantOff).accepted);
+  EXPECT_EQ(on(), "");
+}
+
+TEST_F(Switches, NothingIsSwitchedOnWithoutPower) {
+  for (const E event : {E::kSpindleOn, E::kCoolantOn}) {
+    const RequestReply reply = rig.ask(event);
+    EXPECT_FALSE(reply.accepted);
+    EXPECT_EQ(reply.text, std::string(toString(event)) +
+                              " refused: the machine is in state disabled; allowed: enable, disable, reset");
+  }
+  EXPECT_EQ(on(), "");
+  rig.enable();
+  rig.run(10);
+  EXPECT_EQ(on(), "") << "the refused request is not remembered";
+}
+
+TEST_F(Switches, DisableSwitchesOffAndEnableDoesNotSwitchOnAgain) {
+  switchBothOn();
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+  EXPECT_EQ(rig.last().state, S::kDisabled);
+  EXPECT_EQ(on(), "");
+  rig.enable();
+  rig.run(10);
+  EXPECT_EQ(on(), "");
+}
+
+TEST_F(Switches, AFaultSwitchesOffInItsCycle) {
+  using Spoil = void (*)(FakeDrive&);
+  for (const Spoil spoil :
+       {Spoil([](FakeDrive& d) { d.status.emergency_stop = true; }), Spoil([](FakeDrive& d) { d.status.fault = true; }),
+        Spoil([](FakeDrive& d) { d.status.enabled = false; })}) {
+    rig.drive.on_read = nullptr;
+    rig.drive.status.emergency_stop = rig.drive.status.fault = false;
+    rig.run(2);
+    if (rig.last().state == S::kFault) {
+      ASSERT_TRUE(rig.ask(E::kReset).accepted);
+    }
+    ASSERT_NO_FATAL_FAILURE(switchBothOn());
+    rig.drive.on_read = spoil;
+    rig.cycle();
+    EXPECT_EQ(rig.last().state, S::kFault);
+    EXPECT_EQ(on(), "");
+  }
+  rig.drive.on_read = nullptr;
+  rig.drive.status.fault = false;
+  rig.run(2);
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  rig.enable();
+  EXPECT_EQ(on(), "");
+}
+
+TEST_F(Switches, TheSpindleDoesNotTurnWithTheProbeInItsWay) {
+  switchBothOn();
+  rig.drive.status.probe_free = false;
+  rig.cycle();
+  EXPECT_EQ(on(), "coolant");
+  const RequestReply reply = rig.ask(E::kSpindleOn);
+  EXPECT_FALSE(reply.accepted);
+  EXPECT_EQ(reply.text, std::string("spindle on refused: ") + toString(Interlock::kProbe));
+  rig.drive.status.probe_free = true;
+  rig.run(5);
+  EXPECT_EQ(on(), "coolant") << "it waits for another request";
+  EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted);
+}
+
+TEST_F(Switches, HomingSwitchesOff) {
+  switchBothOn();
+  ASSERT_TRUE(rig.ask(E::kHome).accepted);
+  EXPECT_EQ(rig.last().state, S::kHoming);
+  EXPECT_EQ(on(), "");
+  EXPECT_FALSE(rig.ask(E::kSpindleOn).accepted);
+}
+
+TEST_F(Switches, TheyStayOnWhileAnAxisIsJogged) {
+  switchBothOn();
+  ASSERT_TRUE(rig.ask(E::kJog).accepted);
+  rig.run(30);
+  ASSERT_EQ(rig.last().state, S::kJogging);
+  EXPECT_EQ(on(), "spindle coolant");
+  ASSERT_TRUE(rig.ask(E::kCoolantOff).accepted);
+  ASSERT_TRUE(rig.ask(E::kHold).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_EQ(on(), "spindle ");
+  // A jog that the power ends ends them too.
+  ASSERT_TRUE(rig.ask(E::kJog).accepted);
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+  rig.runUntil(S::kDisabled);
+  EXPECT_EQ(on(), "");
+}
+
+TEST_F(Switches, AJobTakesThemOverAndSwitchesThemOff) {
+  switchBothOn();
+  rig.stream.emplace(rig.paperStream());
+  rig.start(*rig.stream);
+  EXPECT_EQ(on(), "spindle coolant");
+  for (const E event : {E::kSpindleOn, E::kSpindleOff, E::kCoolantOn, E::kCoolantOff}) {
+    EXPECT_FALSE(rig.ask(event).accepted) << toString(event);
+    EXPECT_EQ(on(), "spindle coolant");
+  }
+  rig.runToEnd();
+  rig.runUntil(S::kReady);
+  rig.run(5);
+  EXPECT_EQ(on(), "");
+}
+
+TEST_F(Switches, AJobThatIsRefusedLeavesThemAsTheyAre) {
+  switchBothOn();
+  SetpointStream job = rig.paperStream();
+  ASSERT_TRUE(rig.jog({kY, false, 0.001, 0.05}).accepted);
+  rig.runUntil(S::kReady);
+  ASSERT_FALSE(rig.askToStart(job).accepted) << "the axes have moved";
+  EXPECT_EQ(on(), "spindle coolant");
+}
+
+TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
+  for (const auto& row : kMachineStates) {
+    SCOPED_TRACE(row.name);
+    Rig<FakeDrive> rig;
+    ASSERT_NO_FATAL_FAILURE(bringTo(rig, row.value));
+    const bool job = isInJob(row.value);
+    const bool may_be_on = row.value == S::kReady || row.value == S::kJogging;
+    for (const E event : {E::kSpindleOn, E::kCoolantOn}) EXPECT_EQ(rig.ask(event).accepted, may_be_on);
+    for (const E event : {E::kSpindleOff, E::kCoolantOff}) EXPECT_EQ(rig.ask(event).accepted, !job);
+  }
+}
+
+TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {
+  Wheel wheel;
+  wheel.in_work = true;
+  wheel.clear_y = 0.09;
+  wheel.lift = 0.01;
+  Rig<FakeDrive> rig(machineConfig(), wheel);
+  rig.cycle();
+  rig.enable();
+  const RequestReply reply = rig.ask(E::kSpindleOn);
+  EXPECT_EQ(reply.text, "spindle on refused: the wheel stands in the work; lift it first");
+  EXPECT_FALSE(rig.drive.written_drive.spindle);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+TEST(DistanceToGo, IsThatOfAJogByADistance) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  rig.enable();
+  EXPECT_TRUE((rig.last().distance_to_go == 0).all());
+  const double end = rig.last().position[kY] + 0.02;
+  ASSERT_TRUE(rig.jog({kY, false, 0.02, 0.05}).accepted);
+  while (rig.cycle().state == S::kJogging) {
+    Axes expected = Axes::Zero();
+    expected[kY] = end - rig.last().position[kY];
+    EXPECT_TRUE(((rig.last().distance_to_go - expected).abs() < 1e-12).all());
+  }
+  EXPECT_TRUE((rig.last().distance_to_go == 0).all());
+  ASSERT_TRUE(rig.jog({kX, true, 0, 0.05}).accepted);
+  rig.run(30);
+  EXPECT_TRUE((rig.last().distance_to_go == 0).all()) << "it has no end of its own";
+}
+
+TEST(DistanceToGo, OfAJobEndsWithEachMove) {
+  Rig<FakeDrive> rig;
+  rig.cycle();
+  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+  const std::vector<Move> moves = rig.stream->program().moves();
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+  const std::uint32_t stroke = rig.last().setpoint.move_index;
+  int cycles = 0;
+  while (rig.last().setpoint.move_index == stroke) {
+    // This drive reaches each command in the next cycle.
+    const Axes expected = moves[rig.loop->status().place.move_index].to - rig.last().position;
+    ASSERT_TRUE(((rig.last().distance_to_go - expected).abs() < 1e-12).all());
+    ++cycles;
+    rig.cycle();
+  }
+  EXPECT_GT(cycles, 1000);
+  // The last setpoint of the stroke is where it ends.
+  EXPECT_LT((moves[stroke].to - rig.last().position).abs().maxCoeff(), 1e-9);
+  rig.runToEnd();
+  rig.run(5);
+  EXPECT_TRUE((rig.last().distance_to_go == 0).all());
+}
+
+}  // namespace test_switches
+}  // namespace flute_grinder::test_support

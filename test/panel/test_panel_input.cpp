@@ -1,0 +1,367 @@
+// What keys, the mouse wheel and clicks do in the panel, against a grinder of the test's own.
+
+#include "panel_fixture.h"
+#include "stage.h"
+
+#include <ros/package.h>
+#include <QAbstractSlider>
+#include <QAbstractSpinBox>
+#include <QApplication>
+#include <QClipboard>
+#include <QComboBox>
+#include <QDialog>
+#include <QDoubleSpinBox>
+#include <QFileDialog>
+#include <QLineEdit>
+#include <QLocale>
+#include <QScrollBar>
+#include <QWheelEvent>
+#include <QWindow>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_panel_input {
+
+const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/";
+
+class Input : public ::testing::Test {
+ protected:
+  Input() { be(GrinderState::READY, "ready"); }
+  ~Input() override { QLocale::setDefault(QLocale::c()); }
+
+  void be(std::uint8_t state, const char* name) { stage.be(state, name); }
+  std::vector<int> stops() {
+    return stage.get([&] { return stage.stops; });
+  }
+  /// As the operator's hand does it: what blocks the window blocks the click.
+  static void clickInWindow(Panel& panel, const char* name) {
+    auto& button = panel.the<QPushButton>(name);
+    QTest::mouseClick(panel.widget().windowHandle(), Qt::LeftButton, {},
+                      button.mapTo(&panel.widget(), button.rect().center()));
+  }
+
+  Stage stage;
+};
+
+/// Everything in which numbers are entered, however it is made. Touch-off has another range for each axis.
+template <typename Check>
+void forEachBox(Panel& panel, Check check) {
+  auto& axes = panel.the<QComboBox>("touch_axis");
+  int boxes = 0;
+  for (int axis = 0; axis < axes.count(); ++axis) {
+    axes.setCurrentIndex(axis);
+    for (auto* box : panel.widget().findChildren<QAbstractSpinBox*>()) {
+      SCOPED_TRACE(box->objectName().toStdString() + " of " + axes.currentText().toStdString());
+      check(*box);
+      ++boxes;
+    }
+  }
+  EXPECT_GE(boxes, 4 * axes.count());
+}
+
+double valueOf(QAbstractSpinBox& box) {
+  auto* numbers = qobject_cast<QDoubleSpinBox*>(&box);
+  EXPECT_TRUE(numbers) << "whole numbers alone would take 6,203 for 6203";
+  return numbers ? numbers->value() : std::numeric_limits<double>::quiet_NaN();
+}
+
+double typed(QAbstractSpinBox& box, const QString& text) {
+  box.selectAll();
+  QTest::keyClicks(&box, text);
+  QTest::keyClick(&box, Qt::Key_Return);
+  return valueOf(box);
+}
+
+double pasted(QAbstractSpinBox& box, const QString& text) {
+  box.selectAll();
+  QApplication::clipboard()->setText(text);
+  box.findChild<QLineEdit*>()->paste();
+  QTest::keyClick(&box, Qt::Key_Return);
+  return valueOf(box);
+}
+
+TEST_F(Input, CommaAndPointAreTheDecimalSignInEveryBox) {
+  for (const QLocale& locale : {QLocale::c(), QLocale(QLocale::English), QLocale(QLocale::German)}) {
+    SCOPED_TRACE(locale.name().toStdString());
+    QLocale::setDefault(locale);
+    Panel panel("cell/stage", kJobs + "paper.yaml");
+    WAIT_FOR(panel.enabled("section_x") && panel.state() == "Ready");
+    panel.openTab("Jog");
+    forEachBox(panel, [](QAbstractSpinBox& box) {
+      EXPECT_DOUBLE_EQ(typed(box, "6,25"), 6.25);
+      EXPECT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
+      EXPECT_DOUBLE_EQ(typed(box, "12,5"), 12.5);
+      EXPECT_EQ(box.text().count(','), 0) << box.text().toStdString();
+      // The second sign is not taken.
+      EXPECT_DOUBLE_EQ(typed(box, "1.2,5"), 1.25);
+      EXPECT_DOUBLE_EQ(typed(box, "1,2.5"), 1.25);
+    });
+    panel.the<QComboBox>("touch_axis").setCurrentText("X");
+    EXPECT_DOUBLE_EQ(typed(panel.the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
+  }
+}
+
+TEST_F(Input, WhatIsNotANumberIsNotTaken) {
+  for (const QLocale& locale : {QLocale::c(), QLocale(QLocale::English), QLocale(QLocale::German)}) {
+    SCOPED_TRACE(locale.name().toStdString());
+    QLocale::setDefault(locale);
+    Panel panel("cell/stage", kJobs + "paper.yaml");
+    WAIT_FOR(panel.enabled("section_x") && panel.state() == "Ready");
+    panel.openTab("Jog");
+    forEachBox(panel, [](QAbstractSpinBox& box) {
+      ASSERT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
+      for (const char* text :
+           {"1.234,5", "1,234.5", "1,234,567", "1 000", "1'000", "1e3", "nan", "inf", "0x10", "six"}) {
+        EXPECT_DOUBLE_EQ(pasted(box, text), 7.25) << text;
+      }
+      EXPECT_DOUBLE_EQ(pasted(box, "8,25"), 8.25);
+      // What is left unfinished is given up.
+      EXPECT_DOUBLE_EQ(typed(box, "-"), 8.25);
+    });
+  }
+}
+
+TEST_F(Input, ATouchOffIsSentAsItIsRead) {
+  Panel panel("cell/stage");
+  panel.openTab("Jog");
+  WAIT_FOR(panel.enabled("touch_off"));
+  typed(panel.the<QAbstractSpinBox>("touch_at"), "0,5");
+  panel.click("touch_off");
+  WAIT_FOR(stage.get([&] { return stage.touches.size(); }) == 1);
+  EXPECT_DOUBLE_EQ(stage.get([&] { return stage.touches[0].position; }), 0.5e-3);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// Stops the job that has begun meanwhile, beside whatever is open.
+class BesideADialog : public Input {
+ protected:
+  void SetUp() override {
+    stage.change([&] { stage.plan.valid = 1; });
+    WAIT_FOR(panel.enabled("plan"));
+  }
+  /// Changes the grinder, and waits until the panel knows: what is told later shows.
+  template <typename Change>
+  void tell(Change how) {
+    stage.change(how);
+    be(GrinderState::LIFTING, "lifting");
+    WAIT_FOR(panel.state() == "Lifting");
+    be(GrinderState::READY, "ready");
+    WAIT_FOR(panel.state() == "Ready" && panel.enabled("plan"));
+  }
+  void plan() {
+    panel.click("plan");
+    WAIT_FOR(panel.enabled("start"));
+  }
+  void expectHoldWorks() {
+    EXPECT_EQ(QGuiApplication::modalWindow(), nullptr);
+    for (const auto* dialog : panel.widget().findChildren<QDialog*>()) EXPECT_FALSE(dialog->isModal());
+    be(GrinderState::RUNNING, "running");
+    WAIT_FOR(panel.state() == "Running" && panel.enabled("hold"));
+    clickInWindow(panel, "hold");
+    WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+  }
+  QFileDialog* fileDialog() {
+    panel.click("choose");
+    EXPECT_TRUE(QTest::qWaitFor([&] { return panel.widget().findChild<QFileDialog*>(); }, kPatience));
+    return panel.widget().findChild<QFileDialog*>();
+  }
+  static void enter(QFileDialog& dialog, const QString& file) {
+    auto* name = dialog.findChild<QLineEdit*>("fileNameEdit");
+    ASSERT_TRUE(name);
+    name->setText(file);
+    QTest::keyClick(name, Qt::Key_Return);
+  }
+
+  Panel panel{"cell/stage", kJobs + "paper.yaml"};
+};
+
+TEST_F(BesideADialog, HoldWorksWhileAJobFileIsChosen) {
+  ASSERT_TRUE(fileDialog());
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, OneDialogIsOpenAtATime) {
+  QFileDialog* dialog = fileDialog();
+  ASSERT_TRUE(dialog);
+  panel.click("choose");
+  EXPECT_EQ(panel.widget().findChildren<QFileDialog*>().size(), 1);
+}
+
+TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
+  QFileDialog* dialog = fileDialog();
+  ASSERT_TRUE(dialog);
+  enter(*dialog, "/nowhere/job.yaml");
+  WAIT_FOR(panel.text("verdict").find("job.yaml") != std::string::npos);
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, HoldWorksBesideTheSetUp) {
+  panel.click("setup");
+  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheSwivel) {
+  tell([&] { stage.state.swivel = 0; });
+  plan();
+  panel.click("start");
+  WAIT_FOR(panel.the<QPushButton>("confirm_swivel").isVisible());
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheUnfinishedJob) {
+  tell([&] {
+    stage.state.progress.job_digest = std::string(64, 'a');
+    stage.state.progress.cutter.tooth_angles = {0};
+  });
+  plan();
+  panel.click("start");
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  expectHoldWorks();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// All whose value the mouse wheel could change.
+std::vector<QWidget*> wheeled(QWidget& panel) {
+  std::vector<QWidget*> found;
+  for (auto* widget : panel.findChildren<QWidget*>()) {
+    const bool slides = qobject_cast<QAbstractSlider*>(widget) && !qobject_cast<QScrollBar*>(widget);
+    if (slides || qobject_cast<QAbstractSpinBox*>(widget) || qobject_cast<QComboBox*>(widget)) found.push_back(widget);
+  }
+  return found;
+}
+
+double valueOf(QWidget& widget) {
+  if (auto* slider = qobject_cast<QAbstractSlider*>(&widget)) return slider->value();
+  if (auto* choice = qobject_cast<QComboBox*>(&widget)) return choice->currentIndex();
+  return qobject_cast<QDoubleSpinBox*>(&widget)->value();
+}
+
+void turnWheel(QWidget& over, int notches) {
+  const QPointF at = over.rect().center();
+  for (int i = 0; i < std::abs(notches); ++i) {
+    QWheelEvent event(at, over.mapToGlobal(at.toPoint()), QPoint(), QPoint(0, notches < 0 ? -120 : 120), Qt::NoButton,
+                      Qt::NoModifier, Qt::NoScrollPhase, false);
+    QCoreApplication::sendEvent(&over, &event);
+  }
+}
+
+TEST_F(Input, TheMouseWheelChangesWhatHasTheFocusAlone) {
+  be(GrinderState::RUNNING, "running");
+  stage.change([&] { stage.plan.valid = 1; });
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  WAIT_FOR(panel.label("override_value") == "100 %");
+  panel.click("setup");
+  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
+  const std::vector<QWidget*> all = wheeled(panel.widget());
+  EXPECT_GE(all.size(), 7U);
+  for (QWidget* widget : all) {
+    SCOPED_TRACE(widget->objectName().toStdString());
+    if (widget->hasFocus()) widget->clearFocus();
+    EXPECT_FALSE(widget->focusPolicy() & Qt::WheelFocus & ~Qt::StrongFocus) << "the wheel would give it the focus";
+    const double before = valueOf(*widget);
+    turnWheel(*widget, -3);
+    turnWheel(*widget, 2);
+    EXPECT_EQ(valueOf(*widget), before);
+  }
+  panel.click("close_setup");
+  panel.widget().activateWindow();
+  auto& slider = panel.the<QAbstractSlider>("override");
+  slider.setFocus();
+  WAIT_FOR(slider.hasFocus());
+  turnWheel(slider, -1);
+  EXPECT_LT(slider.value(), 100);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+class Focus : public Input {
+ protected:
+  void SetUp() override {
+    panel.widget().activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
+  }
+  void beSeen(std::uint8_t state, const char* name, const char* shown) {
+    be(state, name);
+    WAIT_FOR(panel.state() == shown);
+  }
+  static std::string focused() {
+    return QApplication::focusWidget() ? QApplication::focusWidget()->objectName().toStdString() : "";
+  }
+  /// Presses the keys that could press a button, wherever they go.
+  void pressKeys() {
+    for (const Qt::Key key : {Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter}) {
+      QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
+    }
+  }
+
+  Panel panel{"cell/stage", kJobs + "paper.yaml"};
+};
+
+TEST_F(Focus, StaysOnHoldAndNoKeyCancelsOrResumes) {
+  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  clickInWindow(panel, "hold");
+  WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+  for (const auto& [state, name, shown] :
+       {std::tuple{GrinderState::HOLDING, "holding", "Holding"}, std::tuple{GrinderState::HELD, "held", "Held"}}) {
+    ASSERT_NO_FATAL_FAILURE(beSeen(state, name, shown));
+    EXPECT_EQ(focused(), "hold");
+    pressKeys();
+  }
+  // Hold again holds what is held.
+  clickInWindow(panel, "resume");
+  WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
+  for (const auto& [state, name, shown] : {std::tuple{GrinderState::RESUMING, "resuming", "Resuming"},
+                                           std::tuple{GrinderState::RUNNING, "running", "Running"}}) {
+    ASSERT_NO_FATAL_FAILURE(beSeen(state, name, shown));
+    EXPECT_EQ(focused(), "hold");
+    pressKeys();
+  }
+  for (const int stop : stops()) EXPECT_EQ(stop, Stop::HOLD);
+  EXPECT_EQ(stage.get([&] { return stage.resumes; }), 1);
+}
+
+TEST_F(Focus, NoKeyReachesCancelOrDisable) {
+  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  panel.the<QPushButton>("hold").setFocus();
+  std::set<std::string> passed;
+  for (int i = 0; i < 60; ++i) {
+    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+    ASSERT_TRUE(QApplication::focusWidget());
+    passed.insert(focused());
+  }
+  EXPECT_TRUE(passed.count("hold"));
+  EXPECT_FALSE(passed.count("cancel"));
+  EXPECT_FALSE(passed.count("disable"));
+}
+
+TEST_F(Focus, DoesNotMoveToAButtonByItself) {
+  stage.change([&] { stage.plan.valid = 1; });
+  WAIT_FOR(panel.enabled("plan"));
+  // Disabled while it plans, which takes the focus from it.
+  stage.change([&] { stage.plan_hangs = true; });
+  clickInWindow(panel, "plan");
+  WAIT_FOR(!panel.enabled("plan"));
+  EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
+  pressKeys();
+  stage.release();
+  WAIT_FOR(panel.enabled("start"));
+  EXPECT_TRUE(stops().empty());
+  clickInWindow(panel, "start");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
+  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  EXPECT_EQ(focused(), "hold") << "Space stops what Start has begun";
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), GrindResult());
+  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::READY, "ready", "Ready"));
+  EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
+}
+
+}  // namespace test_panel_input
+}  // namespace flute_grinder

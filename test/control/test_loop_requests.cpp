@@ -163,23 +163,24 @@ std::string requestName(const testing::TestParamInfo<RequestCase>& info) {
 
 /// Every request in every state that does not allow it.
 std::vector<RequestCase> refusedRequests() {
-  const std::vector<std::pair<S, const char*>> allowed{{S::kDisabled, "enable, disable, reset"},
-                                                       {S::kReady, "enable, disable, home, start (grind run), lift, jog"},
-                                                       {S::kHoming, "disable, hold, cancel"},
-                                                       {S::kStarting, "disable, hold, resume, cancel"},
-                                                       {S::kRunning, "disable, hold, cancel"},
-                                                       {S::kHolding, "disable, hold, resume, cancel"},
-                                                       {S::kHeld, "disable, hold, resume, retract, cancel"},
-                                                       {S::kRetracting, "disable, hold, cancel"},
-                                                       {S::kRetracted, "disable, resume, cancel, jog"},
-                                                       {S::kResuming, "disable, hold, cancel"},
-                                                       {S::kCanceling, "disable, hold, cancel"},
-                                                       {S::kFault, "disable, reset"},
-                                                       {S::kLifting, "disable, hold, cancel"},
-                                                       {S::kJogging, "disable, hold, cancel, jog"},
-                                                       {S::kJoggingRetracted, "disable, hold, cancel, jog"}};
+  const std::vector<std::pair<S, const char*>> allowed{
+      {S::kDisabled, "enable, disable, reset"},
+      {S::kReady, "enable, disable, home, start (grind run), lift, jog"},
+      {S::kHoming, "disable, hold, cancel"},
+      {S::kStarting, "disable, hold, resume, cancel"},
+      {S::kRunning, "disable, hold, cancel"},
+      {S::kHolding, "disable, hold, resume, cancel"},
+      {S::kHeld, "disable, hold, resume, retract, cancel"},
+      {S::kRetracting, "disable, hold, cancel"},
+      {S::kRetracted, "disable, resume, cancel, jog"},
+      {S::kResuming, "disable, hold, cancel"},
+      {S::kCanceling, "disable, hold, cancel"},
+      {S::kFault, "disable, reset"},
+      {S::kLifting, "disable, hold, cancel"},
+      {S::kJogging, "disable, hold, cancel, jog"},
+      {S::kJoggingRetracted, "disable, hold, cancel, jog"}};
   const std::vector<std::pair<E, const char*>> requests{
-      {E::kEnable, "enable"}, {E::kDisable, "disable"}, {E::kHome, "home"},       {E::kStart, "start"},
+      {E::kEnable, "enable"}, {E::kDisable, "disable"}, {E::kHome, "home"},       {E::kStart, "start (grind run)"},
       {E::kHold, "hold"},     {E::kResume, "resume"},   {E::kRetract, "retract"}, {E::kCancel, "cancel"},
       {E::kReset, "reset"},   {E::kLift, "lift"},       {E::kJog, "jog"}};
   std::vector<RequestCase> cases;

@@ -281,8 +281,9 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   rig.cycle();
   const auto answer = rig.loop->stopReply(E::kCancel, ticket);
   ASSERT_TRUE(answer);
-  EXPECT_EQ(answer->text,
-            "cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog");
+  EXPECT_EQ(
+      answer->text,
+      "cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog");
 }
 
 TEST(Stops, WhatIsNoneIsNotTaken) {

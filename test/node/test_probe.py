@@ -89,6 +89,8 @@ class TestCycles(ProbeTest):
         self.start()
         self.bring_ball(12 * MM, 0)
         said = self.cycle('end-face', '--job', JOB)
+        for figure in ('end face', 'stick-out'):
+            self.assertRegex(said[figure], r'^\d+\.\d{4} mm(, spread 0\.\d{4} mm)?$')
         self.assertAlmostEqual(number(said['end face']), 17, delta=TOUCH / MM)
         self.assertAlmostEqual(number(said['stick-out']), 45, delta=TOUCH / MM)
         zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
@@ -169,7 +171,8 @@ class TestMove(ProbeTest):
         self.bring_ball(12 * MM, 0)
         done = self.grind('probe', 'end-face', '--job', JOB, '--within', '1')
         self.assertEqual((done.returncode, done.stderr), (1, 'probing ended: nothing was touched over 1 mm\n'))
-        self.assertAlmostEqual(self.client.wait_rest()[X], 13 * MM - BALL_X, delta=1e-6)
+        # Back where it began.
+        self.assertAlmostEqual(self.client.wait_rest()[X], 12 * MM - BALL_X, delta=1e-6)
         self.assertEqual(self.offset(X)['set_by'], None)
 
     def test_a_probe_that_touches_already(self):

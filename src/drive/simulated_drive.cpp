@@ -108,8 +108,7 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   if (fresh) ++status_.feedback_count;
   const Axes last = motor_;
   moveMotors(fault, failing_axis, dt);
-  // The probe is swung in as long as the spindle is off.
-  if (blank_) status_.probe_contact = !drive_command_.spindle && touches(*blank_);
+  if (blank_) status_.probe_contact = touches(*blank_);
   if (!fresh) return;
   axes(velocity_) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
   const Axes counts = ((motor_ - offset_) * counts_per_unit_).unaryExpr([](double v) { return std::rint(v); });

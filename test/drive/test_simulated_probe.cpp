@@ -45,20 +45,6 @@ TEST(SimulatedProbe, WithoutABlankItTouchesNothing) {
   EXPECT_FALSE(bench.status().probe_contact);
 }
 
-TEST(SimulatedProbe, IsSwungOutWhileTheSpindleIsOn) {
-  Bench bench(plainModel(0));
-  bench.drive.clamp(blank());
-  bench.set(true);
-  bench.command(kX, 0.07);
-  bench.run(3);
-  EXPECT_TRUE(bench.status().probe_contact);
-  DriveCommand on{true, false};
-  on.spindle = true;
-  bench.set(on);
-  bench.run(3);
-  EXPECT_FALSE(bench.status().probe_contact);
-}
-
 TEST(SimulatedProbe, TouchesTheEndFaceBeforeItsCentreIsThere) {
   const auto at = [](double y) { return edge(0, 0.07, [y](double x) { return touches(blank(), Axes(x, y, 0, 0)); }); };
   EXPECT_NEAR(at(0), 0.0595, 1e-9);

@@ -26,7 +26,7 @@ from grinder_client import A, DEG, MM, X, Y, Z
 BLANK = {'end_face': 17 * MM, 'diameter': 10 * MM, 'run_out': 0.02 * MM}
 BALL = 1 * MM
 # Where the ball's centre stands with the axes at zero, as in config/grinder.yaml.
-BALL_X, BALL_Y = 60 * MM, -20 * MM
+BALL_X, BALL_Y, BALL_Z = 60 * MM, -20 * MM, 30 * MM
 JOB = gc.package_file('jobs/unequal_d12_t4.yaml')
 # The last touches move by 0.2 um in a cycle; a stalled host may make it some more.
 TOUCH = 2e-6
@@ -59,8 +59,9 @@ class ProbeTest(unittest.TestCase):
         self.client.wait_rest()
 
     def bring_ball(self, x, y):
-        """Its centre to X in machine coordinates and a distance from the axis."""
+        """Its centre to X in machine coordinates and a distance from the axis, at the axis' height."""
         at = self.client.wait_rest()
+        self.jog(Z, -BALL_Z - at[Z])
         self.jog(X, x - BALL_X - at[X])
         self.jog(Y, y - BALL_Y - at[Y])
 
@@ -176,7 +177,7 @@ class TestMove(ProbeTest):
         self.assertEqual(self.offset(X)['set_by'], None)
 
     def test_a_probe_that_touches_already(self):
-        self.start(dict(BLANK, end_face=-20 * MM, diameter=80 * MM))
+        self.start(dict(BLANK, end_face=-20 * MM, diameter=100 * MM))
         self.assertIn('jog refused: the probe touches already', self.probe(X, 1 * MM).message)
 
     def test_touches_that_do_not_agree(self):

@@ -7,6 +7,7 @@
 #include "flute_grinder/cli/offsets.h"
 #include "flute_grinder/cli/stop_keys.h"
 #include "flute_grinder/cli/zeros.h"
+#include "flute_grinder/core/format.h"
 #include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
 #include "flute_grinder/core/units.h"
@@ -35,7 +36,10 @@ const ros::WallDuration kProbing(86400);  ///< longest time of a probing move
 const ros::WallDuration kAgain(0.05);
 constexpr double kTurned = 1e-4;  ///< within which half a turn has reached its end [rad]
 
-std::string shown(double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop, 6); }
+/// To 0.1 um, or as much of a degree: a probe is no better.
+std::string shown(double si, Unit unit = Unit::kMetre) {
+  return format("%.4f %s", si / shopScale(unit), unit == Unit::kMetre ? "mm" : "deg");
+}
 
 /// Why there is no result, after it was printed.
 struct Failed {
@@ -113,8 +117,7 @@ class ProbedMachine {
     checkStop();
     const core::OffsetBasis basis = basisOf(goalFromFile(job), OffsetMethod::kProbe);
     if (const int status = setWorkOffset(nh_, axis, value, basis, true)) throw Failed{status};
-    std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis],
-                text({value, unitOf(axis, 0)}, UnitSystem::kShop, 9).c_str());
+    std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis], shown(value, unitOf(axis, 0)).c_str());
   }
 
  private:
@@ -134,8 +137,7 @@ class ProbedMachine {
 
 void printTouch(const char* name, double value, double spread, int axis) {
   const Unit unit = unitOf(axis, 0);
-  std::printf("%-15s %s, spread %s\n", name, text({value, unit}, UnitSystem::kShop, 9).c_str(),
-              text({spread, unit}, UnitSystem::kShop, 3).c_str());
+  std::printf("%-15s %s, spread %s\n", name, shown(value, unit).c_str(), shown(spread, unit).c_str());
 }
 
 template <typename Cycle>

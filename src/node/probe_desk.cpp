@@ -35,6 +35,7 @@ class ProbingMove {
         axis_(axis),
         n_(static_cast<std::size_t>(axis)),
         toward_(distance < 0 ? -1 : 1),
+        begin_(loop.status().command[n_]),
         stops_(stops) {
     touch(distance, config_.velocity[axis]);
     for (int i = 0; i < config_.touches; ++i) {
@@ -61,14 +62,22 @@ class ProbingMove {
     const double end = loop_.status().command[n_] + distance;
     const LoopStatus status = step(distance, velocity, true);
     if (!status.contact.made) {
-      throw ProbingError(status.command[n_] == end ? "nothing was touched over " + shown(std::abs(distance))
-                                                   : "the axis rests before anything was touched");
+      if (status.command[n_] != end) throw ProbingError("the axis rests before anything was touched");
+      goBack();
+      throw ProbingError("nothing was touched over " + shown(std::abs(distance)));
     }
     // The axis rests beyond a surface. A contact that flickers does so at one place, and its touches would agree.
     if (!status.probe_contact) throw ProbingError("the contact was lost again before the axis came to rest");
     last_touch_ = status.contact.position;
     backOff(last_touch_[n_]);
     return last_touch_[n_];
+  }
+
+  /// To where the first search began.
+  void goBack() {
+    const double at = loop_.status().command[n_], distance = begin_ - at;
+    const LoopStatus status = step(distance, config_.velocity[axis_], false);
+    if (status.command[n_] != at + distance) throw ProbingError("nothing was touched, and the way back was not free");
   }
 
   void backOff(double from) {
@@ -121,6 +130,7 @@ class ProbingMove {
   const int axis_;
   const std::size_t n_;
   const int toward_;
+  const double begin_;
   const std::uint64_t stops_;
   std::array<double, kAxisCount> last_touch_{};
   double least_ = std::numeric_limits<double>::infinity(), most_ = -least_, sum_ = 0;

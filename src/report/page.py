@@ -248,13 +248,12 @@ def css_string(words):
     return '"%s"' % re.sub(r'[^\w .,·:/-]', lambda found: '\\%06x ' % ord(found.group()), words)
 
 
-def running_head(data):
-    """What stands on top of each printed page."""
+def margins(data):
+    """What is on every printed page beside its number."""
     left = [name_of(data), data.get('tool', {}).get('tool')]
-    right = ['No. ' + data['serial'] if 'serial' in data else None, data.get('operator'),
-             local(data['started'])[:16] if 'started' in data else None]
-    return '@page { @top-left { content: %s } @top-right { content: %s } }' % tuple(
-        css_string(' · '.join(filter(None, parts))) for parts in (left, right))
+    right = ['No. ' + data['serial'] if 'serial' in data else None, local(data['started'])[:16] if 'started' in data else None]
+    return '@page { @top-left { content: %s } @top-right { content: %s } @bottom-left { content: %s } }' % tuple(
+        css_string(' · '.join(filter(None, parts))) for parts in (left, right, [data.get('operator')]))
 
 
 def first_page(data, parts):
@@ -308,5 +307,5 @@ def page(data, parts):
         body += ['<h2>Left out</h2>', '<ul>%s</ul>' % ''.join('<li>%s</li>' % text(reason) for reason in data['left_out'])]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'page.css'), encoding='utf-8') as file:
         style = file.read()
-    return PAGE.format(title=text('Report: ' + name_of(data)), style=style + running_head(data) + '\n',
+    return PAGE.format(title=text('Report: ' + name_of(data)), style=style + margins(data) + '\n',
                        body='\n'.join(part for part in body if part))

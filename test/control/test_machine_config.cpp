@@ -120,7 +120,7 @@ TEST_F(PackageMachine, HasAGeometry) {
   EXPECT_EQ(config_.geometry.swivel_centre, Eigen::Vector3d(0, 0.055, 0));
   EXPECT_EQ(config_.geometry.flange, 0.0035);
   ASSERT_TRUE(config_.geometry.probe);
-  EXPECT_EQ(config_.geometry.probe->centre, Eigen::Vector3d(0.06, -0.02, 0));
+  EXPECT_EQ(config_.geometry.probe->centre, Eigen::Vector3d(0.06, -0.02, 0.03));
   EXPECT_EQ(config_.geometry.probe->diameter, 0.001);
 }
 

@@ -26,7 +26,7 @@ from grinder_client import A, DEG, MM, X, Y, Z
 BLANK = {'end_face': 17 * MM, 'diameter': 10 * MM, 'run_out': 0.02 * MM}
 BALL = 1 * MM
 # Where the ball's centre stands with the axes at zero, as in config/grinder.yaml.
-BALL_X, BALL_Y = 60 * MM, -20 * MM
+BALL_X, BALL_Y, BALL_Z = 60 * MM, -20 * MM, 30 * MM
 JOB = gc.package_file('jobs/unequal_d12_t4.yaml')
 # The last touches move by 0.2 um in a cycle; a stalled host may make it some more.
 TOUCH = 2e-6
@@ -61,8 +61,9 @@ class ProbeTest(unittest.TestCase):
         self.client.wait_rest()
 
     def bring_ball(self, x, y):
-        """Its centre to X in machine coordinates and a distance from the axis."""
+        """Its centre to X in machine coordinates and a distance from the axis, at the axis' height."""
         at = self.client.wait_rest()
+        self.jog(Z, -BALL_Z - at[Z])
         self.jog(X, x - BALL_X - at[X])
         self.jog(Y, y - BALL_Y - at[Y])
 
@@ -91,6 +92,8 @@ class TestCycles(ProbeTest):
         self.start()
         self.bring_ball(12 * MM, 0)
         said = self.cycle('end-face', '--job', JOB)
+        for figure in ('end face', 'stick-out'):
+            self.assertRegex(said[figure], r'^\d+\.\d{4} mm(, spread 0\.\d{4} mm)?$')
         self.assertAlmostEqual(number(said['end face']), 17, delta=TOUCH / MM)
         self.assertAlmostEqual(number(said['stick-out']), 45, delta=TOUCH / MM)
         zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
@@ -171,11 +174,12 @@ class TestMove(ProbeTest):
         self.bring_ball(12 * MM, 0)
         done = self.grind('probe', 'end-face', '--job', JOB, '--within', '1')
         self.assertEqual((done.returncode, done.stderr), (1, 'probing ended: nothing was touched over 1 mm\n'))
-        self.assertAlmostEqual(self.client.wait_rest()[X], 13 * MM - BALL_X, delta=1e-6)
+        # Back where it began.
+        self.assertAlmostEqual(self.client.wait_rest()[X], 12 * MM - BALL_X, delta=1e-6)
         self.assertEqual(self.offset(X)['set_by'], None)
 
     def test_a_probe_that_touches_already(self):
-        self.start(dict(BLANK, end_face=-20 * MM, diameter=80 * MM))
+        self.start(dict(BLANK, end_face=-20 * MM, diameter=100 * MM))
         self.assertIn('jog refused: the probe touches already', self.probe(X, 1 * MM).message)
 
     def test_touches_that_do_not_agree(self):

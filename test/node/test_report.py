@@ -815,7 +815,7 @@ class TestLayout(ReportCase):
         self.assertEqual((self.page.rows['operator'], self.page.rows['serial number']), (['Ö "X" \\</style>'], ['4711-03']))
         begun = self.page.rows['begun'][0][:len('2000-01-01 00:00')]
         for sheet in self.sheets:
-            for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · Ö "X" \\</style> · ' + begun):
+            for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · ' + begun, 'Ö "X" \\</style>'):
                 self.assertIn(self.flat(text), self.flat(sheet))
 
     def test_labels_of_sections_can_be_read_on_paper(self):

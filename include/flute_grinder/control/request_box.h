@@ -27,7 +27,8 @@ struct JobStart {
 /// requesting threads, the protected ones for the loop; they never make the loop wait.
 class RequestBox {
  public:
-  /// Requests enable, home, resume, retract, lift, reset or a switch of spindle or coolant, and waits for the answer. For one thread at a time.
+  /// Requests enable, home, resume, retract, lift, reset or a switch of spindle or coolant, and waits for the answer.
+  /// For one thread at a time.
   ///
   /// Lift moves the wheel straight up, off the workpiece in which it was left: to the Y at which it is clear if the
   /// axes are homed, otherwise by the distance from the deepest point of the last job. Until the wheel is off the

@@ -13,6 +13,7 @@ namespace {
 
 using core::ReasonKind;
 
+constexpr int kRingsToSpoil = 6;     ///< of a section, at which a stroke may spoil it
 constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
@@ -31,6 +32,18 @@ std::vector<double> wearOfTeeth(const GrindJob& job) {
     wear[static_cast<std::size_t>(order[i].tooth)] = of_passes[i];
   }
   return wear;
+}
+
+/// As WheelSweep::spoilsFrom(), of the first of some circles of a section.
+std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, double radius) {
+  std::optional<double> first = sweep.spoilsFrom(x, radius);
+  if (!first) return first;  // the wheel reaches no other circle from farther away
+  const double core = sweep.leastRadius(x, radius);
+  for (int i = 1; i < kRingsToSpoil; ++i) {
+    const auto here = sweep.spoilsFrom(x, core + (radius - core) * i / kRingsToSpoil);
+    if (here && std::abs(*here - x) < std::abs(*first - x)) first = here;
+  }
+  return first;
 }
 
 /// Collects what is wrong with a cutter.
@@ -56,6 +69,27 @@ class Checker {
     if (job_.process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
     const Range range = complete.value_or(Range{});
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
+  }
+
+  /// The stroke may not go so near to the cone's apex that it spoils the flute.
+  void checkOvertravel(const GroundCutter& cutter) {
+    if (job_.process.incomplete_ok) return;
+    const bool opens = cutter.cutter().tanCone() >= 0;
+    const double nearest = opens ? 0 : job_.cutter.flute_length;
+    for (const Flute& flute : cutter.flutes()) {
+      for (const WheelSweep& sweep : flute) {
+        const auto spoils = sectionSpoilsFrom(sweep, nearest, cutter.cutter().radius(nearest));
+        if (!spoils) continue;
+        core::Reason reason;
+        reason.kind = ReasonKind::kNotBelow;
+        reason.field = opens ? "process.overtravel_end" : "process.overtravel_shank";
+        reason.unit = Unit::kMetre;
+        reason.value = opens ? job_.process.overtravel_end : job_.process.overtravel_shank;
+        reason.limit = std::abs(*spoils - nearest);
+        reason.detail = "where the wheel, near the cone's apex, grinds into the flute again";
+        if (!(reason.value < reason.limit)) return reasons_.push_back(std::move(reason));
+      }
+    }
   }
 
   /// Of each kind the first one: a fault of the set-up shows in every section of every tooth.
@@ -159,6 +193,7 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
     for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
   }
   const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
+  checker.checkOvertravel(cutter);
   checker.checkRange(range);
   return {range, checker.take()};
 }

@@ -9,8 +9,9 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOfApex = 0.98;  ///< of the way to the apex, the stroke may go
-constexpr int kWallRings = 10;    ///< of a wall, on which is asked what forms it
+constexpr double kOfApex = 0.98;   ///< of the way to the apex, the stroke may go
+constexpr double kShortOf = 0.01;  ///< of the way to where a longer stroke spoils the flute, it ends before
+constexpr int kWallRings = 10;     ///< of a wall, on which is asked what forms it
 constexpr int kRingsOfReach = 6;
 constexpr double kFloor = 1e-5;   ///< of the depth: where a wall passes into the floor
 constexpr double kOnFace = 1e-8;  ///< how far below the edge still is the edge [m]
@@ -33,7 +34,17 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
 }
 
 WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
-  return {cutter_, wheel_, nominal_radius_, {p.swivel, p.height}, {longest_[0], longest_[1], -p.depth, y_per_x_, 0}};
+  const auto over = [&](const std::array<double, 2>& ends) -> WheelSweep {
+    return {cutter_, wheel_, nominal_radius_, {p.swivel, p.height}, {ends[0], ends[1], -p.depth, y_per_x_, 0}};
+  };
+  WheelSweep longest = over(longest_);
+  const bool opens = cutter_.tanCone() >= 0;
+  const double nearest = opens ? 0 : cutter_.geometry().flute_length;
+  const auto spoils = longest.spoilsFrom(nearest, cutter_.radius(nearest));
+  if (!spoils) return longest;
+  std::array<double, 2> ends = longest_;
+  ends[opens ? 0 : 1] = *spoils + kShortOf * (nearest - *spoils);
+  return over(ends);
 }
 
 double SetupTrial::rake(const SetupPoint& point, double x) const {

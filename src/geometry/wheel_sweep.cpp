@@ -27,7 +27,8 @@ constexpr int kDiscs = 16;             ///< of the wheel, from which its least r
 constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
 constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
 constexpr double kSameAngle = 1e-12;   ///< by which a longer stroke must move an end to count as farther [rad]
-constexpr double kNearestApex = 0.05;  ///< of the small end's radius: nearer its apex a cone turns without end
+constexpr double kNearestApex = 1e-3;  ///< of the small end's radius: nearer its apex a cone turns without end
+constexpr double kSameEnd = 1e-7;      ///< how well two searches find the same end [rad]
 
 void requireFinite(const char* name, double value) {
   if (std::isfinite(value)) return;
@@ -73,8 +74,7 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
   for (const PathDeviation& d : stroke.deviations) {
     for (const double value : {d.y, d.z, d.a}) requireFinite("stroke's deviation", value);
   }
-  const double nearest = (kNearestApex - 1) / curve_.b();
-  open_ = {curve_.b() > 0 ? nearest : -kInfinite, curve_.b() < 0 ? nearest : kInfinite};
+  apex_ = -1 / curve_.b();
   const auto lower = [](const PathDeviation& a, const PathDeviation& b) { return a.y < b.y; };
   const auto deepest = std::min_element(stroke.deviations.begin(), stroke.deviations.end(), lower);
   if (deepest != stroke.deviations.end()) deepest_deviation_ = deepest->y;
@@ -257,13 +257,60 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
   return {best, axis_x};
 }
 
-bool WheelSweep::isComplete(double x, double r, const Extremum& end, bool high) const {
+WheelSweep::Window WheelSweep::openReach(double x, double r) const noexcept {
   const Window all = reach(x, r);
+  const double nearest = (1 - kNearestApex) * apex_;
+  return {apex_ < 0 ? std::max(all.from, nearest) : all.from, apex_ > 0 ? std::min(all.to, nearest) : all.to};
+}
+
+bool WheelSweep::isComplete(double x, double r, const Extremum& end, bool high) const {
+  const Window all = openReach(x, r);
   const auto farther = [&](double from, double to) {
     return from < to && extremum(x, r, {from, to}, high).value > end.value + kSameAngle;
   };
-  return !farther(std::max(all.from, open_.from), std::min(all.to, std::min(stroke_.from, stroke_.to))) &&
-         !farther(std::max(all.from, std::max(stroke_.from, stroke_.to)), std::min(all.to, open_.to));
+  const double from = std::min(stroke_.from, stroke_.to), to = std::max(stroke_.from, stroke_.to);
+  const bool before = farther(all.from, std::min(all.to, from)), after = farther(std::max(all.from, to), all.to);
+  if (apex_ < 0 ? after : before) return false;
+  const bool at_end = std::abs(end.axis_x - (apex_ < 0 ? from : to)) < kCorner;
+  if (!before && !after && !at_end) return true;
+  const auto spoiled = spoiling(x, r, high);
+  return spoiled ? std::abs(end.value - spoiled->end.value) < kSameEnd : !before && !after;
+}
+
+std::optional<WheelSweep::Spoiling> WheelSweep::spoiling(double x, double r, bool high) const {
+  const Window all = openReach(x, r);
+  const double nearest = apex_ < 0 ? all.from : all.to, farthest = apex_ < 0 ? all.to : all.from;
+  if (!std::isfinite(apex_) || nearest != (1 - kNearestApex) * apex_ || !(all.from < all.to)) return std::nullopt;
+  // From the apex inward, the end falls to where the flute's own poses begin.
+  const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
+  const int poses = posesOf(x, all);
+  const double step = (farthest - nearest) / poses;
+  const double worst = end(nearest);
+  double lowest = worst, valley = nearest;
+  for (int i = 1; i <= poses; ++i) {
+    const double value = end(nearest + i * step);
+    if (!(value < lowest)) break;
+    lowest = value, valley = nearest + i * step;
+    if (value == kNotReached) break;
+  }
+  if (valley == nearest) return std::nullopt;
+  const Extremum own = extremum(x, r, {std::min(valley, farthest), std::max(valley, farthest)}, high);
+  if (own.value == kNotReached || !(worst > own.value)) return std::nullopt;
+  double within = valley, beyond = nearest;
+  for (int i = 0; i < kPoseHalvings; ++i) {
+    const double middle = (within + beyond) / 2;
+    (end(middle) > own.value ? beyond : within) = middle;
+  }
+  return Spoiling{within, own};
+}
+
+std::optional<double> WheelSweep::spoilsFrom(double x, double r) const {
+  std::optional<double> first;
+  for (const bool high : {false, true}) {
+    const auto found = spoiling(x, r, high);
+    if (found && (!first || std::abs(found->from - x) < std::abs(*first - x))) first = found->from;
+  }
+  return first;
 }
 
 template <typename Function>

@@ -4,10 +4,12 @@
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 
+#include "brute_force.h"
 #include "core/generators.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -292,6 +294,74 @@ TEST(GroundJob, ARefusedOrAbandonedPlanIsLeftAsItIs) {
   EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
   EXPECT_EQ(plan.reasons.size(), 1u);
   EXPECT_FALSE(plan.complete.has_value());
+}
+
+/// A cone of which the wheel still reaches the small end where it is nearly at the apex, 12.0 mm beyond.
+GrindJob nearApex(double overtravel_mm) {
+  GrindJob job = cylinder(-3.8939);
+  job.cutter.end_diameter = 3.15 * kMillimetre;
+  job.cutter.cone_angle = 7.461 * kDegree;
+  job.cutter.spiral_angle = -2.055 * kDegree;
+  job.cutter.rake_angle = 7.839 * kDegree;
+  job.cutter.rake_tolerance = 5 * kDegree;
+  job.cutter.flute_length = 3.784 * kMillimetre;
+  job.process.wheel_diameter = 82.663 * kMillimetre;
+  job.process.wheel_width = 1.072 * kMillimetre;
+  job.process.depth = job.process.infeed = 0.337 * kMillimetre;
+  job.process.finish_infeed = 0;
+  job.process.setup_height = 1.29902 * kMillimetre;
+  job.process.overtravel_end = overtravel_mm * kMillimetre;
+  job.process.overtravel_shank = 1 * kMillimetre;
+  return job;
+}
+
+/// From which overtravel on, beyond 9.2 mm, a wall of the flute at X = 0 goes farther than before, by trying.
+double spoiledByTrying(const GrindJob& job, double core) {
+  SetupRequest request;
+  request.cutter = job.cutter;
+  request.wheel = wheelOf(job);
+  request.nominal_radius = job.process.wheel_diameter / 2;
+  const brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 120, 400};
+  double first = 12 * kMillimetre;
+  for (int i = 1; i <= 6; ++i) {
+    for (const int side : {-1, 1}) {
+      const double r = core + (job.cutter.end_diameter / 2 - core) * i / 6;
+      const auto end = [&](double s) { return bench.endAt(0, r, s, side).angle; };
+      constexpr double kStep = 0.002 * kMillimetre;
+      double farthest = -10, overtravel = 9.2 * kMillimetre;
+      for (double s = 20 * kMillimetre; s >= -overtravel; s -= kStep) farthest = std::max(farthest, end(s));
+      while (overtravel < first && !(end(-overtravel) > farthest)) overtravel += kStep;
+      first = overtravel;
+    }
+  }
+  return first;
+}
+
+TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
+  const double expected = spoiledByTrying(nearApex(9.5), groundCutterOf(nearApex(9.5)).section(0).core_radius);
+  EXPECT_LT(expected, 10 * kMillimetre);
+  for (const double overtravel : {9.2, 9.5, 9.8}) {
+    const GrindJob job = nearApex(overtravel);
+    ASSERT_TRUE(validate(job).empty()) << core::text(validate(job), UnitSystem::kShop);
+    const GroundCutter cutter = groundCutterOf(job);
+    EXPECT_TRUE(cutter.section(0).teeth[0].complete) << overtravel;
+    const CutterCheck check = checkGroundCutter(job, cutter);
+    EXPECT_TRUE(check.reasons.empty()) << core::text(check.reasons, UnitSystem::kShop);
+  }
+  for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
+    const GrindJob job = nearApex(overtravel);
+    const GroundCutter cutter = groundCutterOf(job);
+    EXPECT_FALSE(cutter.section(0).teeth[0].complete) << overtravel;
+    const CutterCheck check = checkGroundCutter(job, cutter);
+    const auto named = std::find_if(check.reasons.begin(), check.reasons.end(),
+                                    [](const core::Reason& r) { return r.kind == ReasonKind::kNotBelow; });
+    ASSERT_NE(named, check.reasons.end()) << core::text(check.reasons, UnitSystem::kShop);
+    EXPECT_EQ(named->field, "process.overtravel_end");
+    EXPECT_EQ(named->value, job.process.overtravel_end);
+    EXPECT_NEAR(named->limit, expected, 0.02 * kMillimetre);
+  }
+  // Too short is too short.
+  EXPECT_FALSE(groundCutterOf(nearApex(8)).section(0).teeth[0].complete);
 }
 
 }  // namespace test_ground_job

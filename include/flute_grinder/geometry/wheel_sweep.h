@@ -77,6 +77,12 @@ class WheelSweep {
   /// How much deeper the stroke must go for the least radius at `x` to become `radius`; infinite if no depth does [m].
   double deeperFor(double x, double radius) const;
 
+  /// How far toward the cone's apex a stroke may go. Near the apex the cutter turns ever faster, and a wheel that still
+  /// reaches a circle takes its arc farther than it was complete, as far as the stroke goes.
+  /// @param x of the circle. @param r its radius, positive [m].
+  /// @return the X at which that begins, whether this stroke goes so far or not; nothing if it does not begin [m].
+  std::optional<double> spoilsFrom(double x, double r) const;
+
   const GrindStroke& stroke() const noexcept { return stroke_; }
 
  private:
@@ -94,6 +100,7 @@ class WheelSweep {
   double lowestPoint(double axis_x) const noexcept;
   /// Where an endless stroke could reach a circle, and the part of it that the stroke has.
   Window reach(double x, double r) const noexcept;
+  Window openReach(double x, double r) const noexcept;  ///< as far as the cone is open
   /// Where on an endless stroke a circle is not above or below the whole wheel.
   Window betweenFaces(double x, double r) const noexcept;
   std::optional<Window> window(double x, double r) const noexcept;
@@ -107,7 +114,14 @@ class WheelSweep {
     double axis_x;
   };
   Extremum extremum(double x, double r, const Window& window, bool high) const;
-  /// Whether no longer stroke, as long as the cone is open, would take an end of an arc farther.
+  /// Where an end of an arc, on an endless stroke's way to the apex, begins to move on once more, and its extremum up
+  /// to there.
+  struct Spoiling {
+    double from;
+    Extremum end;
+  };
+  std::optional<Spoiling> spoiling(double x, double r, bool high) const;
+  /// Whether no longer stroke, short of one that spoils it, would take an end of an arc farther.
   bool isComplete(double x, double r, const Extremum& end, bool high) const;
   Extremum anyExtremum(double x, double r, const Window& window, bool high) const;
   /// A normal of the wheel, its length free: along the cutter's radius, in the sense of rising angles, and along the
@@ -131,7 +145,7 @@ class WheelSweep {
   double height_, sin_, cos_;
   double radius_;  ///< of the small end [m]
   double centre_, y_per_x_, z_per_x_;
-  Window open_;                   ///< where the cone is open
+  double apex_;                   ///< X, infinite for a cylinder [m]
   double deepest_deviation_ = 0;  ///< the least of Y [m]
   Window z_off_{0, 0};            ///< between which Z is off the published law [m]
 };

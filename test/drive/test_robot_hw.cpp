@@ -1,3 +1,4 @@
+#include "drive/simulated_bench.h"
 #include "flute_grinder/drive/robot_hw.h"
 
 #include <gtest/gtest.h>

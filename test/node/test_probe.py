@@ -44,7 +44,7 @@ class ProbeTest(unittest.TestCase):
         ProbeTest.started += 1
         parameters = gc.machine()
         parameters.update(changes)
-        parameters['hardware']['blank'] = blank
+        parameters['hardware'].update(blank=blank, pace=10)
         self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
         self.addCleanup(self.node.close)
         self.client = self.node.client()

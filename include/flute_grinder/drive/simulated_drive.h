@@ -16,10 +16,9 @@ namespace flute_grinder {
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
-/// `absolute_encoders`, `spindle_run_up_time` [s]; `pace` if the simulated time is to run faster than the clock; `swivel`
-/// [rad] if the swivel has an encoder; and `blank/...` with
-/// the members of Blank if the probe is to find one, together with the machine's parameters geometry/probe and
-/// geometry/work_axis.
+/// `absolute_encoders`, `spindle_run_up_time` [s]; `pace` if the simulated time is to run faster than the clock;
+/// `swivel` [rad] if the swivel has an encoder; and `blank/...` with the members of Blank if the probe is to find one,
+/// together with the machine's parameters geometry/probe and geometry/work_axis.
 class SimulatedDrive : public AxesHW {
  public:
   /// Model of one axis.

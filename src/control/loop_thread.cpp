@@ -60,22 +60,17 @@ void ControlLoop::run() {
   const ros::Duration nominal(config_.machine.period);
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
-  const ros::Time start_time(wall.sec, wall.nsec);
-  const Clock::time_point start = Clock::now();
-  Clock::time_point last = start;
-  const auto nanoseconds = [](Clock::duration d) {
-    return ros::Duration().fromNSec(std::chrono::duration_cast<std::chrono::nanoseconds>(d).count());
-  };
+  ros::Time time(wall.sec, wall.nsec);
   while (running_) {
-    hw_.wait(nominal);
-    const Clock::time_point now = Clock::now();
-    cycle(start_time + nanoseconds(now - start), nanoseconds(now - last));
-    record_.busy = std::chrono::duration<double>(Clock::now() - now).count();
-    last = now;
+    const ros::Duration period = hw_.wait(nominal);
+    const Clock::time_point begin = Clock::now();
+    time += period;
+    cycle(time, period);
+    record_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
   drive_command_ = DriveCommand{};
   drive_.setCommand(drive_command_);
-  hw_.write(start_time + nanoseconds(last - start), nominal);
+  hw_.write(time, nominal);
 }
 
 bool ControlLoop::setFeedOverride(double fraction) {

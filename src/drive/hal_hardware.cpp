@@ -187,13 +187,14 @@ void HalHardware::send() {
   }
 }
 
-void HalHardware::wait(const ros::Duration& period) {
+ros::Duration HalHardware::wait(const ros::Duration& period) {
   if (!*pins_->enabled || !*pins_->enable) return RobotHW::wait(period);
   const std::int64_t time = period.toNSec() / kNapsPerCycle;
   for (int naps = 0; naps < kNapsPerCycle * kLongestWait; ++naps) {
-    if (waiting() < buffer_ || !*pins_->enabled) return;
+    if (waiting() < buffer_ || !*pins_->enabled) break;
     nap(time);
   }
+  return sinceLastCycle(period);
 }
 
 }  // namespace flute_grinder

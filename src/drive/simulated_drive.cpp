@@ -72,6 +72,7 @@ bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh
     model[i].homing_velocity = p.number(joint + "homing_velocity", 1e-6, 1e3);
   }
   Equipment equipment{p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)};
+  if (p.has("pace")) equipment.pace = p.number("pace", 1, 100);
   if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
   init(model, equipment);
   if (p.has("blank")) {
@@ -194,6 +195,12 @@ void SimulatedDrive::home(double dt) {
 }
 
 void SimulatedDrive::write(const ros::Time&, const ros::Duration&) { sent_ = command_; }
+
+ros::Duration SimulatedDrive::wait(const ros::Duration& period) {
+  if (equipment_.pace == 1) return AxesHW::wait(period);
+  AxesHW::wait(period * (1 / equipment_.pace));
+  return period;
+}
 
 void SimulatedDrive::inject(Fault fault, int axis) {
   injected_ = static_cast<std::uint16_t>(static_cast<unsigned>(fault) | static_cast<unsigned>(axis) << 8);

@@ -41,6 +41,7 @@ void checkAbi(const std::string& parameter, const std::string& library) {
                        "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 
+const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
 constexpr double kLargestHistory = 1e12;  ///< [bytes]
 
 /// A kept file; if the parameter is a folder, the file in it named after the node.
@@ -98,6 +99,10 @@ GrinderNode::~GrinderNode() { endCrashGuard(); }
 
 void GrinderNode::loadDrive(const ParameterReader& parameters) {
   const std::string type = parameters.text("hardware/type");
+  if (type != kSimulatedDrive && parameters.has("hardware/pace")) {
+    throw ParameterError("parameter " + parameters.name("hardware/pace") + "; allowed: for " + kSimulatedDrive +
+                         " alone");
+  }
   const std::string parameter = parameters.name("hardware/type") + " = " + type;
   loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
   if (!loader_->isClassAvailable(type)) {

@@ -79,7 +79,11 @@ class FakeDrive : public AxesHW {
     written_drive = drive_command;
   }
 
-  void wait(const ros::Duration& period) override { on_wait ? on_wait() : AxesHW::wait(period); }
+  ros::Duration wait(const ros::Duration& period) override {
+    if (!on_wait) return AxesHW::wait(period);
+    on_wait();
+    return sinceLastCycle(period);
+  }
 
   void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, position.begin()); }
 

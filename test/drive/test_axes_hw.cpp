@@ -58,7 +58,7 @@ TEST(AxesHW, RegistersTheDriveHandle) {
 
 // What plugins of this version have compiled in, on a 64-bit computer. A change of it needs another version.
 TEST(DriveAbi, LayoutOfTheVersion) {
-  EXPECT_EQ(kDriveAbi, 1U);
+  EXPECT_EQ(kDriveAbi, 2U);
   EXPECT_EQ(sizeof(DriveStatus), 48U);
   EXPECT_EQ(offsetof(DriveStatus, swivel), 40U);
   EXPECT_EQ(sizeof(DriveCommand), 5U);

@@ -1,3 +1,4 @@
+#include "drive/simulated_bench.h"
 #include "flute_grinder/drive/robot_hw.h"
 
 #include <gtest/gtest.h>
@@ -284,6 +285,31 @@ TEST_F(Pacing, FollowsAPeriodThatChanges) {
   ASSERT_TRUE(wait());
   drive_.wait(ros::Duration(0.004));
   EXPECT_EQ(sleeps_ns.back(), kStart + 5 * kMillisecond);
+}
+
+TEST_F(Pacing, TheCyclesPeriodIsTheTimeSinceTheOneBefore) {
+  clock_ns += 3 * kMillisecond + 7;  // a stall
+  EXPECT_EQ(drive_.wait(ros::Duration(0.001)).toNSec(), 3 * kMillisecond + 7);
+  EXPECT_EQ(drive_.wait(ros::Duration(0.001)).toNSec(), kMillisecond);
+}
+
+TEST_F(Pacing, TheFirstCycleTakesItsPeriod) {
+  EmptyDrive fresh;
+  EXPECT_EQ(fresh.wait(ros::Duration(0.004)).toNSec(), 4 * kMillisecond);
+}
+
+TEST_F(Pacing, ASimulationMayRunFasterThanTheClock) {
+  SimulatedDrive drive;
+  SimulatedDrive::Equipment equipment;
+  equipment.pace = 10;
+  drive.init(driveModel(), equipment);
+  drive.wait(ros::Duration(0.001));
+  for (int i = 1; i <= 5; ++i) {
+    EXPECT_EQ(drive.wait(ros::Duration(0.001)).toNSec(), kMillisecond);
+    EXPECT_EQ(sleeps_ns.back(), kStart + i * kMillisecond / 10);
+  }
+  clock_ns += 25 * kMillisecond;
+  EXPECT_EQ(drive.wait(ros::Duration(0.001)).toNSec(), kMillisecond) << "a stall of the host is in the simulated time";
 }
 
 // With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them

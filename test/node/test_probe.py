@@ -46,7 +46,7 @@ class ProbeTest(unittest.TestCase):
         # A host that stalls is not to count as a client that is gone.
         parameters['jog_timeout'] = 1.0
         parameters.update(changes)
-        parameters['hardware']['blank'] = blank
+        parameters['hardware'].update(blank=blank, pace=10)
         self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
         self.addCleanup(self.node.close)
         self.client = self.node.client()

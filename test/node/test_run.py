@@ -82,7 +82,8 @@ class TestBar(RunTest):
         return [line for line in lines if line]
 
     def test_line_fits_a_terminal_that_gets_narrow(self):
-        command = self.grind(*RUN, self.short_job(), columns=200)
+        make_ready_for_a_slow_stroke()
+        command = self.grind(*RUN, PAPER_JOB, columns=200)
         command.wait_text('tooth 1/1')
         wide = len(command.text)
         command.resize(80)

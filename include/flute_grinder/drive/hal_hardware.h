@@ -23,7 +23,7 @@ class HalHardware : public AxesHW {
   void read(const ros::Time& time, const ros::Duration& period) override;
   void write(const ros::Time& time, const ros::Duration& period) override;
   /// With power on, waits until the FIFO has room for a command; otherwise uses the monotonic clock.
-  void wait(const ros::Duration& period) override;
+  ros::Duration wait(const ros::Duration& period) override;
 
  private:
   /// Pointers to the pins' values, in HAL's memory.

@@ -185,12 +185,18 @@ class RobotHW : public InterfaceManager {
 
   /// Blocks until the next cycle is due. By default, cycles follow the monotonic clock. Missed cycles are skipped and
   /// never made up, because the axes would then move faster than planned. A drive with its own clock overrides this
-  /// function.
+  /// function. Real-time.
   /// @param period nominal control period.
-  virtual void wait(const ros::Duration& period);
+  /// @return time since the last cycle, which all time-outs and stamps of the loop follow.
+  virtual ros::Duration wait(const ros::Duration& period);
+
+ protected:
+  /// Time since the last call, by the monotonic clock; the nominal period in the first one. Real-time safe.
+  ros::Duration sinceLastCycle(const ros::Duration& nominal);
 
  private:
   std::int64_t next_cycle_ns_ = 0;
+  std::int64_t last_cycle_ns_ = 0;  ///< 0 before the first cycle
 };
 
 }  // namespace flute_grinder

@@ -16,9 +16,9 @@ namespace flute_grinder {
 ///
 /// Parameters, in the drive's namespace: for each joint `<joint>/time_constant` [s], `<joint>/counts_per_unit` [1/m or
 /// 1/rad], `<joint>/start_position` and `<joint>/home_position` [m or rad], `<joint>/homing_velocity` [m/s or rad/s];
-/// `absolute_encoders`, `spindle_run_up_time` [s]; `swivel` [rad] if the swivel has an encoder; and `blank/...` with
-/// the members of Blank if the probe is to find one, together with the machine's parameters geometry/probe and
-/// geometry/work_axis.
+/// `absolute_encoders`, `spindle_run_up_time` [s]; `pace` if the simulated time is to run faster than the clock;
+/// `swivel` [rad] if the swivel has an encoder; and `blank/...` with the members of Blank if the probe is to find one,
+/// together with the machine's parameters geometry/probe and geometry/work_axis.
 class SimulatedDrive : public AxesHW {
  public:
   /// Model of one axis.
@@ -35,6 +35,8 @@ class SimulatedDrive : public AxesHW {
   struct Equipment {
     bool absolute_encoders = true;   ///< homed from the start
     double spindle_run_up_time = 0;  ///< [s]
+    /// Simulated time over the clock's. Unless it is 1, every cycle takes exactly its period, however late it begins.
+    double pace = 1;
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
   };
@@ -71,6 +73,7 @@ class SimulatedDrive : public AxesHW {
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
   void read(const ros::Time& time, const ros::Duration& period) override;
   void write(const ros::Time& time, const ros::Duration& period) override;
+  ros::Duration wait(const ros::Duration& period) override;
 
   /// Initialises the drive without ROS.
   void init(const Model& model, const Equipment& equipment);

@@ -43,10 +43,10 @@ class ProbeTest(unittest.TestCase):
         """Starts a node, ready, with the probe swung in before the blank."""
         ProbeTest.started += 1
         parameters = gc.machine()
-        # A host that stalls is not to count as a client that is gone.
+        # A host that stalls is not to count as a client that is gone, in simulated time.
         parameters['jog_timeout'] = 1.0
         parameters.update(changes)
-        parameters['hardware'].update(blank=blank, pace=10)
+        parameters['hardware'].update(blank=blank, pace=5)
         self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
         self.addCleanup(self.node.close)
         self.client = self.node.client()

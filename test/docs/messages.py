@@ -70,7 +70,7 @@ MESSAGES = {
                                   'resume: the job continues', 'the spindle is on; keep clear of the wheel',
                                   'the spindle is off; the wheel runs down', 'the coolant is on', 'the coolant is off', 'was sent'),
     'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 % feed',
-                              'Position in work coordinates.\\nMachine:', '\\nWork offset:', 'to go', 'Distance to go to the end of the running move'),
+                              'Position in work coordinates.\\nMachine:', '\\nWork offset:', 'To go', 'Distance to go to the end of the running move in'),
 }
 
 # A comment, a character, a raw string, or a string, which alone has a group.

@@ -253,9 +253,9 @@ TEST_F(Jogging, TheDistanceToGoIsShownWhileSomethingMoves) {
     stage.joints.position = {0, 0, 0, 0};
     stage.state.distance_to_go = {-0.0125, 0, 0, M_PI};
   });
-  WAIT_FOR(panel.label("to_go_x") == "to go -12.500 mm");
-  EXPECT_EQ(panel.label("to_go_y"), "to go 0.000 mm");
-  EXPECT_EQ(panel.label("to_go_a"), "to go 180.000 deg");
+  WAIT_FOR(panel.label("to_go_x") == "X -12.500");
+  EXPECT_EQ(panel.label("to_go_y"), "Y 0.000");
+  EXPECT_EQ(panel.label("to_go_a"), "A 180.0");
   panel.picture("to_go");
 }
 

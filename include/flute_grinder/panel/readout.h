@@ -71,6 +71,7 @@ class PositionBox : public QWidget {
 
  private:
   std::array<QLabel*, kAxisCount> values_{};
+  QLabel* to_go_title_;
   std::array<QLabel*, kAxisCount> to_go_{};
   int decimals_;
 };

@@ -65,9 +65,12 @@ class TestProbe(unittest.TestCase):
         self.assertEqual(answers[0].message, 'probing ended: the contact was lost again before the axis came to rest')
         self.assertLess(self.grinder.wait_rest()[X], self.at + 9 * MM)
 
-    def test_without_a_contact_it_goes_all_the_way(self):
+    def test_without_a_contact_it_goes_all_the_way_and_back(self):
+        begin = len(self.grinder.joints)
         self.assertEqual(self.probe().message, 'probing ended: nothing was touched over 10 mm')
-        self.assertAlmostEqual(self.grinder.wait_rest()[X], self.at + 10 * MM, delta=1e-6)
+        self.assertAlmostEqual(self.grinder.wait_rest()[X], self.at, delta=1e-6)
+        farthest = max(joint.position[X] for joint in self.grinder.joints[begin:])
+        self.assertAlmostEqual(farthest, self.at + 10 * MM, delta=1e-6)
 
 
 if __name__ == '__main__':

@@ -16,10 +16,10 @@ namespace {
 using units::kDegree;
 using units::kMillimetre;
 
-Json toJson(const JobSetup& setup) {
+Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   const GrindProcess& p = setup.job.process;
   const auto& complete = setup.check.complete;
-  const TouchReadings touch = touchReadings(setup.job);
+  const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
   return {{"swivel_deg", p.setup_swivel / kDegree},
           {"height_mm", p.setup_height / kMillimetre},
           {"depth_mm", p.depth / kMillimetre},
@@ -32,6 +32,7 @@ Json toJson(const JobSetup& setup) {
           {"touch_y_mm", touch.y / kMillimetre},
           {"touch_y_at_z_mm", touch.z_for_y / kMillimetre},
           {"touch_z_mm", touch.z / kMillimetre},
+          {"wheel_above_swivel_mm", above_swivel ? Json(*above_swivel / kMillimetre) : Json(nullptr)},
           {"land_mm", setup.land / kMillimetre},
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
@@ -43,22 +44,28 @@ Json toJson(const JobSetup& setup) {
 
 int runSetup(const SetupOptions& options) {
   const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep));
-  const Range swivel = readMachineFiles(options.parameters, options.urdf).machine.swivel;
+  const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
+  const Range swivel = config.machine.swivel;
   const auto result = solveJobSetup(job, swivel, options.keep);
   if (const auto* refusal = std::get_if<std::string>(&result)) {
     std::fprintf(stderr, "%s\n", refusal->c_str());
     return 1;
   }
   const auto& setup = std::get<JobSetup>(result);
+  const std::optional<double> above_swivel = wheelAboveSwivel(options.job, setup.job, config.geometry);
   if (options.json) {
-    print(toJson(setup));
+    print(toJson(setup, above_swivel));
   } else {
-    std::fputs(setupSheet(setup, swivel).c_str(), stdout);
+    std::fputs(setupSheet(setup, swivel, above_swivel).c_str(), stdout);
   }
-  for (const core::Reason& reason : setup.check.reasons) {
-    std::fprintf(stderr, "a plan will refuse this tool: %s\n", core::text(reason, UnitSystem::kShop).c_str());
+  const std::string refusal = planRefusal(setup);
+  std::fputs(refusal.c_str(), stderr);
+  if (!options.write) return 0;
+  if (!refusal.empty()) {
+    std::fprintf(stderr, "%s: nothing was written\n", options.job.c_str());
+    return 1;
   }
-  if (options.write) writeSetup(options.job, setup);
+  writeSetup(options.job, setup);
   return 0;
 }
 

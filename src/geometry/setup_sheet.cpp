@@ -49,15 +49,24 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
          line("depth", format("%.3f mm at X = 0", mm(p.depth))) + line("overtravel", overtravelText(setup));
 }
 
-std::string whatToTouch(const GrindJob& job) {
-  const TouchReadings touch = touchReadings(job);
+/// What the reading of Z takes for granted.
+std::string wheelsPlace(const GrindJob& job, const std::optional<double>& above_swivel) {
+  if (above_swivel)
+    return line("", format("with the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));
+  const double lowered = 1 - std::cos(job.process.setup_swivel);
+  return line("",
+              format("less %.4f L with the wheel's middle L above the swivel's centre, along the spindle", lowered));
+}
+
+std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_swivel) {
+  const TouchReadings touch = touchReadings(job, above_swivel.value_or(0));
   const double end = job.cutter.end_diameter;
   const auto reads = [&](const std::string& formula, double at_end) {
     return line("", format("reads %s: %.3f mm for D = %g mm", formula.c_str(), mm(at_end), mm(end)));
   };
   return "touch off, with D the blank's diameter where the wheel touches it\n" +
          line("Z", "swivel at 0, wheel's lower face on top of the blank") +
-         reads("D/2 " + added(touch.z), end / 2 + touch.z) +
+         reads("D/2 " + added(touch.z), end / 2 + touch.z) + wheelsPlace(job, above_swivel) +
          line("Y", format("swivel set, Z = %.3f mm, wheel's circumference against the blank", mm(touch.z_for_y))) +
          reads(format("(D - %g)/2 ", mm(end)) + (touch.y == 0 ? "mm" : added(touch.y)), touch.y);
 }
@@ -97,9 +106,19 @@ double lowerFaceHeight(const GrindJob& job) {
   return job.process.setup_height + wheelOf(job).lowerFace() / std::cos(job.process.setup_swivel);
 }
 
-std::string setupSheet(const JobSetup& setup, const Range& swivel) {
-  return whatToSet(setup, swivel) + whatToTouch(setup.job) + whatComesOut(setup) + "limited by\n" +
+std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel) {
+  return whatToSet(setup, swivel) + whatToTouch(setup.job, above_swivel) + whatComesOut(setup) + "limited by\n" +
          whatLimits(setup, swivel);
+}
+
+std::string planRefusal(const JobSetup& setup) {
+  std::string text;
+  for (const core::Reason& reason : setup.check.reasons) {
+    text += "a plan would refuse this tool: " + core::text(reason, UnitSystem::kShop);
+    const bool is_uneven = reason.kind == core::ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
+    text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
+  }
+  return text;
 }
 
 }  // namespace flute_grinder

@@ -1,6 +1,8 @@
 #include "flute_grinder/geometry/touch_off.h"
 
+#include "flute_grinder/core/job_file.h"
 #include "flute_grinder/core/quantity.h"
+#include "flute_grinder/core/wheel_file.h"
 #include "flute_grinder/geometry/ground_job.h"
 
 #include <algorithm>
@@ -14,15 +16,24 @@ constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that to
 
 }  // namespace
 
-TouchReadings touchReadings(const GrindJob& job) {
+TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
   const GrindProcess& p = job.process;
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
   const Range& largest = wheel.largestPlace();
   touch.z_for_y = -(p.setup_height + (largest.from + largest.to) / 2 * std::cos(p.setup_swivel));
-  touch.z = -wheel.lowerFace() - p.setup_height;
+  touch.z = -wheel.lowerFace() - p.setup_height - above_swivel * (1 - std::cos(p.setup_swivel));
   return touch;
+}
+
+std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine) {
+  const std::string wheel = wheelFileOf(file);
+  const std::optional<double> flange = wheel.empty() ? std::nullopt : readWheelFile(wheel).flange;
+  if (!flange) return std::nullopt;
+  GrindProcess upright = job.process;
+  upright.setup_swivel = 0;
+  return (wheelCentre(machine, upright, *flange) - machine.swivel_centre).z();
 }
 
 double touchY(const GrindJob& job, double diameter) {

@@ -4,6 +4,7 @@
 #include "flute_grinder/control/swivel_range.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
+#include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/panel/text_view.h"
 
 #include <ros/master.h>
@@ -31,6 +32,7 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
     : QDialog(parent),
       file_(file.toStdString()),
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
+      flange_(ros::names::append(grinder, "geometry/flange")),
       sheet_(textView("setup_sheet", kSheetLines)),
       keep_(new QComboBox),
       write_(new QPushButton("Write into the file")) {
@@ -94,14 +96,21 @@ SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
     const auto result = solveJobSetup(job, swivel, keep);
     if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
     const auto& setup = std::get<JobSetup>(result);
-    std::string text = setupSheet(setup, swivel);
-    for (const core::Reason& reason : setup.check.reasons) {
-      text += "a plan will refuse this tool: " + core::text(reason, UnitSystem::kShop) + "\n";
-    }
-    return {setup, false, QString::fromStdString(text), setup.check.reasons.empty()};
+    const std::string refusal = planRefusal(setup);
+    const std::string text = setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
+    if (!refusal.empty()) return refused(text + "It is not written.");
+    return {setup, false, QString::fromStdString(text), true};
   } catch (const std::exception& error) {
     return refused(error.what());
   }
+}
+
+std::optional<double> SetupDialog::aboveSwivel(const GrindJob& job) const {
+  auto flange = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {flange_}, stop_);
+  if (!flange || flange->getType() != XmlRpc::XmlRpcValue::TypeDouble) return std::nullopt;
+  MachineGeometry machine;
+  machine.flange = static_cast<double>(*flange);
+  return wheelAboveSwivel(file_, job, machine);
 }
 
 SetupDialog::Done SetupDialog::write(const JobSetup& setup) const {

@@ -193,5 +193,36 @@ TEST(TouchOff, TheOtherProfilesMeasureTheirDiameterToo) {
   EXPECT_EQ(heightRefusal(job, touchReadings(job).z_for_y), "");
 }
 
+/// A machine whose flange is 23.5 mm above the swivel's centre.
+MachineGeometry machine() {
+  MachineGeometry m;
+  m.work_axis_z = -0.02;
+  m.swivel_centre = {0.001, 0.2, 0.3};
+  m.flange = 0.0235;
+  return m;
+}
+
+TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  const MachineGeometry m = machine();
+  const auto above = wheelAboveSwivel(SOURCE_DIR "/jobs/unequal_d12_t4.yaml", job, m);
+  ASSERT_TRUE(above);
+  EXPECT_NEAR(*above / kMillimetre, 23.5 - 2 - 1.5, 1e-9);
+  for (const double swivel : {38.734, -55.0, 0.0}) {
+    job.process.setup_swivel = swivel * kDegree;
+    // With the swivel at 0 the wheel's middle is 20 mm above the swivel's centre, its lower face 1.5 mm below.
+    const double blank = 12 * kMillimetre;
+    const double at_touch = m.work_axis_z + blank / 2 + 1.5 * kMillimetre - (m.swivel_centre.z() + 20 * kMillimetre);
+    const double reads = at_touch - workZero(m, job, {2 * kMillimetre, 0.06}).z();
+    EXPECT_NEAR(blank / 2 + touchReadings(job, *above).z, reads, 1e-12) << swivel;
+    EXPECT_NEAR(touchReadings(job).z - touchReadings(job, *above).z,
+                20 * kMillimetre * (1 - std::cos(swivel * kDegree)), 1e-12);
+  }
+}
+
+TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
+  EXPECT_FALSE(wheelAboveSwivel(SOURCE_DIR "/jobs/paper.yaml", paper(), machine()));
+}
+
 }  // namespace test_touch_off
 }  // namespace flute_grinder

@@ -12,7 +12,8 @@
 namespace flute_grinder {
 namespace test_panel_setup {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QString kPackage = QString::fromStdString(ros::package::getPath("flute_grinder"));
+const QString kPaper = kPackage + "/jobs/paper.yaml";
 const QByteArray kSetup = "  setup: {swivel_deg: 31.769, height_mm: 2.788}";
 
 class SetupSheet : public ::testing::Test {
@@ -42,7 +43,7 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   open({{kSetup, ""}});
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
   EXPECT_NE(panel->text("verdict").find("'grind setup --write' finds it"), std::string::npos) << panel->text("verdict");
-  EXPECT_NE(sheet().find("31.767 deg; the machine's range is -60 to 60 deg"), std::string::npos) << sheet();
+  EXPECT_NE(sheet().find("31.769 deg; the machine's range is -60 to 60 deg"), std::string::npos) << sheet();
   EXPECT_NE(sheet().find("reads D/2 - 1.288 mm"), std::string::npos) << sheet();
   const QByteArray before = text();
   WAIT_FOR(panel->enabled("write_setup"));
@@ -51,15 +52,15 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   EXPECT_FALSE(panel->enabled("write_setup"));
   EXPECT_EQ(panel->text("verdict"), "Not planned yet.");
   QByteArray after = text();
-  EXPECT_EQ(after.count("setup: {swivel_deg: 31.7675, height_mm: 2.78785}"), 1);
-  EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.7675, height_mm: 2.78785}\n", "").size(), before.size());
+  EXPECT_EQ(after.count("setup: {swivel_deg: 31.769, height_mm: 2.78841}"), 1);
+  EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.769, height_mm: 2.78841}\n", "").size(), before.size());
   panel->click("close_setup");
   WAIT_FOR(!dialog());
 }
 
 TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
   open({{"swivel_deg: 31.769", "swivel_deg: 31"}});
-  EXPECT_NE(sheet().find("31.767 deg; the machine's range"), std::string::npos) << sheet();
+  EXPECT_NE(sheet().find("31.769 deg; the machine's range"), std::string::npos) << sheet();
   auto& keep = panel->the<QComboBox>("keep_figure");
   ASSERT_EQ(keep.currentText(), "nothing");
   QTest::keyClick(&keep, Qt::Key_Down);
@@ -80,6 +81,21 @@ TEST_F(SetupSheet, WithoutASolutionSaysWhy) {
   open({{"teeth: 1", "teeth: 8"}});
   EXPECT_EQ(sheet().find("no land is left: "), 0u) << sheet();
   EXPECT_FALSE(panel->enabled("write_setup"));
+}
+
+TEST_F(SetupSheet, IsNotWrittenIfAPlanWouldRefuseIt) {
+  open({{kSetup, ""}, {"rake_tolerance_deg: 0.5", "rake_tolerance_deg: 0.01"}});
+  EXPECT_NE(sheet().find("a plan would refuse this tool: cutter.rake_angle_deg = 8 deg"), std::string::npos) << sheet();
+  EXPECT_NE(sheet().find("It is not written."), std::string::npos) << sheet();
+  EXPECT_FALSE(panel->enabled("write_setup"));
+}
+
+TEST_F(SetupSheet, CountsTheWheelsPlaceOnTheSpindle) {
+  open(
+      {{"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
+        "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
+        "wheel: {file: " + kPackage.toUtf8() + "/wheels/straight_d100_w3.yaml}\n"}});
+  EXPECT_NE(sheet().find("with the wheel's middle 0.000 mm above the swivel's centre"), std::string::npos) << sheet();
 }
 
 TEST_F(SetupSheet, NeedsTheMachinesSwivel) {

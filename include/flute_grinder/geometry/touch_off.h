@@ -1,7 +1,9 @@
 #pragma once
 
 #include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/core/machine_geometry.h"
 
+#include <optional>
 #include <string>
 
 namespace flute_grinder {
@@ -14,7 +16,15 @@ struct TouchReadings {
 };
 
 /// @param job with its set-up.
-TouchReadings touchReadings(const GrindJob& job);
+/// @param above_swivel of the wheel's middle above the swivel's centre, along the spindle: turning the swivel from 0 to
+/// S
+///        lowers the wheel by 1 - cos S of it [m].
+TouchReadings touchReadings(const GrindJob& job, double above_swivel = 0);
+
+/// How far the middle of a job's wheel lies above the swivel's centre, along the spindle [m]; nothing unless the job
+/// names a wheel file that has the wheel's place on the flange.
+/// @param file of the job. @param machine its flange alone is used. @throw JobFileError if a file cannot be read.
+std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine);
 
 /// The work Y at which the job's wheel touches a blank with its largest diameter. @param diameter of the blank [m].
 double touchY(const GrindJob& job, double diameter);

@@ -42,11 +42,12 @@ class SetupDialog : public QDialog {
 
   void beginToSolve();
   Done solve(std::optional<SetupFigure> keep) const;
+  std::optional<double> aboveSwivel(const GrindJob& job) const;
   Done write(const JobSetup& setup) const;
   void poll();
   void take(const Done& done);
 
-  const std::string file_, description_;
+  const std::string file_, description_, flange_;
   std::optional<JobSetup> setup_;
   QPlainTextEdit* sheet_;
   QComboBox* keep_;

@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kSections = 8;
 constexpr int kMostSolves = 16;               ///< for a depth with which the taper toward the flute's end agrees
+constexpr int kMostLengthenings = 4;          ///< of the overtravel
+constexpr double kRoom = 0.02;                ///< of the flute's length, for a law of Z
 constexpr double kSameDepth = 0.3e-6;         ///< [m]
 constexpr double kNear = 3 * units::kDegree;  ///< within which the swivel of a slightly other depth is
 
@@ -153,12 +155,32 @@ std::variant<SolvedSetup, std::string> solved(const GrindJob& job, const SetupRe
   return std::get<SolvedSetup>(*result);
 }
 
+/// Puts a figure into the job as it is read from a file, and an edit that writes it there.
+void takeFigure(JobSetup& setup, const char* path, double& field, double value, double scale, int decimals) {
+  field = rounded(value, scale, decimals);
+  const JobEdit edit = editOf(path, field, decimals);
+  const auto same = [&](const JobEdit& other) { return other.key == edit.key; };
+  setup.edits.erase(std::remove_if(setup.edits.begin(), setup.edits.end(), same), setup.edits.end());
+  setup.edits.push_back(edit);
+}
+
+/// Lengthens the overtravel to what the set-up needs, where it is shorter.
+void takeOvertravel(JobSetup& setup) {
+  GrindProcess& p = setup.job.process;
+  const auto lengthen = [&](const char* path, double& field, double needed) {
+    if (field >= needed) return;
+    const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
+    takeFigure(setup, path, field, needed + up, units::kMillimetre, kOvertravelDecimals);
+  };
+  lengthen("process.overtravel_end", p.overtravel_end, setup.overtravel[0]);
+  lengthen("process.overtravel_shank", p.overtravel_shank, setup.overtravel[1]);
+}
+
 /// Puts the solved figures into the job, as they are read from a file.
 void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
   GrindProcess& p = setup.job.process;
   const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
-    field = rounded(value, scale, decimals);
-    setup.edits.push_back(editOf(path, field, decimals));
+    takeFigure(setup, path, field, value, scale, decimals);
   };
   // A depth that stays keeps the file's decimals; one for a core may be missing there.
   const bool for_core = setup.job.cutter.core_diameter > 0 && keep != SetupFigure::kDepth;
@@ -172,15 +194,26 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   }
   setup.overtravel = solved.overtravel;
   setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};
-  const auto lengthen = [&](const char* path, double& field, double needed) {
-    if (field >= needed) return;
-    const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
-    take(path, field, needed + up, units::kMillimetre, kOvertravelDecimals);
-  };
-  lengthen("process.overtravel_end", p.overtravel_end, solved.overtravel[0]);
-  lengthen("process.overtravel_shank", p.overtravel_shank, solved.overtravel[1]);
+  takeOvertravel(setup);
   setup.limit = solved.limit;
   setup.margin = solved.margin;
+}
+
+bool hasZLaw(const GrindJob& job) {
+  try {
+    withZLaw(job);
+    return true;
+  } catch (const core::ReasonError&) {
+    return false;
+  }
+}
+
+/// Lengthens the overtravel by more than a law of Z takes: with a flute that is not complete there may be none.
+void giveRoom(JobSetup& setup) {
+  for (double& beyond : setup.overtravel) {
+    if (beyond > 0) beyond += kRoom * setup.job.cutter.flute_length;
+  }
+  takeOvertravel(setup);
 }
 
 /// @throw core::ReasonError as withZLaw().
@@ -201,6 +234,20 @@ void measure(JobSetup& setup) {
   setup.check = checkGroundCutter(setup.job, cutter);
 }
 
+/// Lengthens the overtravel by what it lacks: the solver knows the published law of Z, and another one moves the places
+/// of the stroke where the flute's ends are formed.
+/// @return whether it was too short. Near a cone's apex, where no overtravel is enough, it stays.
+bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
+  const GrindProcess& p = setup.job.process;
+  const double length = setup.job.cutter.flute_length;
+  const auto& complete = setup.check.complete;
+  if (!complete || solved.complete_from > 0 || solved.complete_to < length) return false;
+  if (complete->from > 0) setup.overtravel[0] = p.overtravel_end + complete->from;
+  if (complete->to < length) setup.overtravel[1] = p.overtravel_shank + length - complete->to;
+  takeOvertravel(setup);
+  return complete->from > 0 || complete->to < length;
+}
+
 }  // namespace
 
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
@@ -219,10 +266,16 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
     JobSetup setup;
     setup.job = job;
     take(std::get<SolvedSetup>(result), keep, setup);
-    const std::vector<core::Reason> reasons = validate(setup.job);
-    if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons, UnitSystem::kShop);
-    measure(setup);
-    return setup;
+    for (int i = 0;; ++i) {
+      const std::vector<core::Reason> reasons = validate(setup.job);
+      if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons, UnitSystem::kShop);
+      if (i == 0 && !hasZLaw(setup.job)) {
+        giveRoom(setup);
+        continue;
+      }
+      measure(setup);
+      if (i == kMostLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
+    }
   } catch (const core::ReasonError& error) {
     return core::text(error.reason(), UnitSystem::kShop);
   } catch (const std::invalid_argument& error) {

@@ -4,9 +4,11 @@
 
 #include "flute_grinder/core/units.h"
 #include "flute_grinder/geometry/setup_sheet.h"
+#include "flute_grinder/geometry/z_law.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string>
@@ -53,16 +55,20 @@ const JobEdit* editOf(const JobSetup& setup, const std::string& key) {
   return nullptr;
 }
 
-// Rounded to what is written, the rake is right at both ends, from the smallest cutter to the largest.
-TEST(JobSetup, EveryShippedJobIsSolvedToAHundredthOfADegree) {
+// Rounded to what is written, the rake is off by as much at both ends as between them, from the smallest cutter to the
+// largest.
+TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
   for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
     const GrindJob job = readJobFile(entry.path());
     const JobSetup setup = solved(job);
     const double asked = job.cutter.rake_angle / kDegree, length = job.cutter.flute_length;
-    EXPECT_NEAR(rakeAt(setup.job, 0), asked, 0.01) << entry;
-    EXPECT_NEAR(rakeAt(setup.job, length), asked, 0.01) << entry;
-    EXPECT_LE(setup.least_rake, (asked + 0.01) * kDegree) << entry;
-    EXPECT_GE(setup.largest_rake, (asked - 0.01) * kDegree) << entry;
+    const double at_ends = rakeAt(setup.job, 0) - asked;
+    EXPECT_NEAR(rakeAt(setup.job, length) - asked, at_ends, 0.005) << entry;
+    EXPECT_LT(std::abs(at_ends), 0.2) << entry;
+    EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, asked, 0.003) << entry;
+    for (const double part : {0.1, 0.4, 0.55, 0.9}) {
+      EXPECT_LE(std::abs(rakeAt(setup.job, part * length) - asked), std::abs(at_ends) + 0.005) << entry;
+    }
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
     EXPECT_EQ(setup.job.process.depth, job.process.depth) << entry;
     EXPECT_EQ(editOf(setup, "process.depth_mm"), nullptr) << entry;
@@ -88,6 +94,66 @@ TEST(JobSetup, TheEditsSayTheJobsFigures) {
   EXPECT_EQ(number("process.overtravel_mm[1]") * kMillimetre, p.overtravel_shank);
 }
 
+/// The job of a steep cone with four teeth, in mm and deg: found at random, with much rake to correct.
+GrindJob steep(double diameter, double cone, double spiral, double rake, double length, double core, double wheel,
+               double width) {
+  GrindJob job = shipped("paper");
+  job.cutter.end_diameter = diameter * kMillimetre;
+  job.cutter.cone_angle = cone * kDegree;
+  job.cutter.spiral_angle = spiral * kDegree;
+  job.cutter.rake_angle = rake * kDegree;
+  job.cutter.flute_length = length * kMillimetre;
+  job.cutter.core_diameter = core * kMillimetre;
+  job.process.wheel_diameter = wheel * kMillimetre;
+  job.process.wheel_width = width * kMillimetre;
+  job.process.overtravel_end = job.process.overtravel_shank = 0;
+  job.process.infeed = 3 * kMillimetre;
+  job.tooth_angles = {0, 90 * kDegree, 180 * kDegree, 270 * kDegree};
+  return job;
+}
+
+TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
+  GrindJob without_law = steep(18.946, 8.13, -20.88, 13.78, 49.68, 6.416, 79.4, 2.42);
+  without_law.cutter.cut = CutDirection::kLeftHand;
+  const GrindJob too_short = steep(5.87, 7.57, 13.22, 2.27, 15.15, 4.369, 106.8, 2.59);
+  for (GrindJob job : {without_law, too_short}) {
+    const JobSetup published = solved(job);
+    job.process.z_law = ZLaw::kConstantRake;
+    const JobSetup setup = solved(job);
+    EXPECT_GT(setup.overtravel[0] + setup.overtravel[1], published.overtravel[0] + published.overtravel[1] + 1e-5);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
+    for (int i = 0; i <= 20; ++i) {
+      const double x = job.cutter.flute_length * i / 20;
+      EXPECT_TRUE(cutter.section(x).teeth[0].complete) << x;
+      EXPECT_NEAR(cutter.section(x).teeth[0].rake.value(), job.cutter.rake_angle, 0.006 * kDegree) << x;
+    }
+    EXPECT_GE(setup.job.process.overtravel_end, setup.overtravel[0]);
+    EXPECT_LT(setup.job.process.overtravel_end, setup.overtravel[0] + 1.1e-5);
+    EXPECT_GE(setup.job.process.overtravel_shank, setup.overtravel[1]);
+    EXPECT_LT(setup.job.process.overtravel_shank, setup.overtravel[1] + 1.1e-5);
+    for (const char* key : {"process.overtravel_mm[0]", "process.overtravel_mm[1]"}) {
+      const auto same = [&](const JobEdit& edit) { return edit.key == key; };
+      EXPECT_LE(std::count_if(setup.edits.begin(), setup.edits.end(), same), 1) << key;
+    }
+    const JobSetup again = solved(setup.job);
+    EXPECT_EQ(again.job.process.overtravel_end, setup.job.process.overtravel_end);
+    EXPECT_EQ(again.job.process.overtravel_shank, setup.job.process.overtravel_shank);
+  }
+}
+
+TEST(JobSetup, WhatAPlanRefusesSaysSo) {
+  GrindJob job = steep(18.946, 8.13, -20.88, 13.78, 49.68, 6.416, 79.4, 2.42);
+  job.cutter.cut = CutDirection::kLeftHand;
+  job.cutter.rake_tolerance = 0.1 * kDegree;
+  const auto result = solveJobSetup(job, kMachine, std::nullopt);
+  ASSERT_TRUE(std::holds_alternative<JobSetup>(result));
+  expectContains(planRefusal(std::get<JobSetup>(result)),
+                 "a plan would refuse this tool: cutter.rake_angle_deg = 13.78 deg");
+  expectContains(planRefusal(std::get<JobSetup>(result)), ", or set process.z_law: constant_rake\n");
+  EXPECT_EQ(planRefusal(solved(shipped("paper"))), "");
+}
+
 TEST(JobSetup, TheCoreIsGroundToAMicrometre) {
   for (const char* name : {"paper", "left_hand_d8_t3", "roughing_d10_t4", "unequal_d12_t4"}) {
     GrindJob job = shipped(name);
@@ -96,8 +162,8 @@ TEST(JobSetup, TheCoreIsGroundToAMicrometre) {
     const JobSetup setup = solved(job);
     EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6) << name;
     EXPECT_NEAR(setup.core_diameter, job.cutter.core_diameter, 1e-6) << name;
-    EXPECT_NEAR(rakeAt(setup.job, 0), job.cutter.rake_angle / kDegree, 0.01) << name;
-    EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), job.cutter.rake_angle / kDegree, 0.01) << name;
+    EXPECT_NEAR(setup.least_rake / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
+    EXPECT_NEAR(setup.largest_rake / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
   }
 }
 
@@ -108,16 +174,17 @@ TEST(JobSetup, ADepthThatIsFoundAgreesWithTheTaperToTheFlutesEnd) {
   EXPECT_NE(setup.job.process.depth, job.process.depth);
   EXPECT_EQ(setup.job.process.depth_end, job.process.depth_end);
   EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
-  EXPECT_NEAR(rakeAt(setup.job, 0), 12, 0.01);
-  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 12, 0.01);
+  EXPECT_NEAR(rakeAt(setup.job, 0), rakeAt(setup.job, job.cutter.flute_length), 0.01);
+  EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, 12, 0.01);
 }
 
 TEST(JobSetup, AWornWheelIsTakenAsItIs) {
   GrindJob job = shipped("paper");
   job.process.wheel_wear = 20 * kMillimetre;
   const JobSetup setup = solved(job);
-  EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.01);
-  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.01);
+  EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.05);
+  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.05);
+  EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, 8, 0.003);
   EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(shipped("paper")).job.process.setup_swivel),
             0.01 * kDegree);
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;                    ///< of the rake [rad], and of the core by its radius
 constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns of the search
-constexpr int kFinerOnLine = 8;                        ///< where one unknown is looked for
+constexpr int kFinerOnLine = 32;                       ///< where one unknown is looked for
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr int kFaceSteps = 64;
 constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the deepest one

@@ -382,7 +382,10 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
-  if (here && !here->problem) return search.isCylinder() ? here->solved : evened(trial, request, *here);
+  if (here && !here->problem) {
+    const bool is_exact = search.isCylinder() || request.z_law != ZLaw::kPublished;
+    return is_exact ? here->solved : evened(trial, request, *here);
+  }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
     if (!(least < largest)) continue;

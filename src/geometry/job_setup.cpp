@@ -110,6 +110,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   r.largest_swivel = swivel.to;
   r.keep = keep;
   r.kept = {p.setup_swivel, p.setup_height};
+  r.z_law = p.z_law;
   return r;
 }
 

@@ -51,7 +51,8 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
 
 /// What the reading of Z takes for granted.
 std::string wheelsPlace(const GrindJob& job, const std::optional<double>& above_swivel) {
-  if (above_swivel) return line("", format("the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));
+  if (above_swivel)
+    return line("", format("with the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));
   const double lowered = 1 - std::cos(job.process.setup_swivel);
   return line("",
               format("less %.4f L with the wheel's middle L above the swivel's centre, along the spindle", lowered));
@@ -113,7 +114,9 @@ std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::op
 std::string planRefusal(const JobSetup& setup) {
   std::string text;
   for (const core::Reason& reason : setup.check.reasons) {
-    text += "a plan would refuse this tool: " + core::text(reason, UnitSystem::kShop) + "\n";
+    text += "a plan would refuse this tool: " + core::text(reason, UnitSystem::kShop);
+    const bool is_uneven = reason.kind == core::ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
+    text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
   }
   return text;
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTolerance = 1e-6;                    ///< of the rake [rad], and of the core by its radius
 constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns of the search
-constexpr int kFinerOnLine = 8;                        ///< where one unknown is looked for
+constexpr int kFinerOnLine = 32;                       ///< where one unknown is looked for
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr int kFaceSteps = 64;
 constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the deepest one
@@ -381,7 +381,10 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
-  if (here && !here->problem) return search.isCylinder() ? here->solved : evened(trial, request, *here);
+  if (here && !here->problem) {
+    const bool is_exact = search.isCylinder() || request.z_law != ZLaw::kPublished;
+    return is_exact ? here->solved : evened(trial, request, *here);
+  }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
     if (!(least < largest)) continue;

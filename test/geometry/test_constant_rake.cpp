@@ -42,6 +42,7 @@ SetupRequest requestFor(const Shop& s) {
   r.depth = s.depth * kMillimetre;
   r.least_swivel = -60 * kDegree;
   r.largest_swivel = 60 * kDegree;
+  r.z_law = ZLaw::kConstantRake;
   return r;
 }
 

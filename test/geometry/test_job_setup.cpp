@@ -150,6 +150,7 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
   ASSERT_TRUE(std::holds_alternative<JobSetup>(result));
   expectContains(planRefusal(std::get<JobSetup>(result)),
                  "a plan would refuse this tool: cutter.rake_angle_deg = 13.78 deg");
+  expectContains(planRefusal(std::get<JobSetup>(result)), ", or set process.z_law: constant_rake\n");
   EXPECT_EQ(planRefusal(solved(shipped("paper"))), "");
 }
 

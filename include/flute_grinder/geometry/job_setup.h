@@ -23,7 +23,7 @@ struct JobSetup {
   double least_rake = 0, largest_rake = 0;    ///< over the flute and the teeth [rad]
   double core_diameter = 0;                   ///< at X = 0 [m]
   double land = 0;                            ///< least over the flute and the teeth, along the circle [m]
-  CutterCheck check;                          ///< what a plan would find wrong with the tool
+  CutterCheck check;                          ///< what a plan would find wrong with the tool; then it is not written
   SetupLimit limit = SetupLimit::kSwivel;     ///< what comes nearest to its limit
   double margin = 0;                          ///< as of SolvedSetup
 };
@@ -31,10 +31,11 @@ struct JobSetup {
 /// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 
-/// Solves the set-up of a job: the rake at both ends of the flute, and the core at X = 0 if the job asks for one. The
+/// Solves the set-up of a job: the rake over the flute, and the core at X = 0 if the job asks for one. The
 /// wheel is taken with its wear at the job's start, and of unequal spirals the middle. The figures are rounded to what
-/// is written into a file, and measured as such. Takes up to some tenths of a second; a job with both a depth at the
-/// flute's end and a depth to be found takes several times as long.
+/// is written into a file, and measured as such, and the overtravel is lengthened to what the job's law of Z needs.
+/// Takes up to some tenths of a second; a job with both a depth at the flute's end and a depth to be found takes
+/// several times as long.
 /// @param job read with unsolvedFields().
 /// @param swivel that the machine allows [rad].
 /// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.

@@ -13,8 +13,8 @@ struct RakeCorrection {
   double least_rake = 0, largest_rake = 0;  ///< over the flute [rad]
 };
 
-/// The correction of Z over X with which the rake is the same over the whole flute: what the published law leaves,
-/// which the set-up makes right at the flute's ends only. Found by Newton's method on the spline's coefficients, in a
+/// The correction of Z over X with which the rake is the same over the whole flute, which no set-up makes it with the
+/// published law. Found by Newton's method on the spline's coefficients, in a
 /// tenth of a second.
 /// @param nominal_radius of the wheel, for which Y = 0 touches the small end [m].
 /// @param stroke with its overtravel, without a correction; the spline covers it.

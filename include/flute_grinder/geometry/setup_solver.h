@@ -34,6 +34,9 @@ struct SetupRequest {
   /// passes the axis at the height R sin r.
   std::optional<SetupFigure> keep;
   WheelSetup kept;  ///< the swivel or height that is kept
+  /// The published one takes the set-up with the least largest error of the rake over the flute. For a law that
+  /// corrects Z, the set-up is exact at both ends, where the correction then begins and ends with little.
+  ZLaw z_law = ZLaw::kPublished;
 };
 
 /// What comes nearest to its limit in a set-up.
@@ -86,7 +89,7 @@ struct SetupRefusal {
   double least = 0, largest = 0;  ///< reachable [rad] or [m]
 };
 
-/// Solves a set-up: the rake with the least largest error over the flute, and at X = 0 the core if it is asked. Of
+/// Solves a set-up: the rake over the flute, as z_law says, and at X = 0 the core if it is asked. Of
 /// several solutions, that with the steadiest rake whose rake face the wheel's face or edge forms the deepest. A depth
 /// that is found lies above 0 and short of the cutter's axis. Takes some tenths of a second.
 /// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.

@@ -28,7 +28,7 @@ GroundCutter paperTool() {
   std::vector<GroundTooth> teeth;
   teeth.reserve(4);
   for (int i = 0; i < 4; ++i) teeth.push_back({i * 90 * kDegree, 0});
-  return {cutter, CutDirection::kRightHand, {{WheelSweep(cutter, wheel, 50 * kMillimetre, setup, stroke)}}, teeth};
+  return {cutter, {{WheelSweep(cutter, wheel, 50 * kMillimetre, setup, stroke)}}, teeth};
 }
 
 /// The whole tool of four teeth as a solid, through 60 sections of 64 rings. Peak memory is that of the whole program,

@@ -197,7 +197,7 @@ GroundCutter groundSoFar(const GrindJob& job, const Reached& reached) {
       flute.push_back(sweepOf(job, static_cast<int>(i), job.process.wheel_wear, stroke));
     }
   }
-  return {ConicalCutter(job.cutter), job.cutter.cut, std::move(flutes), std::move(teeth)};
+  return {ConicalCutter(job.cutter), std::move(flutes), std::move(teeth)};
 }
 
 MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns) {

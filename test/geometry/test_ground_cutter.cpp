@@ -344,8 +344,13 @@ TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {
     const double apex = -k->c.diameter / 2 / std::tan(k->c.cone * kDegree);
     if (apex < 0) longer.from = std::max(longer.from, 0.95 * apex);
     if (apex > 0) longer.to = std::min(longer.to, 0.95 * apex);
-    if (!(longer.from < k->c.from && longer.to > k->c.to)) continue;
     const double r = k->outer - uniform(0, 0.8) * std::min(k->c.depth * kMillimetre, 0.9 * k->outer);
+    // Nor may it go where it would spoil the flute.
+    if (const auto spoils = longer.sweep(k->wheel).spoilsFrom(k->x, r)) {
+      if (apex < 0) longer.from = std::max(longer.from, *spoils / kMillimetre);
+      if (apex > 0) longer.to = std::min(longer.to, *spoils / kMillimetre);
+    }
+    if (!(longer.from < k->c.from && longer.to > k->c.to)) continue;
     const auto arc = k->c.sweep(k->wheel).arc(k->x, r), most = longer.sweep(k->wheel).arc(k->x, r);
     if (!arc) continue;
     ASSERT_TRUE(most.has_value()) << "case " << i;

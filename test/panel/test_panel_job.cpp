@@ -112,7 +112,7 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   panel.picture("planned");
   start();
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
-  EXPECT_EQ(panel.label("place"), "Tooth 1, pass 1");
+  EXPECT_EQ(panel.label("place"), "slow.yaml, tooth 1, pass 1");
   WAIT_FOR(panel.label("feed") == "300 mm/min");
   panel.picture("grinding");
 

@@ -17,7 +17,6 @@ import roslib.message
 import rospy
 import rosservice
 import rostest
-from flute_grinder.srv import SetOffset
 
 import grinder_client as gc
 
@@ -198,7 +197,7 @@ class TestFuzz(unittest.TestCase):
     def check_job(self):
         self.client.make_ready()
         for axis in gc.JOINTS:
-            self.assertTrue(self.client._call('set_offset', SetOffset, axis, 0.0, 'test').success)
+            self.assertTrue(self.client.set_offset(axis, 0.0).success)
         run = self.client.run(gc.SHORT)
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
 

@@ -47,8 +47,7 @@ class Writer {
                     ? "from X = " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
                     : std::string("nowhere")) +
                "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
-      case ReasonKind::kCollision:
-        return collision();
+      case ReasonKind::kCollision: return collision();
       case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
       case ReasonKind::kUnevenRake:
         return name("process.z_law") + " = constant_rake: tooth " + tooth() +

@@ -64,8 +64,8 @@ TEST(DriveAbi, LayoutOfTheVersion) {
   EXPECT_EQ(sizeof(DriveCommand), 5U);
   EXPECT_EQ(sizeof(JointHandle), 64U);
   EXPECT_EQ(sizeof(DriveHandle), 48U);
-  EXPECT_EQ(sizeof(RobotHW), 64U);
-  EXPECT_EQ(sizeof(AxesHW), 392U);
+  EXPECT_EQ(sizeof(RobotHW), 72U);
+  EXPECT_EQ(sizeof(AxesHW), 400U);
 }
 
 }  // namespace test_axes_hw

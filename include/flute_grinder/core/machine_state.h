@@ -79,8 +79,8 @@ enum class EventKind : std::uint8_t {
   kSwitch,   ///< a request without arguments that switches spindle or coolant by hand and changes no state
 };
 
-/// The name of a request is also its sub-command of `grind`; a name of two words, a command and its sub-command. Only the
-/// start's is `run`.
+/// The name of a request is also its sub-command of `grind`; a name of two words, a command and its sub-command. Only
+/// the start's is `run`.
 struct EventRow : EnumRow<MachineEvent> {
   EventKind kind = EventKind::kSeen;
   const char* service = nullptr;  ///< name in the node's own namespace; null for none

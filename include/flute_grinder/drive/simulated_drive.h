@@ -35,10 +35,10 @@ class SimulatedDrive : public AxesHW {
   struct Equipment {
     bool absolute_encoders = true;   ///< homed from the start
     double spindle_run_up_time = 0;  ///< [s]
-    /// Simulated time over the clock's. Unless it is 1, every cycle takes exactly its period, however late it begins.
-    double pace = 1;
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
+    /// Simulated time over the clock's. Unless it is 1, every cycle takes exactly its period, however late it begins.
+    double pace = 1;
   };
 
   /// A plane that a blank is ground down to, over its whole length: what is below it, with A at `angle`, is gone.

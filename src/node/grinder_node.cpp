@@ -100,8 +100,8 @@ GrinderNode::~GrinderNode() { endCrashGuard(); }
 void GrinderNode::loadDrive(const ParameterReader& parameters) {
   const std::string type = parameters.text("hardware/type");
   if (type != kSimulatedDrive && parameters.has("hardware/pace")) {
-    throw ParameterError("parameter " + parameters.name("hardware/pace") + "; allowed: for " + kSimulatedDrive +
-                         " alone");
+    throw ParameterError("parameter " + parameters.name("hardware/pace") +
+                         "; allowed: for flute_grinder/SimulatedDrive alone");
   }
   const std::string parameter = parameters.name("hardware/type") + " = " + type;
   loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");

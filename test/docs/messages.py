@@ -58,7 +58,7 @@ MESSAGES = {
     'src/node/progress_tracker.cpp': ('a job without a name',),
     'src/node/request_desk.cpp': (),
     'src/node/stop_desk.cpp': ('the job will be held before it moves',),
-    'src/panel/grind_panel.cpp': ('Replies from the grinder', 'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
+    'src/panel/grind_panel.cpp': ('Replies from the grinder', 'is set', 'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
                                   'touch-off: the work offset of', '. It was not started in this panel.',
                                   "Name of the grinder's node; relative to rviz's namespace without a slash in front",
                                   'Look at the tool',

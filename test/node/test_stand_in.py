@@ -11,6 +11,7 @@ import rospy
 import rostest
 from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
                                WrittenSetpoint)
+from flute_grinder.srv import Plan, PlanResponse
 from std_srvs.srv import Trigger, TriggerResponse
 
 import grinder_client as gc
@@ -30,6 +31,7 @@ class StandIn:
         self.setpoints = rospy.Publisher('grinder/setpoints', SetpointBatch, queue_size=1000)
         rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
         rospy.Service('grinder/lift', Trigger, self.on_lift)
+        rospy.Service('grinder/plan', Plan, lambda _: PlanResponse(valid=True, complete_from=0, complete_to=0.03))
         self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
         self.server.start()
         threading.Thread(target=self.tell, daemon=True).start()
@@ -104,7 +106,7 @@ class TestStandIn(RunTest):
         command.wait_text('planning 50 %')
         goal.set_succeeded(GrindResult())
         self.assertEqual(command.end(), 0, command.text)
-        self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\n$')
+        self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\nflutes complete      X 0.000 to 30.000 mm\r\n$')
 
     def start_run_on_terminal(self, columns):
         command = self.grind('run', PAPER_JOB, '--dry-run', columns=columns)

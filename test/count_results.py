@@ -8,14 +8,20 @@ import xml.etree.ElementTree as ElementTree
 
 passed, failed, skipped = 0, [], []
 for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
+    counted = 0
     try:
-        cases = list(ElementTree.parse(path).getroot().iter('testcase'))
+        root = ElementTree.parse(path).getroot()
+        cases = list(root.iter('testcase'))
+        counted = sum(int(suite.get(kind) or 0) for suite in root.iter('testsuite') for kind in ('failures', 'errors'))
     except ElementTree.ParseError as error:
         cases = []
         failed.append('%s: %s' % (path.name, error))
     # catkin writes a file of its own for a test that left none.
     if not cases:
         failed.append('%s: no test case' % path.name)
+    # A sub-test that fails is in its suite's number alone.
+    if counted and not any(case.find(kind) is not None for case in cases for kind in ('failure', 'error')):
+        failed.append('%s: %d of its sub-tests' % (path.name, counted))
     for case in cases:
         skip = case.find('skipped')
         if skip is not None:

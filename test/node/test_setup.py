@@ -53,7 +53,7 @@ class TestSetup(CommandLine):
         errors = [rake - cutter['rake_angle_deg']
                   for rake in self.rakes(job, *(cutter['flute_length_mm'] * i / 8 for i in range(9)))]
         self.assertAlmostEqual(max(errors), -min(errors), delta=0.02)
-        self.assertLess(max(errors), 0.2)
+        self.assertLess(max(errors), cutter['rake_tolerance_deg'])
         self.grind(0, 'plan', job)
 
 

@@ -2,14 +2,21 @@
 
 #include "flute_grinder/geometry/ground_job.h"
 
+#include <boost/math/tools/minima.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace flute_grinder {
 
 namespace {
 
-constexpr int kEvenSections = 6;  ///< beside those where the axes were farthest off
+constexpr int kEvenSections = 6;   ///< beside those where the axes were farthest off
+constexpr int kCompared = 4;       ///< of a section, on which the walls are compared
+constexpr int kPlacesOfWall = 16;  ///< of a wall, from which the nearest is refined
+constexpr std::uintmax_t kNearestSteps = 60;
 
 /// X of the sections in which a stroke is measured.
 std::vector<double> sectionsOf(const RecordedStroke& stroke, const Range& blank) {
@@ -40,25 +47,54 @@ struct Asked {
   const WheelSweep& sweep;
   ConicalCutter cutter;
 
-  /// How far another sweep goes beyond it in a section [m].
-  double gouge(const WheelSweep& other, double x) const {
+  /// How far another sweep goes beyond it in a section, if farther than `least`; else no more than that [m].
+  double gouge(const WheelSweep& other, double x, double least) const {
     const double radius = cutter.radius(x);
     const double core = std::min(radius, sweep.leastRadius(x, radius));
-    double depth = core - std::min(radius, other.leastRadius(x, radius));
-    for (const double r : {radius, (radius + core) / 2}) {
-      for (const bool high : {false, true}) depth = std::max(depth, beyondWall(other, x, r, high));
+    const double floor = std::min(radius, other.leastRadius(x, radius));
+    double depth = core - floor;
+    for (int i = 1; i <= kCompared; ++i) {
+      const double u = static_cast<double>(i) / kCompared;  // closer to one another toward the floor
+      const double r = floor + (radius - floor) * u * u;
+      const auto ground = other.arc(x, r);
+      if (!ground) continue;
+      const auto own = sweep.arc(x, r);
+      for (const bool high : {false, true}) {
+        const double angle = high ? ground->high : ground->low;
+        // The flute is no farther than its wall is along the circle.
+        const double along = own ? r * (high ? angle - own->high : own->low - angle) : core - r;
+        if (own ? along > std::max(depth, least) : core < radius)
+          depth = std::max(depth, distance(x, r, angle, core, along));
+      }
     }
     return depth;
   }
 
  private:
-  double beyondWall(const WheelSweep& other, double x, double r, bool high) const {
-    const auto wall = sweep.wall(x, r, high), ground = other.wall(x, r, high);
-    if (!wall || !ground) return 0;
-    // Normal to the wall's tangent.
-    const double turned = ground->angle - wall->angle, per_radius = r * wall->slope;
-    const double beyond = r * (std::sin(turned) + per_radius * (1 - std::cos(turned))) / std::hypot(1, per_radius);
-    return high ? beyond : -beyond;
+  /// From a point to the nearest of the flute's walls, which go on above the blank as far as `above`.
+  double distance(double x, double r, double angle, double core, double above) const {
+    const double highest = std::min(cutter.radius(x) + above, 2 * cutter.radius(x) - core) - core;
+    double nearest = std::numeric_limits<double>::max();
+    for (const bool high : {false, true}) {
+      const auto to = [&](double place) {
+        const double part = place / kPlacesOfWall, of = core + highest * part * part;
+        const auto wall = sweep.wall(x, of, high);
+        if (!wall) return std::numeric_limits<double>::max();
+        const double half = std::sin((wall->angle - angle) / 2);
+        return std::hypot(of - r, 2 * std::sqrt(of * r) * half);
+      };
+      int best = 1;
+      double least = to(best);
+      for (int i = 2; i <= kPlacesOfWall; ++i) {
+        const double here = to(i);
+        if (here < least) least = here, best = i;
+      }
+      std::uintmax_t steps = kNearestSteps;
+      const auto found =
+          boost::math::tools::brent_find_minima(to, best - 1.0, std::min(best + 1.0, kPlacesOfWall * 1.0), 26, steps);
+      nearest = std::min({nearest, least, found.second});
+    }
+    return nearest;
   }
 };
 
@@ -74,7 +110,7 @@ std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes,
     const WheelSweep sweep = strokes.sweep(stroke);
     Gouge worst{stroke.place, stroke.move, 0, 0};
     for (const double x : sectionsOf(stroke, blank)) {
-      const double depth = flute.gouge(sweep, x);
+      const double depth = flute.gouge(sweep, x, std::max(least, worst.depth));
       if (depth > worst.depth) worst.x = x, worst.depth = depth;
     }
     if (!(worst.depth > least)) continue;

@@ -13,7 +13,7 @@ namespace {
 
 /// Of X, over which samples are averaged: the sawtooth of odd and even points would turn the wall that is measured [m].
 constexpr double kCell = 0.2e-3;
-constexpr double kApart = 5e-6;           ///< of the positions that are kept outside strokes [m]
+constexpr double kApart = 5e-6;  ///< of the positions that are kept outside strokes; nearer ones are the same [m]
 constexpr std::size_t kPosesOfPart = 32;  ///< as many as WheelSweep looks at
 constexpr double kShortest = 1e-6;        ///< a move in which X rests counts as this long [m]
 
@@ -89,11 +89,24 @@ void RecordedStrokes::take(const Part& part, const Axes& actual) {
   if (part.move == MoveKind::kStroke) {
     if (!same) beginStroke(part.place, actual[kX]);
     in_blank_ = false;
+    if (!same && fedInBefore(part, actual)) sample(read_);
     sample(actual);
   } else {
     addPose(part, actual);
   }
   reading_ = part;
+  read_ = actual;
+}
+
+bool RecordedStrokes::fedInBefore(const Part& part, const Axes& actual) const {
+  if (!reading_ || reading_->move != MoveKind::kInfeed || !(reading_->place == part.place) ||
+      reading_->cycle + 1 != part.cycle) {
+    return false;
+  }
+  const PathDeviation before = path_->deviation(read_[kX], read_), off = path_->deviation(actual[kX], actual);
+  const double turned = radius_ * std::abs(before.a - off.a);
+  return std::max({std::abs(read_[kX] - actual[kX]), std::abs(before.y - off.y), std::abs(before.z - off.z), turned}) <
+         kApart;
 }
 
 void RecordedStrokes::beginStroke(const ToothPass& place, double x) {

@@ -129,7 +129,11 @@ TEST(RecordedStrokes, AnExactRecordIsThePlanAndKeepsEveryStroke) {
   const GrindJob job = roughing();
   const RecordedStrokes strokes = recordOf(job, kExact);
   ASSERT_EQ(strokes.strokes().size(), passDepths(job.process).size());
-  for (const RecordedStroke& stroke : strokes.strokes()) EXPECT_EQ(stroke.move, MoveKind::kStroke);
+  for (const RecordedStroke& stroke : strokes.strokes()) {
+    EXPECT_EQ(stroke.move, MoveKind::kStroke);
+    EXPECT_NEAR(stroke.range.from, -job.process.overtravel_end, 1e-12);
+    EXPECT_NEAR(stroke.range.to, job.cutter.flute_length + job.process.overtravel_shank, 1e-12);
+  }
   const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(job);
   EXPECT_EQ(cutter.flutes().front().size(), 1u);
   for (const double x : {0.0, 0.011, 0.022}) {
@@ -216,6 +220,14 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
   gouge = onlyGouge(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3)));
   EXPECT_EQ(gouge.place, (ToothPass{0, 0}));
   EXPECT_NEAR(gouge.depth, passDepths(job.process).front() + 1.6e-3 - passDepths(job.process).back(), 1e-7);
+}
+
+// Its walls are so curved that a shallower pass lies far inside of them, but beyond their tangent.
+TEST(Gouges, AShallowerPassIsNone) {
+  GrindJob job = readJobFile(SOURCE_DIR "/jobs/left_hand_d8_t3.yaml");
+  job.tooth_angles = {0};
+  EXPECT_TRUE(gougesOf(job, recordOf(job, kExact), 1e-6).empty());
+  EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);
 }
 
 TEST(Gouges, AreFoundWhereTheyAre) {

@@ -91,6 +91,8 @@ class RecordedStrokes {
   double depthOf(const RecordedStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
   void beginStroke(const ToothPass& place, double x);
+  /// Whether a stroke begins at the last position: where its infeed ended, which is the end of its path.
+  bool fedInBefore(const Part& part, const Axes& actual) const;
   void sample(const Axes& actual);
   std::vector<PathDeviation> deviations() const;
   void endStroke();
@@ -109,6 +111,7 @@ class RecordedStrokes {
   const double radius_;               ///< the largest of the blank [m]
   std::optional<Part> last_;          ///< of the last setpoint
   std::optional<Part> reading_;       ///< what the last position belongs to
+  Axes read_ = Axes::Zero();          ///< that position
   std::optional<Path> path_;          ///< of the stroke that is being read
   std::map<long, Sample> samples_;    ///< of the last stroke, by its place on X
   Range range_;                       ///< of that stroke

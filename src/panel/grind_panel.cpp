@@ -120,7 +120,9 @@ GrindPanel::GrindPanel(QWidget* parent)
 void GrindPanel::layOut() {
   auto* by_hand = new QWidget;
   auto* hand_layout = new QVBoxLayout(by_hand);
-  hand_layout->setContentsMargins(6, 6, 6, 6);
+  // The tallest tab: rviz is to fit a screen of 800 lines.
+  hand_layout->setContentsMargins(6, 4, 6, 4);
+  hand_layout->setSpacing(2);
   hand_layout->addWidget(jog_);
   hand_layout->addWidget(touch_off_);
   hand_layout->addLayout(layOutSwitches());

@@ -51,6 +51,7 @@ JogBox::JogBox(QWidget* parent)
   speeds->addWidget(rotary_speed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(2);
   layout->addWidget(new QLabel("Step"), 0, 0);
   layout->addWidget(step_, 0, 1, 1, 3);
   layout->addLayout(speeds, 1, 0, 1, 4);

@@ -44,6 +44,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setVerticalSpacing(2);
   layout->addWidget(axis_, 0, 0);
   layout->addWidget(at_, 0, 1);
   layout->addWidget(touch_, 0, 2);

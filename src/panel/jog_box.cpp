@@ -47,6 +47,7 @@ JogBox::JogBox(QWidget* parent)
   for (const double step : kSteps) step_->addItem(QString("%1 mm, deg").arg(step), step);
   step_->addItem("while pressed", kContinuous);
   auto* speeds = new QHBoxLayout;
+  speeds->setSpacing(6);
   speeds->addWidget(linear_speed_);
   speeds->addWidget(rotary_speed_);
   auto* layout = new QGridLayout(this);

@@ -1,7 +1,7 @@
 /// @file
 /// What the geometry of the ground cutter costs.
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 
 #include <benchmark/benchmark.h>

@@ -2,14 +2,14 @@
 /// What a step, a setpoint, a planned job, a simulated tool, a cycle of the control loop and a solved set-up cost.
 /// Figures per setpoint or per cycle are the item rates: 10M items/s are 100 ns each.
 
+#include "drive/simulated_drive.h"
 #include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/core/job_plan.h"
-#include "flute_grinder/core/units.h"
-#include "flute_grinder/drive/simulated_drive.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_correction.h"
 #include "flute_grinder/geometry/setup_solver.h"
+#include "flute_grinder/motion/job_plan.h"
 #include "jobs.h"
 
 #include <benchmark/benchmark.h>

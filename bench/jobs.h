@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/job_file.h"
 
 /// @file
 /// The jobs that the benchmarks measure.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Holds every room to the includes that the table in docs/architecture.md allows it, and core to the standard library, Eigen
-and yaml-cpp. No room may include one below it in the table, and the drive plugin of docs/drive-plugin.md none but drive. Prints what is
-wrong; exits with 1 if something is."""
+"""Holds every room to the includes that the table in docs/architecture.md allows it, and the core's rooms to the libraries that it
+names. No room may include one below it in the table, no header may be in include/ that only its own room includes, and the drive
+plugin of docs/drive-plugin.md may include only drive. Prints what is wrong; exits with 1 if something is."""
 
 import pathlib
 import re
@@ -10,41 +10,69 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDERS = (ROOT / 'src', ROOT / 'include/flute_grinder')
 ROW = re.compile(r'(?m)^\| `(\w+)` \|.*\| ?([^|]*?) ?\|$')
+INSTALLED = ('curve', 'drive')
 # `room`, or of a room only `some.h`, `headers.h`
 ARROW = re.compile(r'`(\w+)`(?: \(([^)]+)\))?')
-INCLUDE = re.compile(r'#include [<"](.+?)[>"]')
-OF_CORE = re.compile(r'[a-z_]+|Eigen/\w+|yaml-cpp/\w+\.h|flute_grinder/core/\w+\.h')
+INCLUDE = re.compile(r'(?m)^#include [<"](.+?)[>"]')
+CORE = ('curve', 'job', 'motion', 'machine')
+LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h'}
 
 
 def read_rooms():
     """Of the page: for each room those that it may include, with the headers that it is confined to, or None."""
     section = (ROOT / 'docs/architecture.md').read_text().split('## Rooms')[1].split('\n## ')[0]
-    return {room: {other: re.findall(r'`(\w+\.h)`', only) if only else None for other, only in ARROW.findall(arrows)}
-            for room, arrows in ROW.findall(section)}
+    rooms = {}
+    for room, arrows in ROW.findall(section):
+        arrows = re.sub('the core\\b', ', '.join('`%s`' % name for name in CORE), arrows)
+        rooms[room] = {other: re.findall(r'`(\w+\.h)`', only) if only else None for other, only in ARROW.findall(arrows)}
+        rooms[room].update({library: None for library in LIBRARIES if library in arrows})
+    return rooms
 
 
 def check_order(rooms):
     """Of the table itself: no arrow upward, and so no circle; a row for each folder."""
     order = list(rooms)
     wrong = ['docs/architecture.md: %s may not include %s, which is not above it' % (room, other)
-             for room in rooms for other in rooms[room] if other not in order[:order.index(room)]]
+             for room in rooms for other in rooms[room] if other not in LIBRARIES and other not in order[:order.index(room)]]
     folders = {path.name for folder in FOLDERS for path in folder.iterdir() if path.is_dir()}
     return wrong + ['docs/architecture.md and the folders differ in the room ' + room for room in sorted(folders ^ set(rooms))]
 
 
 def allowed(room, header, rooms):
-    if room == 'core':
-        return OF_CORE.fullmatch(header)
-    inner = re.fullmatch(r'flute_grinder/([a-z]+)/(\w+\.h)', header)
-    if not inner or inner.group(1) == room:
+    inner = re.fullmatch(r'(?:flute_grinder/)?([a-z]+)/(\w+\.h)', header)
+    if not inner or inner.group(1) not in rooms:
+        return room not in CORE or any(re.fullmatch(LIBRARIES[library], header) for library in LIBRARIES
+                                       if library in rooms[room] or library == 'the standard library')
+    if inner.group(1) == room:
         return True
+    if not header.startswith('flute_grinder/'):
+        return False
     other, name = inner.groups()
     return other in rooms[room] and name in (rooms[room][other] or [name])
 
 
+def check_private():
+    """No header stands in include/ that only its own room's files include, unless it is installed."""
+    sources = [path for folder in (*FOLDERS, ROOT / 'bench') for path in folder.rglob('*') if path.suffix in ('.h', '.cpp')]
+    users = {}
+    for path in sources:
+        for header in INCLUDE.findall(path.read_text()):
+            users.setdefault(header, set()).add(path)
+    def room_of(path):
+        return path.relative_to(ROOT).parts[-2]
+    wrong = []
+    for path in sorted(FOLDERS[1].rglob('*.h')):
+        header = str(path.relative_to(ROOT / 'include'))
+        used_by = users.get(header, set())
+        if room_of(path) in INSTALLED or any(room_of(user) != room_of(path) or FOLDERS[1] in user.parents for user in used_by):
+            continue
+        wrong.append('%s: only its own room includes it; it belongs beside its source' % path.relative_to(ROOT))
+    return wrong
+
+
 def main():
     rooms = read_rooms()
-    wrong = check_order(rooms)
+    wrong = check_order(rooms) + check_private()
     for folder in FOLDERS:
         for path in sorted(folder.rglob('*')):
             room = path.relative_to(folder).parts[0]

@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/arguments.h"
+#include "cli/arguments.h"
 
-#include "flute_grinder/cli/completion.h"
-#include "flute_grinder/cli/machine_file.h"
-#include "flute_grinder/cli/offsets.h"
+#include "cli/completion.h"
+#include "cli/machine_file.h"
+#include "cli/offsets.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
-#include "flute_grinder/cli/commands.h"
+#include "cli/commands.h"
 
-#include "flute_grinder/cli/online.h"
+#include "cli/online.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/cli/completion.h"
+#include "cli/completion.h"
 
 #include <algorithm>
 #include <sstream>

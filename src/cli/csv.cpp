@@ -1,6 +1,6 @@
-#include "flute_grinder/cli/csv.h"
+#include "cli/csv.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <fcntl.h>
 #include <unistd.h>

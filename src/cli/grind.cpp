@@ -1,9 +1,9 @@
-#include "flute_grinder/cli/commands.h"
-#include "flute_grinder/cli/completion.h"
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/cli/online.h"
-#include "flute_grinder/cli/state_watch.h"
-#include "flute_grinder/cli/usage.h"
+#include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/csv.h"
+#include "cli/online.h"
+#include "cli/state_watch.h"
+#include "cli/usage.h"
 #include "flute_grinder/connection/init_ros.h"
 
 #include <ros/ros.h>

@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/ground_tool.h"
+#include "cli/ground_tool.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/section_outline.h"
+#include "flute_grinder/job/format.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ using namespace units;
 constexpr int kVolumeSections = 12;
 constexpr std::size_t kOutlineRings = 32;
 constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth together
-constexpr double kLeastGouge = 1e-6;          ///< below that it is the averaging of positions [m]
+constexpr double kMinGouge = 1e-6;            ///< below that it is the averaging of positions [m]
 constexpr double kBadGouge = 10e-6;           ///< above that it is not the following error alone [m]
 
 /// A tooth in a section.
@@ -312,7 +312,7 @@ GroundTool measure(const GrindJob& job, const std::string& source, const Recorde
   GroundTool tool = measure(job, source, strokes.cutter(), at);
   tool.recorded = true;
   tool.strokes = strokes.strokes();
-  tool.gouges = gougesOf(job, strokes, kLeastGouge);
+  tool.gouges = gougesOf(job, strokes, kMinGouge);
   if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
   return tool;
 }

@@ -1,11 +1,11 @@
-#include "flute_grinder/cli/history.h"
+#include "cli/history.h"
 
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/time_text.h"
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/record_name.h"
+#include "cli/csv.h"
+#include "cli/json_output.h"
+#include "cli/time_text.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/record_name.h"
 
 #include <ros/names.h>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/cli/interrupt.h"
+#include "cli/interrupt.h"
 
 #include <atomic>
 #include <csignal>

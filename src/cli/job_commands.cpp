@@ -1,12 +1,12 @@
-#include "flute_grinder/cli/arguments.h"
-#include "flute_grinder/cli/commands.h"
-#include "flute_grinder/cli/completion.h"
-#include "flute_grinder/cli/history.h"
-#include "flute_grinder/cli/offline.h"
-#include "flute_grinder/cli/online.h"
-#include "flute_grinder/cli/report.h"
-#include "flute_grinder/cli/setup.h"
-#include "flute_grinder/cli/simulate.h"
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/history.h"
+#include "cli/offline.h"
+#include "cli/online.h"
+#include "cli/report.h"
+#include "cli/setup.h"
+#include "cli/simulate.h"
 
 #include <memory>
 
@@ -65,7 +65,7 @@ void addSimulate(Commands& commands) {
       ->excludes(at)
       ->check([](const std::string& text) {
         const long value = std::strtol(text.c_str(), nullptr, 10);
-        return value >= 2 && value <= kMostSections ? "" : text + "; allowed: 2 to " + std::to_string(kMostSections);
+        return value >= 2 && value <= kMaxSections ? "" : text + "; allowed: 2 to " + std::to_string(kMaxSections);
       });
   addCsv(command, options->csv, "write the figures of every section and tooth to this file");
   command.add_option("--stl", options->stl, "write the cutter as a solid to this file, in mm")->type_name(kAnyFile);

@@ -1,7 +1,7 @@
-#include "flute_grinder/cli/json_output.h"
+#include "cli/json_output.h"
 
-#include "flute_grinder/cli/state_watch.h"
-#include "flute_grinder/core/units.h"
+#include "cli/state_watch.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 

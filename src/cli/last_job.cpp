@@ -1,7 +1,7 @@
-#include "flute_grinder/cli/last_job.h"
+#include "cli/last_job.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/messages/conversions.h"
 
 namespace flute_grinder {

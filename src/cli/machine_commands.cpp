@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/arguments.h"
-#include "flute_grinder/cli/commands.h"
-#include "flute_grinder/cli/offsets.h"
-#include "flute_grinder/cli/online.h"
-#include "flute_grinder/core/feed_schedule.h"
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/offsets.h"
+#include "cli/online.h"
+#include "flute_grinder/motion/feed_schedule.h"
 
 #include <map>
 #include <memory>

@@ -1,7 +1,7 @@
-#include "flute_grinder/cli/machine_file.h"
+#include "cli/machine_file.h"
 
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/core/yaml_text.h"
+#include "flute_grinder/job/yaml_text.h"
 
 #include <ros/package.h>
 

@@ -1,13 +1,13 @@
-#include "flute_grinder/cli/offline.h"
+#include "cli/offline.h"
 
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/machine_file.h"
+#include "cli/csv.h"
+#include "cli/json_output.h"
+#include "cli/machine_file.h"
 #include "flute_grinder/collision/job_collision.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/step_table.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/step_table.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
 #include <vector>
@@ -60,7 +60,8 @@ void writeCsv(const StepTable& table, const std::string& path) {
 int runTable(const TableOptions& options) {
   const GrindJob job = readJobFile(options.job);
   const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
-  const StepTable table = interpolateBySteps(job, rule, options.step_length_mm * kMillimetre);
+  const StepTable table = interpolateBySteps(ConicalCutter(job.cutter), job.interpolation.rotary_scale, rule,
+                                             options.step_length_mm * kMillimetre);
   if (!table.complete) {
     std::fprintf(stderr, "--step-length %g mm is too long for this curve at X = %g mm\n", options.step_length_mm,
                  table.rows.back().point.x / kMillimetre);

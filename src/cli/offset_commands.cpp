@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/arguments.h"
-#include "flute_grinder/cli/commands.h"
-#include "flute_grinder/cli/completion.h"
-#include "flute_grinder/cli/offsets.h"
-#include "flute_grinder/cli/probe.h"
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/offsets.h"
+#include "cli/probe.h"
 
 #include <memory>
 

@@ -1,15 +1,15 @@
-#include "flute_grinder/cli/offsets.h"
+#include "cli/offsets.h"
 
+#include "cli/call.h"
+#include "cli/json_output.h"
+#include "cli/offset_watch.h"
+#include "cli/time_text.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/cli/call.h"
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/offset_watch.h"
-#include "flute_grinder/cli/time_text.h"
 #include "flute_grinder/connection/user_at_host.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "flute_grinder/cli/progress_bar.h"
+#include "cli/progress_bar.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -17,8 +17,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr std::size_t kShortestBar = 12, kLongestBar = 32;  ///< with its brackets
-constexpr std::size_t kAnyWidth = 1000;                     ///< of a line in a file
+constexpr std::size_t kMinBar = 12, kMaxBar = 32;  ///< with its brackets
+constexpr std::size_t kAnyWidth = 1000;            ///< of a line in a file
 constexpr const char* kSeparator = "  ";
 constexpr const char* kClearLine = "\r\x1b[K";
 
@@ -67,7 +67,7 @@ double fraction(const GrindFeedback& f) { return planning(f) ? f.planned : f.job
 constexpr int kBarRank = 5;
 
 std::vector<Part> partsOf(const GrindFeedback& f, int teeth, int passes) {
-  const Part room_for_bar{kBarRank, std::string(kShortestBar, ' ')};
+  const Part room_for_bar{kBarRank, std::string(kMinBar, ' ')};
   if (planning(f)) return {room_for_bar, {0, format("planning %.0f %%", f.planned * 100)}};
   return {room_for_bar,
           {0, format("%3.0f %%", f.job_fraction * 100)},
@@ -84,8 +84,8 @@ std::string progressLine(const GrindFeedback& f, int teeth, int passes, std::siz
   const auto lower = [](const Part& a, const Part& b) { return a.rank < b.rank; };
   while (length(parts) > width && parts.size() > 1) parts.erase(std::max_element(parts.begin(), parts.end(), lower));
   if (parts.front().rank == kBarRank) {
-    const std::size_t room = width - length(parts) + kShortestBar;
-    parts.front().text = bar(fraction(f), std::min(room, kLongestBar));
+    const std::size_t room = width - length(parts) + kMinBar;
+    parts.front().text = bar(fraction(f), std::min(room, kMaxBar));
   }
   std::string line;
   for (const Part& part : parts) line += (line.empty() ? "" : kSeparator) + part.text;

@@ -1,6 +1,6 @@
-#include "flute_grinder/cli/recorder.h"
+#include "cli/recorder.h"
 
-#include "flute_grinder/cli/state_watch.h"
+#include "cli/state_watch.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>

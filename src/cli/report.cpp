@@ -1,10 +1,10 @@
-#include "flute_grinder/cli/report.h"
+#include "cli/report.h"
 
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/cli/history.h"
-#include "flute_grinder/cli/machine_file.h"
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/regular_file.h"
+#include "cli/csv.h"
+#include "cli/history.h"
+#include "cli/machine_file.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/regular_file.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

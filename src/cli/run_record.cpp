@@ -1,10 +1,10 @@
-#include "flute_grinder/cli/run_record.h"
+#include "cli/run_record.h"
 
+#include "cli/csv.h"
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/SetpointBatch.h"
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/core/regular_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/regular_file.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <rosbag/bag.h>

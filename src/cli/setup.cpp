@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/setup.h"
+#include "cli/setup.h"
 
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/machine_file.h"
-#include "flute_grinder/core/units.h"
+#include "cli/json_output.h"
+#include "cli/machine_file.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"

@@ -1,14 +1,14 @@
-#include "flute_grinder/cli/simulate.h"
+#include "cli/simulate.h"
 
-#include "flute_grinder/cli/ground_tool.h"
-#include "flute_grinder/cli/report.h"
-#include "flute_grinder/cli/run_record.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "cli/ground_tool.h"
+#include "cli/report.h"
+#include "cli/run_record.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
 #include "flute_grinder/geometry/stl.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <cerrno>
 #include <cmath>

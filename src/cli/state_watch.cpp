@@ -1,6 +1,6 @@
-#include "flute_grinder/cli/state_watch.h"
+#include "cli/state_watch.h"
 
-#include "flute_grinder/core/machine_state.h"
+#include "flute_grinder/machine/machine_state.h"
 
 namespace flute_grinder {
 

@@ -1,7 +1,7 @@
-#include "flute_grinder/cli/stop_keys.h"
+#include "cli/stop_keys.h"
 
+#include "cli/interrupt.h"
 #include "flute_grinder/Stop.h"
-#include "flute_grinder/cli/interrupt.h"
 
 #include <utility>
 

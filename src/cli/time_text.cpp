@@ -1,4 +1,4 @@
-#include "flute_grinder/cli/time_text.h"
+#include "cli/time_text.h"
 
 #include <array>
 #include <ctime>

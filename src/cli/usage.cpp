@@ -1,6 +1,6 @@
-#include "flute_grinder/cli/usage.h"
+#include "cli/usage.h"
 
-#include "flute_grinder/core/did_you_mean.h"
+#include "flute_grinder/job/did_you_mean.h"
 
 #include <algorithm>
 #include <vector>

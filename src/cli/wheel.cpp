@@ -1,14 +1,14 @@
-#include "flute_grinder/cli/wheel.h"
+#include "cli/wheel.h"
 
-#include "flute_grinder/cli/csv.h"
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/machine_file.h"
+#include "cli/csv.h"
+#include "cli/json_output.h"
+#include "cli/machine_file.h"
 #include "flute_grinder/connection/user_at_host.h"
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/job_edit.h"
-#include "flute_grinder/core/units.h"
-#include "flute_grinder/core/wheel_file.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_edit.h"
+#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
-#include "flute_grinder/cli/arguments.h"
-#include "flute_grinder/cli/commands.h"
-#include "flute_grinder/cli/completion.h"
-#include "flute_grinder/cli/wheel.h"
-#include "flute_grinder/cli/zeros.h"
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/completion.h"
+#include "cli/wheel.h"
+#include "cli/zeros.h"
 
 #include <memory>
 

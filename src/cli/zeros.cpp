@@ -1,14 +1,14 @@
-#include "flute_grinder/cli/zeros.h"
+#include "cli/zeros.h"
 
-#include "flute_grinder/cli/json_output.h"
-#include "flute_grinder/cli/machine_file.h"
-#include "flute_grinder/cli/offsets.h"
-#include "flute_grinder/cli/online.h"
-#include "flute_grinder/cli/state_watch.h"
+#include "cli/json_output.h"
+#include "cli/machine_file.h"
+#include "cli/offsets.h"
+#include "cli/online.h"
+#include "cli/state_watch.h"
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
-#include "flute_grinder/core/wheel_file.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/offset_basis.h"
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "flute_grinder/collision/closest_search.h"
+#include "collision/closest_search.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "flute_grinder/collision/collision_check.h"
 
-#include "flute_grinder/collision/closest_search.h"
+#include "collision/closest_search.h"
 
 #include <algorithm>
 #include <cmath>

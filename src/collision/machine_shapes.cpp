@@ -1,7 +1,7 @@
 #include "flute_grinder/collision/machine_shapes.h"
 
 #include "flute_grinder/collision/joint_pose.h"
-#include "flute_grinder/core/axes.h"
+#include "flute_grinder/job/axes.h"
 
 #include <urdf_parser/urdf_parser.h>
 

@@ -12,11 +12,11 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kSmallest = kSmallestFigure;
-constexpr double kLargest = kLargestFigure;
+constexpr double kSmallest = kMinFigure;
+constexpr double kLargest = kMaxFigure;
 /// Twice the period at which the panel repeats its messages [s].
-constexpr double kShortestJogTimeout = 0.05;
-constexpr double kSmallestBall = 1e-4, kLargestBall = 0.02;  ///< diameter of a probe's [m]
+constexpr double kMinJogTimeout = 0.05;
+constexpr double kMinBall = 1e-4, kMaxBall = 0.02;  ///< diameter of a probe's [m]
 
 /// One kind of limit, with its names in ros_control.
 struct LimitName {
@@ -131,7 +131,7 @@ MachineGeometry readMachineGeometry(const ParameterReader& p) {
   if (p.has("geometry/probe")) {
     geometry.probe.emplace();
     geometry.probe->centre = {place("probe/x"), place("probe/y"), place("probe/z")};
-    geometry.probe->diameter = p.number("geometry/probe/diameter", kSmallestBall, kLargestBall);
+    geometry.probe->diameter = p.number("geometry/probe/diameter", kMinBall, kMaxBall);
   }
   return geometry;
 }
@@ -148,7 +148,7 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.spindle_timeout = p.number("spindle_timeout", 0, 600);
   config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
   config.machine.collision_clearance = p.number("collision_clearance", 0, 1);
-  config.jog_timeout = p.number("jog_timeout", kShortestJogTimeout, 1);
+  config.jog_timeout = p.number("jog_timeout", kMinJogTimeout, 1);
   config.geometry = readMachineGeometry(p);
   config.probing.slow = p.number("probing/slow", kSmallest, 1);
   config.probing.touches = readTouches(p);

@@ -59,11 +59,11 @@ RequestReply RequestBox::request(MachineEvent event) {
 std::optional<RequestReply> RequestBox::reply() { return toReply(requests_.reply()); }
 
 RequestReply RequestBox::confirmSwivel(double angle) {
-  if (!(std::abs(angle) <= kLargestSwivel)) {
+  if (!(std::abs(angle) <= kMaxSwivel)) {
     const auto degrees = [](double value) { return text({value, Unit::kRadian}, UnitSystem::kShop); };
     return {false,
-            "confirm-swivel refused: " + degrees(angle) + "; allowed: -" + degrees(kLargestSwivel) + " to " +
-                degrees(kLargestSwivel),
+            "confirm-swivel refused: " + degrees(angle) + "; allowed: -" + degrees(kMaxSwivel) + " to " +
+                degrees(kMaxSwivel),
             true};
   }
   return ask(

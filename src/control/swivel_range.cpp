@@ -1,6 +1,6 @@
 #include "flute_grinder/control/swivel_range.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/drive/parameters.h"
 
 #include <urdf/model.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/drive/hal_component.h"
+#include "drive/hal_component.h"
 
 #include "flute_grinder/drive/parameters.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 /// Key of HAL's own shared memory; hal_init() would create the memory if HAL is not running.
 constexpr int kHalKey = 0x48414C32;
-constexpr int kLargestId = 1 << 16;
+constexpr int kMaxId = 1 << 16;
 constexpr const char* kProcessPin = "process";
 
 const char* typeName(hal_type_t type) {
@@ -70,7 +70,7 @@ void HalComponent::removeDead(int reason) {
   helper_ = hal_init((name_ + '-' + std::to_string(getpid())).c_str());
   if (helper_ < 0) throw ParameterError("HAL takes no component '" + name_ + "': " + std::strerror(-reason));
   int other = 1;
-  for (const char* name = ""; other < kLargestId; ++other) {
+  for (const char* name = ""; other < kMaxId; ++other) {
     name = hal_comp_name(other);
     if (name && name == name_) break;
   }
@@ -78,7 +78,7 @@ void HalComponent::removeDead(int reason) {
   hal_type_t type = HAL_TYPE_UNSPECIFIED;
   hal_data_u* process = nullptr;
   const std::string pin = name_ + '.' + kProcessPin;
-  if (other == kLargestId || hal_get_pin_value_by_name(pin.c_str(), &type, &process, nullptr) != 0) {
+  if (other == kMaxId || hal_get_pin_value_by_name(pin.c_str(), &type, &process, nullptr) != 0) {
     throw ParameterError(taken + ", and it is not a grinder's; allowed: another name");
   }
   if (kill(process->s, 0) == 0 || errno != ESRCH) {

@@ -1,6 +1,6 @@
-#include "flute_grinder/drive/hal_fifo.h"
+#include "drive/hal_fifo.h"
 
-#include "flute_grinder/drive/hal_component.h"
+#include "drive/hal_component.h"
 #include "flute_grinder/drive/parameters.h"
 
 #include <rtapi.h>

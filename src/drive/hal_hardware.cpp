@@ -1,4 +1,4 @@
-#include "flute_grinder/drive/hal_hardware.h"
+#include "drive/hal_hardware.h"
 
 #include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/drive/parameters.h"
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kResetCycles = 100;    ///< length of the reset pulse, so every servo cycle and drive sees it
 constexpr int kNapsPerCycle = 4;     ///< checks of the FIFO per period
-constexpr int kLongestWait = 10;     ///< periods after which a cycle starts even if HAL plays nothing
+constexpr int kMaxWait = 10;         ///< periods after which a cycle starts even if HAL plays nothing
 constexpr double kRateError = 1e-3;  ///< relative difference allowed between HAL's thread and the control loop
 
 void nap(std::int64_t nanoseconds) {
@@ -190,7 +190,7 @@ void HalHardware::send() {
 ros::Duration HalHardware::wait(const ros::Duration& period) {
   if (!*pins_->enabled || !*pins_->enable) return RobotHW::wait(period);
   const std::int64_t time = period.toNSec() / kNapsPerCycle;
-  for (int naps = 0; naps < kNapsPerCycle * kLongestWait; ++naps) {
+  for (int naps = 0; naps < kNapsPerCycle * kMaxWait; ++naps) {
     if (waiting() < buffer_ || !*pins_->enabled) break;
     nap(time);
   }

@@ -1,6 +1,6 @@
-#include "flute_grinder/drive/simulated_drive.h"
+#include "drive/simulated_drive.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/drive/parameters.h"
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/ground_cutter.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/ground_job.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ class Checker {
   explicit Checker(const GrindJob& job) : job_(job) {}
 
   void check(const GroundSection& section) {
-    if (!(section.core_radius > kLeastCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
+    if (!(section.core_radius > kMinCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
       const ToothSection& tooth = section.teeth[i];
       const int number = static_cast<int>(i);

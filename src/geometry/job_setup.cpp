@@ -1,9 +1,9 @@
 #include "flute_grinder/geometry/job_setup.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/job_fields.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kSections = 8;
-constexpr int kMostSolves = 16;               ///< for a depth with which the taper toward the flute's end agrees
-constexpr int kMostLengthenings = 4;          ///< of the overtravel
+constexpr int kMaxSolves = 16;                ///< for a depth with which the taper toward the flute's end agrees
+constexpr int kMaxLengthenings = 4;           ///< of the overtravel
 constexpr double kRoom = 0.02;                ///< of the flute's length, for a law of Z
 constexpr double kSameDepth = 0.3e-6;         ///< [m]
 constexpr double kNear = 3 * units::kDegree;  ///< within which the swivel of a slightly other depth is
@@ -130,7 +130,7 @@ std::optional<std::variant<SolvedSetup, SetupRefusal>> solveTapered(const GrindJ
   const auto agrees = [&](const SolvedSetup& found) { return std::abs(found.depth - depth) <= kSameDepth; };
   const Range whole{request.least_swivel, request.largest_swivel};
   auto result = solve(whole);
-  for (int i = 0; i < kMostSolves; ++i) {
+  for (int i = 0; i < kMaxSolves; ++i) {
     const auto* found = std::get_if<SolvedSetup>(&result);
     if (!found || agrees(*found)) break;
     depth = found->depth;
@@ -274,7 +274,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
         continue;
       }
       measure(setup);
-      if (i == kMostLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
+      if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
   } catch (const core::ReasonError& error) {
     return core::text(error.reason(), UnitSystem::kShop);

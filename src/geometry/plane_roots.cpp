@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/plane_roots.h"
+#include "geometry/plane_roots.h"
 
 #include <boost/math/tools/toms748_solve.hpp>
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/rake_correction.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <Eigen/Dense>
 
@@ -10,7 +10,7 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kPieces[] = {4, 8, ZCorrection::kMostPieces};
+constexpr int kPieces[] = {4, 8, ZCorrection::kMaxPieces};
 constexpr int kCorrectedSections = 48;  ///< in which the rake is made right
 constexpr int kSteps = 6;               ///< of Newton's method, for one number of pieces
 constexpr double kGoodEnough = 0.001 * units::kDegree;

@@ -1,8 +1,8 @@
 #include "flute_grinder/geometry/rake_touch.h"
 
-#include "flute_grinder/core/reason.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/reason.h"
 
 #include <boost/math/tools/minima.hpp>
 

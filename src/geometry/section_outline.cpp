@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/section_outline.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <boost/math/tools/toms748_solve.hpp>
 
@@ -84,9 +84,9 @@ class Outliner {
     for (const Flute& flute : cutter.flutes()) walls_.emplace_back(cutter, flute, x, blank_radius);
     for (std::size_t i = 0; i < grid.teeth; ++i) {
       if (!walls(i).empty()) cut_.push_back(i);
-      if (walls(i).core() >= kLeastCore) continue;
+      if (walls(i).core() >= kMinCore) continue;
       std::ostringstream text;
-      text << "core radius = " << walls(i).core() << " m at x = " << x << " m; allowed: from " << kLeastCore << " m";
+      text << "core radius = " << walls(i).core() << " m at x = " << x << " m; allowed: from " << kMinCore << " m";
       throw std::invalid_argument(text.str());
     }
   }

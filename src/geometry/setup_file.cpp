@@ -1,8 +1,8 @@
 #include "flute_grinder/geometry/setup_file.h"
 
-#include "flute_grinder/core/flat_file.h"
-#include "flute_grinder/core/job_fields.h"
 #include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/job_fields.h"
 
 #include <system_error>
 

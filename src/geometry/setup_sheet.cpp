@@ -1,8 +1,8 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/format.h"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 #include "flute_grinder/geometry/setup_solver.h"
 
-#include "flute_grinder/core/units.h"
-#include "flute_grinder/geometry/even_rake.h"
-#include "flute_grinder/geometry/plane_roots.h"
-#include "flute_grinder/geometry/setup_trial.h"
+#include "flute_grinder/curve/units.h"
+#include "geometry/even_rake.h"
+#include "geometry/plane_roots.h"
+#include "geometry/setup_trial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +22,10 @@ constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns 
 constexpr int kFinerOnLine = 32;                       ///< where one unknown is looked for
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr int kFaceSteps = 64;
-constexpr double kLeastDepth = 0.02, kMostDepth = 0.98;  ///< of the deepest one
+constexpr double kMinDepth = 0.02, kMaxDepth = 0.98;  ///< of the deepest one
 constexpr int kDepthSteps = 48;
 constexpr double kQuarter = units::kPi / 2;
-constexpr int kLeastColumns = 4;
+constexpr int kMinColumns = 4;
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
 constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
@@ -126,9 +126,9 @@ class Search {
 
   Unknowns unknowns(double least_swivel, double largest_swivel) const {
     const int columns = static_cast<int>(std::ceil((largest_swivel - least_swivel) / kSwivelStep));
-    const SearchRange swivels{least_swivel, largest_swivel, std::max(kLeastColumns, columns)};
+    const SearchRange swivels{least_swivel, largest_swivel, std::max(kMinColumns, columns)};
     const SearchRange faces{-1, 1, kFaceSteps};
-    const SearchRange depths{kLeastDepth * trial_.deepest(), kMostDepth * trial_.deepest(), kDepthSteps};
+    const SearchRange depths{kMinDepth * trial_.deepest(), kMaxDepth * trial_.deepest(), kDepthSteps};
     const SearchRange line{least_swivel, largest_swivel, kFinerOnLine * swivels.steps};
     const SearchRange face_line{-1, 1, kFinerOnLine * kFaceSteps};
     const double swivel = request_.kept.swivel, height = request_.kept.height, depth = request_.depth;

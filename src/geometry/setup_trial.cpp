@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/setup_trial.h"
+#include "geometry/setup_trial.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/stl.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <Eigen/Geometry>
 

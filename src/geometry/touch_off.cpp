@@ -1,9 +1,9 @@
 #include "flute_grinder/geometry/touch_off.h"
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/quantity.h"
-#include "flute_grinder/core/wheel_file.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "flute_grinder/geometry/wheel_sweep.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNotReached = -kInfinite;
-constexpr int kLeastPoses = 32, kMostPoses = 512;  ///< of a window, from which an extremum is refined
+constexpr int kMinPoses = 32, kMaxPoses = 512;  ///< of a window, from which an extremum is refined
 constexpr double kPoseTurn = 0.1;  ///< of the cutter between two poses; or the wheel's rise, of the cutter's radius
 constexpr int kAnglesPerPose = 8;  ///< from which the wheel's deepest place on a circle is refined
 constexpr std::uintmax_t kMaxPoseSteps = 60;
@@ -163,7 +163,7 @@ int WheelSweep::posesOf(double x, const Window& w) const noexcept {
   const double turn = std::abs(curve_.delta(w.from, w.to - w.from));
   const double rise = std::abs(z_per_x_ - sin_ / cos_) * (w.to - w.from) / (radius_ * curve_.u(x));
   const double poses = std::ceil(std::max(turn, rise) / kPoseTurn);
-  return poses < kMostPoses ? std::max(kLeastPoses, static_cast<int>(poses)) : kMostPoses;
+  return poses < kMaxPoses ? std::max(kMinPoses, static_cast<int>(poses)) : kMaxPoses;
 }
 
 std::optional<WheelSweep::Window> WheelSweep::window(double x, double r) const noexcept {
@@ -216,7 +216,7 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
   // The largest end of the arcs, or the least by its negative.
   const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
   const int poses = posesOf(x, window);
-  std::array<double, kMostPoses + 1> value;
+  std::array<double, kMaxPoses + 1> value;
   const double step = (window.to - window.from) / poses;
   for (int i = 0; i <= poses; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
   const auto first = std::max_element(value.begin(), value.begin() + poses + 1);

@@ -1,6 +1,6 @@
 #include "flute_grinder/messages/conversions.h"
 
-#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/messages/sha256.h"
 
 #include <ros/serialization.h>

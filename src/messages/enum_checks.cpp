@@ -2,11 +2,11 @@
 // in capitals, and there must be no others. All checks are made at compile time.
 
 #include "flute_grinder/PathStatistics.h"
-#include "flute_grinder/core/enum_table.h"
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/machine_state.h"
-#include "flute_grinder/core/setpoint.h"
-#include "flute_grinder/core/work_offsets.h"
+#include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/motion/setpoint.h"
+#include "flute_grinder/motion/work_offsets.h"
 #include "message_texts.h"
 
 #include <string_view>

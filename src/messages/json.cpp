@@ -1,7 +1,7 @@
 #include "flute_grinder/messages/json.h"
 
-#include "flute_grinder/core/job_fields.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
 #include <type_traits>

@@ -1,9 +1,9 @@
 #include "flute_grinder/messages/offset_basis.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/job_fields.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/sha256.h"
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/crash_guard.h"
+#include "node/crash_guard.h"
 
 #include <atomic>
 #include <csignal>

@@ -1,6 +1,6 @@
-#include "flute_grinder/node/diagnostics.h"
+#include "node/diagnostics.h"
 
-#include "flute_grinder/node/cycle_figures.h"
+#include "node/cycle_figures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/disk_thread.h"
+#include "node/disk_thread.h"
 
 #include <chrono>
 #include <condition_variable>

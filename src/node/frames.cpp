@@ -1,4 +1,4 @@
-#include "flute_grinder/node/frames.h"
+#include "node/frames.h"
 
 #include "flute_grinder/collision/joint_pose.h"
 

@@ -1,8 +1,8 @@
-#include "flute_grinder/node/grinder_node.h"
+#include "node/grinder_node.h"
 
 #include "flute_grinder/drive/export_drive.h"
-#include "flute_grinder/node/crash_guard.h"
-#include "flute_grinder/node/plugin_abi.h"
+#include "node/crash_guard.h"
+#include "node/plugin_abi.h"
 
 #include <chrono>
 #include <thread>
@@ -42,7 +42,7 @@ void checkAbi(const std::string& parameter, const std::string& library) {
 }
 
 const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
-constexpr double kLargestHistory = 1e12;  ///< [bytes]
+constexpr double kMaxHistory = 1e12;  ///< [bytes]
 
 /// A kept file; if the parameter is a folder, the file in it named after the node.
 std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
@@ -69,12 +69,12 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
-  const auto history_limit = static_cast<std::uint64_t>(parameters.number("history_limit", 0, kLargestHistory));
+  const auto history_limit = static_cast<std::uint64_t>(parameters.number("history_limit", 0, kMaxHistory));
   history_ = std::make_unique<History>(filePath(parameters.text("history"), name, "/"), history_limit);
   Axes offset_change_limit;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
-    offset_change_limit[axis] = parameters.number("offset_change_limit/" + joint, 0, 2 * kLargestOffset);
+    offset_change_limit[axis] = parameters.number("offset_change_limit/" + joint, 0, 2 * kMaxOffset);
   }
   loadDrive(parameters);
   const MachineInfo machine = machineInfo(config, parameters.text("hardware/type"));
@@ -83,16 +83,16 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ =
       std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine, thresholds, urdf);
-  stops_ = std::make_unique<StopDesk>(private_nh_, *loop_, gate_);
+  stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
   telemetry_->start();
-  requests_ = std::make_unique<RequestDesk>(private_nh_, *loop_, gate_);
-  offset_desk_ = std::make_unique<OffsetDesk>(private_nh_, *loop_, gate_, *offsets_,
-                                              offsetLimits(config.machine.limits, offset_change_limit));
-  probes_ = std::make_unique<ProbeDesk>(private_nh_, *loop_, gate_);
-  plans_ = std::make_unique<PlanDesk>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
-  goals_ = std::make_unique<GoalDesk>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
+  requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
+  offset_desk_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
+                                                offsetLimits(config.machine.limits, offset_change_limit));
+  probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_);
+  plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
+  goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }

@@ -1,7 +1,7 @@
-#include "flute_grinder/node/history.h"
+#include "node/history.h"
 
-#include "flute_grinder/core/record_name.h"
 #include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/job/record_name.h"
 
 #include <ros/console.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostWaiting = 16;  ///< records, while the disk does not answer
+constexpr int kMaxWaiting = 16;  ///< records, while the disk does not answer
 
 }  // namespace
 
@@ -80,7 +80,7 @@ void History::keep(const std::string& name, std::function<std::string()> text) {
   std::uint64_t drops = 0;
   {
     const std::lock_guard<std::mutex> lock(folder_->mutex);
-    if (folder_->waiting >= kMostWaiting) {
+    if (folder_->waiting >= kMaxWaiting) {
       // Not logged: the output may be a file on the same disk.
       folder_->error = "history " + folder_->path.string() + ": the disk does not answer";
       ++folder_->dropped;

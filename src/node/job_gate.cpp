@@ -1,4 +1,4 @@
-#include "flute_grinder/node/job_gate.h"
+#include "node/job_gate.h"
 
 #include <utility>
 

@@ -1,10 +1,10 @@
-#include "flute_grinder/node/job_record.h"
+#include "node/job_record.h"
 
-#include "flute_grinder/core/record_name.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/node/cycle_figures.h"
+#include "node/cycle_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using namespace units;
 
 constexpr double kMillisecond = 1e-3;
-constexpr std::size_t kMostEntries = 10000;  ///< of holds and of overrides; a client may make any number
+constexpr std::size_t kMaxEntries = 10000;  ///< of holds and of overrides; a client may make any number
 constexpr const char* kNoEnd = "the grinder's program ended before the job did";
 
 bool isHeld(MachineState state) {
@@ -93,7 +93,7 @@ void JobRecord::addToHold(const CycleRecord& record) {
 
 template <typename Entry>
 bool JobRecord::hasRoom(const std::vector<Entry>& list) {
-  if (list.size() < kMostEntries) return true;
+  if (list.size() < kMaxEntries) return true;
   ++omitted_;
   return false;
 }

@@ -1,6 +1,6 @@
-#include "flute_grinder/node/job_recorder.h"
+#include "node/job_recorder.h"
 
-#include "flute_grinder/core/record_name.h"
+#include "flute_grinder/job/record_name.h"
 
 #include <utility>
 

@@ -1,6 +1,6 @@
-#include "flute_grinder/node/journal.h"
+#include "node/journal.h"
 
-#include "flute_grinder/node/yaml_fields.h"
+#include "node/yaml_fields.h"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/machine_info.h"
+#include "node/machine_info.h"
 
 #include "flute_grinder/control/loop_config.h"
 

@@ -2,10 +2,10 @@
 #include "flute_grinder/connection/master_watch.h"
 #include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/realtime.h"
-#include "flute_grinder/core/machine_state.h"
-#include "flute_grinder/node/grinder_node.h"
-#include "flute_grinder/node/output.h"
-#include "flute_grinder/node/own_address.h"
+#include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/network/own_address.h"
+#include "node/grinder_node.h"
+#include "node/output.h"
 
 #include <ros/ros.h>
 

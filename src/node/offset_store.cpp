@@ -1,6 +1,6 @@
-#include "flute_grinder/node/offset_store.h"
+#include "node/offset_store.h"
 
-#include "flute_grinder/node/yaml_fields.h"
+#include "node/yaml_fields.h"
 
 #include <limits>
 #include <optional>
@@ -55,8 +55,8 @@ void requireSound(const core::WorkOffsets& offsets) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const core::WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
-    requireAllowed(!isKnown(offset) || std::abs(offset.value) <= kLargestOffset, joint + "_" + axisUnit(axis),
-                   offset.value, "-1000 to 1000");
+    requireAllowed(!isKnown(offset) || std::abs(offset.value) <= kMaxOffset, joint + "_" + axisUnit(axis), offset.value,
+                   "-1000 to 1000");
     requireAllowed(offset.set_at >= 0 && offset.set_at <= kLatest, joint + "_set_at", offset.set_at, "0 to 4e9");
     visitBasis(offset.basis, joint, [](const std::string& key, const auto& value) {
       if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>) {

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/output.h"
+#include "node/output.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/planner.h"
+#include "node/planner.h"
 
 #include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/geometry/ground_job.h"

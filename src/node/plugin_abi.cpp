@@ -1,4 +1,4 @@
-#include "flute_grinder/node/plugin_abi.h"
+#include "node/plugin_abi.h"
 
 #include <dlfcn.h>
 #include <link.h>

@@ -1,6 +1,6 @@
-#include "flute_grinder/node/progress_tracker.h"
+#include "node/progress_tracker.h"
 
-#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/served_queue.h"
+#include "node/served_queue.h"
 
 #include <boost/make_shared.hpp>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/telemetry.h"
+#include "node/telemetry.h"
 
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/messages/conversions.h"

@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/cutter_section.h"
+#include "panel/cutter_section.h"
 
 #include "flute_grinder/geometry/ground_job.h"
 
@@ -86,7 +86,7 @@ CutterSection cutterSection(const GrindJob& job, double x) {
   made.asked_rake = job.cutter.rake_angle;
   made.rake_tolerance = job.cutter.rake_tolerance;
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(job, x));
-  if (!(made.ground.core_radius >= kLeastCore)) return made;
+  if (!(made.ground.core_radius >= kMinCore)) return made;
   const std::size_t teeth = job.tooth_angles.size();
   made.outline = sectionOutline(cutter, x, made.ground.radius, {teeth, kRings, kColumns / teeth + 1});
   return made;

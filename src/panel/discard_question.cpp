@@ -1,7 +1,7 @@
-#include "flute_grinder/panel/discard_question.h"
+#include "panel/discard_question.h"
 
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/panel/plain_words.h"
+#include "panel/plain_words.h"
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>

@@ -1,14 +1,14 @@
-#include "flute_grinder/panel/grind_panel.h"
+#include "panel/grind_panel.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/quantity.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
-#include "flute_grinder/panel/plain_words.h"
-#include "flute_grinder/panel/text_view.h"
-#include "flute_grinder/panel/wheel_guard.h"
+#include "panel/plain_words.h"
+#include "panel/text_view.h"
+#include "panel/wheel_guard.h"
 
 #include <rviz/panel_dock_widget.h>
 #include <QGridLayout>

@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/grinder_link.h"
+#include "panel/grinder_link.h"
 
 #include "flute_grinder/ConfirmSwivel.h"
 #include "flute_grinder/Jog.h"

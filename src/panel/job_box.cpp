@@ -1,12 +1,12 @@
-#include "flute_grinder/panel/job_box.h"
+#include "panel/job_box.h"
 
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/panel/plain_words.h"
-#include "flute_grinder/panel/setup_dialog.h"
-#include "flute_grinder/panel/text_view.h"
+#include "panel/plain_words.h"
+#include "panel/setup_dialog.h"
+#include "panel/text_view.h"
 
 #include <ros/package.h>
 #include <QFileInfo>

@@ -1,7 +1,7 @@
-#include "flute_grinder/panel/jog_box.h"
+#include "panel/jog_box.h"
 
-#include "flute_grinder/core/machine_state.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/machine/machine_state.h"
 
 #include <QApplication>
 #include <QGridLayout>

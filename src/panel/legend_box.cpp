@@ -1,6 +1,6 @@
-#include "flute_grinder/panel/legend_box.h"
+#include "panel/legend_box.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/scene/markers.h"
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/number_box.h"
+#include "panel/number_box.h"
 
 #include <QLocale>
 #include <QRegularExpression>

@@ -1,7 +1,7 @@
-#include "flute_grinder/panel/offset_question.h"
+#include "panel/offset_question.h"
 
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/panel/text_view.h"
+#include "panel/text_view.h"
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>

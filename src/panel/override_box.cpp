@@ -1,6 +1,6 @@
-#include "flute_grinder/panel/override_box.h"
+#include "panel/override_box.h"
 
-#include "flute_grinder/core/feed_schedule.h"
+#include "flute_grinder/motion/feed_schedule.h"
 
 #include <QHBoxLayout>
 #include <QSignalBlocker>

@@ -1,7 +1,7 @@
-#include "flute_grinder/panel/plain_words.h"
+#include "panel/plain_words.h"
 
-#include "flute_grinder/core/format.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 

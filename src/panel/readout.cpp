@@ -1,7 +1,7 @@
-#include "flute_grinder/panel/readout.h"
+#include "panel/readout.h"
 
-#include "flute_grinder/core/units.h"
-#include "flute_grinder/panel/plain_words.h"
+#include "flute_grinder/curve/units.h"
+#include "panel/plain_words.h"
 
 #include <QFontDatabase>
 #include <QGridLayout>
@@ -52,7 +52,7 @@ constexpr int kNameWidth = 96;  ///< of a job's name [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
-constexpr int kFewestDecimals = 3, kMostDecimals = 4;
+constexpr int kFewestDecimals = 3, kMaxDecimals = 4;
 
 /// Short, since four stand in a line; mm or deg. @param to_go [m], A [rad].
 QString toGoText(int axis, double to_go) {
@@ -233,7 +233,7 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
 void PositionBox::setTolerance(std::optional<double> tolerance) {
   const double decimals = std::ceil(-std::log10(tolerance.value_or(kMicrometre) / kMillimetre) - 1e-9);
   // 0 and NaN, of a legend that nobody should send, have no logarithm to count by.
-  decimals_ = !(decimals <= kMostDecimals)     ? kMostDecimals
+  decimals_ = !(decimals <= kMaxDecimals)      ? kMaxDecimals
               : !(decimals >= kFewestDecimals) ? kFewestDecimals
                                                : static_cast<int>(decimals);
 }

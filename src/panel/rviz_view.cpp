@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/rviz_view.h"
+#include "panel/rviz_view.h"
 
 #include <rviz/render_panel.h>
 #include <rviz/view_controller.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/section_drawing.h"
+#include "panel/section_drawing.h"
 
 #include <QPainter>
 #include <QStringList>

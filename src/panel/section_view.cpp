@@ -1,9 +1,9 @@
-#include "flute_grinder/panel/section_view.h"
+#include "panel/section_view.h"
 
-#include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/panel/plain_words.h"
+#include "panel/plain_words.h"
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>

@@ -1,12 +1,12 @@
-#include "flute_grinder/panel/setup_dialog.h"
+#include "panel/setup_dialog.h"
 
 #include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/swivel_range.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/panel/text_view.h"
-#include "flute_grinder/panel/wheel_guard.h"
+#include "panel/text_view.h"
+#include "panel/wheel_guard.h"
 
 #include <ros/master.h>
 #include <ros/names.h>

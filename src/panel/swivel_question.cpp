@@ -1,6 +1,6 @@
-#include "flute_grinder/panel/swivel_question.h"
+#include "panel/swivel_question.h"
 
-#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/job/quantity.h"
 
 #include <QHBoxLayout>
 #include <QPushButton>

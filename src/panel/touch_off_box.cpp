@@ -1,6 +1,6 @@
-#include "flute_grinder/panel/touch_off_box.h"
+#include "panel/touch_off_box.h"
 
-#include "flute_grinder/core/quantity.h"
+#include "flute_grinder/job/quantity.h"
 
 #include <QDateTime>
 #include <QGridLayout>

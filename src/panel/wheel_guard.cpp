@@ -1,4 +1,4 @@
-#include "flute_grinder/panel/wheel_guard.h"
+#include "panel/wheel_guard.h"
 
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>

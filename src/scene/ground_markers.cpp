@@ -1,6 +1,6 @@
 #include "flute_grinder/scene/ground_markers.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
 
@@ -17,7 +17,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
-constexpr double kMostTriangles = 20000;  ///< of 72 bytes each, and what the cut adds
+constexpr double kMaxTriangles = 20000;   ///< of 72 bytes each, and what the cut adds
 constexpr double kLabelHeight = 0.03;     ///< of a text's letters, of the flute's length
 constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
 constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
@@ -94,11 +94,11 @@ SolidResolution resolutionOf(const GrindJob& job) {
     const double layers = std::max(sections, turns * around) + sections * shank / extent.to;
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
-  while (triangles() > kMostTriangles && r.rings > 8) --r.rings;
-  while (triangles() > kMostTriangles && r.around > 24) --r.around;
-  while (triangles() > kMostTriangles && r.rings > 4) --r.rings;
-  while (triangles() > kMostTriangles && r.around > 6) --r.around;
-  while (triangles() > kMostTriangles && r.sections > 12) --r.sections;
+  while (triangles() > kMaxTriangles && r.rings > 8) --r.rings;
+  while (triangles() > kMaxTriangles && r.around > 24) --r.around;
+  while (triangles() > kMaxTriangles && r.rings > 4) --r.rings;
+  while (triangles() > kMaxTriangles && r.around > 6) --r.around;
+  while (triangles() > kMaxTriangles && r.sections > 12) --r.sections;
   return r;
 }
 

@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kNice = 15;
-constexpr std::chrono::duration<double> kLeastPause{1};
+constexpr std::chrono::duration<double> kMinPause{1};
 constexpr double kPausePerWork = 20;
 
 /// What this thread has computed for.
@@ -73,7 +73,7 @@ void GroundView::run() {
   while (const std::optional<Request> request = next(earliest)) {
     const auto before = worked();
     publisher_.publish(request->job ? markersOf(*request->job, request->reached) : clearedArray());
-    const auto pause = std::max(kLeastPause, kPausePerWork * (worked() - before));
+    const auto pause = std::max(kMinPause, kPausePerWork * (worked() - before));
     earliest = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
   }
 }

@@ -15,12 +15,12 @@ constexpr double kPathTolerance = 1e-7;     ///< between the strip shown and the
 constexpr double kPathWidth = 0.3e-3;       ///< like all widths, for a cutter that is not small [m]
 constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
 constexpr double kArrowWidth = 0.12e-3;     ///< [m]
-constexpr double kLongestArrow = 3e-3;      ///< [m]
-constexpr double kSmallestDrawn = 1e-3;     ///< error whose arrow may have full length, of the tolerance
+constexpr double kMaxArrow = 3e-3;          ///< [m]
+constexpr double kMinDrawn = 1e-3;          ///< error whose arrow may have full length, of the tolerance
 constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not shown [m]
 constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
-constexpr std::size_t kMostArrows = 200;
-constexpr std::size_t kMostExecutedPoints = 2000;
+constexpr std::size_t kMaxArrows = 200;
+constexpr std::size_t kMaxExecutedPoints = 2000;
 
 /// Where the wheel touches the cutter, at the radius r.
 geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
@@ -149,7 +149,7 @@ void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
   last_ = at;
   if (taken_++ % every_ != 0) return;
   points_.push_back(last_);
-  if (points_.size() < kMostExecutedPoints) return;
+  if (points_.size() < kMaxExecutedPoints) return;
   for (std::size_t i = 0; 2 * i < points_.size(); ++i) points_[i] = points_[2 * i];
   points_.resize(points_.size() / 2);
   every_ *= 2;
@@ -178,7 +178,7 @@ void PathErrorMarkers::add(const Setpoint& p) {
   largest_ = std::max(largest_, std::abs(deviation));
   if ((pairs_ - 1) % every_ != 0) return;
   points_.push_back({p.position[kX], p.position[kA], deviation});
-  if (points_.size() >= kMostArrows && p.step == StepKind::kEven) thinOut();
+  if (points_.size() >= kMaxArrows && p.step == StepKind::kEven) thinOut();
 }
 
 void PathErrorMarkers::thinOut() {
@@ -195,8 +195,8 @@ void PathErrorMarkers::thinOut() {
 double PathErrorMarkers::scale() const {
   if (points_.empty()) return 0;
   // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
-  const double largest = std::max(largest_, kSmallestDrawn * tolerance_);
-  return roundDown(kLongestArrow * fineness(cutter_) / largest);
+  const double largest = std::max(largest_, kMinDrawn * tolerance_);
+  return roundDown(kMaxArrow * fineness(cutter_) / largest);
 }
 
 MarkerArray PathErrorMarkers::markers() const {

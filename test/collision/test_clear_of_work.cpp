@@ -1,11 +1,11 @@
 #include "brute_force.h"
-#include "core/generators.h"
-#include "core/reference.h"
+#include "curve/reference.h"
 #include "flute_grinder/collision/job_collision.h"
-#include "flute_grinder/core/setpoint_stream.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 #include "machine.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,7 +1,7 @@
 #include "flute_grinder/collision/collision_check.h"
 
 #include "brute_force.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "machine.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 #include "flute_grinder/collision/job_collision.h"
 
-#include "core/generators.h"
-#include "core/reference.h"
-#include "flute_grinder/core/units.h"
+#include "curve/reference.h"
+#include "flute_grinder/curve/units.h"
 #include "machine.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 

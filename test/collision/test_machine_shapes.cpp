@@ -1,6 +1,6 @@
 #include "flute_grinder/collision/machine_shapes.h"
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/axes.h"
 #include "machine.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "brute_force.h"
 #include "flute_grinder/collision/solid.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include <gtest/gtest.h>
 

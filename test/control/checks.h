@@ -2,7 +2,7 @@
 
 #include "control/fixtures.h"
 #include "flute_grinder/control/cycle_record.h"
-#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <array>
 #include <optional>

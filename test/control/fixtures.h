@@ -1,9 +1,9 @@
 #pragma once
 
+#include "drive/simulated_drive.h"
 #include "flute_grinder/control/loop_config.h"
-#include "flute_grinder/core/machine_state.h"
 #include "flute_grinder/drive/axes_hw.h"
-#include "flute_grinder/drive/simulated_drive.h"
+#include "flute_grinder/machine/machine_state.h"
 
 #include <gtest/gtest.h>
 

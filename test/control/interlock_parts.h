@@ -1,7 +1,7 @@
 #pragma once
 
 #include "control/fixtures.h"
-#include "flute_grinder/core/loop_fault.h"
+#include "flute_grinder/machine/loop_fault.h"
 
 #include <functional>
 #include <string>

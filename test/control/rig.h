@@ -2,8 +2,8 @@
 
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <memory>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -199,7 +199,7 @@ class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
     job.process.z_law = ZLaw::kConstantRake;
     ZCorrection bow;
     bow.from = -job.process.overtravel_end;
-    bow.pieces = ZCorrection::kMostPieces;
+    bow.pieces = ZCorrection::kMaxPieces;
     bow.piece = 3e-3;
     for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
     job.z_corrections = {bow};

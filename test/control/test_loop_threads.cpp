@@ -1,6 +1,6 @@
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,5 +1,5 @@
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/machine_geometry.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/machine/machine_geometry.h"
 
 #include <gtest/gtest.h>
 #include <urdf/model.h>

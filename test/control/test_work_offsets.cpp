@@ -1,6 +1,6 @@
 #include "control/checks.h"
 #include "control/rig.h"
-#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/motion/job_plan.h"
 
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>

@@ -9,7 +9,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ['README.md'] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / 'docs').glob('*.md'))
 # Where the architecture's files are named from.
-BASES = ['', 'include/flute_grinder', 'include/flute_grinder/drive', 'include/flute_grinder/control', 'include/flute_grinder/scene']
+BASES = ['', 'include/flute_grinder', 'src'] + [str(path.relative_to(ROOT)) for path in (ROOT / 'include/flute_grinder').iterdir()]
 SOURCES = ['include', 'src', 'msg', 'srv', 'action', 'launch', 'config']
 
 

@@ -17,9 +17,9 @@ QUOTING = ('message', 'held because', 'the panel says')
 # Sources in which every text of two words or more is a message, or a part of one. What follows a file are its texts that tell
 # nobody of anything wrong: headings, labels, progress, the parts of other files.
 MESSAGES = {
-    'include/flute_grinder/cli/call.h': (),
-    'include/flute_grinder/node/plain_name.h': (),
-    'include/flute_grinder/node/yaml_fields.h': (),
+    'src/cli/call.h': (),
+    'src/node/plain_name.h': (),
+    'src/node/yaml_fields.h': (),
     'src/cli/csv.cpp': (),
     'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'on, not at speed', 'work position', 'of the machine', 'to go',
                            'the power is on', 'the fault is reset; the power is off'),
@@ -33,10 +33,10 @@ MESSAGES = {
     'src/control/machine_config.cpp': (),
     'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
     'src/control/swivel_range.cpp': (),
-    'src/core/loop_fault.cpp': (),
-    'src/core/offset_fit.cpp': ('width of the wheel',),
-    'src/core/offset_limits.cpp': (),
-    'src/core/reason.cpp': (),
+    'src/machine/loop_fault.cpp': (),
+    'src/machine/offset_fit.cpp': ('width of the wheel',),
+    'src/machine/offset_limits.cpp': (),
+    'src/job/reason.cpp': (),
     'src/drive/hal_component.cpp': (),
     'src/drive/hal_fifo.cpp': (),
     'src/drive/hal_hardware.cpp': (),
@@ -47,17 +47,17 @@ MESSAGES = {
     'src/messages/continue_job.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),
     'src/node/frames.cpp': (),
-    'src/node/goal_desk.cpp': ('planned and checked; nothing moved',),
+    'src/node/goal_server.cpp': ('planned and checked; nothing moved',),
     'src/node/grinder_node.cpp': (),
     'src/node/journal_writer.cpp': (),
-    'src/node/kept_file.cpp': (),
-    'src/node/offset_desk.cpp': ('(not printable)',),
+    'src/node/atomic_file.cpp': (),
+    'src/node/offset_server.cpp': ('(not printable)',),
     'src/node/offset_store.cpp': ("The grinder's work offsets: machine position - work position; .nan is unknown.",),
-    'src/node/plan_desk.cpp': (),
-    'src/node/probe_desk.cpp': (),
+    'src/node/plan_server.cpp': (),
+    'src/node/probe_server.cpp': (),
     'src/node/progress_tracker.cpp': ('a job without a name',),
-    'src/node/request_desk.cpp': (),
-    'src/node/stop_desk.cpp': ('the job will be held before it moves',),
+    'src/node/request_server.cpp': (),
+    'src/node/stop_server.cpp': ('the job will be held before it moves',),
     'src/panel/grind_panel.cpp': ('Replies from the grinder', 'is set', 'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
                                   'touch-off: the work offset of', '. It was not started in this panel.',
                                   "Name of the grinder's node; relative to rviz's namespace without a slash in front",
@@ -160,7 +160,7 @@ def capitals(name):
 
 def enumerators(path, enum):
     """Of an enum class, in capitals; without the one for nothing."""
-    body = re.search(r'enum class %s\b[^{]*\{(.*?)\};' % enum, read('include/flute_grinder/core/' + path), re.S).group(1)
+    body = re.search(r'enum class %s\b[^{]*\{(.*?)\};' % enum, read('include/flute_grinder/' + path), re.S).group(1)
     names = re.findall(r'(?m)^  k(\w+)', body)
     return [capitals(name) for name in names if name != 'None']
 
@@ -178,7 +178,7 @@ def fault_codes():
 
 
 def missing_states(table):
-    for name in re.findall(r'\{MachineState::k\w+, "(\w+)"\}', read('include/flute_grinder/core/machine_state.h')):
+    for name in re.findall(r'\{MachineState::k\w+, "(\w+)"\}', read('include/flute_grinder/machine/machine_state.h')):
         if not any(row.get('state') == '*%s*' % name for row in table):
             yield 'the state %s has no row' % name
     sentences = re.search(r'const char\* sentence\(.*?\n}', read('src/panel/plain_words.cpp'), re.S).group()
@@ -191,15 +191,15 @@ def missing_states(table):
 def missing_kinds(table):
     """Kinds of faults and reasons, interlocks, and the codes of results."""
     kinds = [code for row in table for head in ('kind', 'kind, code') for code in codes(row.get(head, ''))]
-    for kind in enumerators('reason.h', 'ReasonKind'):
+    for kind in enumerators('job/reason.h', 'ReasonKind'):
         if kind not in kinds:
             yield 'the reason %s is in no row' % kind
     pairs = [codes(row['kind, code']) for row in table if row.get('kind, code')]
-    for kind in enumerators('loop_fault.h', 'FaultKind'):
+    for kind in enumerators('machine/loop_fault.h', 'FaultKind'):
         pair = [kind, fault_codes().get(kind)]
         if kind != 'LIMIT' and pair not in pairs:  # that has the reasons of the limits
             yield 'the fault %s, %s is in no row' % tuple(pair)
-    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/core/loop_fault.cpp')):
+    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/machine/loop_fault.cpp')):
         if not any(text in codes(row.get('held because', '')) for row in table):
             yield 'the interlock "%s" has no row' % text
     for name, number in re.findall(r'(?m)^int32 (\w+)=(-?\d+)$', read('action/Grind.action')):

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "control/fixtures.h"
-#include "flute_grinder/drive/simulated_drive.h"
+#include "drive/simulated_drive.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 
 namespace flute_grinder::test_support {

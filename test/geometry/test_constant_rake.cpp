@@ -2,13 +2,13 @@
 
 #include "brute_force.h"
 
-#include "core/generators.h"
-#include "core/reference.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "curve/reference.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 

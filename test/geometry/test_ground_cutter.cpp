@@ -1,6 +1,6 @@
 // The ground cutter against closed forms, an explicit edge circle, and membership by brute force.
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 
 #include "geometry/ground_case.h"

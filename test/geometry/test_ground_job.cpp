@@ -1,11 +1,11 @@
 // From a job to the cutter that it grinds, and the checks of a plan.
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/job_file.h"
 
 #include "brute_force.h"
-#include "core/generators.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/geometry/job_setup.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/z_law.h"
 

@@ -1,6 +1,6 @@
 // The walls of tools much smaller than the wheel's reach along them, against trying every pose of the stroke.
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/wheel_sweep.h"
 
 #include <gtest/gtest.h>

@@ -1,13 +1,13 @@
 // A left-hand job is a right-hand one in the mirror: the same tool, with Z and A of every setpoint negated.
 
-#include "core/generators.h"
+#include "motion/generators.h"
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>
 

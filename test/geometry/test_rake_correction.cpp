@@ -2,7 +2,7 @@
 
 #include "brute_force.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/rake_correction.h"
 #include "flute_grinder/geometry/setup_solver.h"
 

@@ -1,14 +1,14 @@
 // From the positions that a drive read to the cutter as ground, against brute force over every position.
 
-#include "flute_grinder/core/grind_program.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/setpoint_stream.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 
-#include "core/generators.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/geometry/setup_file.h"
 
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 
 #include "temp_folder.h"
 

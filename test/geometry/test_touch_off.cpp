@@ -2,9 +2,9 @@
 
 #include "flute_grinder/geometry/touch_off.h"
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/wheel_profile.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/drive/hal_hardware.h"
+#include "drive/hal_hardware.h"
 
 #include <gtest/gtest.h>
 #include <ros/ros.h>

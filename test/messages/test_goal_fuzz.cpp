@@ -1,7 +1,7 @@
-#include "flute_grinder/core/job_fields.h"
+#include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/messages/conversions.h"
 
-#include "core/generators.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 #include <ros/serialization.h>

@@ -1,9 +1,9 @@
 #include "flute_grinder/messages/json.h"
 
-#include "core/generators.h"
-#include "flute_grinder/core/job_fields.h"
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,5 +1,5 @@
-#include "flute_grinder/core/job_fields.h"
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 

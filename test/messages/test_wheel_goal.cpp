@@ -1,4 +1,4 @@
-#include "flute_grinder/core/job_file.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <gtest/gtest.h>

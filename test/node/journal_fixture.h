@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/node/journal.h"
+#include "node/journal.h"
 
 #include "temp_folder.h"
 

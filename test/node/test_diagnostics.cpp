@@ -1,4 +1,4 @@
-#include "flute_grinder/node/diagnostics.h"
+#include "node/diagnostics.h"
 
 #include "control/fixtures.h"
 

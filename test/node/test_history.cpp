@@ -1,4 +1,4 @@
-#include "flute_grinder/node/history.h"
+#include "node/history.h"
 
 #include "temp_folder.h"
 

@@ -1,11 +1,11 @@
-#include "flute_grinder/node/job_record.h"
+#include "node/job_record.h"
 
 #include "control/fixtures.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/record_name.h"
-#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/node/job_recorder.h"
+#include "flute_grinder/motion/setpoint_stream.h"
+#include "node/job_recorder.h"
 
 #include <gtest/gtest.h>
 

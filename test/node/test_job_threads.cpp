@@ -1,9 +1,9 @@
 #include "collision/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/node/job_gate.h"
-#include "flute_grinder/node/planner.h"
+#include "flute_grinder/job/job_file.h"
+#include "node/job_gate.h"
+#include "node/planner.h"
 
 #include <atomic>
 #include <chrono>
@@ -26,7 +26,7 @@ using E = MachineEvent;
 using S = MachineState;
 
 constexpr int kGoals = 300;
-constexpr int kMostGoals = 10000;  ///< until all kinds of ends have been seen
+constexpr int kMaxGoals = 10000;  ///< until all kinds of ends have been seen
 constexpr std::chrono::seconds kPatience(60);
 
 actionlib_msgs::GoalID id(int number) {
@@ -164,7 +164,7 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 4000));
     emergency_stop_ = random() % 4 == 0;
   });
-  for (int number = 0; (number < kGoals || !seenAll()) && number < kMostGoals && !HasFatalFailure(); ++number) {
+  for (int number = 0; (number < kGoals || !seenAll()) && number < kMaxGoals && !HasFatalFailure(); ++number) {
     runGoal(number);
   }
   busy_ = false;

@@ -1,5 +1,5 @@
 #include "flute_grinder/messages/sha256.h"
-#include "flute_grinder/node/journal.h"
+#include "node/journal.h"
 
 #include "journal_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/node/journal_writer.h"
+#include "node/journal_writer.h"
 
 #include "journal_fixture.h"
 

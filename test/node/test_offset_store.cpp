@@ -1,5 +1,5 @@
 #include "flute_grinder/messages/sha256.h"
-#include "flute_grinder/node/offset_store.h"
+#include "node/offset_store.h"
 
 #include "journal_fixture.h"
 

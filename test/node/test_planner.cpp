@@ -1,6 +1,6 @@
-#include "flute_grinder/core/job_file.h"
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/node/planner.h"
+#include "flute_grinder/job/job_file.h"
+#include "node/planner.h"
 
 #include "collision/machine.h"
 #include "control/fixtures.h"

@@ -1,5 +1,5 @@
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/node/progress_tracker.h"
+#include "flute_grinder/job/job_file.h"
+#include "node/progress_tracker.h"
 
 #include "control/fixtures.h"
 #include "temp_folder.h"

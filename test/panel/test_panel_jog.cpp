@@ -1,6 +1,6 @@
 // The jog buttons of the panel, against a grinder of the test's own.
 
-#include "flute_grinder/core/axes.h"
+#include "flute_grinder/job/axes.h"
 #include "panel_fixture.h"
 #include "stage.h"
 

@@ -2,10 +2,10 @@
 
 #include "flute_grinder/scene/ground_markers.h"
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/units.h"
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
@@ -21,7 +21,7 @@ using units::kMillimetre;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::uint32_t kMostBytes = 3000000;
+constexpr std::uint32_t kMaxBytes = 3000000;
 
 GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
 
@@ -41,7 +41,7 @@ std::string textsOf(const MarkerArray& array) {
 
 void expectFit(const GrindJob& job) {
   const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
-  EXPECT_LT(ros::serialization::serializationLength(array), kMostBytes);
+  EXPECT_LT(ros::serialization::serializationLength(array), kMaxBytes);
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   const std::vector<Marker> solid = solidOf(array, "planned");
   EXPECT_GT(solid.size(), 3u) << textsOf(array);

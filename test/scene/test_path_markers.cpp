@@ -1,9 +1,9 @@
 #include "flute_grinder/scene/path_markers.h"
 
-#include "flute_grinder/core/job_file.h"
-#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/motion/job_plan.h"
 
-#include "core/generators.h"
+#include "motion/generators.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "flute_grinder/collision/machine_shapes.h"
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/conical_cutter.h"
-#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/geometry/wheel_profile.h"
 #include "flute_grinder/geometry/wheel_sweep.h"
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/motion/job_plan.h"
 
 #include <limits>
 #include <optional>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/collision/collision_check.h"
-#include "flute_grinder/core/grind_program.h"
-#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/motion/job_plan.h"
 
 #include <vector>
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/control/loop_status.h"
-#include "flute_grinder/core/axes.h"
 #include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/job/axes.h"
 
 #include <algorithm>
 #include <array>

@@ -9,10 +9,10 @@
 #include "flute_grinder/control/request_box.h"
 #include "flute_grinder/control/seq_lock.h"
 #include "flute_grinder/control/wheel_watch.h"
-#include "flute_grinder/core/axis_move.h"
-#include "flute_grinder/core/limit_check.h"
-#include "flute_grinder/core/setpoint_stream.h"
 #include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/motion/axis_move.h"
+#include "flute_grinder/motion/limit_check.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <boost/lockfree/policies.hpp>
 #include <boost/lockfree/spsc_queue.hpp>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/axis_limits.h"
-#include "flute_grinder/core/machine_geometry.h"
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/machine/machine_geometry.h"
+#include "flute_grinder/motion/axis_limits.h"
 
 #include <string>
 

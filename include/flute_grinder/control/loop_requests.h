@@ -1,9 +1,9 @@
 #pragma once
 
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/loop_fault.h"
-#include "flute_grinder/core/machine_state.h"
-#include "flute_grinder/core/swivel.h"
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/machine/loop_fault.h"
+#include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/machine/swivel.h"
 
 #include <cstdint>
 #include <string>

@@ -5,7 +5,7 @@
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/control/request_slot.h"
 #include "flute_grinder/control/stop_requests.h"
-#include "flute_grinder/core/setpoint_stream.h"
+#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <atomic>
 #include <cstdint>
@@ -44,7 +44,7 @@ class RequestBox {
   ///
   /// Refused if the drive measures the swivel, and while a job is in progress unless it is the job's angle: the swivel
   /// must not be turned then. A start is refused unless the swivel is at the job's angle.
-  /// @param angle -kLargestSwivel to kLargestSwivel [rad].
+  /// @param angle -kMaxSwivel to kMaxSwivel [rad].
   RequestReply confirmSwivel(double angle);
   /// The same without waiting; the angle is not checked.
   /// @return false while the previous confirmation is unanswered; this one is then not posted.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/axes.h"
 #include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/job/axes.h"
 
 #include <array>
 

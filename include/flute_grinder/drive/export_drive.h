@@ -10,7 +10,7 @@
 namespace flute_grinder {
 
 /// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
-/// flute_grinder/core/axes.h declare, and the order of RobotHW's virtual functions. To be increased whenever one of
+/// flute_grinder/job/axes.h declare, and the order of RobotHW's virtual functions. To be increased whenever one of
 /// them changes. The node refuses plugins that were built against another version.
 constexpr std::uint32_t kDriveAbi = 2;
 

@@ -20,7 +20,7 @@ struct ToothSection {
   bool complete = false;              ///< over its whole depth, as a longer stroke would leave it
 };
 
-constexpr double kLeastCore = 1e-6;  ///< radius of a core that still holds the teeth together [m]
+constexpr double kMinCore = 1e-6;  ///< radius of a core that still holds the teeth together [m]
 
 /// A section of the ground cutter, normal to its axis.
 struct GroundSection {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/core/job_edit.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/setup_solver.h"
+#include "flute_grinder/job/job_edit.h"
 
 #include <array>
 #include <optional>

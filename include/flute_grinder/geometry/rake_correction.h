@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/job_plan.h"
 #include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/motion/job_plan.h"
 
 #include <optional>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <Eigen/Core>
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/conical_cutter.h"
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/log_curve.h"
-#include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/setpoint.h"
 
 #include <cstdint>
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/core/enum_table.h"
+#include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 
 #include <array>

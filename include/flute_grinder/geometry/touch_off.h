@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/machine_geometry.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/machine/machine_geometry.h"
 
 #include <optional>
 #include <string>

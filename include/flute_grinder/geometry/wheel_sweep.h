@@ -1,10 +1,10 @@
 #pragma once
 
-#include "flute_grinder/core/axes.h"
-#include "flute_grinder/core/conical_cutter.h"
-#include "flute_grinder/core/log_curve.h"
-#include "flute_grinder/core/z_correction.h"
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/geometry/wheel_profile.h"
+#include "flute_grinder/job/axes.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/job_plan.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/job_plan.h"
 
 namespace flute_grinder {
 

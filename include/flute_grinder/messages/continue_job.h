@@ -2,7 +2,7 @@
 
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/JobProgress.h"
-#include "flute_grinder/core/grind_job.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <string>
 

@@ -4,9 +4,9 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/WrittenSetpoint.h"
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/job_plan.h"
-#include "flute_grinder/core/setpoint.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/motion/setpoint.h"
 
 #include <string>
 #include <vector>

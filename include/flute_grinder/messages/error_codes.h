@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/job_plan.h"
-#include "flute_grinder/core/loop_fault.h"
+#include "flute_grinder/machine/loop_fault.h"
+#include "flute_grinder/motion/job_plan.h"
 
 namespace flute_grinder {
 

@@ -3,8 +3,8 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/OffsetBasis.h"
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/core/grind_job.h"
-#include "flute_grinder/core/offset_fit.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/json.h"
 
 #include <string>

@@ -4,7 +4,7 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/Reason.h"
-#include "flute_grinder/core/reason.h"
+#include "flute_grinder/job/reason.h"
 
 #include <string>
 #include <vector>

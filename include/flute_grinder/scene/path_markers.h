@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/core/grind_program.h"
-#include "flute_grinder/core/log_curve.h"
+#include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/markers.h"
 
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/Legend.h"
-#include "flute_grinder/core/grind_program.h"
+#include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
 

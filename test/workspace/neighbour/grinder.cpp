@@ -1,9 +1,9 @@
 // Waits for the grinder's state, and says with the grinder's libraries where its axes stand.
 
 #include <flute_grinder/GrinderState.h>
-#include <flute_grinder/core/axes.h>
-#include <flute_grinder/core/quantity.h>
 #include <flute_grinder/drive/robot_hw.h>
+#include <flute_grinder/job/axes.h>
+#include <flute_grinder/job/quantity.h>
 
 #include <ros/ros.h>
 

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "flute_grinder/curve/enum_table.h"
+
+namespace flute_grinder {
+
+/// Which way a cutter turns, and so which wall of a flute is its rake face: the edges of a right-hand cutter move
+/// toward falling angles A.
+enum class CutDirection { kRightHand, kLeftHand };
+
+/// With the names used in job files.
+inline constexpr EnumRow<CutDirection> kCutDirections[]{
+    {CutDirection::kRightHand, "right_hand"},
+    {CutDirection::kLeftHand, "left_hand"},
+};
+constexpr auto& rowsOf(CutDirection) noexcept { return kCutDirections; }
+
+/// The dimensions of a conical end mill as given in a job file or goal, unchecked.
+struct CutterGeometry {
+  double end_diameter = 0;  ///< D1, diameter at the small end, X = 0 [m]
+  double cone_angle = 0;    ///< C, half angle between axis and generatrix; negative for a back taper [rad]
+  double spiral_angle = 0;  ///< S, from the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
+  double rake_angle = 0;    ///< r [rad]
+  double flute_length = 0;  ///< along the cutter's axis [m]
+  CutDirection cut = CutDirection::kRightHand;
+  double rake_tolerance = 0;  ///< largest allowed difference of the ground rake from the asked one [rad]
+  double shank_diameter = 0;  ///< [m]
+  double core_diameter = 0;   ///< asked at the small end; 0: whatever the depth leaves [m]
+  double neck_length = 0;     ///< from the flute's end to the shank; 0: not known [m]
+};
+
+/// A part of the cutter's axis.
+struct Range {
+  double from = 0, to = 0;  ///< X [m]
+};
+
+/// A conical end mill with constant rake and spiral angle (paper, section 2).
+class ConicalCutter {
+ public:
+  /// @param geometry the cutter's dimensions.
+  /// @throw std::invalid_argument naming the bad value unless every value is finite, the diameter and the length are
+  ///        positive, every angle lies within (-pi/2, pi/2), and the radius stays positive up to the flute's end.
+  explicit ConicalCutter(const CutterGeometry& geometry);
+
+  const CutterGeometry& geometry() const noexcept { return geometry_; }
+
+  /// Local radius R(X) = D1/2 + X tan C [m].
+  double radius(double x) const noexcept { return geometry_.end_diameter / 2 + x * tan_cone_; }
+
+  /// Radial position of the surface relative to X = 0: Y = X tan C, the paper's equation 1 [m].
+  double y(double x) const noexcept { return x * tan_cone_; }
+
+  /// Height that keeps the rake angle nearly constant: Z = X tan C sin r, the paper's equation 2, for a right-hand
+  /// cutter; -Z for a left-hand one, its mirror image [m].
+  double z(double x) const noexcept { return x * tan_cone_ * z_per_y_; }
+
+  double tanCone() const noexcept { return tan_cone_; }      ///< dY/dX
+  double tanSpiral() const noexcept { return tan_spiral_; }  ///< R dA/dX
+  double zPerY() const noexcept { return z_per_y_; }         ///< dZ/dY: sin r, or -sin r for a left-hand cutter
+
+  /// Length of cutting edge per unit of axial travel, sqrt(1 + tan^2 C + tan^2 S); surface feed divided by dX/dt.
+  double edgePerTravel() const noexcept { return edge_per_travel_; }
+
+  /// Cosine of the angle between helix and generatrix, atan(tan S cos C): the fraction of a circumferential deviation
+  /// that is normal to the helix on the cone's surface.
+  double cosHelixToGeneratrix() const noexcept { return cos_helix_to_generatrix_; }
+
+ private:
+  CutterGeometry geometry_;
+  double tan_cone_;
+  double tan_spiral_;
+  double z_per_y_;
+  double edge_per_travel_;
+  double cos_helix_to_generatrix_;
+};
+
+}  // namespace flute_grinder

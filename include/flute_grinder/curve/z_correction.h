@@ -1,0 +1,86 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+namespace flute_grinder {
+
+/// A smooth addition to Z over X: a quintic spline in equal pieces, continuous up to its fourth derivative. Outside its
+/// range it stays as at the ends. Without pieces it is 0. Real-time safe.
+struct ZCorrection {
+  static constexpr int kMaxPieces = 16;
+  static constexpr int kDegree = 5;
+
+  double from = 0;   ///< X where the first piece begins [m]
+  double piece = 0;  ///< length of a piece [m]
+  int pieces = 0;
+  std::array<double, kMaxPieces + kDegree>
+      coefficients{};  ///< of the B-splines; those beyond the pieces' are unused [m]
+
+  /// Z and its derivatives over X.
+  struct Value {
+    double z = 0;       ///< [m]
+    double first = 0;   ///< dZ/dX
+    double second = 0;  ///< [1/m]
+    double third = 0;   ///< [1/m^2]
+  };
+
+  int coefficientCount() const noexcept { return pieces == 0 ? 0 : pieces + kDegree; }
+
+  Value at(double x) const noexcept {
+    if (pieces == 0) return {};
+    const double t = (x - from) / piece;
+    const double inside = std::clamp(t, 0.0, static_cast<double>(pieces));
+    const double index = std::max(0.0, std::min(std::floor(inside), static_cast<double>(pieces - 1)));
+    const double u = inside - index;
+    // The piece as a polynomial in u.
+    std::array<double, kDegree + 1> p{};
+    for (std::size_t j = 0; j <= kDegree; ++j) {
+      const double c = coefficients[static_cast<std::size_t>(index) + j] / 120;
+      for (std::size_t k = 0; k <= kDegree; ++k) p[k] += c * kBasis[j][k];
+    }
+    const double z = p[0] + u * (p[1] + u * (p[2] + u * (p[3] + u * (p[4] + u * p[5]))));
+    const double first = p[1] + u * (2 * p[2] + u * (3 * p[3] + u * (4 * p[4] + u * 5 * p[5])));
+    if (inside != t) return {z, 0, 0, 0};
+    const double second = 2 * p[2] + u * (6 * p[3] + u * (12 * p[4] + u * 20 * p[5]));
+    const double third = 6 * p[3] + u * (24 * p[4] + u * 60 * p[5]);
+    return {z, first / piece, second / (piece * piece), third / (piece * piece * piece)};
+  }
+
+  /// What the derivatives keep within over the whole range.
+  struct Bounds {
+    double least_first = 0, largest_first = 0;
+    double second = 0;  ///< of its magnitude [1/m]
+    double third = 0;   ///< of its magnitude [1/m^2]
+  };
+
+  /// A derivative of a B-spline in equal pieces is one too, of the coefficients' differences, and lies between the
+  /// least and the largest of them.
+  Bounds bounds() const noexcept {
+    Bounds bounds;
+    std::array<double, kMaxPieces + kDegree> difference = coefficients;
+    const auto differentiate = [&](int order) {
+      const auto count = static_cast<std::size_t>(coefficientCount() - order);
+      for (std::size_t i = 0; i < count; ++i) difference[i] = (difference[i + 1] - difference[i]) / piece;
+      return std::minmax_element(difference.begin(), difference.begin() + static_cast<std::ptrdiff_t>(count));
+    };
+    if (pieces == 0) return bounds;
+    const auto [least, largest] = differentiate(1);
+    bounds.least_first = *least;
+    bounds.largest_first = *largest;
+    for (const int order : {2, 3}) {
+      const auto [lowest, highest] = differentiate(order);
+      (order == 2 ? bounds.second : bounds.third) = std::max(-*lowest, *highest);
+    }
+    return bounds;
+  }
+
+  /// The six B-splines on a piece, by powers of u, times 120.
+  static constexpr double kBasis[kDegree + 1][kDegree + 1] = {{1, -5, 10, -10, 5, -1},  {26, -50, 20, 20, -20, 5},
+                                                              {66, 0, -60, 0, 30, -10}, {26, 50, 20, -20, -20, 10},
+                                                              {1, 5, 10, 10, 5, -5},    {0, 0, 0, 0, 0, 1}};
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,176 @@
+#pragma once
+
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/curve/z_correction.h"
+#include "flute_grinder/job/reason.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// The order of teeth and passes.
+enum class GrindOrder { kToothMajor, kPassMajor };
+/// The direction of the strokes.
+enum class StrokeDirection { kFromEnd, kToEnd };
+
+/// With the names used in job files.
+inline constexpr EnumRow<GrindOrder> kGrindOrders[]{
+    {GrindOrder::kToothMajor, "tooth_major"},
+    {GrindOrder::kPassMajor, "pass_major"},
+};
+inline constexpr EnumRow<StrokeDirection> kStrokeDirections[]{
+    {StrokeDirection::kFromEnd, "from_end"},
+    {StrokeDirection::kToEnd, "to_end"},
+};
+/// The shape of a grinding wheel.
+enum class WheelShape { kStraight, kAngled, kFullRadius, kCup, kPoints };
+/// The face of a wheel, as the machine carries it.
+enum class WheelFace { kUpper, kLower };
+inline constexpr EnumRow<WheelShape> kWheelShapes[]{
+    {WheelShape::kStraight, "straight"}, {WheelShape::kAngled, "angled"}, {WheelShape::kFullRadius, "full_radius"},
+    {WheelShape::kCup, "cup"},           {WheelShape::kPoints, "points"},
+};
+inline constexpr EnumRow<WheelFace> kWheelFaces[]{
+    {WheelFace::kUpper, "upper"},
+    {WheelFace::kLower, "lower"},
+};
+/// How Z follows X along a stroke.
+enum class ZLaw {
+  kPublished,     ///< Z = X tan C sin r, mirrored for a left-hand cutter
+  kConstantRake,  ///< that and a smooth correction, with which the rake is the same over the whole flute
+};
+inline constexpr EnumRow<ZLaw> kZLaws[]{
+    {ZLaw::kPublished, "published"},
+    {ZLaw::kConstantRake, "constant_rake"},
+};
+constexpr auto& rowsOf(ZLaw) noexcept { return kZLaws; }
+constexpr auto& rowsOf(WheelShape) noexcept { return kWheelShapes; }
+constexpr auto& rowsOf(WheelFace) noexcept { return kWheelFaces; }
+/// Whether a wheel of the shape has one face larger than the other.
+constexpr bool isTapered(WheelShape shape) noexcept {
+  return shape == WheelShape::kAngled || shape == WheelShape::kCup;
+}
+constexpr auto& rowsOf(GrindOrder) noexcept { return kGrindOrders; }
+constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
+
+/// How the flutes are ground.
+struct GrindProcess {
+  double feed = 0;              ///< along the cutting edge, and during infeed [m/s]
+  double depth = 0;             ///< flute depth at the small end, radial [m]
+  double depth_end = 0;         ///< the same at the flute's end, linear in between; 0: as `depth` [m]
+  double infeed = 0;            ///< per pass where the flute is deepest; the last may be smaller [m]
+  double finish_infeed = 0;     ///< of a single finishing pass at the end; 0 for none [m]
+  int spark_out = 0;            ///< number of passes without infeed at the end
+  double clearance = 0;         ///< between wheel and workpiece, for moves outside the cut [m]
+  double overtravel_end = 0;    ///< of the stroke beyond the small end, X < 0 [m]
+  double overtravel_shank = 0;  ///< of the stroke beyond the flute on the shank side [m]
+  GrindOrder order = GrindOrder::kToothMajor;
+  StrokeDirection direction = StrokeDirection::kFromEnd;
+  ZLaw z_law = ZLaw::kPublished;
+  bool incomplete_ok = false;  ///< the stroke may be too short for a complete flute
+  WheelShape wheel_profile = WheelShape::kStraight;
+  double wheel_diameter = 0;                 ///< the largest, to which Y = 0 is set [m]
+  double wheel_width = 0;                    ///< [m]
+  double wheel_angle = 0;                    ///< of a tapered wheel's surface against its axis; 0 for the others [rad]
+  WheelFace wheel_side = WheelFace::kUpper;  ///< the larger face of a tapered wheel
+  double wheel_corner_radius_lower = 0;      ///< between surface and lower face; 0 for a sharp edge [m]
+  double wheel_corner_radius_upper = 0;      ///< the same at the upper face [m]
+  double wheel_wear = 0;                     ///< of the radius below half of wheel_diameter; compensated in Y [m]
+  double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
+  double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
+  double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+
+  double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< at the flute's end [m]
+  double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< where the flute is deepest [m]
+};
+
+/// A corner of a wheel's profile.
+struct ProfilePoint {
+  double w = 0;       ///< along the spindle, from the middle of the width [m]
+  double radius = 0;  ///< from the spindle's axis [m]
+};
+
+/// A pass of a tooth.
+struct ToothPass {
+  int tooth = 0;  ///< from 0
+  int pass = 0;   ///< from 0
+
+  bool operator==(const ToothPass& other) const { return tooth == other.tooth && pass == other.pass; }
+  bool operator!=(const ToothPass& other) const { return !(*this == other); }
+};
+
+/// How the flutes are interpolated.
+struct GrindInterpolation {
+  EvenStepRule even_step = EvenStepRule::kPublished;
+  double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
+  double rotary_scale = 0;  ///< step length equivalent to one radian of A [m/rad]
+};
+
+/// The complete data of a job in SI units, the same for a job from a file or from a goal.
+struct GrindJob {
+  CutterGeometry cutter;
+  std::vector<double> tooth_angles;  ///< of every tooth, from 0, ascending, below one full turn [rad]
+  /// Of every tooth, the first as in `cutter`; empty if all teeth have the cutter's [rad]
+  std::vector<double> spiral_angles;
+  std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
+  GrindProcess process;
+  GrindInterpolation interpolation;
+  /// Of every tooth, what kConstantRake adds to Z; computed from the rest by withZLaw(). Empty for kPublished.
+  std::vector<ZCorrection> z_corrections;
+};
+
+/// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
+
+/// The cutter with the spiral angle of one of its teeth.
+CutterGeometry cutterOf(const GrindJob& job, int tooth);
+
+/// What the strokes of a tooth add to the published law of Z.
+/// @throw std::invalid_argument if the job asks for kConstantRake, and withZLaw() has not been called.
+ZCorrection zCorrectionOf(const GrindJob& job, int tooth);
+
+constexpr double kEvenRake = 0.005 * units::kDegree;  ///< how well kConstantRake keeps the rake [rad]
+constexpr int kMaxTeeth = 64;
+constexpr int kMaxWheelPoints = 100;  ///< of a wheel's profile
+constexpr int kMaxSparkOut = 100;
+constexpr int kMaxPasses = 10000;         ///< per tooth
+constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
+constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
+
+/// Checks all numbers of a job, individually and against each other.
+/// @return one reason for each number that is not allowed; empty if the job is valid.
+std::vector<core::Reason> validate(const GrindJob& job);
+
+/// Checks those of the wheel alone: `wheel_points`, and the members of `process` that begin with wheel_.
+std::vector<core::Reason> validateWheel(const GrindJob& job);
+
+/// The depth of every pass in order, where the flute is deepest: infeed steps, the finishing pass, spark-out. [m]
+std::vector<double> passDepths(const GrindProcess& process);
+
+/// The passes of all teeth, in grinding order.
+std::vector<ToothPass> passOrder(const GrindJob& job);
+
+/// The wheel's wear when each pass begins, as foreseen by the job, in the order of passOrder() [m].
+std::vector<double> wearOfPasses(const GrindJob& job);
+
+/// The depth of the flute that a job asks for at `x`, radial: at the small end that of the core it asks for, or else
+/// its depth [m]. @param x from the small end [m].
+double askedDepth(const GrindJob& job, double x);
+
+/// The depth of a pass over X.
+struct DepthLaw {
+  double at_end = 0;  ///< at the small end, radial [m]
+  double taper = 0;   ///< added to the cone's dY/dX
+};
+
+/// Every pass has the same part of its depth everywhere, so that no infeed is larger than the job's.
+/// @param depth of the pass where the flute is deepest, as from passDepths() [m].
+DepthLaw depthLaw(const GrindJob& job, double depth);
+
+}  // namespace flute_grinder

@@ -1,0 +1,97 @@
+#pragma once
+
+#include "flute_grinder/job/move_kind.h"
+#include "flute_grinder/job/quantity.h"
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Core types that have a counterpart among the messages have the message's name, in a separate namespace.
+namespace flute_grinder::core {
+
+/// The kind of a reason.
+enum class ReasonKind : std::uint8_t {
+  kNone,
+  // Why a job cannot be ground.
+  kOutOfRange,  ///< a field is outside `low` to `limit`; `detail`, if there is one, says whose range
+  kNotBelow,    ///< a field is `limit` or more
+  kAbove,       ///< a field is more than `limit`
+  kNotAllowed,  ///< a field is not as `detail` requires; `limit` is appended to the text unless it is 0
+  kFeedTooLow,  ///< `detail` restricts the feed to less than `limit`, the slowest allowed feed
+  kParkInWork,  ///< the park position is below `limit`, in the workpiece
+  kTolerance,   ///< the path deviates by more than `limit`
+  kTooLong,     ///< the job takes longer than `limit`; value 0 if the duration is unknown
+  kGivenUp,     ///< planning was given up
+  kOther,       ///< see `detail`
+  // A setpoint that exceeds a limit of an axis.
+  kPosition,
+  kVelocity,
+  kAcceleration,
+  kJerk,
+  kNotFinite,
+  // Why the machine stopped, or does not start.
+  kEmergencyStop,
+  kDriveFault,
+  kPowerLost,
+  kStaleFeedback,
+  kInvalidFeedback,
+  kFollowingError,
+  kUnderrun,
+  kLate,
+  kHoming,
+  kInterlock,  ///< see `detail`; the job did not begin within `limit`
+  kCanceled,
+  // Why nobody would want the tool that a job grinds.
+  kRake,        ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kLand,        ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
+  kCore,        ///< the wheel cuts through the core; at `x`
+  kIncomplete,  ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
+  kCollision,   ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
+  kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
+  kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
+};
+constexpr int kReasonKindCount = static_cast<int>(ReasonKind::kUnevenRake) + 1;
+
+/// Why a job was refused or has ended, or why the machine stopped, as data; text() converts it to words.
+struct Reason {
+  ReasonKind kind = ReasonKind::kNone;
+  int axis = 0;             ///< for kParkInWork, the limits, kInvalidFeedback and kFollowingError
+  std::string field;        ///< for the kinds about a field: its path, e.g. "process.feed"
+  std::string detail;       ///< further information, without numbers that have a unit
+  Unit unit = Unit::kNone;  ///< of value, low and limit
+  double value = 0;         ///< the wrong value, in SI
+  double low = 0;           ///< lower end of the allowed range, for kOutOfRange
+  double limit = 0;         ///< the allowed value, or the upper end of the allowed range
+  bool has_place = false;   ///< whether the next five members are known
+  MoveKind move = MoveKind::kLift;
+  int tooth = 0;            ///< from 0
+  int pass = 0;             ///< from 0
+  double x = 0;             ///< along the cutter [m]
+  std::uint64_t cycle = 0;  ///< of the setpoint, for the limits and kTolerance; of the last one, for kUnderrun
+  std::uint64_t count = 0;  ///< number of setpoints of which this is the worst; passes of the job, for kTooLong
+};
+
+/// A reason in words, in which teeth and passes count from 1.
+std::string text(const Reason& reason, UnitSystem units);
+
+/// Reasons in words, separated by "; ".
+std::string text(const std::vector<Reason>& reasons, UnitSystem units);
+
+/// A job that cannot be ground on a machine; what() is the reason's text in SI.
+class ReasonError : public std::invalid_argument {
+ public:
+  explicit ReasonError(Reason reason)
+      : std::invalid_argument(text(reason, UnitSystem::kSi)), reason_(std::move(reason)) {}
+  const Reason& reason() const noexcept { return reason_; }
+
+ private:
+  Reason reason_;
+};
+
+/// The cause of a feed limit for the reader: "axis_a velocity" becomes "axis A velocity" for the operator.
+std::string causeText(const std::string& cause, UnitSystem units);
+
+}  // namespace flute_grinder::core

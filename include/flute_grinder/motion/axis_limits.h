@@ -1,0 +1,33 @@
+#pragma once
+
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/axes.h"
+
+namespace flute_grinder {
+
+/// Bounds for the machine's parameters, in SI units; far beyond any real machine.
+constexpr double kMinFigure = 1e-9, kMaxFigure = 1e9;
+
+/// The limits of all axes; positions in machine coordinates.
+struct AxisLimits {
+  Axes min_position = Axes::Zero();      ///< [m], A [rad]
+  Axes max_position = Axes::Zero();      ///< [m], A [rad]
+  Axes max_velocity = Axes::Zero();      ///< [m/s], A [rad/s]
+  Axes max_acceleration = Axes::Zero();  ///< [m/s^2], A [rad/s^2]
+  Axes max_jerk = Axes::Zero();          ///< [m/s^3], A [rad/s^3]
+};
+
+/// The machine data needed to plan a job.
+struct Machine {
+  AxisLimits limits;
+  double period = 0;                              ///< control cycle T [s]
+  Axes park = Axes::Zero();                       ///< machine position at a job's end, clear of the work [m], A [rad]
+  double max_job_duration = 86400;                ///< longest job accepted [s]
+  double collision_clearance = 0;                 ///< least distance of what moves with the wheel from all else [m]
+  Range swivel{-units::kPi / 2, units::kPi / 2};  ///< to which the wheel's plane can be set [rad]
+  /// Of the job that is planned: machine position - work position. See WorkOffsets. [m], A [rad]
+  Axes work_offset = Axes::Zero();
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,85 @@
+#pragma once
+
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/axis_limits.h"
+#include "flute_grinder/motion/feed_schedule.h"
+#include "flute_grinder/motion/setpoint.h"
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// One move of a job, from the end of the previous move.
+struct Move {
+  MoveKind kind = MoveKind::kLift;
+  std::uint16_t tooth = 0;
+  std::uint16_t pass = 0;
+  Axes to = Axes::Zero();  ///< [m], A [rad]
+  double wear = 0;         ///< of the wheel's radius, which Y of the infeed and the stroke compensates [m]
+  double taper = 0;        ///< of the stroke: added to the cone's dY/dX
+};
+
+/// The path of a tooth's strokes before infeed and indexing, and its feed.
+struct Helix {
+  ConicalCutter cutter;
+  LogCurve curve;
+  ZCorrection z_correction;
+  FeedSchedule schedule;
+
+  /// Height Z on the path: the cutter's, with the job's correction. Real-time safe. [m]
+  double z(double x) const noexcept {
+    return z_correction.pieces == 0 ? cutter.z(x) : cutter.z(x) + z_correction.at(x).z;
+  }
+};
+
+/// The ordered moves of all teeth and passes of a job. If the wheel is lower than the park position, it first rises to
+/// that height. Then, for each pass: A is indexed, the wheel moves to above the start, descends to the clearance,
+/// plunges at feed, makes its stroke with overtravel, and retracts radially. At the end the wheel returns to the park
+/// position. The plunge compensates for wheel wear, so the compensation never changes within a pass. All positions are
+/// in work coordinates.
+class GrindProgram {
+ public:
+  /// @param job a job that validate() accepts.
+  /// @param machine the machine that runs the job, with the job's work offset.
+  /// @param start the position of the axes at the start, in work coordinates [m], A [rad].
+  /// @param first first pass to grind.
+  /// @throw std::invalid_argument if `first` is not a pass of the job, if the machine does not swivel as far as the
+  ///        job's set-up, if the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
+  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
+
+  const GrindJob& job() const noexcept { return job_; }
+  const Machine& machine() const noexcept { return machine_; }
+  /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
+  const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).cutter; }
+  const Axes& start() const noexcept { return start_; }
+  const std::vector<Move>& moves() const noexcept { return moves_; }
+
+  /// The path of a tooth's strokes; teeth with the same spiral angle have the same.
+  const Helix& helix(int tooth) const noexcept { return helices_[helix_of_tooth_[static_cast<std::size_t>(tooth)]]; }
+  /// The distinct ones.
+  const std::vector<Helix>& helices() const noexcept { return helices_; }
+  /// The feed schedule of a tooth's strokes, the same for all passes.
+  const FeedSchedule& schedule(int tooth = 0) const noexcept { return helix(tooth).schedule; }
+  double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
+  double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
+
+  /// Y at which the wheel is clear of the workpiece over the whole stroke [m].
+  double clearanceHeight() const noexcept { return clearance_y_; }
+
+ private:
+  void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
+  void appendPass(const ToothPass& pass, double depth, double wear, Axes& at);
+
+  GrindJob job_;
+  Machine machine_;
+  Axes start_;
+  FeedSchedule::Stroke stroke_;
+  std::vector<Helix> helices_;
+  std::vector<std::size_t> helix_of_tooth_;
+  double clearance_y_;
+  std::vector<Move> moves_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/motion/limit_check.h"
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace core {
+
+/// Statistics of a job's setpoints.
+struct PathStatistics {
+  std::uint64_t setpoints = 0;
+  double duration = 0;                                 ///< [s]
+  std::array<double, kMoveKindCount> move_duration{};  ///< per MoveKind [s]
+  double max_odd_error = 0;                            ///< |theory - commanded| of A at odd points [rad]
+  double max_even_error = 0;                           ///< the same at even points [rad]
+  double max_deviation = 0;                            ///< normal to the helix at the cutter's surface [m]
+  double min_feed = 0, max_feed = 0;                   ///< for each pair while at feed; 0 if never at feed [m/s]
+  Axes max_velocity = Axes::Zero();                    ///< [m/s], A [rad/s]
+  Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
+  Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
+  Axes ripple_acceleration = Axes::Zero();  ///< over single cycles, from the odd-even steps [m/s^2], A [rad/s^2]
+  std::vector<FeedLimit> feed_limits;       ///< what limits the feed, and where
+};
+
+}  // namespace core
+
+/// Why a plan was refused.
+enum class PlanFault {
+  kNone,
+  kInvalidJob,
+  kLimit,
+  kTolerance,
+  kTool,  ///< nobody would want the tool
+  kCollision,
+  kTooLong,  ///< longer than Machine::max_job_duration
+  kGivenUp,  ///< because PlanWatch returned false
+};
+
+/// Called about every millisecond while a plan is computed.
+/// @param done fraction of the job that has been generated and checked, 0..1.
+/// @return false to give up planning.
+using PlanWatch = std::function<bool(double done)>;
+
+/// The place on a path where two bodies are closest.
+struct ClosestPlace {
+  double distance = std::numeric_limits<double>::infinity();  ///< 0 if the bodies touch [m]
+  std::string first, second;                                  ///< the bodies: <collision> names, wheel, cutter, shank
+  Axes axes = Axes::Zero();                                   ///< [m], A [rad]
+  std::size_t leg = 0;                                        ///< of the path; of a plan, the move
+};
+
+/// A job that was generated and checked as a whole.
+struct JobPlan {
+  PlanFault fault = PlanFault::kNone;
+  std::vector<core::Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
+  core::PathStatistics statistics;
+  std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
+  std::optional<Range> complete;                ///< where the flutes would be complete, if that was checked
+  std::optional<ClosestPlace> closest;          ///< of wheel, machine and cutter, if that was checked
+  std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers or its law of Z were refused
+
+  bool good() const { return fault == PlanFault::kNone; }
+};
+
+/// Checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
+/// max_job_duration. For any job and machine, the result is either a good plan or one with reasons.
+///
+/// Moves that differ only by constant offsets of their axes, as the strokes of all teeth and passes do, are generated
+/// as a whole only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
+/// differ from those of all setpoints by rounding; nothing else differs.
+/// @param job the job; its numbers are checked too.
+/// @param machine the machine that runs the job, with the job's work offset.
+/// @param start the position of the axes at the start, in work coordinates [m], A [rad].
+/// @param first first pass to grind.
+/// @param visit if given, every setpoint is generated, and this is called with it; all of them are finite.
+/// @param watch if given, may make the planner give up.
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
+                const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
+
+}  // namespace flute_grinder

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "flute_grinder/job/reason.h"
+#include "flute_grinder/motion/axis_limits.h"
+#include "flute_grinder/motion/setpoint.h"
+
+#include <array>
+#include <optional>
+
+namespace flute_grinder {
+
+/// The quantity that a limit applies to.
+enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFinite };
+
+/// A setpoint that exceeds a limit of an axis.
+struct LimitViolation {
+  int axis = 0;
+  LimitedQuantity quantity = LimitedQuantity::kPosition;
+  double value = 0;  ///< of a position, in machine coordinates
+  double limit = 0;
+  std::uint64_t cycle = 0;
+  double x = 0;  ///< position along the cutter, in work coordinates [m]
+  MoveKind move = MoveKind::kLift;
+  std::uint16_t tooth = 0;  ///< from 0
+  std::uint16_t pass = 0;   ///< from 0
+};
+
+/// Converts a violation to a reason. Not real-time safe.
+core::Reason reasonOf(const LimitViolation& violation);
+
+/// Checks consecutive setpoints against the axis limits. Position and velocity are checked at every setpoint;
+/// acceleration and jerk only at pair ends, from differences over two cycles, because within a pair they come from the
+/// odd-even steps and not from the path. Excess due to rounding is ignored. Real-time safe.
+class LimitCheck {
+ public:
+  /// @param limits the axes' limits.
+  /// @param period control cycle [s].
+  /// @param roundings how many times the rounding of a position is let pass in velocity, acceleration and jerk; 1 where
+  /// a
+  ///        motion is planned, kUnplannedRoundings where it is made.
+  LimitCheck(const AxisLimits& limits, double period, double roundings = 1) noexcept;
+
+  /// A plan generates and checks only the first of moves that differ by constant offsets, see planJob(). What passes
+  /// there may be above the limit by one rounding, thus the true motion by two, and another move's by three.
+  static constexpr double kUnplannedRoundings = 3;
+
+  /// Discards the history: the axes are assumed to be at rest before the next setpoint.
+  void restart() noexcept {
+    seen_ = 0;
+    slow_down_ = 1;
+  }
+
+  /// For axes that stood still for a while and continue at a fraction of their speed, see FeedLaw::slowDown(). The
+  /// stored history is scaled to the same speed, from the next pair on.
+  /// @param factor above 0 and below 1; other values are ignored.
+  void slowDown(double factor) noexcept {
+    if (factor > 0 && factor < slow_down_) slow_down_ = factor;
+  }
+
+  /// @param offset machine position - position of the setpoint [m], A [rad]. Only positions depend on it: velocity,
+  ///        acceleration and jerk come from the setpoints, so that plan and machine find the same, bit for bit.
+  /// @return the first violation of the setpoint, if there is one; begin() and end() give all of them.
+  std::optional<LimitViolation> check(const Setpoint& setpoint, const Axes& offset = Axes::Zero()) noexcept;
+
+  /// All violations of the last setpoint checked.
+  const LimitViolation* begin() const noexcept { return violations_.data(); }
+  const LimitViolation* end() const noexcept { return violations_.data() + violation_count_; }
+
+  /// The velocity at the last setpoint checked; acceleration and jerk at the last pair end.
+  const Axes& velocity() const noexcept { return velocity_; }
+  const Axes& acceleration() const noexcept { return acceleration_; }
+  const Axes& jerk() const noexcept { return jerk_; }
+
+ private:
+  void slowPastDown() noexcept;
+  void checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept;
+  void checkPairEnd(const Setpoint& setpoint) noexcept;
+  void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
+                 double rounding) noexcept;
+  void report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value, double limit) noexcept;
+
+  AxisLimits limits_;
+  double inverse_period_;
+  double roundings_;
+  std::uint64_t seen_ = 0;
+  double slow_down_ = 1;  ///< for the next pair
+  Axes last_ = Axes::Zero();
+  Axes largest_ = Axes::Zero();  ///< largest magnitude of the position so far
+  Axes ends_[3];                 ///< the last pair ends, newest first
+  Axes velocity_ = Axes::Zero();
+  Axes acceleration_ = Axes::Zero();
+  Axes jerk_ = Axes::Zero();
+
+  /// One for each axis and each of position, velocity, acceleration and jerk.
+  std::array<LimitViolation, std::size_t{kAxisCount} * 4> violations_;
+  std::size_t violation_count_ = 0;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,153 @@
+#pragma once
+
+#include "flute_grinder/curve/feed_law.h"
+#include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/motion/setpoint.h"
+
+#include <memory>
+
+namespace flute_grinder {
+
+/// What the setpoints of a move depend on, but for constant offsets of the axes.
+struct MoveShape {
+  MoveKind kind = MoveKind::kLift;
+  std::size_t helix = 0;    ///< of a stroke: which of the program's
+  double taper = 0;         ///< of a stroke, see Move
+  Axes way = Axes::Zero();  ///< of a straight move [m], A [rad]
+
+  bool operator<(const MoveShape& other) const noexcept;
+};
+
+/// The only source of setpoints: planning, dry runs and the machine all use it, so the previewed and the streamed
+/// setpoints are bit-identical. Every move takes an even number of cycles, so even cycles always end a pair. The motion
+/// can be held anywhere, slowed down, lifted off the workpiece and brought back; each request takes effect at the next
+/// pair, and all motion stays within the axis limits. While the axes are at rest there are no setpoints. If a stream
+/// cannot continue, which never happens with a program that planJob() accepts, all further positions are NaN, so every
+/// check rejects them.
+class SetpointStream {
+ public:
+  /// Starts at the start of the program.
+  explicit SetpointStream(GrindProgram program);
+
+  /// The same without copying the program, which must not be null.
+  explicit SetpointStream(std::shared_ptr<const GrindProgram> program);
+
+  /// The next setpoint; the first is the program's start position, at rest. Real-time safe.
+  /// @return false while the axes are at rest: at the end of the program, after hold(), lifted after retract(), or at a
+  ///        feed override of 0; `setpoint` is then unchanged.
+  bool next(Setpoint& setpoint) noexcept;
+
+  /// Changes the speed of the moves at feed, which are infeed and stroke; rapids keep their speed. Real-time safe.
+  /// @param fraction of the job's feed, 0 to kMaxFeedOverride; other values are ignored. Above 1 the feed is raised as
+  ///        far as the axes allow.
+  void setFeedOverride(double fraction) noexcept;
+
+  /// Stops on the path, as soon as the limits allow. Real-time safe.
+  void hold() noexcept { holding_ = true; }
+
+  /// Whether hold() is in effect.
+  bool holding() const noexcept { return holding_; }
+
+  /// For axes that stood still for a while: continues at reduced speed, then accelerates again. Real-time safe.
+  /// @param factor speed factor, above 0 and below 1; other values are ignored.
+  void slowDown(double factor) noexcept {
+    if (factor > 0 && factor < slow_down_) slow_down_ = factor;
+  }
+
+  /// Continues after hold() from the current position, or after retract(): the wheel then re-enters a stroke ahead of
+  /// the point where it left it, by the distance needed to reach the feed. Real-time safe.
+  void resume() noexcept;
+
+  /// Lifts the wheel radially off the workpiece, where it stays. Ignored unless the axes are at rest before the end of
+  /// the program. Real-time safe.
+  void retract() noexcept;
+
+  /// Whether the wheel rests lifted after retract(), so that the axes may be moved by other means.
+  bool lifted() const noexcept { return leg_ == Leg::kLift && stay_lifted_ && !mid_pair_ && !lost_ && law_.finished(); }
+
+  /// Takes over a setpoint that moves the axes by other means, and numbers it as the stream's own. They must come in
+  /// pairs, and end at rest. After resume() the stream first returns to where retract() lifted the wheel to: up to at
+  /// least that height, across, then down; from there it continues as if the axes had not been moved. Ignored unless
+  /// lifted(). Real-time safe.
+  /// @param setpoint changed but for position, velocity, feed and kind of move.
+  void adopt(Setpoint& setpoint) noexcept;
+
+  /// Whether the program has ended.
+  bool finished() const noexcept;
+
+  /// Whether the axes are on the program's path, and not on a detour after retract().
+  bool onPath() const noexcept { return leg_ == Leg::kPath; }
+
+  const GrindProgram& program() const noexcept { return *program_; }
+
+  /// The shape of the current move, which must be one of the program's.
+  MoveShape shape() const noexcept;
+
+  /// Time to the end of the current move, or to a stop before [s].
+  double timeLeft() const noexcept { return law_.timeLeft(); }
+
+  /// Continues where another stream stands, as if the setpoints up to there had been taken. Both must be between two
+  /// pairs of a move of the same shape, of the same program, neither held nor slowed down.
+  /// @param cycles by which the other is further on in its move.
+  void skip(const SetpointStream& later, std::uint64_t cycles) noexcept;
+
+  /// Between two pairs of a straight move that runs at its speed, and has done so for some cycles: leaves out the
+  /// setpoints up to twice as many cycles before the end of that.
+  /// @return the number of setpoints left out; 0 at any other time.
+  std::uint64_t skipCruise(std::uint64_t cycles) noexcept;
+
+ private:
+  /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.
+  enum class Leg : std::uint8_t { kPath, kLift, kBack, kPlunge };
+
+  bool beginPair() noexcept;
+  bool beginNext() noexcept;
+  void beginMove(const Move& move) noexcept;
+  void beginWayBack() noexcept;
+  void beginReturn() noexcept;
+  void beginStraight(MoveKind kind, const Axes& to) noexcept;
+  void beginStroke(double s) noexcept;
+  void beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept;
+  double targetSpeed() const noexcept;
+  double strokeParameter() const noexcept;
+  double strokeY(double x) const noexcept { return helix_->cutter.y(x) + x * taper_ + y_offset_; }
+  void straightStep() noexcept;
+  void strokePair() noexcept;
+  void strokePoint(const CurvePoint& point, StepKind step) noexcept;
+
+  std::shared_ptr<const GrindProgram> program_;
+  const Helix* helix_;  ///< of the program, for the current tooth
+  double period_;
+  double override_ = 1;
+  double slow_down_ = 1;  ///< for the next pair
+  bool holding_ = false;
+  bool stay_lifted_ = false;
+  bool lost_ = false;  ///< the stream cannot continue
+
+  Setpoint current_;
+  bool started_ = false;
+  bool mid_pair_ = false;
+  std::size_t next_move_ = 0;
+  Leg leg_ = Leg::kPath;
+  FeedLaw law_;
+  double move_speed_ = 0;  ///< of the law, without override
+
+  // For a straight move: position = from_ + law * way_.
+  Axes from_ = Axes::Zero();
+  Axes way_ = Axes::Zero();
+  Axes to_ = Axes::Zero();
+  double linear_way_ = 0;
+
+  // For a stroke.
+  OddEvenInterpolator interpolator_;
+  CurvePoint even_point_;
+  double stroke_from_ = 0;  ///< parameter at which the stroke was started or re-entered
+  double y_offset_ = 0, a_offset_ = 0;
+  double taper_ = 0;  ///< added to the cone's dY/dX
+
+  double reentry_ = 0;          ///< parameter at which retract() left the stroke
+  Axes lifted_ = Axes::Zero();  ///< position to which retract() lifts the wheel [m], A [rad]
+};
+
+}  // namespace flute_grinder

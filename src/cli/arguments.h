@@ -1,0 +1,64 @@
+#pragma once
+
+#include "flute_grinder/curve/enum_table.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+// Arguments that several commands have.
+
+/// The job file, required.
+void addJob(CLI::App& command, std::string& job);
+
+/// `--csv`, a file to write.
+void addCsv(CLI::App& command, std::string& csv, const char* description);
+
+/// `--json`.
+void addJson(CLI::App& command, bool& json);
+
+/// Which of a bag's jobs, from 1. @param name of the option.
+void addCountedJob(CLI::App& command, const char* name, int& number);
+
+/// The files that describe the machine; by default the package's own.
+void addMachine(CLI::App& command, std::string& parameters, std::string& urdf);
+
+/// The letter of an axis, required.
+void addAxis(CLI::App& command, std::string& axis);
+
+/// `--flange`.
+void addFlange(CLI::App& command, std::optional<double>& flange_mm);
+
+/// An option whose argument is the name of an enum's value.
+template <typename Enum>
+void addChoice(CLI::App& command, const char* name, std::optional<Enum>& choice, const char* description) {
+  std::map<std::string, Enum> values;
+  std::string names;
+  for (const auto& row : rowsOf(Enum{})) {
+    values[row.name] = row.value;
+    names += (names.empty() ? "" : "|") + std::string(row.name);
+  }
+  command
+      .add_option_function<Enum>(
+          name, [&choice](const Enum& value) { choice = value; }, description)
+      ->transform(CLI::CheckedTransformer(values).description(""))
+      ->type_name("{" + names + "}");
+}
+
+/// A length in mm. @param zero whether it may be 0.
+template <typename Length>
+CLI::Option& addLength(CLI::App& command, const char* name, Length& length_mm, const char* description, bool zero) {
+  return *command.add_option(name, length_mm, description)->type_name("MM")->check([zero](const std::string& text) {
+    const double value = std::strtod(text.c_str(), nullptr);
+    const bool good = std::isfinite(value) && (zero ? value >= 0 : value > 0);
+    return good ? "" : text + "; allowed: " + (zero ? "0 mm or more" : "more than 0 mm");
+  });
+}
+
+}  // namespace flute_grinder

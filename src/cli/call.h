@@ -1,0 +1,52 @@
+#pragma once
+
+#include "cli/online.h"
+#include "cli/state_watch.h"
+#include "flute_grinder/connection/service_call.h"
+
+#include <ros/ros.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Asks a service of the grinder, and prints why if it is not answered.
+/// @param patience for the answer. @param give_up ends the wait for it earlier. @return nothing without an answer.
+template <typename Service>
+std::optional<typename Service::Response> ask(
+    ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
+    const ros::WallDuration& patience = kPatience, const std::function<bool()>& give_up = [] { return false; }) {
+  ros::ServiceClient there = nh.serviceClient<Service>(service);
+  if (!await(kPatience, [&] { return there.exists(); })) {
+    noGrinder(nh);
+    return std::nullopt;
+  }
+  std::optional<typename Service::Response> response;
+  ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
+                      ros::serialization::serializeMessage(request), patience,
+                      [&](ros::SerializedMessage* message) { response = responseFrom<Service>(message); });
+  await(patience, [&] { return running.finished() || give_up(); });
+  running.end();
+  if (!response) {
+    fail(service + ": no answer from the grinder " + nh.getNamespace() +
+         "; the request may or may not have been carried out");
+  }
+  return response;
+}
+
+/// The same for a service that may refuse, and prints why if it does.
+/// @param answer if given, gets the response, if there is one. @return the exit status.
+template <typename Service>
+int call(
+    ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
+    typename Service::Response* answer = nullptr, const ros::WallDuration& patience = kPatience,
+    const std::function<bool()>& give_up = [] { return false; }) {
+  const std::optional<typename Service::Response> response = ask<Service>(nh, service, request, patience, give_up);
+  if (!response) return 1;
+  if (answer) *answer = *response;
+  return response->success ? 0 : fail(response->message);
+}
+
+}  // namespace flute_grinder

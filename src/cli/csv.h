@@ -1,0 +1,91 @@
+#pragma once
+
+#include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/motion/setpoint.h"
+
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace flute_grinder {
+
+/// A file that cannot be opened or written.
+class FileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A file that could be opened, but not written to its end.
+class WriteError : public FileError {
+ public:
+  using FileError::FileError;
+};
+
+/// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
+/// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
+/// is removed again.
+class CsvFile {
+ public:
+  /// @param path the file.
+  /// @param header its first line.
+  /// @throw FileError if it cannot be opened for writing.
+  CsvFile(std::string path, std::string header);
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  ~CsvFile();
+
+  /// Closes the file. @throw WriteError if writing failed.
+  void close();
+
+ protected:
+  /// Like printf; close() reports errors.
+  void print(const char* format, ...) __attribute__((format(printf, 2, 3)));
+
+ private:
+  void begin();
+
+  struct Closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  const std::string path_;
+  const std::string header_;
+  bool created_ = false, begun_ = false;
+  int error_ = 0;  ///< errno of the first line that could not be written
+  std::unique_ptr<std::FILE, Closer> file_;
+};
+
+/// `point,x_mm,a_rad,a_theory_rad,error_rad`, as in the paper's Table 1.
+class TableCsv : public CsvFile {
+ public:
+  explicit TableCsv(const std::string& path) : CsvFile(path, "point,x_mm,a_rad,a_theory_rad,error_rad") {}
+  void write(int number, const CurvePoint& point, double theory);
+};
+
+/// A line for each setpoint.
+class SetpointCsv : public CsvFile {
+ public:
+  static constexpr const char* kColumns =
+      "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min";
+
+  explicit SetpointCsv(const std::string& path) : CsvFile(path, kColumns) {}
+  /// @param period control cycle [s].
+  void write(const Setpoint& setpoint, double period);
+
+ protected:
+  SetpointCsv(const std::string& path, const std::string& columns) : CsvFile(path, columns) {}
+  /// Without the end of the line.
+  void writeFields(const Setpoint& setpoint, double period);
+};
+
+/// The same with the position that the drive read one cycle before.
+class RunCsv : public SetpointCsv {
+ public:
+  static const std::string& columns();
+
+  explicit RunCsv(const std::string& path) : SetpointCsv(path, columns()) {}
+  /// @param actual [m], A [rad]. @param period control cycle [s].
+  void write(const Setpoint& setpoint, const Axes& actual, double period);
+};
+
+}  // namespace flute_grinder

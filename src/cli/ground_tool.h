@@ -1,0 +1,55 @@
+#pragma once
+
+#include "cli/csv.h"
+#include "cli/json_output.h"
+#include "flute_grinder/geometry/gouge.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/job/grind_job.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A section of a ground cutter with what is measured for a report.
+struct MeasuredSection {
+  GroundSection ground;
+  double area_removed = 0;  ///< [m^2]
+};
+
+/// A ground cutter as `grind simulate` shows it.
+struct GroundTool {
+  GrindJob job;
+  std::string source;  ///< where it comes from, for the reader
+  GroundCutter cutter;
+  CutterCheck check;
+  std::vector<MeasuredSection> sections;
+  double volume_removed = 0;  ///< over the flute's length [m^3]
+  bool recorded = false;      ///< as ground in a run
+  std::vector<RecordedStroke> strokes;
+  std::vector<Gouge> gouges;  ///< those deeper than what sampling leaves
+};
+
+/// Measures a cutter. @param at X of the sections [m].
+GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
+
+/// Measures the cutter of a record; gouges are among the reasons why nobody would want it.
+GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
+                   const std::vector<double>& at);
+
+/// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.
+void printText(const GroundTool& tool);
+
+/// For `--json`, with the outlines of the sections. Teeth count from 0.
+Json toJson(const GroundTool& tool);
+
+/// A line for each section and tooth, which count from 0. What does not exist is an empty field.
+class GroundToolCsv : public CsvFile {
+ public:
+  explicit GroundToolCsv(const std::string& path);
+  void write(const GroundTool& tool);
+};
+
+}  // namespace flute_grinder

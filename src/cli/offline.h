@@ -1,0 +1,43 @@
+#pragma once
+
+#include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/job_plan.h"
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind table`.
+struct TableOptions {
+  std::string job;
+  double step_length_mm = 0;
+  std::optional<EvenStepRule> even_step;  ///< instead of the job's
+  std::string csv;                        ///< file, or empty
+  bool json = false;
+};
+
+/// Arguments of `grind plan`.
+struct PlanOptions {
+  std::string job;
+  std::string csv;         ///< file, or empty
+  std::string parameters;  ///< YAML of the machine
+  std::string urdf;
+  bool json = false;
+};
+
+/// Interpolates a job's curve with a fixed step length, as the paper's Table 1. @return the exit status.
+int runTable(const TableOptions& options);
+
+/// Plans and checks a whole job without a machine, from the park position. @return the exit status.
+int runPlan(const PlanOptions& options);
+
+/// Prints a job's statistics in the operator's units.
+void printStatistics(const core::PathStatistics& statistics);
+
+/// Prints where along X the flutes are complete, and which two bodies come closest to each other, in the operator's
+/// units; what is not known is left out.
+void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest);
+
+}  // namespace flute_grinder

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "flute_grinder/machine/machine_state.h"
+
+#include <ros/node_handle.h>
+
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind run`.
+struct RunOptions {
+  std::string job;
+  bool dry_run = false;
+  bool go_on = false;              ///< from the first unfinished pass
+  bool discard = false;            ///< even if the journal holds another, unfinished job
+  bool offsets_are_right = false;  ///< whatever they were set for
+  std::string csv;                 ///< file for the streamed setpoints, or empty
+};
+
+/// Waits for the ROS master, which may still be starting, and makes this program a node, whose callbacks are
+/// called in a thread of their own. @return whether the master answers.
+bool joinRos();
+
+/// Ends this program's part in ROS. To be called last: no thread of roscpp's is awaited, only the master, once for each
+/// service. From then on Ctrl-C ends the program.
+void leaveRos();
+
+/// Prints an error. @return the exit status for it.
+int fail(const std::string& text);
+/// Prints why no grinder can be reached: no master, no clock or no node. @return the exit status for it.
+int noGrinder(const ros::NodeHandle& nh);
+
+/// Sends a job to the grinder and follows it to its end; Ctrl-C cancels it and waits for the stop, Ctrl-Z holds it.
+/// @param node the grinder's. @return the exit status. @throw FileError, before anything is sent, if a file cannot be
+/// opened.
+int runJob(const std::string& node, const RunOptions& options);
+
+/// Prints what the grinder is doing. @param json in JSON. @return the exit status.
+int printStatus(const std::string& node, bool json);
+
+/// Sends a trigger or a stop to the grinder. Waits for the end of homing, of a lift and of a canceled job.
+/// @return the exit status.
+int request(const std::string& node, MachineEvent event);
+
+/// Tells the grinder where the swivel stands. @param degrees -90 to 90. @return the exit status.
+int confirmSwivel(const std::string& node, double degrees);
+
+/// Moves an axis by hand, waits until it rests, and prints where it stands; Ctrl-C and Ctrl-Z stop it.
+/// @param axis kX ... kA.
+/// @param distance signed [mm], A [deg].
+/// @param feed [mm/min], A [deg/min]; 0 for the machine's.
+/// @return the exit status.
+int jog(const std::string& node, int axis, double distance, double feed);
+
+/// Sets the feed override. @param percent 0 to 120. @return the exit status.
+int setFeedOverride(const std::string& node, double percent);
+
+}  // namespace flute_grinder

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Arguments of `grind simulate`.
+struct SimulateOptions {
+  std::string file;           ///< a job, or the record of a run
+  std::string job;            ///< of a record; empty for the one in the record
+  int run = 0;                ///< which of a bag's jobs, from 1; 0 for the last
+  std::vector<double> at_mm;  ///< X of the sections; empty: `sections` over the flute's length
+  int sections = 9;
+  std::string csv, stl, svg;  ///< files to write, or empty
+  bool json = false;
+};
+
+constexpr int kMaxSections = 1000;
+
+/// Computes and measures the cutter that a job, or a recorded run, grinds. @return the exit status.
+/// @throw FileError, JobFileError if a file cannot be read or written; std::out_of_range for an X that is not on
+/// the
+///        cutter.
+int runSimulate(const SimulateOptions& options);
+
+}  // namespace flute_grinder

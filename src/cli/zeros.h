@@ -1,0 +1,38 @@
+#pragma once
+
+#include "flute_grinder/machine/machine_geometry.h"
+
+#include <ros/node_handle.h>
+
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Arguments of `grind zeros`.
+struct ZerosOptions {
+  std::string job;
+  double stickout_mm = 0;
+  std::optional<double> flange_mm;  ///< instead of the wheel file's
+  std::string parameters;           ///< YAML of the machine
+  std::string urdf;
+  bool set = false;  ///< by the grinder's own geometry, as its work offsets
+  bool json = false;
+};
+
+/// From the flange's face to the wheel's upper face [m]: as given, or as the wheel file of a job says.
+/// @throw std::invalid_argument if neither does; JobFileError
+double flangeOf(const std::string& job, const std::optional<double>& flange_mm);
+
+/// The geometry in a grinder's parameters. @param nh the grinder's namespace. @throw ParameterError
+MachineGeometry geometryOf(const ros::NodeHandle& nh);
+
+/// Prints where a job's X, Y and Z are zero in machine coordinates, by the geometry of options.parameters. @return the
+/// exit status.
+int printZeros(const ZerosOptions& options);
+
+/// Sets them as the grinder's work offsets, by its own geometry, and prints them. @param node the grinder's. @return
+/// the exit status.
+int setZeros(const std::string& node, const ZerosOptions& options);
+
+}  // namespace flute_grinder

@@ -1,9 +1,0 @@
-#include "flute_grinder/core/log_curve.h"
-
-#include <cmath>
-
-namespace flute_grinder {
-
-double LogCurve::log1pRatio(double z) noexcept { return z == 0 ? 1 : std::log1p(z) / z; }
-
-}  // namespace flute_grinder

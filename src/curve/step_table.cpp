@@ -1,0 +1,35 @@
+#include "flute_grinder/curve/step_table.h"
+
+#include <cmath>
+
+namespace flute_grinder {
+
+namespace {
+
+void add(StepTable& table, const LogCurve& curve, const CurvePoint& point) {
+  double& largest = table.rows.size() % 2 == 1 ? table.largest_odd_error : table.largest_even_error;
+  table.rows.push_back({point, curve.a(point.x)});
+  largest = std::max(largest, std::abs(table.rows.back().error()));
+}
+
+}  // namespace
+
+StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, EvenStepRule rule, double step_length) {
+  const LogCurve curve(cutter);
+  OddEvenInterpolator interpolator(curve, rotary_scale, rule, 0);
+  StepTable table;
+  add(table, curve, interpolator.position());
+  while (interpolator.position().x < cutter.geometry().flute_length) {
+    const double x = interpolator.position().x;
+    const OddEvenPair pair = interpolator.next(step_length);
+    if (!(pair.even.x > x && curve.u(pair.odd.x) > 0 && curve.u(pair.even.x) > 0 && std::isfinite(pair.even.a))) {
+      return table;
+    }
+    add(table, curve, pair.odd);
+    add(table, curve, pair.even);
+  }
+  table.complete = true;
+  return table;
+}
+
+}  // namespace flute_grinder

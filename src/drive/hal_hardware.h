@@ -1,0 +1,70 @@
+#pragma once
+
+#include "drive/hal_component.h"
+#include "drive/hal_fifo.h"
+#include "flute_grinder/drive/axes_hw.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+namespace flute_grinder {
+
+/// Hardware behind LinuxCNC's HAL: Mesa cards, step generators, analog and EtherCAT servos. Commands go through the
+/// FIFO of a HAL `streamer`; each servo cycle plays exactly one. The fill level of the FIFO paces the control loop, so
+/// the axes keep moving if this program is late by less than the buffer. The HAL file contains the emergency stop, the
+/// watchdog on the heartbeat and the enable chain; docs/shop-floor-pc.md lists the pins.
+///
+/// Parameters, in the drive's namespace: `component`, name of the HAL component; `streamer`, number of the streamer;
+/// `buffer` [s], duration of the motion that the FIFO holds.
+class HalHardware : public AxesHW {
+ public:
+  bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
+  void read(const ros::Time& time, const ros::Duration& period) override;
+  void write(const ros::Time& time, const ros::Duration& period) override;
+  /// With power on, waits until the FIFO has room for a command; otherwise uses the monotonic clock.
+  ros::Duration wait(const ros::Duration& period) override;
+
+ private:
+  /// Pointers to the pins' values, in HAL's memory.
+  struct Pins {
+    struct Joint {
+      hal_float_t *feedback, *velocity, *command;
+      hal_bit_t *fault, *homed, *enable;
+    };
+    std::array<Joint, kAxisCount> joints;
+    // Inputs from HAL, about the machine.
+    hal_bit_t *enabled, *emergency_stop, *homing, *spindle_at_speed, *coolant_on, *probe_free, *probe_contact;
+    hal_float_t *servo_cycles, *servo_rate, *swivel;
+    hal_u32_t* played;
+    hal_s32_t* underruns;
+    // Outputs to HAL.
+    hal_bit_t *enable, *heartbeat, *fault_reset, *home, *spindle_run, *coolant_run;
+  };
+
+  void makePins();
+  void checkServoThread(double control_rate) const;
+  void readJoints();
+  void readHoming();
+  void writeSwitches();
+  void switchOn();
+  void switchOff();
+  void send();
+  std::uint32_t waiting() const { return sent_ - *pins_->played; }
+
+  std::unique_ptr<HalComponent> component_;
+  std::unique_ptr<HalFifo> fifo_;
+  Pins* pins_ = nullptr;
+  bool has_swivel_ = false;   ///< HAL reads the swivel's encoder
+  std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
+
+  std::uint32_t sent_ = 0;  ///< number of the last command
+  bool overflow_ = false;   ///< the FIFO was full when a command was to be written
+  double servo_cycles_ = 0;
+  int reset_cycles_ = 0;       ///< remaining cycles of the reset pulse
+  bool homing_ = false;        ///< HAL was homing in the previous cycle
+  std::uint32_t settled_ = 0;  ///< number of the first command relative to the new reference
+  bool settling_ = false;      ///< commands relative to the old reference may still be queued
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,283 @@
+#include "flute_grinder/job/grind_job.h"
+
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+using core::ReasonKind;
+
+/// Tolerance for the rounding of a unit conversion at the ends of a range.
+constexpr double kRangeRounding = 1e-12;
+
+/// Collects the errors in a job.
+class Checker {
+ public:
+  void range(const JobField& f, double value) {
+    const double min = f.low().si;
+    const double max = f.high().si;
+    if (!(value >= min - kRangeRounding * std::abs(min) && value <= max + kRangeRounding * std::abs(max))) {
+      refuse(ReasonKind::kOutOfRange, f.path, {value, f.unit}, "", max, min);
+    }
+  }
+
+  /// A count or choice must be from `min` to `max`.
+  void whole(const char* path, int value, int max, int min = 0) {
+    const Quantity count{static_cast<double>(value), Unit::kNone};
+    if (!(value >= min && value <= max)) refuse(ReasonKind::kOutOfRange, path, count, "", max, min);
+  }
+
+  /// A length must be less than `limit`; `why` describes the limit.
+  void below(const char* path, double value, double limit, const char* why) {
+    if (!(value < limit)) refuse(ReasonKind::kNotBelow, path, {value, Unit::kMetre}, why, limit);
+  }
+
+  void refuse(ReasonKind kind, const char* path, const Quantity& value, const std::string& detail, double limit = 0,
+              double low = 0) {
+    core::Reason reason;
+    reason.kind = kind;
+    reason.field = path;
+    reason.detail = detail;
+    reason.unit = value.unit;
+    reason.value = value.si;
+    reason.low = low;
+    reason.limit = limit;
+    reasons_.push_back(std::move(reason));
+  }
+
+  bool good() const { return reasons_.empty(); }
+  std::vector<core::Reason> take() { return std::move(reasons_); }
+
+ private:
+  std::vector<core::Reason> reasons_;
+};
+
+void checkTeeth(Checker& checker, const std::vector<double>& angles) {
+  checker.whole("cutter.teeth", static_cast<int>(angles.size()), kMaxTeeth, 1);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const bool good = i == 0 ? angles[i] == 0 : angles[i] > angles[i - 1] && angles[i] < 2 * units::kPi;
+    if (good) continue;
+    return checker.refuse(ReasonKind::kNotAllowed, "cutter.tooth_angles", {angles[i], Unit::kRadian},
+                          "0 first, then ascending, below", 2 * units::kPi);
+  }
+}
+
+void checkSpirals(Checker& checker, const GrindJob& job) {
+  const std::vector<double>& angles = job.spiral_angles;
+  if (angles.empty()) return;
+  if (angles.size() != job.tooth_angles.size()) {
+    return checker.refuse(ReasonKind::kNotAllowed, "cutter.spiral_angles",
+                          {static_cast<double>(angles.size()), Unit::kNone},
+                          "as many as teeth, " + std::to_string(job.tooth_angles.size()));
+  }
+  visitJobFields([&](JobField field, auto of) {
+    if (std::string_view(field.path) != "cutter.spiral_angle") return;
+    if (!(angles[0] == of(job))) {
+      checker.refuse(ReasonKind::kNotAllowed, "cutter.spiral_angles", {angles[0], Unit::kRadian},
+                     "first cutter.spiral_angle,", of(job));
+    }
+    field.path = "cutter.spiral_angles";
+    for (const double angle : angles) checker.range(field, angle);
+  });
+}
+
+void checkWheelPoints(Checker& checker, const GrindJob& job) {
+  constexpr double rounding = 1e-9;
+  constexpr double smallest = 0.05e-3, largest = 250e-3;
+  const GrindProcess& p = job.process;
+  const std::vector<ProfilePoint>& points = job.wheel_points;
+  const char* const path = "process.wheel_points";
+  if (p.wheel_profile != WheelShape::kPoints) {
+    if (!points.empty()) checker.whole(path, static_cast<int>(points.size()), 0);
+    return;
+  }
+  checker.whole(path, static_cast<int>(points.size()), kMaxWheelPoints, 2);
+  if (!checker.good()) return;
+  double radius = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(points[i].radius >= smallest && points[i].radius <= largest)) {
+      checker.refuse(ReasonKind::kOutOfRange, path, {points[i].radius, Unit::kMetre}, "", largest, smallest);
+    }
+    if (!(std::abs(points[i].w) <= largest && (i == 0 || points[i].w > points[i - 1].w))) {
+      checker.refuse(ReasonKind::kNotAllowed, path, {points[i].w, Unit::kMetre}, "places along the spindle, ascending");
+    }
+    radius = std::max(radius, points[i].radius);
+  }
+  if (!(std::abs(points.front().w + points.back().w) <= rounding)) {
+    checker.refuse(ReasonKind::kNotAllowed, path, {points.front().w, Unit::kMetre}, "the middle of the width at 0, so",
+                   -points.back().w);
+  }
+  if (!(std::abs(2 * radius - p.wheel_diameter) <= rounding)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.wheel_diameter", {p.wheel_diameter, Unit::kMetre},
+                   "that of its points,", 2 * radius);
+  }
+  if (!(std::abs(points.back().w - points.front().w - p.wheel_width) <= rounding)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.wheel_width", {p.wheel_width, Unit::kMetre}, "that of its points,",
+                   points.back().w - points.front().w);
+  }
+}
+
+/// Whether the wear, the angle and the corner radii fit the wheel's shape.
+void checkWheel(Checker& checker, const GrindProcess& p) {
+  const bool tapered = isTapered(p.wheel_profile);
+  if (tapered != (p.wheel_angle > 0)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.wheel_angle", {p.wheel_angle, Unit::kRadian},
+                   tapered ? "more than 0 for this profile" : "0 for this profile");
+  }
+  checker.below("process.wheel_wear", p.wheel_wear, p.wheel_diameter / 2, "the wheel's radius");
+  if (tapered) {
+    checker.below("process.wheel_width", p.wheel_width, (p.wheel_diameter / 2 - p.wheel_wear) / std::tan(p.wheel_angle),
+                  "where the wheel's smaller face closes");
+  }
+  const Quantity corners{p.wheel_corner_radius_lower + p.wheel_corner_radius_upper, Unit::kMetre};
+  if (p.wheel_profile == WheelShape::kFullRadius) {
+    if (!(corners.si <= 0)) {
+      checker.refuse(ReasonKind::kNotAllowed, "process.wheel_corner_radius_lower", corners, "0 for this profile");
+    }
+    checker.below("process.wheel_width", p.wheel_width, p.wheel_diameter, "the wheel's diameter");
+  } else if (!(corners.si <= p.wheel_width)) {
+    checker.refuse(ReasonKind::kAbove, "process.wheel_corner_radius_lower", corners,
+                   "the wheel's width for both corners together", p.wheel_width);
+  }
+}
+
+/// Checks numbers that are each within their range against each other.
+void checkTogether(Checker& checker, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process;
+  const double growth = std::tan(c.cone_angle);
+  const auto radius = [&](double x) { return c.end_diameter / 2 + x * growth; };
+  const double apex = -c.end_diameter / 2 / growth;  // X at which the cone's radius is 0
+  if (growth < 0) {
+    checker.below("cutter.flute_length", c.flute_length, apex, "where the cone closes");
+    if (!checker.good()) return;  // the other errors would follow from this one
+    checker.below("process.overtravel_shank", p.overtravel_shank, apex - c.flute_length, "where the cone closes");
+  } else if (growth > 0) {
+    checker.below("process.overtravel_end", p.overtravel_end, -apex, "where the cone closes");
+  }
+  checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");
+  checker.below(p.depth_end > 0 ? "process.depth_end" : "process.depth", p.depthEnd(), radius(c.flute_length),
+                "the cutter's radius at the flute's end");
+  checker.below("cutter.core_diameter", c.core_diameter, c.end_diameter, "the cutter's diameter at the small end");
+  checkWheel(checker, p);
+  const double deepest = p.deepest();
+  if (!(p.finish_infeed <= deepest)) {
+    checker.refuse(ReasonKind::kAbove, "process.finish_infeed", {p.finish_infeed, Unit::kMetre}, "the depth", deepest);
+  }
+  const int allowed_passes = std::min(kMaxPasses, kMaxPassesOfAll / static_cast<int>(job.tooth_angles.size()));
+  if (!(deepest / p.infeed + p.spark_out + 2 <= allowed_passes)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.infeed", {p.infeed, Unit::kMetre},
+                   "enough for the depth in " + std::to_string(allowed_passes) + " passes per tooth, " +
+                       std::to_string(kMaxPassesOfAll) + " of all teeth");
+  }
+  if (!checker.good()) return;
+  const auto passes = static_cast<double>(job.tooth_angles.size() * passDepths(p).size());
+  checker.below("process.wheel_wear_per_pass", p.wheel_wear_per_pass, (p.wheel_diameter / 2 - p.wheel_wear) / passes,
+                "what is left of the wheel's radius, over the passes of all teeth");
+}
+
+}  // namespace
+
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
+  return format("D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s", cutter.end_diameter / units::kMillimetre,
+                cutter.cone_angle / units::kDegree, cutter.spiral_angle / units::kDegree,
+                cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
+}
+
+CutterGeometry cutterOf(const GrindJob& job, int tooth) {
+  CutterGeometry cutter = job.cutter;
+  if (!job.spiral_angles.empty()) cutter.spiral_angle = job.spiral_angles[static_cast<std::size_t>(tooth)];
+  return cutter;
+}
+
+ZCorrection zCorrectionOf(const GrindJob& job, int tooth) {
+  if (job.process.z_law == ZLaw::kPublished) return {};
+  if (job.z_corrections.size() != job.tooth_angles.size()) {
+    throw std::invalid_argument("process.z_law = constant_rake: the job has " +
+                                std::to_string(job.z_corrections.size()) +
+                                " corrections of Z; allowed: one for each tooth, from withZLaw()");
+  }
+  return job.z_corrections[static_cast<std::size_t>(tooth)];
+}
+
+std::vector<core::Reason> validate(const GrindJob& job) {
+  Checker checker;
+  visitJobFields([&](const JobField& field, auto of) { checker.range(field, of(job)); });
+  checkTeeth(checker, job.tooth_angles);
+  checkSpirals(checker, job);
+  checkWheelPoints(checker, job);
+  visitJobChoices([&](const char* path, int max, auto of) { checker.whole(path, static_cast<int>(of(job)), max); });
+  if (checker.good()) checkTogether(checker, job);
+  return checker.take();
+}
+
+std::vector<core::Reason> validateWheel(const GrindJob& job) {
+  const auto of_wheel = [](std::string_view path) { return path.find("process.wheel_") == 0; };
+  Checker checker;
+  visitJobFields([&](const JobField& field, auto of) {
+    if (of_wheel(field.path)) checker.range(field, of(job));
+  });
+  checkWheelPoints(checker, job);
+  visitJobChoices([&](const char* path, int max, auto of) {
+    if (of_wheel(path)) checker.whole(path, static_cast<int>(of(job)), max);
+  });
+  if (checker.good()) checkWheel(checker, job.process);
+  return checker.take();
+}
+
+std::vector<double> passDepths(const GrindProcess& process) {
+  // A depth that is a multiple of the infeed, except for rounding, needs no extra pass for the remainder.
+  constexpr double rounding = 1e-9;
+  const double depth = process.deepest();
+  const double rough = depth - process.finish_infeed;
+  const int rough_passes = static_cast<int>(std::ceil(rough / process.infeed - rounding));
+  std::vector<double> depths;
+  for (int i = 1; i <= rough_passes; ++i) depths.push_back(i == rough_passes ? rough : i * process.infeed);
+  if (process.finish_infeed > 0 || depths.empty()) depths.push_back(depth);
+  depths.insert(depths.end(), static_cast<std::size_t>(process.spark_out), depth);
+  return depths;
+}
+
+std::vector<ToothPass> passOrder(const GrindJob& job) {
+  const int teeth = static_cast<int>(job.tooth_angles.size());
+  const int passes = static_cast<int>(passDepths(job.process).size());
+  const bool tooth_major = job.process.order == GrindOrder::kToothMajor;
+  std::vector<ToothPass> order;
+  order.reserve(static_cast<std::size_t>(teeth) * static_cast<std::size_t>(passes));
+  for (int i = 0; i < teeth * passes; ++i) {
+    order.push_back(tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth});
+  }
+  return order;
+}
+
+std::vector<double> wearOfPasses(const GrindJob& job) {
+  std::vector<double> wear(passOrder(job).size());
+  for (std::size_t i = 0; i < wear.size(); ++i) {
+    wear[i] = job.process.wheel_wear + static_cast<double>(i) * job.process.wheel_wear_per_pass;
+  }
+  return wear;
+}
+
+double askedDepth(const GrindJob& job, double x) {
+  const GrindProcess& p = job.process;
+  const CutterGeometry& c = job.cutter;
+  const double at_end = c.core_diameter > 0 ? (c.end_diameter - c.core_diameter) / 2 : p.depth;
+  return at_end + (p.depthEnd() - p.depth) * x / c.flute_length;
+}
+
+DepthLaw depthLaw(const GrindJob& job, double depth) {
+  const GrindProcess& p = job.process;
+  const double deepest = p.deepest();
+  const double taper = (p.depth - p.depthEnd()) / job.cutter.flute_length;
+  return {depth * (p.depth / deepest), depth / deepest * taper};
+}
+
+}  // namespace flute_grinder

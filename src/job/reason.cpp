@@ -1,0 +1,189 @@
+#include "flute_grinder/job/reason.h"
+
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/job/job_fields.h"
+
+#include <cmath>
+
+namespace flute_grinder::core {
+
+namespace {
+
+constexpr int kFieldDigits = 10;  ///< for a job's numbers, so that they appear as entered
+
+/// Converts a reason to words.
+class Writer {
+ public:
+  Writer(const Reason& reason, UnitSystem units) : r_(reason), units_(units) {}
+
+  std::string what() const {
+    switch (r_.kind) {
+      case ReasonKind::kNone: return "";
+      case ReasonKind::kOutOfRange: return refused(range() + (r_.detail.empty() ? "" : ", " + r_.detail));
+      case ReasonKind::kNotBelow: return refused("less than " + digits(r_.limit) + ", " + r_.detail);
+      case ReasonKind::kAbove: return refused("up to " + r_.detail + ", " + digits(r_.limit));
+      case ReasonKind::kNotAllowed: return refused(r_.detail + (r_.limit == 0 ? "" : " " + digits(r_.limit)));
+      case ReasonKind::kFeedTooLow:
+        return name("process.feed") + ": " + causeText(r_.detail, units_) + " allows " + value() + " at X = " + x() +
+               "; the slowest feed is " + limit();
+      case ReasonKind::kParkInWork:
+        return "park position " + axis() + " = " + value() + "; allowed for this job: at least " + limit() +
+               ", clear of the work";
+      case ReasonKind::kTolerance:
+        return name("interpolation.tolerance") + " = " + limit() + ": the path deviates by " + value() +
+               " at the largest feed override" + place() + "; lower " + name("process.feed") +
+               ", or set interpolation.even_step to exact";
+      case ReasonKind::kRake:
+        return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
+               " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " of it; change " + name("process.setup_swivel") + " or " + name("process.setup_height");
+      case ReasonKind::kLand:
+        return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
+               ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");
+      case ReasonKind::kCore: return name("process.depth") + ": the core is cut through at X = " + x() + "; lower it";
+      case ReasonKind::kIncomplete:
+        return name("process.overtravel_end") + ", " + name("process.overtravel_shank") + ": the flutes are complete " +
+               (r_.value > r_.low
+                    ? "from X = " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
+                    : std::string("nowhere")) +
+               "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
+      case ReasonKind::kCollision: return collision();
+      case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
+      case ReasonKind::kUnevenRake:
+        return name("process.z_law") + " = constant_rake: tooth " + tooth() +
+               (r_.low <= r_.value ? " is ground with " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+                                         " to " + value() + " at best, asked " + limit() + "; allowed: within " +
+                                         flute_grinder::text(Quantity{kEvenRake, r_.unit}, units_) + " of it"
+                                   : std::string(" has no rake face over its whole flute")) +
+               "; change " + name("process.setup_swivel") + " or " + name("process.setup_height") + ", or raise " +
+               name("process.overtravel_end") + " or " + name("process.overtravel_shank");
+      case ReasonKind::kTooLong:
+        return "max_job_duration = " + limit() + ": the job takes " + (r_.value > 0 ? value() + " or more" : "longer") +
+               " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
+               name("process.feed") + " or " + name("process.infeed") + ", or the parameter";
+      case ReasonKind::kGivenUp: return r_.detail.empty() ? "given up while it was planned" : "given up: " + r_.detail;
+      case ReasonKind::kOther: return r_.detail;
+      case ReasonKind::kPosition: return axis() + " position " + excess();
+      case ReasonKind::kVelocity: return axis() + " velocity " + excess();
+      case ReasonKind::kAcceleration: return axis() + " acceleration " + excess();
+      case ReasonKind::kJerk: return axis() + " jerk " + excess();
+      case ReasonKind::kNotFinite: return axis() + " position " + value() + " is not a finite number";
+      case ReasonKind::kEmergencyStop: return "emergency stop";
+      case ReasonKind::kDriveFault: return "the drive reports a fault";
+      case ReasonKind::kPowerLost: return "the drive has switched its power off";
+      case ReasonKind::kStaleFeedback: return "no fresh positions from the drive for " + value() + allowed();
+      case ReasonKind::kInvalidFeedback: return axis() + " position from the drive is " + number();
+      case ReasonKind::kFollowingError:
+        return axis() + " following error " + value() + " is beyond its limit " + limit();
+      case ReasonKind::kUnderrun:
+        return "the axes found no setpoint in " + value() + " servo cycles, after setpoint " + std::to_string(r_.cycle);
+      case ReasonKind::kLate: return "the control loop came " + value() + " after the cycle before" + allowed();
+      case ReasonKind::kHoming: return "the drive has not found its reference after " + value() + allowed();
+      case ReasonKind::kInterlock: return r_.detail + " " + value() + " after the job was started" + allowed();
+      case ReasonKind::kCanceled: return "canceled; stopped on the path";
+    }
+    return "";
+  }
+
+  std::string place() const {
+    if (!r_.has_place) return "";
+    const std::string move = toString(r_.move);
+    const std::string tooth = "tooth " + std::to_string(r_.tooth + 1) + ", pass " + std::to_string(r_.pass + 1);
+    if (units_ == UnitSystem::kShop) return " (" + move + ", " + tooth + ", X = " + x() + ")";
+    if (ofSetpoint()) return " (" + move + ", cycle " + std::to_string(r_.cycle) + ", X = " + x() + ")";
+    return " (at " + move + " of " + tooth + ", X = " + x() + ")";
+  }
+
+  /// Whether place() comes after what(), and not within it.
+  bool placeAtEnd() const { return r_.kind != ReasonKind::kTolerance && r_.kind != ReasonKind::kCollision; }
+
+  std::string others() const {
+    if (!ofSetpoint() || r_.count < 2) return "";
+    return "; the worst of " + std::to_string(r_.count) + " setpoints";
+  }
+
+ private:
+  bool ofSetpoint() const {
+    return r_.kind == ReasonKind::kTolerance || (ReasonKind::kPosition <= r_.kind && r_.kind <= ReasonKind::kNotFinite);
+  }
+
+  std::string digits(double si) const { return flute_grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
+  std::string value() const { return flute_grinder::text(Quantity{r_.value, r_.unit}, units_); }
+  std::string limit() const { return flute_grinder::text(Quantity{r_.limit, r_.unit}, units_); }
+  std::string low() const { return flute_grinder::text(Quantity{r_.low, r_.unit}, units_); }
+  std::string x() const { return flute_grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
+  std::string tooth() const { return std::to_string(r_.tooth + 1); }
+  std::string number() const { return flute_grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
+  std::string range() const {
+    return flute_grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
+  }
+  std::string axis() const { return axisName(r_.axis, units_); }
+  std::string name(const std::string& path) const { return fieldName(path, units_); }
+  std::string allowed() const { return ", allowed " + limit(); }
+  std::string refused(const std::string& allowed) const {
+    return name(r_.field) + " = " + digits(r_.value) + "; allowed: " + allowed;
+  }
+  std::string excess() const {
+    const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
+    const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
+    return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
+  }
+
+  std::string collision() const {
+    const std::string apart =
+        r_.detail + (r_.value > 0 ? " come within " + value() + " of" : std::string(" hit")) + " each other";
+    if (r_.field.empty()) return "collision_clearance = " + limit() + ": " + apart + place() + wayOut();
+    return name(r_.field) + " = " + low() + ": " + apart + " outside the cut" + place() + "; allowed: " + limit() +
+           " or more; raise it";
+  }
+
+  /// What to do about a collision of two bodies, of which the cutter's own are named so by CollisionCheck.
+  std::string wayOut() const {
+    const auto is_of = [&](const char* body) { return r_.detail.find(body) != std::string::npos; };
+    if (is_of("shank")) {
+      return "; change " + name("cutter.shank_diameter") + ", " + name("cutter.neck_length") + " or " +
+             name("process.overtravel_shank");
+    }
+    if (is_of("cutter")) return "; change " + name("process.setup_swivel") + " or " + name("process.wheel_diameter");
+    return "; stick the blank out further, and set the zero of X anew";
+  }
+
+  /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.
+  std::string swivel() const {
+    const std::string target = flute_grinder::text(Quantity{r_.limit, r_.unit}, UnitSystem::kShop, kFieldDigits);
+    const std::string allowed =
+        "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of that; set it to " + target;
+    if (r_.detail == "measured") return "the swivel stands at " + digits(r_.value) + allowed;
+    const std::string confirm =
+        " and confirm it: grind confirm-swivel " +
+        flute_grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, UnitSystem::kShop, kFieldDigits);
+    if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + target + confirm;
+    return "the swivel is confirmed at " + digits(r_.value) + allowed + confirm;
+  }
+
+  const Reason& r_;
+  UnitSystem units_;
+};
+
+}  // namespace
+
+std::string text(const Reason& reason, UnitSystem units) {
+  const Writer writer(reason, units);
+  return writer.what() + (writer.placeAtEnd() ? writer.place() : "") + writer.others();
+}
+
+std::string text(const std::vector<Reason>& reasons, UnitSystem units) {
+  std::string all;
+  for (const Reason& reason : reasons) all += (all.empty() ? "" : "; ") + text(reason, units);
+  return all;
+}
+
+std::string causeText(const std::string& cause, UnitSystem units) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    if (cause.compare(0, joint.size(), joint) == 0) return axisName(axis, units) + cause.substr(joint.size());
+  }
+  return cause;
+}
+
+}  // namespace flute_grinder::core

@@ -1,0 +1,77 @@
+#include "flute_grinder/job/record_name.h"
+
+#include "flute_grinder/job/format.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <filesystem>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+namespace {
+
+// As hasForm() takes them.
+constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
+constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
+constexpr std::size_t kSuffix = 7;  ///< characters that writeFile() appends while it writes, a dot and six of mkstemp()
+
+}  // namespace
+
+std::string utcText(double time) {
+  const auto milliseconds = std::llround(time * 1000);
+  const auto seconds = static_cast<std::time_t>(milliseconds / 1000);
+  std::tm t{};
+  gmtime_r(&seconds, &t);
+  return format("%04d-%02d-%02dT%02d:%02d:%02d.%03dZ", t.tm_year + 1900, t.tm_mon + 1, t.tm_mday, t.tm_hour, t.tm_min,
+                t.tm_sec, static_cast<int>(milliseconds % 1000));
+}
+
+double timeOf(const std::string& utc) {
+  if (!hasForm(utc, kTimeForm)) {
+    throw std::invalid_argument("time = " + utc + "; allowed: YYYY-MM-DDThh:mm:ss.mmmZ");
+  }
+  const auto number = [&](std::size_t at, std::size_t digits) { return std::stoi(utc.substr(at, digits)); };
+  std::tm t{};
+  t.tm_year = number(0, 4) - 1900;
+  t.tm_mon = number(5, 2) - 1;
+  t.tm_mday = number(8, 2);
+  t.tm_hour = number(11, 2);
+  t.tm_min = number(14, 2);
+  t.tm_sec = number(17, 2);
+  const double time = static_cast<double>(timegm(&t)) + number(20, 3) / 1000.0;
+  // timegm() takes the 31st of a short month for a day of the next.
+  if (utcText(time) != utc) throw std::invalid_argument("time = " + utc + "; allowed: a time that there is");
+  return time;
+}
+
+std::string recordName(double start) {
+  std::string name = utcText(start);
+  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '-' || c == ':'; }), name.end());
+  return name + ".json";
+}
+
+bool isRecordName(std::string_view name) { return hasForm(name, kNameForm); }
+
+bool isUnfinishedRecordName(std::string_view name) {
+  return name.size() == kNameForm.size() + kSuffix && isRecordName(name.substr(0, kNameForm.size())) &&
+         name[kNameForm.size()] == '.';
+}
+
+RecordFiles recordFilesIn(const std::string& folder) {
+  RecordFiles files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const bool finished = isRecordName(name);
+    if (!finished && !isUnfinishedRecordName(name)) continue;
+    std::vector<std::string>& list = !std::filesystem::is_regular_file(entry.symlink_status()) ? files.others
+                                     : finished                                                ? files.records
+                                                                                               : files.unfinished;
+    list.push_back(entry.path().string());
+  }
+  for (auto* list : {&files.records, &files.unfinished, &files.others}) std::sort(list->begin(), list->end());
+  return files;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,187 @@
+#include "flute_grinder/job/wheel_file.h"
+
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+using units::kMillimetre;
+
+constexpr const char* kDate = "measured.date";
+constexpr const char* kDiameter = "measured.diameter_mm";
+constexpr const char* kWidth = "measured.width_mm";
+constexpr const char* kBy = "measured.by";
+
+/// The key of a job's number in a wheel file; empty if it is none of the wheel's, or the wear, which follows.
+std::string wheelKey(const JobField& field) {
+  const std::string_view key = field.file_key;
+  const std::string_view prefix = "process.wheel.";
+  const bool wears = std::string_view(field.path).find("process.wheel_wear") == 0;
+  return key.substr(0, prefix.size()) == prefix && !wears ? std::string(key.substr(prefix.size())) : "";
+}
+
+/// The field of a wheel's number.
+JobField fieldOf(std::string_view path) {
+  JobField found{};
+  visitJobFields([&](const JobField& field, auto) {
+    if (field.path == path) found = field;
+  });
+  return found;
+}
+
+void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
+  const std::string allowed = "[w, radius] in mm, w ascending from the lower face to the upper, 0 in the middle";
+  if (!file.mentions(key)) return file.fail(1, key + " is missing; allowed: " + allowed);
+  for (std::size_t i = 0; i == 0 || file.hasAny(element(key, i)); ++i) {
+    std::vector<double> point;
+    file.takeList(element(key, i), allowed, kMillimetre, point);
+    if (point.size() != 2) return file.fail(file.line(key), element(key, i) + " is not a pair; allowed: " + allowed);
+    job.wheel_points.push_back({point[0], point[1]});
+  }
+}
+
+void takeFlange(FlatFile& file, WheelFile& wheel) {
+  const std::string key = "flange_mm";
+  const Quantity low{-0.1, Unit::kMetre}, high{0.1, Unit::kMetre};
+  const std::string allowed = text(low, high, UnitSystem::kShop);
+  double value = 0;
+  if (!file.has(key)) return file.know(key);
+  if (!file.take(key, allowed, value)) return;
+  const Quantity flange{value * kMillimetre, Unit::kMetre};
+  if (!(flange.si >= low.si && flange.si <= high.si)) {
+    return file.fail(file.line(key), key + " = " + text(flange, UnitSystem::kShop, 10) + "; allowed: " + allowed);
+  }
+  wheel.flange = flange.si;
+}
+
+/// Wear of the radius, to a picometre, so that it has the bits that the same number of millimetres has in a job file.
+double wearOf(double diameter, double measured) {
+  constexpr double per_millimetre = 1e9;
+  return std::round((diameter - measured) / 2 / kMillimetre * per_millimetre) / per_millimetre * kMillimetre;
+}
+
+void takeMeasuredDiameter(FlatFile& file, GrindProcess& process) {
+  const JobField diameter = fieldOf("process.wheel_diameter");
+  const JobField wear = fieldOf("process.wheel_wear");
+  // A wrong diameter_mm is told by itself.
+  const bool set = process.wheel_diameter >= diameter.low().si && process.wheel_diameter <= diameter.high().si;
+  const double most = set ? process.wheel_diameter : diameter.high().si;
+  const double least = set ? std::max(diameter.low().si, most - 2 * wear.high().si) : diameter.low().si;
+  const std::string allowed = text(Quantity{least, Unit::kMetre}, Quantity{most, Unit::kMetre}, UnitSystem::kShop, 10) +
+                              ", the diameter to which Y = 0 is set";
+  double value = 0;
+  if (!file.take(kDiameter, allowed, value)) return;
+  const double measured = value * kMillimetre;
+  if (!(measured >= least && measured <= most)) {
+    return file.fail(file.line(kDiameter), std::string(kDiameter) + " = " +
+                                               text(Quantity{measured, Unit::kMetre}, UnitSystem::kShop, 10) +
+                                               "; allowed: " + allowed);
+  }
+  process.wheel_wear = wearOf(process.wheel_diameter, measured);
+}
+
+/// @param process gets the wear and the width.
+void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
+  for (const char* key : {kDate, kDiameter, kWidth, kBy}) wheel.measured = wheel.measured || file.mentions(key);
+  if (!wheel.measured) {
+    for (const char* key : {kDate, kDiameter, kWidth, kBy}) file.know(key);
+    return;
+  }
+  const std::string forms = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
+  if (file.take(kDate, forms, wheel.date) && !hasForm(wheel.date, "0000-00-00") &&
+      !hasForm(wheel.date, "0000-00-00T00:00:00Z")) {
+    file.fail(file.line(kDate), std::string(kDate) + " = " + wheel.date + "; allowed: " + forms);
+  }
+  takeMeasuredDiameter(file, process);
+  double width = 0;
+  const JobField field = fieldOf("process.wheel_width");
+  if (!file.has(kWidth)) {
+    file.know(kWidth);
+  } else if (file.take(kWidth, text(field.low(), field.high(), UnitSystem::kShop), width)) {
+    process.wheel_width = width * kMillimetre;
+  }
+  if (file.has(kBy)) {
+    file.take(kBy, "a text", wheel.by);
+  } else {
+    file.know(kBy);
+  }
+}
+
+/// The key of a wrong number of the wheel, new or as measured.
+std::string keyOf(const core::Reason& reason, bool measured) {
+  if (reason.field == "process.wheel_width" && measured) return kWidth;
+  if (reason.field == "process.wheel_points") return "points_mm";
+  std::string key;
+  visitJobFields([&](const JobField& field, auto) {
+    if (field.path == reason.field) key = wheelKey(field);
+  });
+  return key;
+}
+
+/// @param measured whether the numbers are those of the wheel as measured.
+void check(FlatFile& file, const GrindJob& job, bool measured) {
+  for (core::Reason reason : validateWheel(job)) {
+    reason.field = keyOf(reason, measured && file.mentions(kWidth));
+    file.fail(file.line(reason.field), core::text(reason, UnitSystem::kShop));
+  }
+  file.throwErrors();
+}
+
+}  // namespace
+
+void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
+  // Of an unknown profile nobody can tell whether it has a side.
+  if (!file.takeChoice(prefix + "profile", job.process.wheel_profile)) return file.drop(prefix + "side");
+  if (isTapered(job.process.wheel_profile)) file.takeChoice(prefix + "side", job.process.wheel_side);
+  if (job.process.wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);
+}
+
+WheelFile parseWheel(const std::string& text, const std::string& name) {
+  FlatFile file(text, name, "wheel file", "a wheel's keys");
+  WheelFile wheel;
+  GrindJob job;
+  visitJobFields([&](const JobField& field, auto of) {
+    const std::string key = wheelKey(field);
+    double value = 0;
+    if (key.empty()) return;
+    if (field.optional && !file.mentionsPart(key)) return file.know(key);
+    file.take(key, flute_grinder::text(field.low(), field.high(), UnitSystem::kShop), value);
+    of(job) = value * shopScale(field.unit);
+  });
+  takeWheelShape(file, "", job);
+  takeFlange(file, wheel);
+  wheel.new_width = job.process.wheel_width;
+  GrindJob now = job;
+  takeMeasurement(file, wheel, now.process);
+  file.refuseTheRest();
+  file.throwErrors();
+  check(file, job, false);
+  check(file, now, true);
+  wheel.process = now.process;
+  wheel.points = std::move(now.wheel_points);
+  return wheel;
+}
+
+WheelFile readWheelFile(const std::string& path) { return parseWheel(readTextFile(path), path); }
+
+void mountWheel(const WheelFile& wheel, GrindJob& job) {
+  GrindJob from;
+  from.process = wheel.process;
+  visitJobFields([&](const JobField& field, auto of) {
+    if (!wheelKey(field).empty()) of(job) = of(from);
+  });
+  job.process.wheel_wear = wheel.process.wheel_wear;
+  job.process.wheel_profile = wheel.process.wheel_profile;
+  job.process.wheel_side = wheel.process.wheel_side;
+  job.wheel_points = wheel.points;
+}
+
+}  // namespace flute_grinder

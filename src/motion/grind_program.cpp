@@ -1,0 +1,179 @@
+#include "flute_grinder/motion/grind_program.h"
+
+#include "flute_grinder/job/reason.h"
+#include "flute_grinder/motion/work_offsets.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kMinPeriod = 1e-6;  ///< of the control cycle [s]
+
+FeedSchedule::Stroke strokeOf(const GrindJob& job) {
+  FeedSchedule::Stroke stroke;
+  stroke.from = -job.process.overtravel_end;
+  stroke.to = job.cutter.flute_length + job.process.overtravel_shank;
+  if (job.process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
+  stroke.taper = depthLaw(job, job.process.deepest()).taper;
+  stroke.surface_feed = job.process.feed;
+  // With the published rule, the even points of steep cutters drift by up to the same amount again.
+  stroke.tolerance = job.interpolation.tolerance * (job.interpolation.even_step == EvenStepRule::kPublished ? 0.5 : 1);
+  return stroke;
+}
+
+/// @throw std::invalid_argument unless the machine's data and the start position are valid for motion.
+const Machine& checked(const Machine& machine, const Axes& start) {
+  const AxisLimits& l = machine.limits;
+  const auto require = [](bool good, const char* what) {
+    if (!good) throw std::invalid_argument(std::string("machine: ") + what);
+  };
+  const auto place = [](const Axes& values) { return (values.abs() <= kMaxFigure).all(); };
+  const auto limit = [&](const Axes& values) { return (values >= kMinFigure).all() && place(values); };
+  require(machine.period >= kMinPeriod && machine.period <= 1, "control period must be 1e-6 to 1 s");
+  require(limit(l.max_velocity) && limit(l.max_acceleration) && limit(l.max_jerk),
+          "velocity, acceleration and jerk limits must be 1e-9 to 1e9, in SI units");
+  require(place(l.min_position) && place(l.max_position) && (l.min_position < l.max_position).all(),
+          "position limits must be within -1e9 to 1e9, the lower below the upper");
+  require(place(start) && place(machine.park), "start and park position must be within -1e9 to 1e9");
+  require((machine.work_offset.abs() <= kMaxOffset).all(), "work offsets must be within -1000 to 1000 m or rad");
+  require(machine.max_job_duration > 0 && machine.max_job_duration <= kMaxFigure,
+          "max_job_duration must be more than 0, up to 1e9 s");
+  return machine;
+}
+
+void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cutter) {
+  const double slowest = schedule.rate(0) < schedule.rate(schedule.length()) ? 0 : schedule.length();
+  const double feed = schedule.feedSpeed() * schedule.rate(slowest) * cutter.edgePerTravel();
+  if (feed >= kMinFeed * (1 - 1e-9)) return;
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kFeedTooLow;
+  reason.detail = schedule.feedLimits().empty() ? "it" : schedule.feedLimits().back().cause;
+  reason.unit = Unit::kFeedMetrePerSecond;
+  reason.value = feed;
+  reason.limit = kMinFeed;
+  reason.x = schedule.x(slowest);
+  throw core::ReasonError(reason);
+}
+
+void requireSwivel(const Machine& machine, const GrindJob& job) {
+  const double swivel = job.process.setup_swivel;
+  if (swivel >= machine.swivel.from && swivel <= machine.swivel.to) return;
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kOutOfRange;
+  reason.field = "process.setup_swivel";
+  reason.detail = "to which the machine swivels";
+  reason.unit = Unit::kRadian;
+  reason.value = swivel;
+  reason.low = machine.swivel.from;
+  reason.limit = machine.swivel.to;
+  throw core::ReasonError(reason);
+}
+
+/// @param park position [m], A [rad]. @param clearance_y [m]; both in work coordinates.
+void requireParkClear(const Machine& machine, const Axes& park, double clearance_y) {
+  if (park[kY] >= clearance_y) return;
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kParkInWork;
+  reason.axis = kY;
+  reason.unit = Unit::kMetre;
+  reason.value = machine.park[kY];
+  reason.limit = clearance_y + machine.work_offset[kY];
+  throw core::ReasonError(reason);
+}
+
+std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
+  const auto same = [&](const Helix& h) { return h.cutter.geometry().spiral_angle == spiral_angle; };
+  return static_cast<std::size_t>(std::find_if(helices.begin(), helices.end(), same) - helices.begin());
+}
+
+std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, const Machine& machine) {
+  std::vector<Helix> helices;
+  for (std::size_t tooth = 0; tooth < job.tooth_angles.size(); ++tooth) {
+    const CutterGeometry geometry = cutterOf(job, static_cast<int>(tooth));
+    if (indexOf(helices, geometry.spiral_angle) < helices.size()) continue;
+    const ConicalCutter cutter(geometry);
+    stroke.z_correction = zCorrectionOf(job, static_cast<int>(tooth));
+    helices.push_back({cutter, LogCurve(cutter), stroke.z_correction, FeedSchedule(cutter, stroke, machine)});
+  }
+  return helices;
+}
+
+}  // namespace
+
+GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first)
+    : job_(job),
+      machine_(checked(machine, start)),
+      start_(start),
+      stroke_(strokeOf(job)),
+      helices_(helicesOf(job, stroke_, machine)),
+      helix_of_tooth_(job.tooth_angles.size()),
+      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job.process.clearance) {
+  for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
+    helix_of_tooth_[tooth] = indexOf(helices_, cutterOf(job, static_cast<int>(tooth)).spiral_angle);
+  }
+  for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.cutter);
+  requireSwivel(machine, job);
+  const Axes park = machine.park - machine.work_offset;
+  requireParkClear(machine, park, clearance_y_);
+  const std::vector<ToothPass> order = passOrder(job);
+  const auto begin = std::find(order.begin(), order.end(), first);
+  if (begin == order.end()) {
+    std::ostringstream text;
+    text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to "
+         << order.back().tooth << " and 0 to " << order.back().pass;
+    throw std::invalid_argument(text.str());
+  }
+
+  const std::vector<double> depths = passDepths(job.process);
+  const std::vector<double> wear = wearOfPasses(job);
+  constexpr std::ptrdiff_t moves_per_pass = 6;
+  moves_.reserve(static_cast<std::size_t>((order.end() - begin) * moves_per_pass + 2));
+  Axes at = start;
+  // After a job that did not finish, the wheel may be in a flute of a different cutter: only the park position is clear
+  // of every cutter.
+  if (at[kY] < park[kY]) {
+    at[kY] = park[kY];
+    append(MoveKind::kLift, first, at);
+  }
+  for (auto pass = begin; pass != order.end(); ++pass) {
+    const double depth = depths[static_cast<std::size_t>(pass->pass)];
+    appendPass(*pass, depth, wear[static_cast<std::size_t>(pass - order.begin())], at);
+  }
+  append(MoveKind::kReturn, order.back(), park);
+}
+
+void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear, double taper) {
+  moves_.push_back(
+      {kind, static_cast<std::uint16_t>(pass.tooth), static_cast<std::uint16_t>(pass.pass), to, wear, taper});
+}
+
+void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, Axes& at) {
+  const Helix& helix = this->helix(pass.tooth);
+  const ConicalCutter& cutter = helix.cutter;
+  const LogCurve& curve = helix.curve;
+  const DepthLaw law = depthLaw(job_, depth);
+  const double at_end = law.at_end + wear;
+  const auto y = [&](double x) { return cutter.y(x) + x * law.taper - at_end; };
+  const double tooth_angle = job_.tooth_angles[static_cast<std::size_t>(pass.tooth)];
+  const auto go = [&](MoveKind kind) { append(kind, pass, at); };
+  at[kA] = tooth_angle + curve.a(stroke_.from);
+  go(MoveKind::kIndex);
+  at[kX] = stroke_.from;
+  at[kZ] = helix.z(stroke_.from);
+  go(MoveKind::kPosition);
+  at[kY] = cutter.y(stroke_.from) + job_.process.clearance;
+  go(MoveKind::kApproach);
+  at[kY] = y(stroke_.from);
+  append(MoveKind::kInfeed, pass, at, wear, law.taper);
+  at << stroke_.to, y(stroke_.to), helix.z(stroke_.to), tooth_angle + curve.a(stroke_.to);
+  append(MoveKind::kStroke, pass, at, wear, law.taper);
+  at[kY] = clearance_y_;
+  go(MoveKind::kRetract);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,237 @@
+#include "flute_grinder/motion/job_plan.h"
+
+#include "motion/plan_checks.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
+  plan.fault = fault;
+  plan.reasons.push_back(std::move(reason));
+}
+
+/// @param least lower bound of the duration [s]; 0 if it is unknown.
+void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double least) {
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kTooLong;
+  reason.unit = Unit::kSecond;
+  reason.value = least;
+  reason.limit = machine.max_job_duration;
+  reason.count = job.tooth_angles.size() * passDepths(job.process).size();
+  refuse(plan, PlanFault::kTooLong, std::move(reason));
+}
+
+/// Lower bound of the time for all plunges and strokes at the job's feed [s].
+double leastDuration(const GrindJob& job, const ToothPass& first) {
+  const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
+  const auto teeth = static_cast<double>(job.tooth_angles.size());
+  double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
+  for (int i = 0; i < static_cast<int>(job.tooth_angles.size()); ++i) {
+    edge = std::min(edge, ConicalCutter(cutterOf(job, i)).edgePerTravel());
+  }
+  const double way = job.process.clearance + travel * edge;
+  const auto passes = static_cast<double>(passDepths(job.process).size());
+  const double before = job.process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
+                                                                     : first.pass * teeth + first.tooth;
+  return std::max(0.0, teeth * passes - before) * way / job.process.feed;
+}
+
+/// Checks periodically whether the job is too long and whether the plan is still wanted.
+class Supervisor {
+ public:
+  Supervisor(const PlanWatch& watch, JobPlan& plan)
+      : watch_(watch),
+        plan_(plan),
+        last_(static_cast<std::uint64_t>(plan.program->machine().max_job_duration / plan.program->machine().period)) {}
+
+  /// @return whether to continue after a setpoint.
+  bool goOn(const Setpoint& p) {
+    if (p.cycle > last_) {
+      refuseAsTooLong(plan_, plan_.program->job(), plan_.program->machine(), 0);
+      return false;
+    }
+    return setpoints_++ % kSetpointsPerLook != 0 || isWanted(p);
+  }
+
+ private:
+  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< a few tenths of a millisecond
+
+  bool isWanted(const Setpoint& p) {
+    const double done = (p.move_index + p.move_fraction) / static_cast<double>(plan_.program->moves().size());
+    if (!watch_ || watch_(done)) return true;
+    core::Reason reason;
+    reason.kind = core::ReasonKind::kGivenUp;
+    refuse(plan_, PlanFault::kGivenUp, std::move(reason));
+    return false;
+  }
+
+  const PlanWatch& watch_;
+  JobPlan& plan_;
+  std::uint64_t last_;  ///< longest allowed job in cycles
+  std::uint64_t setpoints_ = 0;
+};
+
+/// Generates and checks every setpoint of a plan's program.
+void planAllSetpoints(JobPlan& plan, const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  SetpointStream stream(plan.program);
+  PlanChecks checks(plan);
+  Supervisor supervisor(watch, plan);
+  Setpoint p;
+  while (stream.next(p) && checks.add(p)) {
+    if (visit) visit(p);
+    if (!supervisor.goOn(p)) break;
+  }
+  checks.finish();
+}
+
+/// Generates and checks the moves of a plan's program, of each shape only the first as a whole. Of every other move it
+/// generates the beginning and the end with the move's own offsets; in between, the move differs from the first by
+/// constant offsets alone. They leave velocity, acceleration, jerk and the errors as they are, and no position there is
+/// farther out than at the ends: all axes move one way, but for Z in a stroke, which has no offset.
+class ShapePlanner {
+ public:
+  ShapePlanner(JobPlan& plan, const PlanWatch& watch)
+      : plan_(plan), stream_(plan.program), checks_(plan), supervisor_(watch, plan) {}
+
+  /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics. It is
+  /// not
+  ///         if something is not allowed: every setpoint is needed to tell all of that.
+  bool run() {
+    Setpoint p;
+    while (stream_.next(p)) {
+      if (p.cycle == 1 || p.move_index != move_) beginMove(p);
+      ++cycles_;
+      if (to_recall_ > 0) {
+        --to_recall_;
+        checks_.recall(p);
+      } else if (!checks_.add(p)) {
+        return false;
+      }
+      if (!plan_.good()) return false;
+      if (!supervisor_.goOn(p)) return plan_.fault == PlanFault::kGivenUp;
+      if (p.cycle % 2 == 1) continue;
+      if (known_) {
+        skipToEnd(p);
+      } else {
+        skipCruise(p);
+        keep();
+      }
+    }
+    checks_.finish();
+    return true;
+  }
+
+ private:
+  /// The first move of a shape.
+  struct Known {
+    SetpointStream near_end;
+    std::uint64_t cycles;  ///< of the move, up to there
+  };
+
+  /// The jerk at a setpoint comes from the three pairs before it too.
+  static constexpr std::uint64_t kReach = 6;
+  /// What is generated of the end of a move: setpoints to compare with, and as many to check [cycles].
+  static constexpr double kEnd = 2 * kReach;
+
+  void beginMove(const Setpoint& p) {
+    move_ = p.move_index;
+    cycles_ = 0;
+    shape_ = stream_.shape();
+    const auto found = moves_.find(shape_);
+    known_ = found == moves_.end() ? nullptr : &found->second;
+  }
+
+  /// Goes on near the end of a known move, once the setpoints are past the reach of the move before.
+  void skipToEnd(const Setpoint& p) {
+    if (cycles_ != kReach) return;
+    stream_.skip(known_->near_end, known_->cycles - cycles_);
+    skipped(p, known_->cycles - cycles_);
+  }
+
+  void skipCruise(const Setpoint& p) {
+    if (cycles_ <= kReach || to_recall_ > 0) return;
+    const std::uint64_t count = stream_.skipCruise(kReach);
+    if (count > 0) skipped(p, count);
+  }
+
+  void skipped(const Setpoint& p, std::uint64_t count) {
+    checks_.skip(p.move, count);
+    cycles_ += count;
+    to_recall_ = kReach;
+  }
+
+  void keep() {
+    const double left = stream_.timeLeft() / plan_.program->machine().period;
+    if (cycles_ > kReach && left > kEnd && left <= kEnd + 2) moves_.emplace(shape_, Known{stream_, cycles_});
+  }
+
+  JobPlan& plan_;
+  SetpointStream stream_;
+  PlanChecks checks_;
+  Supervisor supervisor_;
+  std::map<MoveShape, Known> moves_;
+  std::uint32_t move_ = 0;
+  std::uint64_t cycles_ = 0;  ///< of the move so far
+  MoveShape shape_;           ///< of the move
+  const Known* known_ = nullptr;
+  std::uint64_t to_recall_ = 0;  ///< setpoints
+};
+
+/// Generates and checks the setpoints of a plan's program, if possible only those of each shape.
+void planSetpoints(JobPlan& plan, const PlanWatch& watch) {
+  JobPlan by_shapes = plan;
+  const bool done = ShapePlanner(by_shapes, watch).run();
+  if (done) {
+    plan = std::move(by_shapes);
+  } else {
+    planAllSetpoints(plan, {}, watch);
+  }
+}
+
+}  // namespace
+
+JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+                const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  JobPlan plan;
+  plan.reasons = validate(job);
+  if (!plan.reasons.empty()) {
+    plan.fault = PlanFault::kInvalidJob;
+    return plan;
+  }
+  const double least = leastDuration(job, first);
+  if (least > machine.max_job_duration) {
+    refuseAsTooLong(plan, job, machine, least);
+    return plan;
+  }
+  try {
+    plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
+  } catch (const core::ReasonError& error) {
+    refuse(plan, PlanFault::kInvalidJob, error.reason());
+    return plan;
+  } catch (const std::invalid_argument& error) {
+    core::Reason reason;
+    reason.kind = core::ReasonKind::kOther;
+    reason.detail = error.what();
+    refuse(plan, PlanFault::kInvalidJob, std::move(reason));
+    return plan;
+  }
+  for (const Helix& helix : plan.program->helices()) {
+    const std::vector<core::FeedLimit>& limits = helix.schedule.feedLimits();
+    plan.statistics.feed_limits.insert(plan.statistics.feed_limits.end(), limits.begin(), limits.end());
+  }
+  if (visit) {
+    planAllSetpoints(plan, visit, watch);
+  } else {
+    planSetpoints(plan, watch);
+  }
+  return plan;
+}
+
+}  // namespace flute_grinder

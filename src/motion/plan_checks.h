@@ -1,0 +1,58 @@
+#pragma once
+
+#include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/motion/limit_check.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Checks the setpoints of a plan, and writes what they come to into the plan: its statistics, the ends of its moves,
+/// its fault and its reasons.
+class PlanChecks {
+ public:
+  /// @param plan with a program; must outlive this object.
+  explicit PlanChecks(JobPlan& plan);
+
+  /// Checks the next setpoint. @return false if it is not a number, so that none can follow.
+  bool add(const Setpoint& setpoint);
+
+  /// Takes the next setpoint for granted: it is counted, and those that follow are compared with it.
+  void recall(const Setpoint& setpoint);
+
+  /// Takes some cycles of a move for granted without their setpoints. The next setpoints must be recalled.
+  void skip(MoveKind move, std::uint64_t cycles);
+
+  /// Writes what is known only at the end.
+  void finish();
+
+ private:
+  /// The worst violation of its kind, and the number of setpoints with one.
+  struct Excess {
+    LimitViolation worst;
+    std::uint64_t count;
+  };
+
+  void count(const Setpoint& setpoint);
+  void measure(const Setpoint& setpoint);
+  void measureStroke(const Setpoint& setpoint);
+  void addViolation(const LimitViolation& violation);
+  void addDeviation(const Setpoint& setpoint, double deviation);
+
+  JobPlan& plan_;
+  const GrindProgram& program_;
+  core::PathStatistics& statistics_;
+  const double period_;
+  const double deviation_factor_;
+  LimitCheck check_;
+  std::array<std::uint64_t, kMoveKindCount> cycles_{};
+  Axes last_velocity_ = Axes::Zero();
+  Axes largest_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
+  double end_x_ = 0;                    ///< of the last pair
+  std::vector<Excess> excesses_;
+  core::Reason deviation_;  ///< the largest above the tolerance, if there is one
+};
+
+}  // namespace flute_grinder

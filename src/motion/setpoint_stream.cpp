@@ -1,0 +1,302 @@
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+/// Shorter moves are skipped: they are below the rounding of a position, and could make the scaled limits overflow.
+/// [m], A [rad]
+constexpr double kNegligibleDistance = 1e-30;
+
+/// Limits of a straight move in its parameter 0..1 that keep every axis within its own limits.
+MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
+  const Axes size = way.abs();
+  return {(limits.max_velocity / size).minCoeff(), (limits.max_acceleration / size).minCoeff(),
+          (limits.max_jerk / size).minCoeff()};
+}
+
+}  // namespace
+
+bool MoveShape::operator<(const MoveShape& o) const noexcept {
+  return std::tie(kind, helix, taper, way[kX], way[kY], way[kZ], way[kA]) <
+         std::tie(o.kind, o.helix, o.taper, o.way[kX], o.way[kY], o.way[kZ], o.way[kA]);
+}
+
+SetpointStream::SetpointStream(GrindProgram program)
+    : SetpointStream(std::make_shared<const GrindProgram>(std::move(program))) {}
+
+SetpointStream::SetpointStream(std::shared_ptr<const GrindProgram> program)
+    : program_(std::move(program)),
+      helix_(&program_->helix(program_->moves().front().tooth)),
+      period_(program_->machine().period),
+      interpolator_(helix_->curve, program_->job().interpolation.rotary_scale, program_->job().interpolation.even_step,
+                    program_->strokeFrom()) {
+  const Move& first = program_->moves().front();
+  current_.position = program_->start();
+  current_.move = first.kind;
+  current_.tooth = first.tooth;
+  current_.pass = first.pass;
+}
+
+bool SetpointStream::next(Setpoint& setpoint) noexcept {
+  if (!started_) {
+    started_ = true;
+    setpoint = current_;
+    return true;
+  }
+  if (!mid_pair_ && !beginPair()) return false;
+
+  const Axes before = current_.position;
+  if (lost_) {
+    current_.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+  } else if (current_.move == MoveKind::kStroke) {
+    if (mid_pair_) {
+      strokePoint(even_point_, StepKind::kEven);
+      current_.move_fraction = strokeParameter() / helix_->schedule.length();
+    } else {
+      strokePair();
+    }
+  } else {
+    straightStep();
+  }
+  current_.velocity = (current_.position - before) / period_;
+  ++current_.cycle;
+  mid_pair_ = !mid_pair_;
+  setpoint = current_;
+  return true;
+}
+
+void SetpointStream::setFeedOverride(double fraction) noexcept {
+  if (fraction >= 0 && fraction <= kMaxFeedOverride) override_ = fraction;
+}
+
+void SetpointStream::resume() noexcept {
+  holding_ = false;
+  stay_lifted_ = false;
+}
+
+void SetpointStream::retract() noexcept {
+  if (mid_pair_ || lost_ || !law_.resting() || finished()) return;
+  holding_ = false;
+  stay_lifted_ = true;
+  if (leg_ == Leg::kLift) return;
+  if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
+    reentry_ = std::max(0.0, strokeParameter() - helix_->schedule.runUp());
+  }
+  leg_ = Leg::kLift;
+  lifted_ = current_.position;
+  lifted_[kY] = std::max(lifted_[kY], program_->clearanceHeight());
+  beginStraight(MoveKind::kLift, lifted_);
+}
+
+void SetpointStream::adopt(Setpoint& setpoint) noexcept {
+  if (!lifted()) return;
+  current_.position = setpoint.position;
+  current_.velocity = setpoint.velocity;
+  current_.feed = setpoint.feed;
+  current_.move = setpoint.move;
+  ++current_.cycle;
+  setpoint = current_;
+}
+
+MoveShape SetpointStream::shape() const noexcept {
+  MoveShape shape;
+  shape.kind = current_.move;
+  if (shape.kind == MoveKind::kStroke) {
+    shape.helix = static_cast<std::size_t>(helix_ - program_->helices().data());
+    shape.taper = taper_;
+  } else {
+    shape.way = way_;
+  }
+  return shape;
+}
+
+void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noexcept {
+  law_ = later.law_;
+  interpolator_ = later.interpolator_;
+  even_point_ = later.even_point_;
+  current_.cycle += cycles;
+  if (current_.move == MoveKind::kStroke) {
+    strokePoint(even_point_, StepKind::kEven);
+  } else {
+    current_.position = from_ + way_ * law_.position();
+  }
+}
+
+std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles) noexcept {
+  if (current_.move == MoveKind::kStroke) return 0;
+  const std::uint64_t count = law_.skipCruise(period_, static_cast<double>(cycles) * period_);
+  if (count == 0) return 0;
+  current_.cycle += count;
+  current_.position = from_ + way_ * law_.position();
+  return count;
+}
+
+bool SetpointStream::finished() const noexcept {
+  return !lost_ && onPath() && next_move_ == program_->moves().size() && law_.finished() && !mid_pair_;
+}
+
+bool SetpointStream::beginPair() noexcept {
+  law_.slowDown(slow_down_);
+  slow_down_ = 1;
+  law_.setTarget(targetSpeed());
+  while (!lost_ && law_.resting()) {
+    if (holding_ || !law_.finished() || !beginNext()) return false;
+  }
+  return true;
+}
+
+bool SetpointStream::beginNext() noexcept {
+  const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
+  switch (leg_) {
+    case Leg::kPath:
+      if (next_move_ == program_->moves().size()) return false;
+      beginMove(program_->moves()[next_move_++]);
+      return true;
+    case Leg::kLift:
+      if (stay_lifted_) return false;
+      if ((current_.position != lifted_).any()) {
+        beginWayBack();
+        return true;
+      }
+      if (left_stroke) {
+        leg_ = Leg::kBack;
+        beginReturn();
+        return true;
+      }
+      // A straight move is restarted: from above, it moves to its original target.
+      leg_ = Leg::kPath;
+      if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
+      return true;
+    case Leg::kBack: {
+      leg_ = Leg::kPlunge;
+      Axes on_path = current_.position;
+      on_path[kY] = strokeY(on_path[kX]);
+      beginStraight(MoveKind::kInfeed, on_path);
+      return true;
+    }
+    case Leg::kPlunge:
+      leg_ = Leg::kPath;
+      beginStroke(reentry_);
+      return true;
+  }
+  return false;
+}
+
+void SetpointStream::beginMove(const Move& move) noexcept {
+  helix_ = &program_->helix(move.tooth);
+  current_.tooth = move.tooth;
+  current_.pass = move.pass;
+  current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
+  current_.move_fraction = 0;
+  if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
+  taper_ = move.taper;
+  y_offset_ = 0;
+  y_offset_ = current_.position[kY] - strokeY(program_->strokeFrom());
+  a_offset_ = program_->job().tooth_angles[move.tooth];
+  beginStroke(0);
+}
+
+void SetpointStream::beginWayBack() noexcept {
+  const Axes& at = current_.position;
+  Axes above = lifted_;
+  above[kY] = std::max(at[kY], lifted_[kY]);
+  if (at[kY] < lifted_[kY]) {
+    Axes up = at;
+    up[kY] = lifted_[kY];
+    return beginStraight(MoveKind::kLift, up);
+  }
+  if ((at != above).any()) return beginStraight(MoveKind::kPosition, above);
+  beginStraight(MoveKind::kApproach, lifted_);
+}
+
+void SetpointStream::beginReturn() noexcept {
+  const double x = helix_->schedule.x(reentry_);
+  Axes above;
+  above << x, current_.position[kY], helix_->z(x), a_offset_ + helix_->curve.a(x);
+  beginStraight(MoveKind::kPosition, above);
+}
+
+void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
+  current_.move = kind;
+  current_.step = StepKind::kNone;
+  current_.path_error = 0;
+  current_.feed = 0;
+  current_.at_feed = false;
+  from_ = current_.position;
+  way_ = to - from_;
+  to_ = to;
+  linear_way_ = way_.head<3>().matrix().norm();
+  if ((way_.abs() <= kNegligibleDistance).all()) {
+    current_.position = to;
+    law_ = FeedLaw();
+    return;
+  }
+  MotionLimits limits = limitsAlong(way_, program_->machine().limits);
+  double speed = limits.velocity;
+  if (isAtFeed(kind)) {
+    speed = std::min(speed, program_->job().process.feed / linear_way_);
+    limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
+  }
+  beginLaw(limits, 1, speed);
+}
+
+void SetpointStream::beginStroke(double s) noexcept {
+  const GrindInterpolation& settings = program_->job().interpolation;
+  current_.move = MoveKind::kStroke;
+  stroke_from_ = s;
+  interpolator_ = OddEvenInterpolator(helix_->curve, settings.rotary_scale, settings.even_step, helix_->schedule.x(s));
+  beginLaw(helix_->schedule.limits(), helix_->schedule.length() - s, helix_->schedule.feedSpeed());
+}
+
+void SetpointStream::beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept {
+  move_speed_ = feed_speed;
+  if (!law_.begin(limits, distance, 0)) lost_ = true;
+  law_.setTarget(targetSpeed());
+}
+
+double SetpointStream::targetSpeed() const noexcept {
+  if (holding_) return 0;
+  return isAtFeed(current_.move) ? std::min(override_ * move_speed_, law_.limits().velocity) : move_speed_;
+}
+
+double SetpointStream::strokeParameter() const noexcept {
+  return law_.finished() ? helix_->schedule.length() : stroke_from_ + law_.position();
+}
+
+void SetpointStream::straightStep() noexcept {
+  law_.advance(period_);
+  if (law_.finished()) {
+    current_.position = to_;
+  } else {
+    current_.position = from_ + way_ * law_.position();
+  }
+  current_.feed = law_.speed() * linear_way_;
+  if (onPath()) current_.move_fraction = law_.position();
+}
+
+void SetpointStream::strokePair() noexcept {
+  const auto steady = [&] { return law_.cruising() && helix_->schedule.rate(stroke_from_ + law_.position()) == 1; };
+  const bool was_steady = steady();
+  law_.advance(2 * period_);
+  const double s = strokeParameter();
+  const double dx = helix_->schedule.x(s) - interpolator_.position().x;
+  const OddEvenPair pair = interpolator_.advance(dx);
+  current_.feed = law_.speed() * helix_->schedule.rate(s) * helix_->cutter.edgePerTravel();
+  current_.at_feed = was_steady && steady();
+  even_point_ = pair.even;
+  strokePoint(pair.odd, StepKind::kOdd);
+}
+
+void SetpointStream::strokePoint(const CurvePoint& point, StepKind step) noexcept {
+  current_.position << point.x, strokeY(point.x), helix_->z(point.x), a_offset_ + point.a;
+  current_.path_error = helix_->curve.a(point.x) - point.a;
+  current_.step = step;
+}
+
+}  // namespace flute_grinder

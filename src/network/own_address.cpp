@@ -1,0 +1,49 @@
+#include "flute_grinder/network/own_address.h"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+
+namespace flute_grinder {
+
+namespace {
+
+bool isLoopback(const addrinfo& found) {
+  if (found.ai_family == AF_INET) {
+    return ntohl(reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr.s_addr) >> 24U == IN_LOOPBACKNET;
+  }
+  return found.ai_family == AF_INET6 &&
+         IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6*>(found.ai_addr)->sin6_addr);
+}
+
+std::string ownHostName() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+}  // namespace
+
+std::string ownAddressRefusal() {
+  const char* variable = std::getenv("ROS_HOSTNAME") ? "ROS_HOSTNAME" : "ROS_IP";
+  const char* value = std::getenv(variable);
+  if (!value || isLoopbackName(value)) return "";
+  const std::string name = value;
+  const std::string allowed =
+      "; allowed: 127.0.0.1 or localhost for this computer alone, or the address under which others reach it";
+  if (name.empty()) return std::string(variable) + " is empty" + allowed;
+  addrinfo* list = nullptr;
+  const int error = getaddrinfo(name.c_str(), nullptr, nullptr, &list);
+  if (error != 0) return std::string(variable) + " = " + name + " has no address: " + gai_strerror(error) + allowed;
+  const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(list, freeaddrinfo);
+  // Many a computer has its own name for loopback in /etc/hosts, and others still reach it by that name.
+  if (!isLoopback(*found) || name == ownHostName()) return "";
+  return std::string(variable) + " = " + name + " is loopback in words that ROS does not know" + allowed;
+}
+
+}  // namespace flute_grinder

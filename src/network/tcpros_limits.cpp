@@ -1,0 +1,108 @@
+/// @file
+/// Limits for connections of topics and services. roscpp allocates whatever length a peer claims, up to 1 GB, trusts
+/// the answer of a publisher, and divides by a UDPROS datagram size that the peer chooses. These definitions override
+/// the library's own in the node's program.
+
+#include "network/original_symbol.h"
+#include "network/peer_limits.h"
+
+#include <ros/connection.h>
+#include <ros/console.h>
+#include <ros/subscription.h>
+#include <ros/transport/transport_udp.h>
+#include <ros/transport_publisher_link.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+
+using flute_grinder::kMaxPeerMessage;
+using flute_grinder::originalSymbol;
+using XmlRpc::XmlRpcValue;
+
+namespace {
+
+/// Whether an answer to requestTopic, [code, text, protocol], is well formed: TCPROS, host and port, or no protocol.
+bool isAddressOfTcpros(XmlRpcValue& answer) {
+  if (answer.getType() != XmlRpcValue::TypeArray || answer.size() != 3) return false;
+  XmlRpcValue& protocol = answer[2];
+  return protocol.getType() == XmlRpcValue::TypeArray && protocol.size() == 3 &&
+         protocol[0].getType() == XmlRpcValue::TypeString && static_cast<std::string&>(protocol[0]) == "TCPROS";
+}
+
+constexpr std::uint32_t kPiece = 16384;  ///< [bytes]
+
+/// Reads bytes and throws them away.
+/// @param then called after the last of them, unless the connection ends before.
+void skip(const ros::ConnectionPtr& connection, std::uint32_t size, const std::function<void()>& then) {
+  if (size == 0) return then();
+  connection->read(std::min(size, kPiece),
+                   [size, then](const ros::ConnectionPtr& from, const auto&, std::uint32_t read, bool success) {
+                     if (success) skip(from, size - read, then);
+                   });
+}
+
+}  // namespace
+
+namespace ros {
+
+/// A publisher has announced the length of its next message. One that is too long is skipped: the connection stays, so
+/// that what follows arrives. roscpp never makes a connection again that its subscriber has closed.
+void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
+                                             const boost::shared_array<std::uint8_t>& buffer, std::uint32_t size,
+                                             bool success) {
+  using OnLength = void (*)(TransportPublisherLink*, const ConnectionPtr&, const boost::shared_array<std::uint8_t>&,
+                            std::uint32_t, bool);
+  static const auto next = reinterpret_cast<OnLength>(
+      originalSymbol("_ZN3ros22TransportPublisherLink15onMessageLengthERKN5boost10shared_ptrINS_10ConnectionEEERKNS1_"
+                     "12shared_arrayIhEEjb"));
+  std::uint32_t length = 0;
+  if (success) std::memcpy(&length, buffer.get(), sizeof length);
+  if (length <= kMaxPeerMessage) return next(this, connection, buffer, size, success);
+  const SubscriptionPtr subscription = parent_.lock();
+  ROS_WARN_STREAM("a message of " << length << " bytes on " << (subscription ? subscription->getName() : "a topic")
+                                  << " is dropped; allowed: " << kMaxPeerMessage << ": "
+                                  << connection->getRemoteString());
+  skip(connection, length,
+       [this] { connection_->read(sizeof length, [this](const auto&... read) { onMessageLength(read...); }); });
+}
+
+/// Reads a header, a request, or a message of the announced length; drops the connection if that is too long.
+void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
+  using Read = void (*)(Connection*, uint32_t, const ReadFinishedFunc&);
+  static const auto next = reinterpret_cast<Read>(originalSymbol(
+      "_ZN3ros10Connection4readEjRKN5boost8functionIFvRKNS1_10shared_ptrIS0_EERKNS1_12shared_arrayIhEEjbEEE"));
+  if (size <= kMaxPeerMessage) {
+    next(this, size, finished);
+  } else {
+    ROS_WARN_STREAM("a peer announces " << size << " bytes; allowed: " << kMaxPeerMessage << ": " << getRemoteString());
+    drop(HeaderError);
+  }
+}
+
+/// A publisher has answered with its address. Anything else is turned into a plain refusal.
+void Subscription::pendingConnectionDone(const PendingConnectionPtr& connection, XmlRpcValue& answer) {
+  using Done = void (*)(Subscription*, const PendingConnectionPtr&, XmlRpcValue&);
+  static const auto next =
+      reinterpret_cast<Done>(originalSymbol("_ZN3ros12Subscription21pendingConnectionDoneERKN5boost10shared_ptrINS0_"
+                                            "17PendingConnectionEEERN6XmlRpc11XmlRpcValueE"));
+  if (!isAddressOfTcpros(answer)) answer.clear();
+  next(this, connection, answer);
+}
+
+/// Opens the UDP port, which roscpp polls but never reads: a single datagram would keep its thread busy for ever.
+bool TransportUDP::createIncoming(int port, bool is_server) {
+  using Create = bool (*)(TransportUDP*, int, bool);
+  static const auto next = reinterpret_cast<Create>(originalSymbol("_ZN3ros12TransportUDP14createIncomingEib"));
+  if (!next(this, port, is_server)) return false;
+  if (is_server) disableRead();
+  return true;
+}
+
+/// Refused: the node uses TCPROS only.
+TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { return {}; }
+
+}  // namespace ros

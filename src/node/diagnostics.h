@@ -1,0 +1,126 @@
+#pragma once
+
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/durations.h"
+#include "flute_grinder/control/machine_config.h"
+#include "flute_grinder/motion/limit_check.h"
+
+#include <diagnostic_updater/diagnostic_updater.h>
+
+#include <array>
+#include <functional>
+#include <mutex>
+#include <string>
+
+namespace flute_grinder {
+
+/// Thresholds of a quantity for a warning and for an error.
+struct DiagnosticLevels {
+  double warn = 0;
+  double error = 0;
+};
+
+/// All thresholds; fractions.
+struct DiagnosticThresholds {
+  DiagnosticLevels late_cycles;      ///< upper, of all cycles since the last report
+  DiagnosticLevels following_error;  ///< upper, of the allowed following error
+  DiagnosticLevels limit_use;        ///< upper, of an axis limit
+  DiagnosticLevels buffer_fill;      ///< lower, of the largest fill since power-on
+};
+
+/// Reads diagnostics/<quantity>/warn and .../error.
+/// @throw ParameterError unless all are present, in range, and no error threshold is reached before its warning.
+DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters);
+
+/// What the operating system granted the control loop.
+struct Scheduling {
+  bool realtime = false;
+  bool memory_locked = false;
+};
+
+/// Monitors every cycle of the control loop, and reports the worst since the previous report on /diagnostics. Thread
+/// safe.
+class Diagnostics {
+ public:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  /// @param config the machine's limits and tolerances.
+  /// @param scheduling called for each report.
+  Diagnostics(const LoopConfig& config, const DiagnosticThresholds& thresholds, std::function<Scheduling()> scheduling);
+
+  /// Registers all reports with the updater, which this object must outlive.
+  void addTo(diagnostic_updater::Updater& updater);
+
+  /// Adds the record of a cycle. To be called for every cycle, in order.
+  void add(const CycleRecord& record);
+  /// Sets what is wrong with the journal; empty if nothing.
+  void setJournalError(const std::string& error);
+  /// Sets why the records of jobs are not kept; empty if they are.
+  void setHistoryError(const std::string& error);
+
+  void reportLoop(Status& status);
+  void reportDrive(Status& status);
+  void reportFollowing(Status& status);
+  void reportLimits(Status& status);
+  void reportBuffer(Status& status);
+  void reportJournal(Status& status);
+  void reportHistory(Status& status);
+
+ private:
+  /// Position, velocity, acceleration and jerk of every axis as fractions of their limits, by LimitedQuantity.
+  using LimitUse = std::array<Axes, 4>;
+
+  struct Loop {
+    std::uint64_t cycles = 0;
+    std::uint64_t late = 0;
+    double longest = 0;  ///< period [s]
+    double total = 0;    ///< [s]
+    Durations busy;      ///< of the cycles, without the wait
+    Durations delay;     ///< of the wake-ups: what a period is longer than nominal
+  };
+  struct Drive {
+    double feedback_age = 0;  ///< longest [s]
+    bool emergency_stop = false;
+    bool fault = false;
+    Interlock interlock = Interlock::kNone;
+    LoopFault loop_fault;
+    Axes position = Axes::Zero();  ///< the latest, or one that was not finite
+  };
+  struct Limits {
+    std::uint64_t setpoints = 0;
+    LimitUse use{Axes::Zero(), Axes::Zero(), Axes::Zero(), Axes::Zero()};
+  };
+  struct Buffer {
+    bool used = false;
+    std::uint32_t least = 0;  ///< commands
+  };
+
+  void addDrive(const CycleRecord& record);
+  void addSetpoint(const Setpoint& setpoint, const Axes& command);
+  void addViolation(const LimitViolation& violation);
+  void addBuffer(const DriveStatus& drive);
+  double positionUse(int axis, double position) const;
+
+  const LoopConfig config_;
+  const DiagnosticThresholds thresholds_;
+  const std::function<Scheduling()> scheduling_;
+
+  std::mutex mutex_;  ///< guards everything below
+  CycleRecord last_;
+  std::string journal_error_, history_error_;
+  LimitCheck limit_check_;
+  std::uint64_t next_setpoint_ = 0;  ///< cycle number
+  int unknown_setpoints_ = 0;        ///< setpoints to come whose history is incomplete
+  std::uint32_t fullest_ = 0;        ///< fill since power-on
+  std::uint64_t records_lost_ = 0;   ///< as of the last report
+  std::uint64_t underruns_ = 0;      ///< as of the last report
+
+  // Each since its last report.
+  Loop loop_;
+  Drive drive_;
+  Axes following_error_ = Axes::Zero();  ///< largest [m], A [rad]
+  Limits limits_;
+  Buffer buffer_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/motion/grind_program.h"
+
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+#include <urdf_world/types.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace flute_grinder {
+
+/// Tells tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again with every
+/// change:
+/// - `work` in the axis_x table: the cutter's small end, not turning. Here the wheel's centre stands at X, D1/2 + Dw/2
+/// +
+///   Y, and the height of the set-up + Z, in work coordinates.
+/// - `cutter` in the chuck: it turns in `work` by -A.
+/// - the child links of the robot description's joints y_zero, z_zero and wheel_swivel, the last of which is `wheel`.
+/// And, on `tf`, `contact` in `work`: where the wheel's rim touches the cutter's surface, at the X of the axes, with X
+/// along the flute and Y away from the cutter.
+/// Not thread safe; not for the control thread.
+class Frames {
+ public:
+  /// @param urdf the robot description in XML, good for MachineShapes.
+  /// @throw std::invalid_argument if it has no joint z_zero, or a link by the name of a frame above.
+  explicit Frames(const std::string& urdf);
+
+  /// From now on the frames are those of this job. Without one they are those of a cutter of 10 mm with a wheel of
+  /// 100 mm, not swivelled, and there is no contact.
+  void show(std::shared_ptr<const GrindProgram> program) { program_ = std::move(program); }
+
+  /// Publishes what has changed, and the contact.
+  /// @param position of the axes in machine coordinates [m], A [rad].
+  /// @param offset of the work; one that is unknown, NaN, counts as 0 [m], A [rad].
+  /// @param tooth that is being ground; any of the job's if there is none.
+  /// @param stamp of the position.
+  void publish(const Axes& position, const Axes& offset, int tooth, const ros::Time& stamp);
+
+ private:
+  /// What the frames on `tf_static` depend on.
+  struct SetUp {
+    double wheel_y = 0.055;  ///< of the wheel's centre in `work` at Y = 0 [m]
+    double height = 0;       ///< likewise, at Z = 0 [m]
+    double swivel = 0;       ///< [rad]
+    Axes offset = Axes::Zero();
+
+    bool operator==(const SetUp& other) const;
+  };
+
+  SetUp setUpFor(const Axes& offset) const;
+  void publishSetUp(const ros::Time& stamp);
+  void publishContact(double x, int tooth, const ros::Time& stamp);
+
+  urdf::ModelInterfaceSharedPtr model_;
+  tf2_ros::StaticTransformBroadcaster set_up_frames_;
+  tf2_ros::TransformBroadcaster moving_frames_;
+  std::shared_ptr<const GrindProgram> program_;
+  std::optional<SetUp> published_;
+  ros::Time contact_stamp_;  ///< of the latest
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,365 @@
+#include "node/goal_server.h"
+
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/error_codes.h"
+#include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/reasons.h"
+#include "node/plain_name.h"
+
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kPollPeriod = 0.001;             ///< [s]
+constexpr double kIdlePollPeriod = 0.02;          ///< without a goal [s]
+constexpr double kStartPollPeriod = 0.0001;       ///< while a job starts, and waits for its entry [s]
+const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
+const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
+/// How long the result waits for the last setpoints to be published and the journal to be written.
+const ros::WallDuration kEndTimeout(0.5);
+
+GrindResult result(int code, const std::string& text, const core::PathStatistics& statistics = {}) {
+  GrindResult r;
+  r.error_code = code;
+  r.error_string = text;
+  r.statistics = toMessage(statistics);
+  return r;
+}
+
+GrindResult result(int code, const std::vector<core::Reason>& reasons, const core::PathStatistics& statistics = {}) {
+  GrindResult r = result(code, text(reasons, UnitSystem::kSi), statistics);
+  r.reasons = toMessage(reasons);
+  return r;
+}
+
+/// As records of jobs tell it.
+const char* outcomeOf(JobEnd end) {
+  switch (end) {
+    case JobEnd::kFault: return "fault";
+    case JobEnd::kCanceled: return "canceled";
+    case JobEnd::kNone:
+    case JobEnd::kDone: break;
+  }
+  return "done";
+}
+
+/// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
+core::Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
+  core::Reason reason;
+  reason.kind = core::ReasonKind::kCanceled;
+  if (status.end == JobEnd::kFault) reason = reasonOf(status.fault);
+  if (reason.has_place) return reason;
+  reason.has_place = true;
+  reason.move = program.moves()[at.move_index].kind;
+  reason.tooth = at.tooth;
+  reason.pass = at.pass;
+  reason.x = at.x;
+  return reason;
+}
+
+}  // namespace
+
+GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
+                       Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets)
+    : loop_(loop),
+      gate_(gate),
+      planner_(planner),
+      telemetry_(telemetry),
+      offsets_(offsets),
+      tracker_(journal),
+      thread_(kIdlePollPeriod, [this] { poll(); }) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  job_ = nh.advertise<GrindActionGoal>("job", 1, true);
+  server_ = std::make_unique<Server>(
+      nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
+      [this](const GoalHandle& handle) { onCancel(handle); }, false);
+  server_->start();
+  thread_.start();
+}
+
+void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }
+
+void GoalServer::reject(GoalHandle& handle, const GrindResult& result) {
+  ROS_WARN_STREAM("goal rejected: " << result.error_string);
+  handle.setRejected(result, result.error_string);
+}
+
+void GoalServer::onGoal(GoalHandle handle) {
+  if (goal_) {
+    return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
+  }
+  const auto goal = handle.getGoal();
+  if (!isPlainName(goal->job_name)) {
+    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
+  }
+  if (!isPlainName(goal->wheel_name)) {
+    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
+  }
+  const GrindJob job = jobFromGoal(*goal);
+  const std::string digest = jobDigest(job);
+  if (!goal->dry_run) {
+    const std::string text = refusal(*goal, digest);
+    if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
+    if (const auto reason = swivelRefusal(job)) return reject(handle, result(GrindResult::NOT_READY, {*reason}));
+  }
+  startPlanning(handle, job, digest);
+}
+
+std::string GoalServer::refusal(const GrindGoal& goal, const std::string& digest) const {
+  if (ros::SteadyTime::now() - last_cycle_ > kLoopTimeout) return "the control loop does not answer";
+  const LoopStatus status = loop_.status();
+  if (status.state != MachineState::kReady) {
+    return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
+  }
+  if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
+  return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
+}
+
+/// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
+std::optional<core::Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
+  const Swivel swivel = loop_.status().swivel;
+  // What is wrong with a job that cannot be ground at any swivel, the planner tells.
+  if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
+  return reasonOf(swivel, job.process.setup_swivel);
+}
+
+std::string GoalServer::offsetRefusal(const GrindGoal& goal, const std::string& digest,
+                                      const core::WorkOffsets& offsets) const {
+  std::string unknown = offsets_.unknown();
+  if (!unknown.empty() || goal.dry_run) return unknown;
+  if (!goal.discard) {
+    std::string changed = tracker_.offsetRefusal(digest, offsets.values());
+    // A job goes on with what it began with, whatever was said then.
+    if (!changed.empty() || tracker_.continues(digest, offsets.values())) return changed;
+  }
+  if (goal.offsets_are_right) return "";
+  const std::string misfit = text(misfits(offsets, goal));
+  return misfit.empty() ? "" : misfit + "; set them for this job, or start it with --offsets-are-right";
+}
+
+void GoalServer::startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
+  GoalHandle goal = handle;
+  const auto control = std::make_shared<PlanControl>();
+  if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
+    return reject(goal, GrindResult::NOT_READY,
+                  gate_.isShut()
+                      ? "the grinder is being shut down"
+                      : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
+  }
+  // From here on to the end of the goal the offsets cannot change.
+  Planner::Request request;
+  const core::WorkOffsets offsets = offsets_.offsets();
+  request.offset = offsets.values();
+  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
+  if (!refused.empty()) {
+    gate_.close();
+    return reject(goal, GrindResult::NOT_READY, refused);
+  }
+  request.job = job;
+  request.start = Eigen::Map<const Axes>(loop_.status().command.data());
+  request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  request.for_goal = true;
+  request.control = control;
+  request.done = [this](std::unique_ptr<Preview> preview) {
+    thread_.post([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
+  };
+  if (!planner_.submit(std::move(request))) {
+    gate_.close();
+    return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
+  }
+  goal_ = Goal{handle, digest, offsets, control};
+  busy_ = true;
+  thread_.setPeriod(kPollPeriod);
+  publishPlanningFeedback();
+}
+
+void GoalServer::onCancel(const GoalHandle& handle) {
+  // Repeats what StopServer did: by now everything queued here before the cancel has been processed.
+  if (gate_.cancel(handle.getGoalID())) loop_.postStop(MachineEvent::kCancel);
+}
+
+void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
+  GoalHandle handle = goal_->handle;
+  const JobPlan& plan = preview->plan;
+  const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
+  if (recalled || gate_.canceled()) return cancelBeforeStart();
+  if (!plan.good()) {
+    release();
+    return reject(handle, result(errorCode(plan.fault), plan.reasons));
+  }
+  if (handle.getGoal()->dry_run) {
+    const std::vector<std::string> warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
+    handle.setAccepted();
+    release();
+    telemetry_.show(preview);
+    GrindResult checked = result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
+    checked.warnings = warnings;
+    return handle.setSucceeded(checked);
+  }
+  preview->offsets = goal_->offsets;
+  preview->offsets_are_right = handle.getGoal()->offsets_are_right != 0;
+  startJob(std::move(preview));
+}
+
+void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
+  GoalHandle handle = goal_->handle;
+  const std::string& name = handle.getGoal()->job_name;
+  goal_->phase = Phase::kStarting;
+  thread_.setPeriod(kStartPollPeriod);
+  goal_->preview = std::move(preview);
+  goal_->number = loop_.status().jobs_started + 1;
+  // Spindle and coolant start while the disk writes; the axes wait for the entry.
+  tracker_.begin(*goal_->preview->plan.program, goal_->digest, name, goal_->preview->first, goal_->number);
+  telemetry_.announceJob(goal_->number, handle.getGoalID(), goal_->preview, name);
+  bool posted = false;
+  const bool started = gate_.start([&](bool held) {
+    posted = loop_.startJob(goal_->preview->stream.get(), false);
+    if (posted && held) loop_.postStop(MachineEvent::kHold);
+  });
+  if (!started) return cancelBeforeStart();
+  if (!posted) {
+    rollBack();
+    return reject(handle, GrindResult::NOT_READY, "the control loop has not answered the start of the job before");
+  }
+  handle.setAccepted();
+  publishJob();
+}
+
+void GoalServer::poll() {
+  const LoopStatus status = loop_.status();
+  if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
+  cycles_ = status.cycles;
+  tracker_.update(status);
+  if (!goal_) return;
+  switch (goal_->phase) {
+    case Phase::kPlanning: return publishPlanningFeedback();
+    case Phase::kStarting: return checkStartReply();
+    case Phase::kJournaling: return releaseWhenJournaled();
+    case Phase::kRunning: return endWhenPublished();
+  }
+}
+
+void GoalServer::publishPlanningFeedback() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (now - goal_->last_feedback < kPlanningInterval) return;
+  goal_->last_feedback = now;
+  GrindFeedback feedback;
+  feedback.state = "planning";
+  feedback.planned = goal_->control->done;
+  goal_->handle.publishFeedback(feedback);
+}
+
+void GoalServer::publishJob() {
+  GrindActionGoal job;
+  job.header.stamp = ros::Time::now();
+  job.goal_id = goal_->handle.getGoalID();
+  job.goal = *goal_->handle.getGoal();
+  job_.publish(job);
+}
+
+void GoalServer::checkStartReply() {
+  const auto reply = loop_.startJobReply();
+  if (!reply) return;
+  if (!reply->accepted) return abortGoal(reply->text);
+  goal_->phase = Phase::kJournaling;
+}
+
+void GoalServer::releaseWhenJournaled() {
+  const bool ended = loop_.status().jobs_ended >= goal_->number;
+  if (!ended && !tracker_.upToDate()) return;
+  goal_->phase = Phase::kRunning;
+  thread_.setPeriod(kPollPeriod);
+  if (ended) return;
+  goal_->journal_error = tracker_.error();
+  if (goal_->journal_error.empty()) {
+    loop_.confirmJournal(goal_->number);
+  } else {
+    loop_.postStop(MachineEvent::kCancel);
+  }
+}
+
+void GoalServer::cancelBeforeStart() {
+  GoalHandle handle = goal_->handle;
+  rollBack();
+  const char* text = "canceled before it moved";
+  handle.setCanceled(result(GrindResult::CANCELED, text), text);
+}
+
+void GoalServer::abortGoal(const std::string& text) {
+  GoalHandle handle = goal_->handle;
+  rollBack();
+  ROS_WARN_STREAM("goal aborted: " << text);
+  handle.setAborted(result(GrindResult::NOT_READY, text), text);
+}
+
+void GoalServer::rollBack() {
+  if (goal_->phase != Phase::kPlanning) {
+    telemetry_.withdrawJob(goal_->number);
+    tracker_.revert();
+  }
+  release();
+}
+
+void GoalServer::endWhenPublished() {
+  const LoopStatus status = loop_.status();
+  if (status.jobs_ended < goal_->number) return;
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  if (goal_->ended.isZero()) {
+    goal_->ended = now;
+    if (goal_->journal_error.empty()) {
+      tracker_.end(status);
+    } else {
+      tracker_.revert();
+    }
+  }
+  const bool reported = telemetry_.jobsPublished() >= goal_->number && tracker_.upToDate();
+  if (reported || now - goal_->ended > kEndTimeout) endJob();
+}
+
+void GoalServer::endJob() {
+  const LoopStatus status = loop_.status();
+  GoalHandle handle = goal_->handle;
+  const std::uint64_t number = goal_->number;
+  const bool aborted = status.end == JobEnd::kFault || !goal_->journal_error.empty();
+  const GrindResult r = resultOfJob(status);
+  release();
+  telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
+  if (aborted) {
+    ROS_ERROR_STREAM("goal aborted: " << r.error_string);
+    return handle.setAborted(r, r.error_string);
+  }
+  if (status.end == JobEnd::kCanceled) return handle.setCanceled(r, r.error_string);
+  handle.setSucceeded(r);
+}
+
+GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
+  const JobPlan& plan = goal_->preview->plan;
+  Place at = status.place;
+  if (status.setpoints_written == 0) {  // no setpoint reached the axes
+    at.tooth = static_cast<std::uint16_t>(goal_->preview->first.tooth);
+    at.pass = static_cast<std::uint16_t>(goal_->preview->first.pass);
+    at.x = plan.program->start()[kX];
+  }
+  GrindResult r = result(GrindResult::SUCCESSFUL, "", plan.statistics);
+  if (!goal_->journal_error.empty()) {
+    r = result(GrindResult::NOT_READY, goal_->journal_error, plan.statistics);
+  } else if (status.end == JobEnd::kFault) {
+    r = result(errorCode(status.fault.kind), {endReason(status, at, *plan.program)}, plan.statistics);
+  } else if (status.end == JobEnd::kCanceled) {
+    r = result(GrindResult::CANCELED, {endReason(status, at, *plan.program)}, plan.statistics);
+  }
+  r.setpoints_written = status.setpoints_written;
+  return r;
+}
+
+void GoalServer::release() {
+  gate_.close();
+  goal_.reset();
+  busy_ = false;
+  thread_.setPeriod(kIdlePollPeriod);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,94 @@
+#pragma once
+
+#include "flute_grinder/GrindAction.h"
+#include "flute_grinder/control/control_loop.h"
+#include "node/job_gate.h"
+#include "node/offset_store.h"
+#include "node/planner.h"
+#include "node/progress_tracker.h"
+#include "node/served_queue.h"
+#include "node/telemetry.h"
+
+#include <actionlib/server/action_server.h>
+#include <ros/ros.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, tells it on `~job`, and reports
+/// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled.
+/// One goal at a time; any other is rejected at once.
+class GoalServer {
+ public:
+  /// @param private_nh the node's own namespace.
+  /// @param the rest must outlive this object.
+  GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
+             Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets);
+  ~GoalServer() { thread_.stop(); }
+
+  /// Whether there is a goal that has not ended. Thread safe.
+  bool busy() const { return busy_; }
+
+ private:
+  using Server = actionlib::ActionServer<GrindAction>;
+  using GoalHandle = Server::GoalHandle;
+
+  enum class Phase { kPlanning, kStarting, kJournaling, kRunning };
+
+  /// The goal being processed.
+  struct Goal {
+    GoalHandle handle;
+    std::string digest;
+    core::WorkOffsets offsets;
+    std::shared_ptr<PlanControl> control;
+    Phase phase = Phase::kPlanning;
+    std::shared_ptr<const Preview> preview{};
+    std::uint64_t number = 0;         ///< of its job, as counted by the loop
+    std::string journal_error{};      ///< why its job could not be entered
+    ros::SteadyTime ended{};          ///< when the loop was seen to have finished the job
+    ros::SteadyTime last_feedback{};  ///< while planning
+  };
+
+  void onGoal(GoalHandle handle);
+  void onCancel(const GoalHandle& handle);
+  std::string refusal(const GrindGoal& goal, const std::string& digest) const;
+  std::optional<core::Reason> swivelRefusal(const GrindJob& job) const;
+  std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const core::WorkOffsets& offsets) const;
+  void startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest);
+  void onPlanned(std::shared_ptr<Preview> preview);
+  void poll();
+  void publishPlanningFeedback();
+  void startJob(std::shared_ptr<const Preview> preview);
+  void publishJob();
+  void checkStartReply();
+  void releaseWhenJournaled();
+  void endWhenPublished();
+  void endJob();
+  GrindResult resultOfJob(const LoopStatus& status) const;
+  void cancelBeforeStart();
+  void abortGoal(const std::string& text);
+  void rollBack();
+  void reject(GoalHandle& handle, int code, const std::string& text);
+  void reject(GoalHandle& handle, const GrindResult& result);
+  void release();
+
+  ControlLoop& loop_;
+  JobGate& gate_;
+  Planner& planner_;
+  Telemetry& telemetry_;
+  const OffsetStore& offsets_;
+  ProgressTracker tracker_;
+
+  std::uint64_t cycles_ = 0;    ///< of the loop, when last seen
+  ros::SteadyTime last_cycle_;  ///< when that count was last seen to change
+  std::optional<Goal> goal_;
+  std::atomic<bool> busy_{false};
+  ServedQueue thread_;
+  ros::Publisher job_;  ///< the goal about to start; a recorder may connect to its sender too late
+  std::unique_ptr<Server> server_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "node/history.h"
+#include "node/job_record.h"
+#include "node/planner.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace flute_grinder {
+
+/// Gathers the records of the jobs that were announced, and gives each to the history once the job has ended and its
+/// result is known, in either order. Not thread safe.
+class JobRecorder {
+ public:
+  /// @param grinder the node's name. @param history must outlive this object.
+  JobRecorder(std::string grinder, MachineInfo machine, History& history);
+  JobRecorder(const JobRecorder&) = delete;
+  JobRecorder& operator=(const JobRecorder&) = delete;
+  /// Jobs that have not ended, or whose result nobody told, are kept as far as they came.
+  ~JobRecorder();
+
+  /// @param number the loop's number for the job. @param name as for JobRecord.
+  void announce(std::uint64_t number, const Preview& job, const std::string& name);
+  /// The job will not start.
+  void withdraw(std::uint64_t number) { jobs_.erase(number); }
+  /// The record of a job that was announced and has not ended.
+  JobRecord& of(std::uint64_t number) { return *jobs_.at(number).record; }
+  /// The last cycle of the job has been added.
+  void end(std::uint64_t number);
+  void conclude(std::uint64_t number, const JobConclusion& conclusion);
+
+ private:
+  struct Job {
+    std::shared_ptr<JobRecord> record;
+    bool ended = false, concluded = false;
+  };
+
+  void keepIfComplete(std::uint64_t number);
+  void keep(const std::shared_ptr<const JobRecord>& record);
+
+  const std::string grinder_;
+  const MachineInfo machine_;
+  History& history_;
+  std::map<std::uint64_t, Job> jobs_;
+};
+
+}  // namespace flute_grinder

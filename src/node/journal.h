@@ -1,0 +1,52 @@
+#pragma once
+
+#include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/job/grind_job.h"
+#include "node/atomic_file.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// A journal that cannot be read or written; what() names the file and the reason.
+using JournalError = KeptFileError;
+
+/// A journal in use by another process; what() names its node and process.
+using JournalOwned = KeptFileOwned;
+
+/// How far a job has come.
+struct Progress {
+  std::string job_digest;            ///< see jobDigest(); empty if there has been no job
+  std::string job_name;              ///< as given in the goal, for display
+  CutterGeometry cutter;             ///< of the job, for display
+  std::vector<double> tooth_angles;  ///< of the job, for display [rad]
+  bool finished = false;             ///< every pass is ground
+  ToothPass next;                    ///< the first unfinished pass
+  double x = 0;                      ///< reached in its stroke, or in the last one [m]
+  Wheel wheel;                       ///< as it was left
+  Axes offset = Axes::Zero();        ///< with which the job began, see Machine::work_offset [m], A [rad]
+};
+
+/// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.
+class Journal {
+ public:
+  /// @param path, owner as for AtomicFile.
+  /// @throw JournalOwned if another process owns it.
+  Journal(std::string path, std::string owner);
+
+  /// The last entry; nothing if there is no file.
+  /// @throw JournalError if the file is not a complete journal.
+  std::optional<Progress> read() const;
+
+  /// As AtomicFile::write(). @throw JournalError also if a value is not finite or out of range.
+  void write(const Progress& progress) const;
+  /// As AtomicFile::settle().
+  void settle() const { file_.settle(); }
+
+ private:
+  AtomicFile file_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "node/disk_thread.h"
+#include "node/journal.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace flute_grinder {
+
+/// Writes the latest progress to the journal in its own thread, so that nothing else waits for the disk. Thread safe;
+/// not for the control thread.
+class JournalWriter {
+ public:
+  /// Outcome of the writes.
+  struct Status {
+    Progress on_disk;          ///< what a restart would find
+    std::uint64_t number = 0;  ///< of the last write that succeeded or failed; 0 before the first
+    std::string error;         ///< of the last write or its settling, or of the initial read; empty if none
+  };
+
+  /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,
+  /// the file holds either its old contents or the last write, and the journal stays owned until the disk answers or
+  /// the process ends. Blocks on the disk.
+  /// @param path, owner as for Journal.
+  /// @throw JournalOwned
+  JournalWriter(std::string path, const std::string& owner);
+
+  /// Queues the progress to be written, and returns at once. While the disk is busy, a new write replaces the pending
+  /// one.
+  /// @return the number of this write, from 1.
+  std::uint64_t write(const Progress& progress);
+
+  /// The current outcome. Never waits for the disk. A write counts once AtomicFile::write() has returned: the file is
+  /// settled behind it, since no axis reaches the work within the time of that, and a disk that fails then shows as the
+  /// error.
+  Status status() const;
+
+ private:
+  struct Work;
+
+  std::shared_ptr<Work> work_;
+  DiskThread thread_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "flute_grinder/job/axes.h"
+
+#include <ros/ros.h>
+
+#include <string>
+
+namespace flute_grinder {
+
+struct LoopConfig;
+
+/// Which machine this is, as `~machine` and the records of its jobs tell.
+struct MachineInfo {
+  std::string name;                         ///< of the robot description
+  std::string version;                      ///< of flute_grinder
+  std::string drive;                        ///< type of the drive's plugin
+  double period = 0;                        ///< control cycle [s]
+  Axes max_velocity = Axes::Zero();         ///< [m/s], A [rad/s]
+  Axes max_acceleration = Axes::Zero();     ///< [m/s^2], A [rad/s^2]
+  Axes max_following_error = Axes::Zero();  ///< [m], A [rad]
+};
+
+/// @param drive type of the drive's plugin.
+MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
+
+/// Publishes it on `~machine`, latched for as long as the publisher is kept.
+ros::Publisher publishMachine(ros::NodeHandle private_nh, const MachineInfo& info);
+
+}  // namespace flute_grinder

@@ -1,0 +1,154 @@
+#include "node/offset_server.h"
+
+#include "flute_grinder/WorkOffsets.h"
+#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/messages/offset_basis.h"
+#include "node/plain_name.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+/// @return kAxisCount if there is no such axis.
+int axisOf(const std::string& name) {
+  return static_cast<int>(std::find(kJointNames.begin(), kJointNames.end(), name) - kJointNames.begin());
+}
+
+bool isDigest(const std::string& text) {
+  constexpr std::size_t digits = 64;
+  return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+/// Why nobody can have set an offset for this; empty if somebody can.
+std::string basisRefusal(const OffsetBasis& basis) {
+  if (basis.method >= countOf<OffsetMethod>()) {
+    return "basis.method = " + std::to_string(basis.method) + "; allowed: 0 to " +
+           std::to_string(countOf<OffsetMethod>() - 1);
+  }
+  if (!isPlainName(basis.job_name)) return nameRefusal("basis.job_name", basis.job_name);
+  if (!isPlainName(basis.wheel_name)) return nameRefusal("basis.wheel_name", basis.wheel_name);
+  if (!basis.wheel_digest.empty() && !isDigest(basis.wheel_digest)) {
+    return "basis.wheel_digest; allowed: 64 hexadecimal digits, or none";
+  }
+  for (const double figure :
+       {basis.end_diameter, basis.wheel_diameter, basis.wheel_width, basis.swivel, basis.height}) {
+    if (!std::isfinite(figure)) return "basis has a figure that is not finite; allowed: those of a job";
+  }
+  return "";
+}
+
+/// Why a request is wrong at any time; empty if it is not.
+template <typename Request>
+std::string requestRefusal(const Request& request) {
+  if (axisOf(request.axis) == kAxisCount) {
+    return "axis = " + (isPlainName(request.axis) ? request.axis : "(not printable)") +
+           "; allowed: axis_x, axis_y, axis_z, axis_a";
+  }
+  if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
+  return basisRefusal(request.basis);
+}
+
+/// Why the offsets must not change now; empty if they may.
+std::string refusal(const LoopStatus& status) {
+  if (status.state != MachineState::kReady && status.state != MachineState::kDisabled) {
+    return std::string("the machine is in state ") + toString(status.state) + "; allowed: ready, disabled";
+  }
+  if (!status.homed) return "the axes are not homed; home them first";
+  if (!status.position_valid) return "the drive gives no valid, fresh positions";
+  return "";
+}
+
+}  // namespace
+
+OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate,
+                           OffsetStore& store, const OffsetLimits& limits)
+    : loop_(loop), gate_(gate), store_(store), limits_(limits) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  offsets_ = nh.advertise<WorkOffsets>("offsets", 10, true);
+  publish();
+  services_.push_back(nh.advertiseService("set_offset", &OffsetServer::onSet, this));
+  services_.push_back(nh.advertiseService("touch_off", &OffsetServer::onTouchOff, this));
+  thread_.start();
+}
+
+bool OffsetServer::onSet(SetOffset::Request& request, SetOffset::Response& response) {
+  const auto offset_at = [&](double) { return request.value; };
+  set(request, fromMessage(request.basis).method, offset_at, response);
+  return true;
+}
+
+bool OffsetServer::onTouchOff(TouchOff::Request& request, TouchOff::Response& response) {
+  const auto offset_at = [&](double position) { return response.value = position - request.position; };
+  set(request, OffsetMethod::kTouchOff, offset_at, response);
+  return true;
+}
+
+template <typename Request, typename Response>
+void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response) {
+  const int axis = axisOf(request.axis);
+  std::string refused = requestRefusal(request);
+  bool large_change = false;
+  if (refused.empty() && !gate_.shutOutJobs()) {
+    const LoopStatus status = loop_.status();
+    refused = isInJob(status.state) ? refusal(status) : "a job is being planned, or ends; allowed: after its end";
+  } else if (refused.empty()) {
+    core::WorkOffset offset;
+    offset.set_by = request.set_by;
+    offset.set_at = ros::WallTime::now().toSec();
+    offset.basis = fromMessage(request.basis);
+    offset.basis.method = method;
+    refused = setWithoutJob(axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
+    gate_.letJobsIn();
+  }
+  if (!refused.empty()) ROS_WARN_STREAM("work offset not set: " << refused);
+  response.success = static_cast<std::uint8_t>(refused.empty());
+  response.message = refused;
+  response.large_change = static_cast<std::uint8_t>(large_change);
+}
+
+/// @param offset all but its value. @param large_change whether it is refused because it would change by too much.
+/// @return why the offset was not set; empty if it was.
+std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at,
+                                        bool large_change_ok, bool& large_change) {
+  const LoopStatus status = loop_.status();
+  std::string refused = refusal(status);
+  if (!refused.empty()) return refused;
+  const auto i = static_cast<std::size_t>(axis);
+  offset.value = offset_at(status.position[i]);
+  refused = travelRefusal(limits_, axis, offset.value);
+  if (!refused.empty()) return refused;
+  if (!large_change_ok) refused = changeRefusal(limits_, axis, store_.offsets().axes[i], offset.value);
+  large_change = !refused.empty();
+  if (large_change) return refused;
+  try {
+    store_.set(axis, offset);
+  } catch (const KeptFileError& error) {
+    return error.what();
+  }
+  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = "
+                                    << text(Quantity{offset.value, unitOf(axis, 0)}, UnitSystem::kSi, 9) << ", "
+                                    << core::basisText(axis, offset) << ", by " << offset.set_by);
+  publish();
+  return "";
+}
+
+void OffsetServer::publish() {
+  WorkOffsets message;
+  const core::WorkOffsets offsets = store_.offsets();
+  message.header.stamp = ros::Time::now();
+  for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
+    message.values[i] = offsets.axes[i].value;
+    message.set_by[i] = offsets.axes[i].set_by;
+    message.set_at[i] = ros::Time(offsets.axes[i].set_at);
+    message.basis[i] = toMessage(offsets.axes[i].basis);
+  }
+  message.error = store_.unknown();
+  offsets_.publish(message);
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/TouchOff.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/machine/offset_limits.h"
+#include "node/job_gate.h"
+#include "node/offset_store.h"
+#include "node/served_queue.h"
+
+#include <ros/ros.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Serves `~set_offset` and `~touch_off`, and publishes the work offsets on `~offsets`. Runs in its own thread, which
+/// waits for the disk.
+class OffsetServer {
+ public:
+  /// @param private_nh the node's own namespace.
+  /// @param loop,gate,store must outlive this object.
+  OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store,
+               const OffsetLimits& limits);
+
+ private:
+  /// The offset of an axis whose position is as given [m or rad].
+  using OffsetAt = std::function<double(double position)>;
+
+  bool onSet(SetOffset::Request& request, SetOffset::Response& response);
+  bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response);
+  template <typename Request, typename Response>
+  void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
+  std::string setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
+                            bool& large_change);
+  void publish();
+
+  const ControlLoop& loop_;
+  JobGate& gate_;
+  OffsetStore& store_;
+  const OffsetLimits limits_;
+  ServedQueue thread_;
+  ros::Publisher offsets_;
+  std::vector<ros::ServiceServer> services_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,81 @@
+#include "node/plan_server.h"
+
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/reasons.h"
+
+#include <future>
+#include <limits>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr unsigned kThreads = 2;  ///< one waits for its plan, the other answers "busy"
+
+}  // namespace
+
+PlanServer::PlanServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, Planner& planner,
+                       Telemetry& telemetry, const OffsetStore& offsets)
+    : loop_(loop),
+      planner_(planner),
+      telemetry_(telemetry),
+      offsets_(offsets),
+      control_(std::make_shared<PlanControl>()),
+      spinner_(kThreads, &queue_) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(&queue_);
+  service_ = nh.advertiseService("plan", &PlanServer::onPlan, this);
+  spinner_.start();
+}
+
+PlanServer::~PlanServer() {
+  control_->give_up = true;
+  spinner_.stop();
+}
+
+bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
+  response.valid = 0;
+  const std::string unknown = offsets_.unknown();
+  if (!unknown.empty()) {
+    response.reasons.push_back(unknown);
+    return true;
+  }
+  std::promise<std::unique_ptr<Preview>> promise;
+  auto answer = promise.get_future();
+  Planner::Request plan_request;
+  plan_request.job = jobFromGoal(request.goal);
+  const core::WorkOffsets offsets = offsets_.offsets();
+  plan_request.offset = offsets.values();
+  plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
+  plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
+  plan_request.control = control_;
+  plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+  const bool taken = planner_.submit(std::move(plan_request));
+  if (!taken) {
+    response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
+    return true;
+  }
+  const std::shared_ptr<Preview> preview = answer.get();
+  const JobPlan& plan = preview->plan;
+  response.valid = static_cast<std::uint8_t>(plan.good());
+  response.statistics = toMessage(plan.statistics);
+  response.duration = plan.statistics.duration;
+  constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+  const Range complete = plan.complete.value_or(Range{nowhere, nowhere});
+  response.complete_from = complete.from;
+  response.complete_to = complete.to;
+  if (plan.closest) {
+    response.closest_bodies = {plan.closest->first, plan.closest->second};
+    response.closest_distance = plan.closest->distance;
+    response.closest_x = plan.closest->axes[kX];
+  }
+  response.warnings = offsetWarnings(offsets, request.goal);
+  response.violations = toMessage(plan.reasons);
+  for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
+  if (plan.good()) telemetry_.show(preview);
+  return true;
+}
+
+}  // namespace flute_grinder

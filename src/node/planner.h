@@ -1,0 +1,85 @@
+#pragma once
+
+#include "flute_grinder/collision/machine_shapes.h"
+#include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/motion/work_offsets.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+namespace flute_grinder {
+
+/// A plan with what is needed to run its job and to show it.
+struct Preview {
+  JobPlan plan;
+  ToothPass first;                         ///< to grind
+  std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is valid
+  core::WorkOffsets offsets;               ///< of a goal's job, whose values are the program's
+  bool offsets_are_right = false;          ///< the goal says so
+};
+
+/// Shared between the planner and whoever waits for the plan. Thread safe.
+struct PlanControl {
+  std::atomic<bool> give_up{false};  ///< set to abandon the plan
+  std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
+};
+
+/// Plans one job at a time in its own thread. A goal goes first: what is being planned without one is given up for it.
+/// The last good plan is kept: the same job from the same place needs no
+/// other, as after a dry run, and for one tool after the other.
+class Planner {
+ public:
+  struct Request {
+    GrindJob job;
+    Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
+    Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
+    ToothPass first;             ///< to grind
+    bool for_goal = false;
+    std::shared_ptr<PlanControl> control;
+    std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
+  };
+
+  Planner(const Machine& machine, const MachineShapes& shapes);
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+  ~Planner() { end(); }
+
+  /// Abandons the current plan; its `done` is called. Later requests are refused.
+  void end();
+
+  /// @return false, and does nothing, while another job is being planned; for a goal, only while another goal is.
+  bool submit(Request request);
+
+ private:
+  void run();
+  std::optional<Request> next();
+  std::unique_ptr<Preview> plan(const Request& request);
+  JobPlan makePlan(const Request& request) const;
+
+  const Machine machine_;
+  const MachineShapes shapes_;
+  std::mutex mutex_;  ///< guards the next four
+  std::condition_variable changed_;
+  std::optional<Request> request_;  ///< until it is done
+  std::optional<Request> goal_;     ///< waits for the end of a request without a goal
+  bool ended_ = false;
+  std::atomic<bool> goal_waits_{false};
+
+  /// The last good plan, with what it depends on. Used by the thread only.
+  struct Kept {
+    std::string digest;
+    Axes start, offset;
+    ToothPass first;
+    JobPlan plan;
+  };
+  std::optional<Kept> kept_;
+  std::thread thread_;
+};
+
+}  // namespace flute_grinder

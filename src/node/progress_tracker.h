@@ -1,0 +1,67 @@
+#pragma once
+
+#include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/motion/grind_program.h"
+#include "node/journal_writer.h"
+
+#include <ros/steady_timer.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Turns the control loop's status into journal entries: at once when a pass ends or the wheel enters or leaves the
+/// work, and once a second within a stroke. Not thread safe; never waits for the disk.
+class ProgressTracker {
+ public:
+  /// @param writer must outlive this object.
+  explicit ProgressTracker(JournalWriter& writer);
+
+  /// Why a job must not overwrite the journal: it holds another, unfinished one. Empty if it may.
+  /// @param first pass to grind.
+  std::string refusal(const std::string& digest, const ToothPass& first) const;
+  /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
+  /// them (0.1 um, A 1e-6 rad). Empty if it may, or if it is another job.
+  /// @param offset see Machine::work_offset [m], A [rad].
+  std::string offsetRefusal(const std::string& digest, const Axes& offset) const;
+
+  /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
+  bool continues(const std::string& digest, const Axes& offset) const;
+
+  /// Enters a job before it starts.
+  /// @param number the loop's number for this job; status reports of other jobs are ignored.
+  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first,
+             std::uint64_t number);
+  /// The job was not started: restores the previous entry.
+  void revert();
+  /// The job has ended.
+  void end(const LoopStatus& status);
+  /// Records the job's progress or, without a job, the wheel's position. To be called often.
+  void update(const LoopStatus& status);
+
+  /// Whether every entry has been written to disk, or has failed to be.
+  bool upToDate() const { return writer_.status().number >= request_; }
+  /// Why the last entry is not on disk; empty if it is.
+  std::string error() const { return writer_.status().error; }
+
+ private:
+  std::string offsetChanges(const Axes& offset) const;
+  void write();
+  void updatePlace(const LoopStatus& status);
+
+  JournalWriter& writer_;
+  Progress progress_;              ///< last entry
+  Progress before_;                ///< last entry of the previous job
+  std::vector<Move> moves_;        ///< of the job's program
+  std::vector<ToothPass> passes_;  ///< in order
+  std::uint64_t number_ = 0;       ///< of the job
+  std::uint32_t strokes_ended_at_ = 0;
+  bool running_ = false;
+  std::uint64_t request_ = 0;
+  bool place_changed_ = false;  ///< since the last entry
+  ros::SteadyTime last_entry_;
+};
+
+}  // namespace flute_grinder

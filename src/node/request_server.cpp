@@ -1,0 +1,103 @@
+#include "node/request_server.h"
+
+#include "node/stamp_age.h"
+
+#include <std_msgs/String.h>
+
+#include <cmath>
+#include <sstream>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jog [s]
+
+/// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
+std::string staleness(const Jog& message, double timeout) {
+  const double age = ageOf(message.header.stamp);
+  if (std::abs(age) <= timeout) return "";
+  std::ostringstream text;
+  text << "jog refused: the message is " << age << " s old; allowed: up to " << timeout
+       << " s, by clocks that agree; header.stamp must be set";
+  return text.str();
+}
+
+}  // namespace
+
+RequestServer::RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
+    : loop_(loop), gate_(gate) {
+  ros::NodeHandle nh(private_nh);
+  nh.setCallbackQueue(thread_.queue());
+  for (const EventRow& request : kMachineEvents) {
+    if (isTrigger(request.value)) serve(nh, request.value);
+  }
+  services_.push_back(nh.advertiseService("confirm_swivel", &RequestServer::onConfirmSwivel, this));
+  services_.push_back(nh.advertiseService("jog_step", &RequestServer::onJogStep, this));
+  // Of several messages that wait only the last one counts.
+  jogs_ = nh.subscribe("jog", 1, &RequestServer::onJog, this, ros::TransportHints().tcpNoDelay());
+  jog_refusals_ = nh.advertise<std_msgs::String>("jog_refusal", 10);
+  thread_.start();
+}
+
+void RequestServer::serve(ros::NodeHandle& nh, MachineEvent event) {
+  const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
+      [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+        const RequestReply reply = execute(event);
+        response.success = reply.accepted;
+        response.message = reply.text;
+        if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+        return true;
+      };
+  services_.push_back(nh.advertiseService(serviceOf(event), callback));
+}
+
+RequestReply RequestServer::execute(MachineEvent event) {
+  // A hold from before the job's start is still in the gate.
+  if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
+  return loop_.request(event);
+}
+
+bool RequestServer::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response) {
+  const RequestReply reply = loop_.confirmSwivel(request.swivel);
+  response.success = static_cast<std::uint8_t>(reply.accepted);
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+bool RequestServer::onJogStep(JogStep::Request& request, JogStep::Response& response) {
+  JogRequest jog{request.axis, false, request.distance, request.speed, request.stops};
+  const bool named = request.speed != 0 || request.axis >= kAxisCount;
+  if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
+  const RequestReply reply = loop_.jog(jog);
+  response.success = static_cast<std::uint8_t>(reply.accepted);
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
+void RequestServer::onJog(const Jog::ConstPtr& message) {
+  std::string refusal;
+  // An axis is stopped however late the message comes.
+  if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
+  if (refusal.empty()) refusal = loop_.jog({message->axis, true, 0, message->velocity}).text;
+  tellJogRefusal(refusal);
+}
+
+/// Once for each press of a button. @param refusal of its latest message; empty if that was accepted.
+void RequestServer::tellJogRefusal(const std::string& refusal) {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const bool pressed_before = (now - last_jog_).toSec() <= loop_.config().jog_timeout;
+  const bool told = jog_refused_ && pressed_before;
+  last_jog_ = now;
+  jog_refused_ = !refusal.empty();
+  if (!jog_refused_) return;
+  ROS_WARN_STREAM_THROTTLE(kWarningInterval, refusal);
+  if (told) return;
+  std_msgs::String why;
+  why.data = refusal;
+  jog_refusals_.publish(why);
+}
+
+}  // namespace flute_grinder

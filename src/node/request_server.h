@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flute_grinder/ConfirmSwivel.h"
+#include "flute_grinder/Jog.h"
+#include "flute_grinder/JogStep.h"
+#include "flute_grinder/control/control_loop.h"
+#include "node/job_gate.h"
+#include "node/served_queue.h"
+
+#include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents, the services
+/// `~confirm_swivel` and `~jog_step`, and the topics `~jog` and `~jog_refusal`. Runs in its own thread, which waits for
+/// the control loop's reply, one request at a time.
+class RequestServer {
+ public:
+  /// @param private_nh the node's own namespace.
+  /// @param loop,gate must outlive this object.
+  RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
+
+ private:
+  void serve(ros::NodeHandle& nh, MachineEvent event);
+  RequestReply execute(MachineEvent event);
+  bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response);
+  bool onJogStep(JogStep::Request& request, JogStep::Response& response);
+  void onJog(const Jog::ConstPtr& message);
+  void tellJogRefusal(const std::string& refusal);
+
+  ControlLoop& loop_;
+  JobGate& gate_;
+  ServedQueue thread_;
+  std::vector<ros::ServiceServer> services_;
+  ros::Subscriber jogs_;
+  ros::Publisher jog_refusals_;
+  ros::SteadyTime last_jog_;  ///< when the last message of a continuous jog came
+  bool jog_refused_ = false;  ///< that message
+};
+
+}  // namespace flute_grinder

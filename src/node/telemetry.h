@@ -1,0 +1,124 @@
+#pragma once
+
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/SetpointBatch.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/scene/scene.h"
+#include "node/diagnostics.h"
+#include "node/frames.h"
+#include "node/job_recorder.h"
+#include "node/journal_writer.h"
+#include "node/offset_store.h"
+#include "node/planner.h"
+#include "node/served_queue.h"
+
+#include <actionlib_msgs/GoalID.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the frames and
+/// markers for rviz, and diagnostics; and gathers the records of jobs for the history. Its own thread reads the loop's
+/// records; nothing blocks on it. If it falls too far behind, records are lost, and it reports how many. While nothing
+/// changes, it publishes less often.
+class Telemetry {
+ public:
+  /// @param nh the node's namespace, for joint_states.
+  /// @param private_nh the node's private namespace, for everything else.
+  /// @param loop,journal,offsets,history must outlive this object.
+  /// @param urdf as for Frames.
+  Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
+            const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
+            const DiagnosticThresholds& thresholds, const std::string& urdf);
+
+  /// Starts publishing.
+  void start() { thread_.start(); }
+
+  /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
+  void show(std::shared_ptr<const Preview> preview);
+  /// Announces a job before it starts. Thread safe; never blocks.
+  /// @param number the loop's number for this job. @param name of the job as its goal gives it.
+  void announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview,
+                   const std::string& name);
+  /// The job announced last will not start. Thread safe; never blocks.
+  void withdrawJob(std::uint64_t number);
+  /// Tells the result of a job, for its record. Thread safe; never blocks.
+  void concludeJob(std::uint64_t number, const JobConclusion& conclusion);
+  /// Takes back what rviz shows of a job, and shows nothing any more. Thread safe; never blocks.
+  void clearScene();
+
+  /// Number of the last job whose setpoints have all been published. Thread safe.
+  std::uint64_t jobsPublished() const { return jobs_published_; }
+
+ private:
+  /// A setpoint in the drive's buffer.
+  struct Buffered {
+    std::uint64_t cycle;  ///< of the loop that generated it
+    double period;        ///< of that cycle, measured [s]
+    Setpoint setpoint;
+  };
+
+  struct Job {
+    std::uint64_t number;
+    actionlib_msgs::GoalID goal;
+    std::shared_ptr<const Preview> preview;
+    bool shown = false;
+    Setpoint last{};                  ///< that reached the axes
+    double largest_error = 0;         ///< since the last feedback [rad]
+    std::uint64_t next_cycle = 0;     ///< of the next setpoint to publish
+    std::deque<Buffered> buffered{};  ///< written, not yet published
+  };
+
+  void showJob(const Preview& preview);
+  void tick();
+  bool setPace();
+  GrinderState stateMessage() const;
+  void readRecords();
+  void processRecord();
+  void trackJob(Job& job);
+  void addToBatch(Job& job, const Buffered& written);
+  Axes workPosition(const Job& job) const;
+  void endJob(Job& job);
+  void publishJointStates();
+  void publishDiagnostics();
+  void publishBatch();
+  void publishState();
+  void publishFeedback();
+  Job* running();
+  std::uint64_t cycle() const { return records_read_ + record_.records_lost; }  ///< of the loop, since it started
+
+  ControlLoop& loop_;
+  const JournalWriter& journal_;
+  const OffsetStore& offsets_;
+  const History& history_;
+  Diagnostics diagnostics_;
+  diagnostic_updater::Updater diagnostic_updater_;
+  ros::Publisher joint_states_, state_, setpoints_, feedback_;
+  Frames frames_;
+  Scene scene_;
+
+  CycleRecord record_;  ///< the latest
+  std::uint64_t records_read_ = 0;
+  std::deque<Job> jobs_;  ///< announced; the first may be running
+  JobRecorder recorder_;
+  bool scene_cleared_ = false;
+  SetpointBatch batch_;
+  std::uint64_t ticks_ = 0;
+  ros::SerializedMessage last_state_;  ///< without its stamp
+  ros::SteadyTime last_change_;        ///< of anything that is told
+  bool resting_ = false;
+  ros::WallDuration diagnostics_period_;
+  ros::SteadyTime next_diagnostics_;
+  std::atomic<std::uint64_t> jobs_published_{0};
+
+  ServedQueue thread_;  ///< last member, so that it stops before the others are destroyed
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "flute_grinder/geometry/section_outline.h"
+#include "flute_grinder/job/grind_job.h"
+
+#include <QString>
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// A section of the cutter that a job grinds, with what is asked of it there.
+struct CutterSection {
+  GroundSection ground;
+  std::vector<PolarPoint> outline;  ///< at A = 0; empty if the core is cut through
+  CutDirection cut = CutDirection::kRightHand;
+  double asked_rake = 0;      ///< [rad]
+  double rake_tolerance = 0;  ///< [rad]
+  double asked_core = 0;      ///< radius [m]
+
+  bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here
+  bool hasLand(const ToothSection& tooth) const;       ///< or nothing is ground here
+};
+
+constexpr const char* kWrong = "#b00020";  ///< colour of a figure that is not as asked
+
+/// Takes milliseconds for each tooth with a flute of its own.
+/// @param job a job that validate() accepts, from withZLaw(). @param x within its flute's length [m].
+/// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.
+CutterSection cutterSection(const GrindJob& job, double x);
+
+/// The figures of all teeth against those asked, in mm and deg: rich text, with what is wrong in red.
+QString figuresText(const CutterSection& section);
+
+}  // namespace flute_grinder

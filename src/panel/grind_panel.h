@@ -1,0 +1,115 @@
+#pragma once
+
+#include "flute_grinder/connection/master_watch.h"
+#include "panel/grinder_link.h"
+#include "panel/job_box.h"
+#include "panel/jog_box.h"
+#include "panel/legend_box.h"
+#include "panel/override_box.h"
+#include "panel/readout.h"
+#include "panel/rviz_view.h"
+#include "panel/section_view.h"
+#include "panel/touch_off_box.h"
+
+#include <rviz/panel.h>
+#include <QLineEdit>
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QTabWidget>
+#include <QTimer>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
+/// if the state table allows its request and it would change something; Hold wherever it is allowed, since it keeps the
+/// focus, and Start only with a plan without violations. No key cancels or disables. No window is ever modal.
+/// Without messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the
+/// grinder or the master, and both are found again when they come back.
+///
+/// Configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
+class GrindPanel : public rviz::Panel {
+  Q_OBJECT
+
+ public:
+  explicit GrindPanel(QWidget* parent = nullptr);
+
+  void onInitialize() override;
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
+
+ protected:
+  /// Qt passes the focus of what is disabled or hidden on to the next widget, where Space would press a button that
+  /// nobody has chosen. It goes to Hold instead, or to none.
+  bool focusNextPrevChild(bool next) override;
+
+ private:
+  /// A goal sent by this panel that has not ended.
+  struct Sent {
+    std::string id;
+    GrindGoal goal;
+  };
+
+  void layOut();
+  QLayout* layOutButtons();
+  QLayout* layOutSwitches();
+  QWidget* viewTab();
+  QPushButton* addButton(const EventRow& request, bool large);
+  void setNode(const QString& node);
+  void refresh();
+  void connectLink();
+  void nameWindows();
+  void showLegend(const std::optional<Legend>& legend);
+  bool allowed(MachineEvent event, const GrinderView& view) const;
+  void request(MachineEvent event);
+  void plan(const GrindGoal& goal);
+  void dryRun(const GrindGoal& goal);
+  void send(const GrindGoal& goal);
+  void confirmSwivel(double angle);
+  void onResult(const std::string& id, const GrindResult& result);
+  void setFeedOverride(double fraction);
+  void jogStep(int axis, double distance, double speed);
+  void touchOff(int axis, double at, bool confirmed);
+  core::OffsetBasis touchedFor(int axis) const;
+  void fitOffsets(const GrindGoal& goal);
+  /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
+  double touchedY(double diameter) const;
+  void showOtherJob(const GrinderView& view, bool job_runs);
+  /// Shows a reply instead of the one before. @param text its first line is the one that is seen.
+  void showMessage(const std::string& text);
+  /// Shows the answer to a request. @param done its success.
+  GrinderLink::OnAnswer reply(const std::string& done);
+
+  const std::shared_ptr<MasterWatch> master_watch_;
+  QString node_;                       ///< as entered
+  std::string name_;                   ///< resolved; empty if invalid
+  QString titled_;                     ///< the name that the window's title has from here
+  std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
+  bool planning_ = false;
+  std::optional<Sent> sent_;
+  std::string last_sent_;  ///< id of the last goal from here
+
+  StateBox* state_;
+  JobBox* job_;
+  SectionView* section_;
+  JogBox* jog_;
+  TouchOffBox* touch_off_;
+  LegendBox* legend_;
+  QPushButton* look_;         ///< at the tool
+  QTabWidget* tabs_;          ///< of job, section, jog and view
+  RvizView* rviz_ = nullptr;  ///< null without rviz
+  std::optional<Cutter> looked_at_;
+  std::map<MachineEvent, QPushButton*> buttons_;
+  OverrideBox* override_;
+  ProgressBox* progress_;
+  PositionBox* position_;
+  QPlainTextEdit* messages_;
+  QLineEdit* node_edit_;
+  QTimer refresh_timer_;
+};
+
+}  // namespace flute_grinder

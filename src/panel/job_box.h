@@ -1,0 +1,126 @@
+#pragma once
+
+#include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Plan.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/motion/work_offsets.h"
+#include "panel/discard_question.h"
+#include "panel/offset_question.h"
+#include "panel/swivel_question.h"
+
+#include <QCheckBox>
+#include <QFileDialog>
+#include <QLabel>
+#include <QPlainTextEdit>
+#include <QPointer>
+#include <QPushButton>
+#include <QStackedWidget>
+#include <QWidget>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+
+/// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
+/// without violations, and asks before an unfinished job is discarded, and for the swivel unless it is known to be set.
+class JobBox : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit JobBox(QWidget* parent = nullptr);
+
+  const QString& file() const { return file_; }
+  /// Selects and reads a file. @param file empty for none.
+  void setFile(const QString& file);
+
+  /// @param state nothing if the grinder does not answer.
+  /// @param offsets nothing if they are not known.
+  /// @param idle whether the grinder can plan now.
+  void refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle);
+
+  /// Names the job that runs in the grinder where that is not the one from here. @param text empty for none.
+  void showOtherJob(const QString& text);
+
+  /// @param name resolved name of the grinder's node, whose robot description counts and which the dialogs name.
+  void setGrinder(const std::string& name) { grinder_ = name; }
+
+  /// Shows the result of a plan, if it is for the goal that would be started now.
+  void setPlan(const GrindGoal& goal, const Plan::Response& plan);
+
+  /// Plans the job once more, as it would be started now.
+  void planAnew();
+
+  /// The plan is no longer valid.
+  void discardPlan();
+
+  /// As read from the file; null if there is none, or if it is wrong. Another object after each reading.
+  const std::shared_ptr<const GrindJob>& job() const { return job_; }
+
+  bool planned() const { return planned_.has_value(); }
+  /// Starts the planned goal, or asks first. A plan is good for one start: the next needs a plan from the axes' new
+  /// position.
+  void start();
+  /// The grinder has taken the confirmation of swivelConfirmed(): starts the job.
+  void startConfirmed();
+
+ Q_SIGNALS:
+  void fileChosen();
+  /// start() has a question, or does not start the job: the text says what or why.
+  void startDelayed();
+  void planWanted(const flute_grinder::GrindGoal& goal);
+  void dryRunWanted(const flute_grinder::GrindGoal& goal);
+  void startWanted(const flute_grinder::GrindGoal& goal);
+  /// The operator has set the swivel for the job to be started. @param angle [rad].
+  void swivelConfirmed(double angle);
+  /// The work offsets that can be computed are to be fitted to a goal.
+  void offsetFitWanted(const flute_grinder::GrindGoal& goal);
+
+ private:
+  void choose();
+  void openSetup();
+  void read();
+  std::optional<GrindGoal> takePlanned();
+  void askForOffsets(bool discard);
+  void askForSwivel();
+  std::vector<core::OffsetMisfit> offsetMisfits() const;
+  void showZeroPoints();
+  bool asksWithReason() const;
+  void keepUnfinished();
+  GrindGoal goal() const;
+  std::optional<GrindGoal> goalNow();
+  std::optional<GrindGoal> beginPlan();
+  void refreshContinue(const std::optional<GrinderState>& state);
+  void showVerdict(const QString& text, bool good);
+
+  QString file_;
+  std::string grinder_;  ///< name of its node
+  std::shared_ptr<const GrindJob> job_;
+  std::optional<GrindGoal> planned_;          ///< without violations
+  std::optional<GrindGoal> where_left_;       ///< the job as it would be continued, if it can be
+  JobProgress progress_;                      ///< as last received from the grinder
+  Swivel swivel_;                             ///< as last received from the grinder
+  std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
+  std::string wheel_;                         ///< name of the file's wheel file; empty if it has none
+  bool discard_ = false;                      ///< the unfinished job, by the start that waits for an answer
+  bool offsets_are_right_ = false;            ///< said for that start
+  QLabel* name_;
+  QPushButton* choose_;
+  QPushButton* setup_;
+  QCheckBox* continue_;
+  QLabel* zeros_;  ///< whether the zero points are the job's
+  QPushButton* plan_;
+  QPushButton* dry_run_;
+  QPlainTextEdit* verdict_;
+  DiscardQuestion* question_;
+  OffsetQuestion* offset_question_;
+  SwivelQuestion* swivel_question_;
+  QPlainTextEdit* other_job_;
+  QStackedWidget* answer_;  ///< verdict, a question, or the job of somebody else
+  QPointer<QFileDialog> file_dialog_;
+};
+
+}  // namespace flute_grinder

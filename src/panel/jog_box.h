@@ -1,0 +1,54 @@
+#pragma once
+
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/job/axes.h"
+#include "panel/number_box.h"
+
+#include <QComboBox>
+#include <QPushButton>
+#include <QTimer>
+#include <QWidget>
+
+#include <array>
+#include <optional>
+
+namespace flute_grinder {
+
+/// Buttons that jog the axes: by a step with each click, or for as long as a button is pressed. The latter ends when
+/// the button is released, hidden or disabled, or loses the focus.
+class JogBox : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit JogBox(QWidget* parent = nullptr);
+
+  /// @param has_services whether requests with an answer can be sent; a continuous jog does without.
+  void refresh(const std::optional<GrinderState>& state, bool has_services);
+
+ Q_SIGNALS:
+  void stepWanted(int axis, double distance, double speed);  ///< [m], [m/s], of A [rad], [rad/s]
+  void continuousWanted(int axis, double velocity);          ///< [m/s], A [rad/s]; 0 stops
+
+ private:
+  struct Button {
+    QPushButton* button;
+    int axis;
+    int direction;  ///< +1 or -1
+  };
+
+  QPushButton* addButton(int axis, int direction);
+  void click(const Button& button);
+  void press(const Button& button);
+  void repeat();
+  bool isContinuous() const;
+  double speed(int axis) const;
+
+  QComboBox* step_;
+  NumberBox* linear_speed_;  ///< [mm/min]
+  NumberBox* rotary_speed_;  ///< [deg/min]
+  std::array<Button, std::size_t{2} * kAxisCount> buttons_{};
+  std::optional<Button> pressed_;  ///< of a continuous jog
+  QTimer repeat_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/Plan.h"
+#include "flute_grinder/machine/machine_state.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// A time, e.g. "7.0 s", "12:05 min" or "1:02:05 h". @param seconds not negative.
+std::string duration(double seconds);
+
+/// What the grinder is doing, why, and what to do about it.
+std::string describe(const GrinderState& state);
+
+/// The success of a request, in a line. @param event a request.
+std::string done(MachineEvent event);
+
+/// A job that runs, by its file and tool.
+std::string describe(const GrindGoal& goal);
+
+/// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
+std::string describe(const JobProgress& progress);
+
+/// What came of a plan: how long the job takes, what cuts its feed, or its violations. A line for each.
+std::string describe(const Plan::Response& plan);
+
+}  // namespace flute_grinder

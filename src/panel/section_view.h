@@ -1,0 +1,67 @@
+#pragma once
+
+#include "panel/grinder_link.h"
+#include "panel/number_box.h"
+#include "panel/section_drawing.h"
+
+#include <QCheckBox>
+#include <QLabel>
+#include <QWidget>
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace flute_grinder {
+
+/// The part of the panel that shows a section of the cutter that the chosen job grinds, at a chosen X or where the
+/// wheel stands. Sections are computed in a thread of their own, one at a time and for a tenth of the time at most;
+/// none while this is hidden.
+class SectionView : public QWidget {
+  Q_OBJECT
+
+ public:
+  explicit SectionView(QWidget* parent = nullptr);
+
+  /// @param job that is chosen; null if none is, or if it is wrong.
+  void refresh(const GrinderView& view, const std::shared_ptr<const GrindJob>& job);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Job = std::shared_ptr<const GrindJob>;
+  struct Wanted {
+    Job job;
+    double x = 0;  ///< [mm]
+    Job with_law;  ///< the job from withZLaw(); null if that is not computed yet
+    bool operator==(const Wanted& o) const { return job == o.job && x == o.x; }
+  };
+  struct Computed {
+    Job job;
+    std::shared_ptr<const CutterSection> section;  ///< null if it cannot be computed
+    QString text;                                  ///< its figures, or why not
+    Clock::duration took{};
+    Job with_law;  ///< as in Wanted
+  };
+
+  static Computed computed(const Wanted& wanted);
+  void take(const Computed& computed);
+  void setJob(const Job& job);
+  QString whyNothing(const GrinderView& view) const;
+  void follow(double x);
+  void show(const std::shared_ptr<const CutterSection>& section, const QString& text);
+
+  Job job_;
+  Job with_law_;        ///< as in Wanted
+  std::string digest_;  ///< of the job
+  std::optional<Wanted> wanted_;
+  NumberBox* x_;
+  QCheckBox* follow_;
+  SectionDrawing* drawing_;
+  QLabel* figures_;
+  Clock::time_point earliest_;  ///< for the next
+  std::future<Computed> computing_;
+};
+
+}  // namespace flute_grinder

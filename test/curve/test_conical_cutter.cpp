@@ -1,0 +1,152 @@
+#include "flute_grinder/curve/conical_cutter.h"
+
+#include "motion/generators.h"
+#include "reference.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace flute_grinder {
+namespace test_conical_cutter {
+
+using namespace test_support;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// What is wrong with a cutter; empty where nothing is.
+std::string errorOf(const CutterGeometry& geometry) {
+  try {
+    ConicalCutter cutter(geometry);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ConicalCutter, IsThePapers) {
+  const ConicalCutter cutter(paperCutter());
+  EXPECT_NEAR(cutter.radius(0), 5e-3, 1e-18);
+  EXPECT_NEAR(cutter.radius(30e-3), 7.62466e-3, 5e-9);  // 5 + 30 * 0.0874887
+  EXPECT_NEAR(cutter.y(30e-3), 2.62466e-3, 5e-9);
+  EXPECT_NEAR(cutter.z(30e-3), 0.365282e-3, 5e-9);       // times sin 8 deg = 0.139173
+  EXPECT_NEAR(cutter.edgePerTravel(), 1.1580102, 5e-8);  // sqrt(1 + 1/3 + 0.0076543)
+}
+
+TEST(ConicalCutter, KeepsItsFigures) {
+  const CutterGeometry g = paperCutter();
+  const ConicalCutter cutter(g);
+  EXPECT_EQ(cutter.geometry().end_diameter, g.end_diameter);
+  EXPECT_EQ(cutter.geometry().cone_angle, g.cone_angle);
+  EXPECT_EQ(cutter.geometry().spiral_angle, g.spiral_angle);
+  EXPECT_EQ(cutter.geometry().rake_angle, g.rake_angle);
+  EXPECT_EQ(cutter.geometry().flute_length, g.flute_length);
+}
+
+RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
+  const CutterGeometry g = *test_support::cutterGeometry();
+  const ConicalCutter cutter(g);
+  const double x = *uniform(-2e-3, g.flute_length);
+  const Real tan_cone = std::tan(Real(g.cone_angle));
+  const Real y = x * tan_cone;
+  const Real z_per_y = test_support::zPerY(g);
+  const Real z = y * z_per_y;
+  RC_ASSERT(std::abs(cutter.y(x) - y) <= 4 * kEps * std::abs(y));
+  RC_ASSERT(std::abs(cutter.z(x) - z) <= 8 * kEps * std::abs(z));
+  RC_ASSERT(std::abs(cutter.radius(x) - (Real(g.end_diameter) / 2 + y)) <= 4 * kEps * (g.end_diameter + std::abs(y)));
+  RC_ASSERT(std::abs(cutter.tanCone() - tan_cone) <= 4 * kEps * std::abs(tan_cone));
+  RC_ASSERT(std::abs(cutter.tanSpiral() - std::tan(Real(g.spiral_angle))) <=
+            4 * kEps * std::abs(std::tan(Real(g.spiral_angle))));
+  RC_ASSERT(std::abs(cutter.zPerY() - z_per_y) <= 4 * kEps * std::abs(z_per_y));
+}
+
+RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, ()) {
+  const CutterGeometry g = *test_support::cutterGeometry();
+  const ConicalCutter cutter(g);
+  // The edge at X: R(X) (cos A, sin A) about the axis; its length over a short piece of the axis, by Simpson-free
+  // chords.
+  const test_support::ReferenceCurve curve(g);
+  const Real x = *uniform(0, g.flute_length);
+  const Real h = g.flute_length * Real(1e-6) * std::min<Real>(1, curve.u(x));
+  const auto radius = [&](Real at) { return Real(g.end_diameter) / 2 + at * std::tan(Real(g.cone_angle)); };
+  const Real turn = curve.delta(x - h, 2 * h);
+  const Real r0 = radius(x - h);
+  const Real r1 = radius(x + h);
+  // The chord, split along, radially and around; sin(turn / 2) of the law of cosines does not cancel.
+  const Real around = 2 * std::sqrt(r0 * r1) * std::sin(turn / 2);
+  const Real chord = std::sqrt(4 * h * h + (r1 - r0) * (r1 - r0) + around * around);
+  RC_ASSERT(std::abs(cutter.edgePerTravel() - chord / (2 * h)) <= Real(1e-6));
+}
+
+RC_GTEST_PROP(ConicalCutterProperty, HelixStandsToTheGeneratrixAtItsAngle, ()) {
+  const CutterGeometry g = *test_support::cutterGeometry();
+  const Real angle = std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle)));
+  RC_ASSERT(std::abs(ConicalCutter(g).cosHelixToGeneratrix() - std::cos(angle)) <= 8 * kEps);
+}
+
+/// A figure of a cutter.
+struct Figure {
+  const char* name;
+  double& (*at)(CutterGeometry&);
+};
+
+class ConicalCutterFigure : public ::testing::TestWithParam<Figure> {
+ protected:
+  void expectRefused(double bad) const {
+    CutterGeometry g = paperCutter();
+    GetParam().at(g) = bad;
+    const std::string error = errorOf(g);
+    EXPECT_NE(error.find(std::string("cutter.") + GetParam().name + " = "), std::string::npos) << bad << ": " << error;
+    EXPECT_NE(error.find("allowed: "), std::string::npos) << error;
+  }
+};
+
+class ConicalCutterLength : public ConicalCutterFigure {};
+
+TEST_P(ConicalCutterLength, IsFiniteAndPositive) {
+  for (const double bad : {kNan, kInf, -kInf, 0.0, -0.0, -1e-3}) expectRefused(bad);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ConicalCutterLength,
+    ::testing::Values(Figure{"end_diameter", [](CutterGeometry& g) -> double& { return g.end_diameter; }},
+                      Figure{"flute_length", [](CutterGeometry& g) -> double& { return g.flute_length; }}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+class ConicalCutterAngles : public ConicalCutterFigure {};
+
+TEST_P(ConicalCutterAngles, IsBelowARightAngle) {
+  for (const double bad : {kNan, kInf, -kInf, 90 * units::kDegree, -90 * units::kDegree, 2.0, -2.0, 100.0})
+    expectRefused(bad);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ConicalCutterAngles,
+    ::testing::Values(Figure{"cone_angle", [](CutterGeometry& g) -> double& { return g.cone_angle; }},
+                      Figure{"spiral_angle", [](CutterGeometry& g) -> double& { return g.spiral_angle; }},
+                      Figure{"rake_angle", [](CutterGeometry& g) -> double& { return g.rake_angle; }}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(ConicalCutter, StaysOpenUpToTheFlutesEnd) {
+  // D1 2 mm at -3 deg closes at X = 19.08 mm.
+  CutterGeometry g{2e-3, -3 * units::kDegree, 0.5, 0, 19.08e-3};
+  EXPECT_EQ(errorOf(g), "");
+  g.flute_length = 19.09e-3;
+  EXPECT_NE(errorOf(g).find("cutter.cone_angle"), std::string::npos) << errorOf(g);
+  EXPECT_NE(errorOf(g).find("close"), std::string::npos) << errorOf(g);
+}
+
+TEST(ConicalCutter, TakesACylinderAStraightFluteAndALeftHand) {
+  EXPECT_EQ(errorOf({10e-3, 0, 0.5, 0, 30e-3}), "");
+  EXPECT_EQ(errorOf({10e-3, 0.1, 0, 0, 30e-3}), "");
+  EXPECT_EQ(errorOf({10e-3, 0.1, -0.5, 0, 30e-3}), "");
+}
+
+}  // namespace test_conical_cutter
+}  // namespace flute_grinder

@@ -1,0 +1,595 @@
+#include "flute_grinder/curve/feed_law.h"
+
+#include "motion/generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_feed_law {
+
+using namespace test_support;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+struct Sample {
+  double position, speed, acceleration;
+};
+
+Sample sampleOf(const FeedLaw& law) { return {law.position(), law.speed(), law.acceleration()}; }
+
+/// The quickest way from rest to rest under the three limits, by the cases of the double-S law.
+double doubleSTime(const MotionLimits& m, double distance) {
+  const double v = m.velocity;
+  const double a = m.acceleration;
+  const double j = m.jerk;
+  // Time and way of the ramp up to a speed: with the full acceleration held, or without.
+  const auto rampTime = [&](double speed) { return speed * j >= a * a ? speed / a + a / j : 2 * std::sqrt(speed / j); };
+  if (rampTime(v) * v <= distance) return distance / v + rampTime(v);
+  // The peak speed p solves p * rampTime(p) = distance.
+  if (distance * j * j >= 2 * a * a * a) {
+    const double c = a / j;
+    return 2 * (a / 2 * (-c + std::sqrt(c * c + 4 * distance / a)) / a + c);
+  }
+  return 4 * std::cbrt(distance / (2 * j));
+}
+
+/// Runs through a law in equal steps until it rests; `change` may change the target, and so end a rest, before each.
+template <typename Change>
+std::vector<Sample> run(FeedLaw& law, double dt, int most, Change change) {
+  std::vector<Sample> samples{sampleOf(law)};
+  for (int i = 0; i < most; ++i) {
+    change(i);
+    if (law.resting()) break;
+    law.advance(dt);
+    samples.push_back(sampleOf(law));
+  }
+  return samples;
+}
+
+struct Motion {
+  MotionLimits limits;
+  double distance;
+  double dt;  ///< some hundred steps for the whole motion at full speed
+
+  static Motion draw() {
+    Motion m;
+    m.limits = {*logUniform(1e-3, 1), *logUniform(1e-2, 10), *logUniform(0.1, 1000)};
+    m.distance = *logUniform(1e-5, 1);
+    m.dt = doubleSTime(m.limits, m.distance) / *uniform(20, 400);
+    return m;
+  }
+};
+
+/// Position, speed and acceleration, and the sampled differences of position, against the limits. By the mean value
+/// theorem a difference quotient is a value, or a mean, of the derivative, and so has the same bound.
+void checkBounds(const Motion& m, const std::vector<Sample>& samples) {
+  const double h = m.dt;
+  const double noise = 1e-15 * m.distance;  // of a position
+  const MotionLimits& l = m.limits;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Sample& s = samples[i];
+    RC_ASSERT(s.position <= m.distance);
+    RC_ASSERT(s.speed >= -1e-9 * l.velocity);
+    RC_ASSERT(s.speed <= l.velocity * (1 + 1e-9));
+    RC_ASSERT(std::abs(s.acceleration) <= l.acceleration * (1 + 1e-9));
+    const auto p = [&](std::size_t back) { return samples[i - back].position; };
+    if (i < 1) continue;
+    RC_ASSERT(p(0) >= p(1) - noise);
+    RC_ASSERT(p(0) - p(1) <= l.velocity * h * (1 + 1e-9) + 2 * noise);
+    RC_ASSERT(std::abs(s.speed - samples[i - 1].speed) <= l.acceleration * h * (1 + 1e-9) + 1e-12 * l.velocity);
+    RC_ASSERT(std::abs(s.acceleration - samples[i - 1].acceleration) <=
+              l.jerk * h * (1 + 1e-9) + 1e-9 * l.acceleration);
+    if (i < 2) continue;
+    RC_ASSERT(std::abs(p(0) - 2 * p(1) + p(2)) <= l.acceleration * h * h * (1 + 1e-9) + 4 * noise);
+    if (i < 3) continue;
+    RC_ASSERT(std::abs(p(0) - 3 * p(1) + 3 * p(2) - p(3)) <= l.jerk * h * h * h * (1 + 1e-9) + 8 * noise);
+  }
+}
+
+void assertFinished(const FeedLaw& law, const Motion& m) {
+  RC_ASSERT(law.resting());
+  RC_ASSERT(law.finished());
+  RC_ASSERT(law.position() == m.distance);
+  RC_ASSERT(law.speed() == 0);
+  RC_ASSERT(law.acceleration() == 0);
+}
+
+/// Way and time of the quickest stop from a state, of which only the bound is needed: take the acceleration back, then
+/// brake as from the highest speed reached.
+double stoppingBound(const MotionLimits& l, double speed, double acceleration) {
+  const double a = std::max(0.0, acceleration);
+  const double back = a / l.jerk;
+  const double peak = speed + a * back / 2;
+  const double brake = peak * l.jerk >= l.acceleration * l.acceleration
+                           ? peak / l.acceleration + l.acceleration / l.jerk
+                           : 2 * std::sqrt(peak / l.jerk);
+  return peak * back + peak * brake / 2;
+}
+
+TEST(FeedLaw, HasNothingToDoByDefault) {
+  FeedLaw law;
+  EXPECT_TRUE(law.resting());
+  EXPECT_TRUE(law.finished());
+  law.advance(1);
+  EXPECT_EQ(law.position(), 0);
+  EXPECT_EQ(law.speed(), 0);
+}
+
+TEST(FeedLaw, NeedsNoTimeForNoDistance) {
+  FeedLaw law({1, 1, 1}, 0, 1);
+  EXPECT_TRUE(law.resting());
+  EXPECT_TRUE(law.finished());
+  EXPECT_EQ(law.timeLeft(), 0);
+}
+
+TEST(FeedLaw, StartsAtRestAtZero) {
+  const FeedLaw law({1, 1, 1}, 1, 0.5);
+  EXPECT_EQ(law.position(), 0);
+  EXPECT_EQ(law.speed(), 0);
+  EXPECT_EQ(law.acceleration(), 0);
+  EXPECT_EQ(law.target(), 0.5);
+  EXPECT_FALSE(law.resting());
+}
+
+TEST(FeedLaw, RestsAtTheStartWithoutATarget) {
+  FeedLaw law({1, 1, 1}, 1, 0);
+  EXPECT_TRUE(law.resting());
+  EXPECT_FALSE(law.finished());
+  law.advance(1);
+  EXPECT_EQ(law.position(), 0);
+}
+
+TEST(FeedLaw, GoesThroughItsSevenPhasesByHandCalculation) {
+  // j 1, a 1, v 2: 1 s up to a, 1 s at a, 1 s back: at 2 after 3 s and 3 m. 10 m: 2 s at 2, then 3 s down.
+  FeedLaw law({2, 1, 1}, 10, 2);
+  EXPECT_NEAR(law.timeLeft(), 8, 1e-14);
+  const struct {
+    double time, position, speed, acceleration;
+  } expected[]{{1, 1.0 / 6, 0.5, 1},      {2, 1.0 / 6 + 1, 1.5, 1},   {3, 3, 2, 0}, {4, 5, 2, 0}, {5, 7, 2, 0},
+               {6, 9 - 1.0 / 6, 1.5, -1}, {7, 10 - 1.0 / 6, 0.5, -1}, {8, 10, 0, 0}};
+  for (const auto& e : expected) {
+    SCOPED_TRACE(e.time);
+    law.advance(1);
+    EXPECT_NEAR(law.position(), e.position, 1e-14);
+    EXPECT_NEAR(law.speed(), e.speed, 1e-14);
+    EXPECT_NEAR(law.acceleration(), e.acceleration, 1e-14);
+    EXPECT_NEAR(law.timeLeft(), 8 - e.time, 1e-14);
+  }
+}
+
+TEST(FeedLaw, CruisesAtTheTargetOnly) {
+  FeedLaw law({2, 1, 1}, 10, 2);
+  EXPECT_FALSE(law.cruising());
+  law.advance(2.5);
+  EXPECT_FALSE(law.cruising());
+  law.advance(1.5);
+  EXPECT_TRUE(law.cruising());
+  law.setTarget(1);
+  EXPECT_FALSE(law.cruising());
+  law.advance(2.5);
+  EXPECT_TRUE(law.cruising());
+  EXPECT_EQ(law.speed(), 1);
+}
+
+TEST(FeedLaw, OfAShorterWayThanToFullSpeedCruisesNever) {
+  FeedLaw law({2, 1, 1}, 2, 2);
+  for (int i = 0; i < 1000 && !law.resting(); ++i) {
+    law.advance(0.01);
+    EXPECT_FALSE(law.cruising());
+  }
+  EXPECT_TRUE(law.finished());
+}
+
+TEST(FeedLaw, StopsAsSoonAsTheLimitsAllow) {
+  // At 2 m/s: 3 s and 3 m to a stop.
+  FeedLaw law({2, 1, 1}, 20, 2);
+  law.advance(4);
+  law.setTarget(0);
+  EXPECT_NEAR(law.timeLeft(), 3, 1e-14);
+  law.advance(3.5);
+  EXPECT_TRUE(law.resting());
+  EXPECT_FALSE(law.finished());
+  EXPECT_NEAR(law.position(), 8, 1e-14);
+  EXPECT_EQ(law.speed(), 0);
+}
+
+TEST(FeedLaw, TakesTheAccelerationBackBeforeItStops) {
+  // After 1 s: 0.5 m/s and 1 m/s^2. 1 s to no acceleration at 1 m/s, 1 s and 1 s down with a peak of 1 m/s^2.
+  FeedLaw law({2, 1, 1}, 20, 2);
+  law.advance(1);
+  law.setTarget(0);
+  EXPECT_NEAR(law.timeLeft(), 3, 1e-14);
+  law.advance(1);
+  EXPECT_NEAR(law.speed(), 1, 1e-14);
+  EXPECT_NEAR(law.acceleration(), 0, 1e-14);
+}
+
+TEST(FeedLaw, TellsItsLimits) {
+  const FeedLaw law({2, 3, 5}, 1, 1);
+  EXPECT_EQ(law.limits().velocity, 2);
+  EXPECT_EQ(law.limits().acceleration, 3);
+  EXPECT_EQ(law.limits().jerk, 5);
+  EXPECT_EQ(FeedLaw().limits().velocity, 0);
+}
+
+TEST(FeedLaw, RefusesBadArguments) {
+  const double bad_limits[]{0, -1, kNan, kInf, -kInf};
+  for (const double bad : bad_limits) {
+    SCOPED_TRACE(bad);
+    EXPECT_THROW(FeedLaw({bad, 1, 1}, 1, 0), std::invalid_argument);
+    EXPECT_THROW(FeedLaw({1, bad, 1}, 1, 0), std::invalid_argument);
+    EXPECT_THROW(FeedLaw({1, 1, bad}, 1, 0), std::invalid_argument);
+  }
+  for (const double bad : {-1e-9, kNan, kInf}) {
+    SCOPED_TRACE(bad);
+    EXPECT_THROW(FeedLaw({1, 1, 1}, bad, 0), std::invalid_argument);
+  }
+  for (const double bad : {-1e-9, 1.0000001, kNan, kInf}) {
+    SCOPED_TRACE(bad);
+    EXPECT_THROW(FeedLaw({1, 1, 1}, 1, bad), std::invalid_argument);
+  }
+}
+
+TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
+  FeedLaw law({2, 1, 1}, 10, 2);
+  law.advance(1);
+  const double position = law.position();
+  EXPECT_FALSE(law.begin({2, 1, kNan}, 10, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, kInf, 2));
+  EXPECT_FALSE(law.begin({2, 1, 1}, 10, 3));
+  EXPECT_EQ(law.position(), position);
+  ASSERT_TRUE(law.begin({1, 1, 1}, 5, 1));
+  FeedLaw made({1, 1, 1}, 5, 1);
+  EXPECT_EQ(law.timeLeft(), made.timeLeft());
+  for (int i = 0; i < 90; ++i) {
+    law.advance(0.1);
+    made.advance(0.1);
+    ASSERT_EQ(law.position(), made.position());
+  }
+  EXPECT_EQ(law.position(), 5);
+}
+
+TEST(FeedLaw, NamesTheBadArgument) {
+  const auto text = [](const std::function<void()>& make) -> std::string {
+    try {
+      make();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(text([] { FeedLaw({-1, 1, 1}, 1, 0); }).find("velocity"), std::string::npos);
+  EXPECT_NE(text([] { FeedLaw({1, -1, 1}, 1, 0); }).find("acceleration"), std::string::npos);
+  EXPECT_NE(text([] { FeedLaw({1, 1, -1}, 1, 0); }).find("jerk"), std::string::npos);
+  EXPECT_NE(text([] { FeedLaw({1, 1, 1}, -1, 0); }).find("distance"), std::string::npos);
+  EXPECT_NE(text([] { FeedLaw({1, 1, 1}, 1, 2); }).find("target"), std::string::npos);
+}
+
+TEST(FeedLaw, ARefusedTargetChangesNothing) {
+  for (const double bad : {kNan, -1e-9, 2.0000001, kInf, -kInf}) {
+    SCOPED_TRACE(bad);
+    FeedLaw law({2, 1, 1}, 10, 2);
+    FeedLaw untouched({2, 1, 1}, 10, 2);
+    for (int i = 0; i < 90; ++i) {
+      EXPECT_FALSE(law.setTarget(bad));
+      law.advance(0.1);
+      untouched.advance(0.1);
+      ASSERT_EQ(law.position(), untouched.position());
+      ASSERT_EQ(law.speed(), untouched.speed());
+      ASSERT_EQ(law.target(), 2);
+      ASSERT_EQ(law.timeLeft(), untouched.timeLeft());
+    }
+    EXPECT_TRUE(law.finished());
+  }
+}
+
+TEST(FeedLaw, StoppedDuringTheFinalBrakingItNeitherPassesTheEndNorFailsToResume) {
+  const MotionLimits limits{0.16312605896444626, 0.18834111712747642, 0.20329808767523674};
+  const double distance = 0.39464941190965325;
+  const double total = FeedLaw(limits, distance, limits.velocity).timeLeft();
+  for (int i = 0; i < 5000; ++i) {
+    FeedLaw law(limits, distance, limits.velocity);
+    law.advance(total * (0.5 + 0.5 * i / 5000));
+    law.setTarget(0);
+    law.advance(2 * total);
+    ASSERT_TRUE(law.resting());
+    ASSERT_LE(law.position(), distance) << i;
+    law.setTarget(limits.velocity);
+    law.advance(100 * total);
+    ASSERT_TRUE(law.finished()) << i;
+  }
+}
+
+/// Rest is without speed and acceleration, and nothing then moves any more.
+void assertRestsIfItSaysSo(FeedLaw law, const Motion& m) {
+  if (!law.resting()) return;
+  RC_ASSERT(law.speed() == 0);
+  RC_ASSERT(law.acceleration() == 0);
+  RC_ASSERT(law.timeLeft() <= 0);
+  RC_ASSERT(law.target() == 0 || law.position() == m.distance);
+  const double rest = law.position();
+  law.advance(m.dt);
+  RC_ASSERT(law.position() == rest);
+}
+
+RC_GTEST_PROP(FeedLawProperty, ATargetSetAtTheVeryEndLeavesNoSpeedInALawThatRests, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  const bool stops_short = *rc::gen::arbitrary<bool>();
+  if (stops_short) {
+    law.advance(law.timeLeft() * *uniform(0, 1));
+    law.setTarget(0);
+  }
+  // To within some roundings of the end, and there in the smallest steps that time has.
+  law.advance(law.timeLeft() * (1 - *logUniform(1e-16, 1e-4)));
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1);
+  for (int i = 0; i < 50; ++i) {
+    const double chance = fraction(random);
+    law.setTarget(chance < 0.3 ? 0 : m.limits.velocity * fraction(random));
+    assertRestsIfItSaysSo(law, m);
+    law.advance(law.timeLeft() * (chance < 0.5 ? 1 - std::pow(10, -16 * fraction(random)) : 0.5));
+    assertRestsIfItSaysSo(law, m);
+  }
+}
+
+TEST(FeedLaw, APlanWithoutMotionRestsAtOnce) {
+  // Told to stop just where the final braking would begin, it comes to the end with a rounding of speed left: a target
+  // then makes a plan without motion.
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> fraction(0.1, 1);
+  int at_the_end = 0;
+  for (int i = 0; i < 10000; ++i) {
+    const MotionLimits limits{2, fraction(random), fraction(random)};
+    const double ramp = 2 / limits.acceleration + limits.acceleration / limits.jerk;
+    const double distance = 2 * ramp + fraction(random);
+    FeedLaw law(limits, distance, limits.velocity);
+    law.advance(law.timeLeft() - ramp);
+    law.setTarget(0);
+    law.advance(law.timeLeft() * (1 - 1e-9));
+    if (law.resting() || law.position() < distance) continue;
+    law.setTarget(limits.velocity);
+    if (!law.resting()) continue;  // it was braking for the end already, and so keeps its plan
+    ++at_the_end;
+    ASSERT_EQ(law.speed(), 0) << i;
+    ASSERT_EQ(law.acceleration(), 0) << i;
+    ASSERT_TRUE(law.finished());
+  }
+  EXPECT_GT(at_the_end, 100);
+}
+
+RC_GTEST_PROP(FeedLawProperty, UndisturbedItTakesTheDoubleSTime, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  const double expected = doubleSTime(m.limits, m.distance);
+  RC_ASSERT(std::abs(law.timeLeft() - expected) <= 1e-9 * expected);
+}
+
+/// One motion for each of the double-S law's four cases: velocity, and acceleration, reached or not.
+RC_GTEST_PROP(FeedLawProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
+  const double a = *logUniform(0.01, 10);
+  const double j = *logUniform(0.1, 1000);
+  const double knee = a * a / j;  // speed from which on the full acceleration is reached
+  const bool velocity_reached = *rc::gen::arbitrary<bool>();
+  const bool acceleration_reached = *rc::gen::arbitrary<bool>();
+  const double peak = knee * (acceleration_reached ? *uniform(1.1, 20) : *uniform(0.05, 0.9));
+  const double ramp = acceleration_reached ? peak / a + a / j : 2 * std::sqrt(peak / j);
+  const double cruise = velocity_reached ? *uniform(0.01, 5) * ramp : 0;
+  const double v = velocity_reached ? peak : peak * *uniform(1.01, 3);
+  const FeedLaw law({v, a, j}, peak * (ramp + cruise), v);
+  RC_ASSERT(std::abs(law.timeLeft() - (2 * ramp + cruise)) <= 1e-9 * (2 * ramp + cruise));
+}
+
+RC_GTEST_PROP(FeedLawProperty, UndisturbedItKeepsTheLimitsAndFinishes, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity * *uniform(0.05, 1));
+  const auto samples = run(law, m.dt, 100000, [](int) {});
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+RC_GTEST_PROP(FeedLawProperty, KeepsTheLimitsAndFinishesWhateverTheTargetsWere, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1);
+  std::uniform_real_distribution<double> target(-0.3, 1.2);  // 0 and full speed have their share
+  const double chance = *logUniform(0.002, 1);
+  const int calm_from = *whole(0, 1000);
+  const auto samples = run(law, m.dt, 20000, [&](int i) {
+    const bool change = i < calm_from && fraction(random) < chance;
+    if (change) RC_ASSERT(law.setTarget(m.limits.velocity * std::min(1.0, std::max(0.0, target(random)))));
+    if (i < calm_from && !law.resting()) return;
+    if (i == calm_from || (law.resting() && !law.finished())) {
+      RC_ASSERT(i == calm_from || law.target() == 0);  // nothing else makes it rest short of the end
+      RC_ASSERT(law.setTarget(m.limits.velocity));
+    }
+  });
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+RC_GTEST_PROP(FeedLawProperty, FinishesThoughTheTargetChangesDuringTheFinalBraking, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  const double brake_from = law.timeLeft() * *uniform(0.5, 1);
+  const int every = *whole(1, 5);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> target(0.01, 1);
+  int changes = 0;
+  const auto samples = run(law, m.dt, 20000, [&](int i) {
+    if (i * m.dt < brake_from || i % every != 0 || law.resting() || changes++ >= 50) return;
+    RC_ASSERT(law.setTarget(m.limits.velocity * target(random)));
+  });
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+RC_GTEST_PROP(FeedLawProperty, AnotherTargetDuringTheFinalBrakingDoesNotDelayTheEnd, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  law.advance(law.timeLeft() * *uniform(0.5, 1));
+  RC_PRE(law.acceleration() < 0);
+  const double left = law.timeLeft();
+  // There is no quicker stop, and no way left for a slower one.
+  RC_ASSERT(law.setTarget(m.limits.velocity * *uniform(0.99, 0.9999)));
+  RC_ASSERT(law.timeLeft() <= left * (1 + 1e-3));
+}
+
+RC_GTEST_PROP(FeedLawProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  law.advance(law.timeLeft() * *uniform(0, 1));
+  const double from = law.position();
+  const double bound = stoppingBound(m.limits, law.speed(), law.acceleration());
+  RC_ASSERT(law.setTarget(0));
+  const auto stop = run(law, m.dt, 100000, [](int) {});
+  checkBounds(m, stop);
+  RC_ASSERT(law.resting());
+  RC_ASSERT(law.speed() == 0);
+  RC_ASSERT(law.acceleration() == 0);
+  RC_ASSERT(law.position() <= m.distance);
+  RC_ASSERT(law.position() - from <= bound * (1 + 1e-9) + 1e-15 * m.distance);
+  const double rest = law.position();
+  law.advance(1);
+  RC_ASSERT(law.position() == rest);
+  RC_PRE(!law.finished());
+  RC_ASSERT(law.setTarget(m.limits.velocity));
+  RC_ASSERT(!law.resting());
+  const double expected = doubleSTime(m.limits, m.distance - rest);
+  RC_ASSERT(std::abs(law.timeLeft() - expected) <= 1e-6 * expected);
+  checkBounds(m, run(law, m.dt, 100000, [](int) {}));
+  assertFinished(law, m);
+}
+
+RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRestAtTheEnd, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1), factor(0.01, 0.99);
+  const double from = *uniform(0, 1) * law.timeLeft();  // the final braking has its share
+  const double chance = *logUniform(0.01, 1);
+  int left = *whole(1, 20);
+  std::vector<Sample> samples{sampleOf(law)};
+  for (int i = 0; i < 200000 && !law.resting(); ++i) {
+    if (left > 0 && i * m.dt >= from && fraction(random) < chance) {
+      --left;
+      checkBounds(m, samples);
+      const double f = factor(random);
+      const Sample before = samples.back();
+      law.slowDown(f);
+      RC_ASSERT(law.position() == before.position);
+      RC_ASSERT(law.speed() == f * before.speed);
+      RC_ASSERT(law.acceleration() == f * f * before.acceleration);
+      samples = {sampleOf(law)};
+      // There is always a stop within the way left.
+      FeedLaw stop = law;
+      stop.setTarget(0);
+      checkBounds(m, run(stop, m.dt, 100000, [](int) {}));
+      RC_ASSERT(stop.resting());
+    }
+    law.advance(m.dt);
+    samples.push_back(sampleOf(law));
+  }
+  checkBounds(m, samples);
+  assertFinished(law, m);
+}
+
+TEST(FeedLaw, SlowedDownItTakesUpItsSpeedAnew) {
+  const MotionLimits limits{1, 2, 8};
+  FeedLaw law(limits, 10, 1);
+  law.advance(2);
+  ASSERT_TRUE(law.cruising());
+  law.slowDown(0.25);
+  EXPECT_EQ(law.speed(), 0.25);
+  // 0.75 more, within 0.75/a + a/j.
+  law.advance(0.75 / 2 + 0.25 + 1e-9);
+  EXPECT_TRUE(law.cruising());
+  EXPECT_EQ(law.speed(), 1);
+}
+
+TEST(FeedLaw, WhatIsNoFactorDoesNotSlowItDown) {
+  for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
+    FeedLaw law({1, 2, 8}, 10, 1);
+    law.advance(2);
+    const double left = law.timeLeft();
+    law.slowDown(factor);
+    EXPECT_EQ(law.speed(), 1) << factor;
+    EXPECT_EQ(law.timeLeft(), left) << factor;
+  }
+  FeedLaw resting;
+  resting.slowDown(0.5);
+  EXPECT_TRUE(resting.finished());
+}
+
+RC_GTEST_PROP(FeedLawProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  law.advance(law.timeLeft() * *uniform(0, 0.9));
+  const double target = m.limits.velocity * *uniform(0.01, 1);
+  RC_ASSERT(law.setTarget(target));
+  const double start_speed = law.speed() + std::max(0.0, law.acceleration()) * law.acceleration() / (2 * m.limits.jerk);
+  bool below = start_speed <= target;  // else the speed goes past it whatever is done
+  for (int i = 0; i < 20000 && !law.resting(); ++i) {
+    law.advance(m.dt);
+    if (below) RC_ASSERT(law.speed() <= target * (1 + 1e-9) + 1e-12 * m.limits.velocity);
+    below = below || (law.speed() <= target && law.acceleration() <= 0);
+  }
+}
+
+RC_GTEST_PROP(FeedLawProperty, DoesNotDependOnHowTheTimeIsCut, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw fine(m.limits, m.distance, m.limits.velocity);
+  FeedLaw coarse(m.limits, m.distance, m.limits.velocity);
+  const int parts = *whole(2, 30);
+  for (int i = 0; i < 30; ++i) {
+    for (int part = 0; part < parts; ++part) fine.advance(m.dt / parts);
+    coarse.advance(m.dt);
+    RC_ASSERT(std::abs(fine.position() - coarse.position()) <=
+              1e-13 * m.distance + 1e-12 * m.limits.velocity * m.dt * (i + 1));
+  }
+}
+
+RC_GTEST_PROP(FeedLawProperty, TheSameCallsGiveTheSameBits, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw one(m.limits, m.distance, m.limits.velocity);
+  FeedLaw other(m.limits, m.distance, m.limits.velocity);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1);
+  for (int change = 0; change < 100; ++change) {
+    const double target = fraction(random);
+    for (FeedLaw* law : {&one, &other}) {
+      law->setTarget(m.limits.velocity * target);
+      for (int i = 0; i < 5; ++i) law->advance(m.dt);
+    }
+    const Sample a = sampleOf(one);
+    const Sample b = sampleOf(other);
+    RC_ASSERT(std::memcmp(&a, &b, sizeof a) == 0);
+  }
+}
+
+RC_GTEST_PROP(FeedLawProperty, TheTimeLeftIsWhatItThenTakes, ()) {
+  const Motion m = Motion::draw();
+  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  law.advance(law.timeLeft() * *uniform(0, 1));
+  law.setTarget(m.limits.velocity * *uniform(0.01, 1));
+  const double left = law.timeLeft();
+  law.advance(left * (1 - 1e-9));
+  RC_ASSERT(left <= 0 || !law.resting());
+  law.advance(left * 2e-9);
+  assertFinished(law, m);
+}
+
+}  // namespace test_feed_law
+}  // namespace flute_grinder

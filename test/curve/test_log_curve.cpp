@@ -1,0 +1,143 @@
+#include "flute_grinder/curve/log_curve.h"
+
+#include "motion/generators.h"
+#include "reference.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace flute_grinder {
+namespace test_log_curve {
+
+using namespace test_support;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// The curve with the reference's b and k rounded, so that only the functions are compared.
+struct Curves {
+  LogCurve curve;
+  ReferenceCurve reference;
+  double shortest, longest;  ///< X over which it exists with a fifth of its radius
+
+  static Curves draw() {
+    const CutterGeometry g = *test_support::cutterGeometry();
+    const LogCurve curve{ConicalCutter(g)};
+    return {curve, ReferenceCurve(curve.b(), curve.k()), -test_support::openLength(g, -1, 10e-3), g.flute_length};
+  }
+};
+
+TEST(LogCurve, HasThePapersConstants) {
+  const LogCurve curve{ConicalCutter(test_support::paperCutter())};
+  EXPECT_NEAR(curve.b(), 17.4977327, 1e-7);   // 2 tan 5 deg / 10 mm
+  EXPECT_NEAR(curve.k(), 115.4700538, 1e-7);  // 2 tan 30 deg / 10 mm
+}
+
+TEST(LogCurve, EndsWhereThePapersTableDoes) {
+  const LogCurve curve{ConicalCutter(test_support::paperCutter())};
+  EXPECT_NEAR(curve.a(30.2684e-3), 2.8048, 0.00006);
+  EXPECT_NEAR(curve.a(1.7885e-3), 0.2033, 0.00006);
+}
+
+TEST(LogCurve, IsTheTextbookFormWhereThatIsDefined) {
+  const LogCurve curve(17.5, 115.5);
+  for (const double x : {-5e-3, 1e-3, 10e-3, 30e-3})
+    EXPECT_NEAR(curve.a(x), 115.5 / 17.5 * std::log(1 + 17.5 * x), 1e-14);
+}
+
+TEST(LogCurve, OfACylinderIsALine) {
+  const LogCurve curve(0, 250);
+  for (const double x : {-0.01, 0.0, 0.02}) {
+    EXPECT_EQ(curve.a(x), 250 * x);
+    EXPECT_EQ(curve.slope(x), 250);
+    EXPECT_EQ(curve.u(x), 1);
+    EXPECT_EQ(curve.delta(x, 0.001), 0.25);
+  }
+}
+
+TEST(LogCurve, OfAStraightFluteIsZero) {
+  const LogCurve curve(17.5, 0);
+  EXPECT_EQ(curve.a(0.03), 0);
+  EXPECT_EQ(curve.slope(0.03), 0);
+  EXPECT_EQ(curve.delta(0.03, 0.01), 0);
+}
+
+TEST(LogCurve, HasNoNoiseNextToACylinder) {
+  // C = 1e-9 deg: the naive ln(1 + bX) is off by 3e-6 rad here.
+  const double b = 2 * std::tan(1e-9 * units::kDegree) / 10e-3;
+  const LogCurve curve(b, 115.47);
+  const ReferenceCurve reference(b, 115.47);
+  for (const double x : {1e-6, 1e-3, 30e-3}) {
+    EXPECT_NEAR(curve.a(x), static_cast<double>(reference.a(x)), 2 * kEps * 115.47 * x);
+    EXPECT_NEAR(curve.delta(20e-3, x), static_cast<double>(reference.delta(20e-3L, Real(x))), 4 * kEps * 115.47 * x);
+  }
+}
+
+TEST(LogCurve, OfALeftHandIsTheMirrorImage) {
+  const LogCurve right(17.5, 115.5);
+  const LogCurve left(17.5, -115.5);
+  for (const double x : {-5e-3, 1e-3, 30e-3}) {
+    EXPECT_EQ(left.a(x), -right.a(x));
+    EXPECT_EQ(left.slope(x), -right.slope(x));
+  }
+}
+
+RC_GTEST_PROP(LogCurveProperty, IsTheLogarithmInLongDouble, ()) {
+  const Curves c = Curves::draw();
+  const double x = *uniform(c.shortest, c.longest);
+  const Real expected = c.reference.a(x);
+  RC_ASSERT(std::abs(c.curve.a(x) - expected) <= 6 * kEps * std::abs(expected));
+}
+
+RC_GTEST_PROP(LogCurveProperty, HasTheConstantsOfTheCutter, ()) {
+  const CutterGeometry g = *test_support::cutterGeometry();
+  const LogCurve curve{ConicalCutter(g)};
+  const ReferenceCurve reference(g);
+  RC_ASSERT(std::abs(curve.b() - reference.b) <= 4 * kEps * std::abs(reference.b));
+  RC_ASSERT(std::abs(curve.k() - reference.k) <= 4 * kEps * std::abs(reference.k));
+}
+
+RC_GTEST_PROP(LogCurveProperty, DeltaIsTheDifferenceAlsoOfCloseNeighbours, ()) {
+  const Curves c = Curves::draw();
+  const double x = *uniform(c.shortest, c.longest);
+  const double end = *uniform(c.shortest, c.longest);
+  const double dx = (end - x) * *test_support::logUniform(1e-12, 1);
+  const Real expected = c.reference.delta(x, dx);
+  // 1e-15 where the path goes, plus what rounding u(x) makes of 1 + bX where the radius nearly vanishes.
+  const Real u = c.reference.u(x);
+  const Real tolerance = Real(1e-15) + 2 * kEps * (1 + std::abs(c.reference.b * x)) / u +
+                         2 * kEps * (1 + std::abs(c.reference.b * x)) / c.reference.u(x + dx);
+  RC_ASSERT(std::abs(c.curve.delta(x, dx) - expected) <= tolerance * std::abs(expected));
+}
+
+RC_GTEST_PROP(LogCurveProperty, DeltasAddUpToTheWhole, ()) {
+  const Curves c = Curves::draw();
+  const double x = *uniform(c.shortest, c.longest);
+  const double y = *uniform(c.shortest, c.longest);
+  RC_ASSERT(std::abs(c.curve.a(x) + c.curve.delta(x, y - x) - c.curve.a(y)) <=
+            64 * kEps * (std::abs(c.curve.a(x)) + std::abs(c.curve.a(y)) + std::abs(c.curve.k() * (y - x))));
+}
+
+RC_GTEST_PROP(LogCurveProperty, SlopeIsTheDerivative, ()) {
+  const Curves c = Curves::draw();
+  const double x = *uniform(c.shortest, c.longest);
+  const Real u = c.reference.u(x);
+  const Real expected = c.reference.k / u;
+  RC_ASSERT(std::abs(c.curve.slope(x) - expected) <=
+            kEps * (2 + 2 * (1 + std::abs(c.reference.b * x)) / u) * std::abs(expected));
+  RC_ASSERT(std::abs(c.curve.u(x) - u) <= 2 * kEps * (1 + std::abs(c.reference.b * x)));
+  // The closed form is the derivative of a(): a mean of the slope over an interval lies between those at its ends.
+  const double h = (c.longest - c.shortest) * 1e-4;
+  const Real mean = (c.reference.a(x + h) - c.reference.a(x - h)) / ((Real(x) + h) - (Real(x) - h));
+  const auto ends = std::minmax({c.curve.slope(x - h), c.curve.slope(x + h)});
+  RC_ASSERT(mean >= ends.first - 1e-9 * std::abs(expected));
+  RC_ASSERT(mean <= ends.second + 1e-9 * std::abs(expected));
+}
+
+RC_GTEST_PROP(LogCurveProperty, BeginsAtZero, ()) { RC_ASSERT(Curves::draw().curve.a(0) == 0); }
+
+}  // namespace test_log_curve
+}  // namespace flute_grinder

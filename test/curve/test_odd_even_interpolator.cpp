@@ -1,0 +1,303 @@
+#include "flute_grinder/curve/odd_even_interpolator.h"
+
+#include "motion/generators.h"
+#include "reference.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_odd_even_interpolator {
+
+using namespace test_support;
+
+constexpr double kPaperScale = 1e-3;  ///< X in mm, A in rad
+constexpr double kMm = units::kMillimetre;
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+LogCurve curveOf(const CutterGeometry& g) { return LogCurve(ConicalCutter(g)); }
+
+/// A cutter on which the rules differ: D1 2 mm, S 45 deg, C 15 deg, 20 mm.
+CutterGeometry steepCutter() { return {2e-3, 15 * units::kDegree, 45 * units::kDegree, 0, 20e-3}; }
+
+/// Theory minus commanded, theory in long double. [rad]
+double errorOf(const ReferenceCurve& curve, const CurvePoint& p) { return static_cast<double>(curve.a(p.x) - p.a); }
+
+/// All points of a path of fixed steps from X = 0 to the first pair that ends at or past `end`, the start included.
+std::vector<CurvePoint> pathOf(const CutterGeometry& g, EvenStepRule rule, double step, double end) {
+  OddEvenInterpolator interpolator(curveOf(g), kPaperScale, rule, 0);
+  std::vector<CurvePoint> points{interpolator.position()};
+  while (points.back().x < end) {
+    const OddEvenPair pair = interpolator.next(step);
+    points.push_back(pair.odd);
+    points.push_back(pair.even);
+  }
+  return points;
+}
+
+struct Errors {
+  double odd = 0, even = 0;
+};
+
+Errors largestErrors(const CutterGeometry& g, EvenStepRule rule, double step, double end) {
+  const ReferenceCurve curve(g);
+  const auto points = pathOf(g, rule, step, end);
+  Errors errors;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double& largest = i % 2 == 1 ? errors.odd : errors.even;
+    largest = std::max(largest, std::abs(errorOf(curve, points[i])));
+  }
+  return errors;
+}
+
+TEST(OddEvenInterpolator, ThirdOrderIsThriceAsAccurateAsPublishedOnThePapersCutter) {
+  const Errors errors = largestErrors(paperCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 30 * kMm);
+  EXPECT_NEAR(errors.even, 1.29e-7, 0.005e-7);
+}
+
+TEST(OddEvenInterpolator, PublishedFailsOnASteepCutterWhereThirdOrderDoesNot) {
+  const Errors published = largestErrors(steepCutter(), EvenStepRule::kPublished, 0.2 * kMm, 20 * kMm);
+  const Errors third_order = largestErrors(steepCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 20 * kMm);
+  EXPECT_NEAR(published.even, 1.2e-3, 0.05e-3);
+  EXPECT_NEAR(third_order.even, 2.4e-5, 0.05e-5);
+}
+
+TEST(OddEvenInterpolator, PublishedEvenErrorFallsWithTheSquareOfTheStep) {
+  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
+    SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
+    const double coarse = largestErrors(cutter, EvenStepRule::kPublished, 0.01 * kMm, 20 * kMm).even;
+    const double fine = largestErrors(cutter, EvenStepRule::kPublished, 0.005 * kMm, 20 * kMm).even;
+    EXPECT_NEAR(coarse / fine, 4, 0.2);
+  }
+}
+
+TEST(OddEvenInterpolator, ThirdOrderEvenErrorFallsWithTheCubeOfTheStep) {
+  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
+    SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
+    const double coarse = largestErrors(cutter, EvenStepRule::kThirdOrder, 0.04 * kMm, 20 * kMm).even;
+    const double fine = largestErrors(cutter, EvenStepRule::kThirdOrder, 0.02 * kMm, 20 * kMm).even;
+    EXPECT_NEAR(coarse / fine, 8, 0.4);
+  }
+}
+
+TEST(OddEvenInterpolator, ExactStaysOnTheCurveToRounding) {
+  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
+    SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
+    EXPECT_LE(largestErrors(cutter, EvenStepRule::kExact, 0.2 * kMm, 20 * kMm).even, 2e-15);
+  }
+}
+
+TEST(OddEvenInterpolator, NamesItsRulesAsJobFilesDo) {
+  EXPECT_STREQ(toString(EvenStepRule::kPublished), "published");
+  EXPECT_STREQ(toString(EvenStepRule::kThirdOrder), "third_order");
+  EXPECT_STREQ(toString(EvenStepRule::kExact), "exact");
+}
+
+/// How far to go in X for the radius to grow or shrink by `growth` of itself. [m]
+double advanceOfGrowth(const LogCurve& curve, double x, double growth) {
+  return growth * curve.u(x) / std::max(std::abs(curve.b()), 1e-9);
+}
+
+/// A curve of a random cutter, a place on it and a step that turns the path by no more than a few degrees.
+struct Place {
+  CutterGeometry cutter;
+  LogCurve curve;
+  ReferenceCurve reference;
+  double scale;
+  double x;
+
+  static Place draw() {
+    const CutterGeometry g = *test_support::cutterGeometry();
+    const double x = *uniform(-test_support::openLength(g, -1, 2e-3), g.flute_length);
+    return {g, curveOf(g), ReferenceCurve(g), *test_support::logUniform(0.1e-3, 10e-3), x};
+  }
+
+  /// A step over which the radius grows or shrinks by `growth` at most, up to 0.5 mm, of either sign.
+  double drawStep(double growth) const {
+    const double longest = std::min(0.5 * kMm, advanceOfGrowth(curve, x, growth));
+    const double u = curve.u(x);
+    const double slope = scale * curve.k() / u;
+    return *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-4 * longest, longest) *
+           std::sqrt(1 + slope * slope);
+  }
+
+  Real errorOfOdd(const CurvePoint& odd) const {
+    return reference.delta(x, Real(odd.x) - x) - (Real(odd.a) - curve.a(x));
+  }
+};
+
+void expectSame(const Place& place, EvenStepRule rule, double step) {
+  OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
+  const CurvePoint start = interpolator.position();
+  const OddEvenPair pair = interpolator.next(step);
+  const ReferencePair expected = test_support::referencePair(rule, place.reference, place.scale, place.x, step);
+  const Real x_tolerance = 1e-13 * std::abs(step) + 4 * kEps * std::abs(place.x);
+  RC_ASSERT(std::abs(Real(pair.odd.x) - place.x - expected.x1) <= x_tolerance);
+  RC_ASSERT(std::abs(Real(pair.even.x) - place.x - expected.x2) <= x_tolerance);
+  RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
+  RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, PublishedIsThePapersPrintedFormulas, ()) {
+  const Place place = Place::draw();
+  expectSame(place, EvenStepRule::kPublished, place.drawStep(0.1));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, ThirdOrderIsItsExpansion, ()) {
+  const Place place = Place::draw();
+  expectSame(place, EvenStepRule::kThirdOrder, place.drawStep(0.1));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, ExactIsTheCirclesIntersectionWithTheCurve, ()) {
+  const Place place = Place::draw();
+  expectSame(place, EvenStepRule::kExact, place.drawStep(0.1));
+}
+
+EvenStepRule drawRule() {
+  return *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, WholePathsFollowTheFormulasWithStepsThatChange, ()) {
+  const CutterGeometry g = *test_support::cutterGeometry();
+  const ReferenceCurve reference(g);
+  const double scale = *test_support::logUniform(0.1e-3, 10e-3);
+  const EvenStepRule rule = drawRule();
+  const LogCurve curve = curveOf(g);
+  OddEvenInterpolator interpolator(curve, scale, rule, 0);
+  CurvePoint start = interpolator.position();
+  const int pairs = *test_support::whole(10, 60);
+  for (int i = 0; i < pairs; ++i) {
+    const Real slope = scale * reference.slope(start.x);
+    const double longest = std::min(g.flute_length / pairs / 4, advanceOfGrowth(curve, start.x, 0.1));
+    const double step = longest * *uniform(0.2, 1) * static_cast<double>(std::sqrt(1 + slope * slope));
+    const OddEvenPair pair = interpolator.next(step);
+    const ReferencePair expected = test_support::referencePair(rule, reference, scale, start.x, step);
+    RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
+    RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
+    RC_ASSERT(pair.even.x == interpolator.position().x);
+    RC_ASSERT(pair.even.a == interpolator.position().a);
+    start = interpolator.position();
+  }
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, StartsOnTheCurve, ()) {
+  const Place place = Place::draw();
+  const OddEvenInterpolator interpolator(place.curve, place.scale, drawRule(), place.x);
+  RC_ASSERT(interpolator.position().x == place.x);
+  RC_ASSERT(std::abs(errorOf(place.reference, interpolator.position())) <=
+            8 * kEps * (1 + std::abs(interpolator.position().a)));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, BothStepsOfExactHaveTheGivenLength, ()) {
+  const Place place = Place::draw();
+  const double step = place.drawStep(0.1);
+  OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
+  const CurvePoint start = interpolator.position();
+  const OddEvenPair pair = interpolator.next(step);
+  const double rounding = 16 * kEps * (std::abs(start.x) + place.scale * (1 + std::abs(start.a)));
+  const double odd = std::hypot(pair.odd.x - start.x, place.scale * (pair.odd.a - start.a));
+  const double even = std::hypot(pair.even.x - pair.odd.x, place.scale * (pair.even.a - pair.odd.a));
+  RC_ASSERT(std::abs(odd - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
+  RC_ASSERT(std::abs(even - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, ExactEvenPointsAreOnTheCurve, ()) {
+  const Place place = Place::draw();
+  OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
+  const OddEvenPair pair = interpolator.next(place.drawStep(0.1));
+  RC_ASSERT(std::abs(errorOf(place.reference, pair.even)) <= 8 * kEps * (1 + std::abs(pair.even.a)));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, ACylinderIsFollowedWithoutError, ()) {
+  CutterGeometry g = *test_support::cutterGeometry();
+  g.cone_angle = 0;
+  const double step = *test_support::logUniform(1e-7, 1e-3);
+  OddEvenInterpolator interpolator(curveOf(g), kPaperScale, drawRule(), 0);
+  const double k = 2 * std::tan(g.spiral_angle) / g.end_diameter;
+  const double dx = step / std::sqrt(1 + k * k * kPaperScale * kPaperScale);
+  for (int i = 1; i <= 10; ++i) {
+    const OddEvenPair pair = interpolator.next(step);
+    for (const CurvePoint& p : {pair.odd, pair.even}) RC_ASSERT(std::abs(p.a - k * p.x) <= 1e-14 * std::abs(k * p.x));
+    RC_ASSERT(std::abs(pair.odd.x - (2 * i - 1) * dx) <= 1e-14 * i * dx);
+    RC_ASSERT(std::abs(pair.even.x - 2 * i * dx) <= 1e-14 * i * dx);
+  }
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, AStraightFluteNeedsNoTurn, ()) {
+  CutterGeometry g = *test_support::cutterGeometry();
+  g.spiral_angle = 0;
+  const double step = g.flute_length / 100;
+  OddEvenInterpolator interpolator(curveOf(g), kPaperScale, drawRule(), 0);
+  for (int i = 1; i <= 10; ++i) {
+    const OddEvenPair pair = interpolator.next(step);
+    RC_ASSERT(pair.odd.a == 0);
+    RC_ASSERT(pair.even.a == 0);
+    RC_ASSERT(std::abs(pair.even.x - 2 * i * step) <= 1e-14 * i * step);
+  }
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, StepLengthForAdvanceAdvancesByThat, ()) {
+  const Place place = Place::draw();
+  const EvenStepRule rule = drawRule();
+  const double longest = std::min(1 * kMm, 0.1 * place.curve.u(place.x) / std::max(std::abs(place.curve.b()), 1e-9));
+  const double dx = *rc::gen::element(-1.0, 1.0) * *test_support::logUniform(1e-6 * longest, longest);
+  OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
+  const OddEvenPair pair = interpolator.next(interpolator.stepLengthForAdvance(dx));
+  const Real advance = Real(pair.even.x) - place.x;
+  RC_ASSERT(std::abs(advance - dx) <= kEps * (16 * std::abs(dx) + 4 * std::abs(place.x)));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, NoAdvanceNeedsNoStep, ()) {
+  const Place place = Place::draw();
+  const OddEvenInterpolator interpolator(place.curve, place.scale, drawRule(), place.x);
+  RC_ASSERT(interpolator.stepLengthForAdvance(0) == 0);
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, LargestStepLengthUsesUpTheErrorAllowed, ()) {
+  const Place place = Place::draw();
+  RC_PRE(std::abs(place.curve.k() * place.curve.b()) > 1e-3);
+  const double allowed = *test_support::logUniform(1e-10, 1e-4);
+  const double step = OddEvenInterpolator::largestStepLength(place.curve, place.scale, place.x, allowed);
+  const Real u = place.reference.u(place.x);
+  const Real slope = place.scale * place.reference.slope(place.x);
+  const Real growth = std::abs(place.reference.b) * step / std::sqrt(1 + slope * slope) / u;
+  RC_PRE(growth < Real(0.2));
+  // The next order of ln(1 + z), z = growth, is 2/3 z of the leading one.
+  const Real margin = growth + Real(1e-6);
+  OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
+  const Real error = std::abs(place.errorOfOdd(interpolator.next(step).odd));
+  const Real rounding = 4 * kEps * (1 + std::abs(place.curve.a(place.x)));
+  RC_ASSERT(error <= allowed * (1 + margin) + rounding);
+  RC_ASSERT(error >= allowed * (1 - margin) - rounding);
+}
+
+TEST(OddEvenInterpolator, LargestStepLengthIsInfiniteWhereTheCurveIsStraight) {
+  EXPECT_TRUE(std::isinf(OddEvenInterpolator::largestStepLength(LogCurve(0, 100), kPaperScale, 0.01, 1e-6)));
+  EXPECT_TRUE(std::isinf(OddEvenInterpolator::largestStepLength(LogCurve(10, 0), kPaperScale, 0.01, 1e-6)));
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, NegativeStepsGoAsPositiveOnesDoOnTheMirroredCurve, ()) {
+  const Place place = Place::draw();
+  const EvenStepRule rule = drawRule();
+  const double step = std::abs(place.drawStep(0.05));
+  // Seen from x the other way round the curve is again a logarithmic one.
+  const double u = place.curve.u(place.x);
+  OddEvenInterpolator back(place.curve, place.scale, rule, place.x);
+  OddEvenInterpolator mirrored(LogCurve(-place.curve.b() / u, place.curve.k() / u), place.scale, rule, 0);
+  const double a = back.position().a;
+  for (int i = 0; i < 3; ++i) {
+    const OddEvenPair there = back.next(-step);
+    const OddEvenPair here = mirrored.next(step);
+    RC_ASSERT(std::abs(there.odd.x - place.x + here.odd.x) <= 1e-15);
+    RC_ASSERT(std::abs(there.odd.a - a + here.odd.a) <= 1e-11);
+    RC_ASSERT(std::abs(there.even.x - place.x + here.even.x) <= 1e-15);
+    RC_ASSERT(std::abs(there.even.a - a + here.even.a) <= 1e-11);
+  }
+}
+
+}  // namespace test_odd_even_interpolator
+}  // namespace flute_grinder

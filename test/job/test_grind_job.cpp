@@ -1,0 +1,506 @@
+#include "flute_grinder/job/grind_job.h"
+
+#include "motion/generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_grind_job {
+
+using test_support::paperJob;
+
+constexpr double kPi = 3.141592653589793238462643383279502884;
+constexpr double kDeg = kPi / 180;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+/// A number of a job, by its names and its range in shop units.
+struct Field {
+  const char* path;
+  const char* file_key;
+  double scale;  ///< SI over shop
+  const char* si_unit;
+  const char* shop_unit;
+  double min, max;  ///< in shop units
+  const char* shop_range;
+  double& (*at)(GrindJob&);
+};
+
+std::ostream& operator<<(std::ostream& out, const Field& field) { return out << field.path; }
+
+const Field kFields[]{
+    {"cutter.end_diameter", "cutter.end_diameter_mm", 1e-3, "m", "mm", 0.1, 100, "0.1 to 100 mm",
+     [](GrindJob& j) -> double& { return j.cutter.end_diameter; }},
+    {"cutter.cone_angle", "cutter.cone_angle_deg", kDeg, "rad", "deg", -3, 30, "-3 to 30 deg",
+     [](GrindJob& j) -> double& { return j.cutter.cone_angle; }},
+    {"cutter.spiral_angle", "cutter.spiral_angle_deg", kDeg, "rad", "deg", -60, 60, "-60 to 60 deg",
+     [](GrindJob& j) -> double& { return j.cutter.spiral_angle; }},
+    {"cutter.rake_angle", "cutter.rake_angle_deg", kDeg, "rad", "deg", -45, 45, "-45 to 45 deg",
+     [](GrindJob& j) -> double& { return j.cutter.rake_angle; }},
+    {"cutter.flute_length", "cutter.flute_length_mm", 1e-3, "m", "mm", 0.1, 500, "0.1 to 500 mm",
+     [](GrindJob& j) -> double& { return j.cutter.flute_length; }},
+    {"process.feed", "process.feed_mm_min", 1e-3 / 60, "m/s", "mm/min", 0.1, 10000, "0.1 to 10000 mm/min",
+     [](GrindJob& j) -> double& { return j.process.feed; }},
+    {"process.depth", "process.depth_mm", 1e-3, "m", "mm", 0.001, 50, "0.001 to 50 mm",
+     [](GrindJob& j) -> double& { return j.process.depth; }},
+    {"process.infeed", "process.infeed_mm", 1e-3, "m", "mm", 0.0001, 50, "0.0001 to 50 mm",
+     [](GrindJob& j) -> double& { return j.process.infeed; }},
+    {"process.finish_infeed", "process.finish_infeed_mm", 1e-3, "m", "mm", 0, 10, "0 to 10 mm",
+     [](GrindJob& j) -> double& { return j.process.finish_infeed; }},
+    {"process.clearance", "process.clearance_mm", 1e-3, "m", "mm", 0.1, 100, "0.1 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.clearance; }},
+    {"process.overtravel_end", "process.overtravel_mm[0]", 1e-3, "m", "mm", 0, 100, "0 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.overtravel_end; }},
+    {"process.overtravel_shank", "process.overtravel_mm[1]", 1e-3, "m", "mm", 0, 100, "0 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.overtravel_shank; }},
+    {"process.wheel_diameter", "process.wheel.diameter_mm", 1e-3, "m", "mm", 1, 500, "1 to 500 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_diameter; }},
+    {"process.wheel_width", "process.wheel.width_mm", 1e-3, "m", "mm", 0.1, 100, "0.1 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_width; }},
+    {"process.wheel_wear", "process.wheel.wear_mm", 1e-3, "m", "mm", 0, 100, "0 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_wear; }},
+    {"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", 1e-3, "m", "mm", 0, 1, "0 to 1 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_wear_per_pass; }},
+    {"cutter.rake_tolerance", "cutter.rake_tolerance_deg", kDeg, "rad", "deg", 0.001, 180, "0.001 to 180 deg",
+     [](GrindJob& j) -> double& { return j.cutter.rake_tolerance; }},
+    {"cutter.shank_diameter", "cutter.shank_diameter_mm", 1e-3, "m", "mm", 0.1, 100, "0.1 to 100 mm",
+     [](GrindJob& j) -> double& { return j.cutter.shank_diameter; }},
+    {"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", 1e-3, "m", "mm", 0, 50, "0 to 50 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_corner_radius_lower; }},
+    {"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", 1e-3, "m", "mm", 0, 50, "0 to 50 mm",
+     [](GrindJob& j) -> double& { return j.process.wheel_corner_radius_upper; }},
+    {"process.setup_swivel", "process.setup.swivel_deg", kDeg, "rad", "deg", -80, 80, "-80 to 80 deg",
+     [](GrindJob& j) -> double& { return j.process.setup_swivel; }},
+    {"process.setup_height", "process.setup.height_mm", 1e-3, "m", "mm", -100, 100, "-100 to 100 mm",
+     [](GrindJob& j) -> double& { return j.process.setup_height; }},
+    {"process.depth_end", "process.depth_end_mm", 1e-3, "m", "mm", 0, 50, "0 to 50 mm",
+     [](GrindJob& j) -> double& { return j.process.depth_end; }},
+    {"process.wheel_angle", "process.wheel.angle_deg", kDeg, "rad", "deg", 0, 80, "0 to 80 deg",
+     [](GrindJob& j) -> double& { return j.process.wheel_angle; }},
+    {"interpolation.tolerance", "interpolation.tolerance_um", 1e-6, "m", "um", 1e-9, 1000, "1e-09 to 1000 um",
+     [](GrindJob& j) -> double& { return j.interpolation.tolerance; }},
+    {"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", 1e-3, "m/rad", "mm/rad", 1e-3, 1000,
+     "0.001 to 1000 mm/rad", [](GrindJob& j) -> double& { return j.interpolation.rotary_scale; }},
+};
+
+/// A cutter that takes every single figure at the ends of its range without contradicting the others.
+GrindJob roomyJob() {
+  GrindJob j = paperJob();
+  j.cutter.end_diameter = 100e-3;
+  j.cutter.cone_angle = 0;
+  j.cutter.flute_length = 5e-3;
+  j.process.depth = 20e-3;
+  j.process.infeed = 20e-3;
+  j.process.wheel_diameter = 300e-3;
+  return j;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A reason taken apart: "field = value; allowed: ...".
+struct Refusal {
+  std::string field, value, allowed;
+  std::string text() const { return field + " = " + value + "; allowed: " + allowed; }
+};
+
+std::vector<Refusal> refusals(const GrindJob& job, UnitSystem units = UnitSystem::kSi) {
+  std::vector<Refusal> all;
+  for (const core::Reason& reason : validate(job)) {
+    const std::string text = core::text(reason, units);
+    const std::string is = " = ", allowed = "; allowed: ";
+    const std::size_t value = text.find(is) + is.size();
+    const std::size_t semicolon = text.find(allowed);
+    all.push_back({text.substr(0, value - is.size()), text.substr(value, semicolon - value),
+                   text.substr(semicolon + allowed.size())});
+  }
+  return all;
+}
+
+class GrindJobField : public ::testing::TestWithParam<Field> {
+ protected:
+  std::vector<double> badValues() const {  // in shop units
+    const Field& f = GetParam();
+    const double span = f.max - f.min;
+    std::vector<double> bad{
+        kNan,      kInf, -kInf, f.min - span, f.min - 1e-6 * std::max(std::abs(f.min), 1e-3), f.max * 1.000001,
+        f.max * 2, 1e300};
+    if (f.min >= 0) bad.insert(bad.end(), {-1e-9, -f.max});
+    if (f.min > 0) bad.insert(bad.end(), {0, -0.0});
+    return bad;
+  }
+};
+
+TEST_P(GrindJobField, BadValuesAreToldInSi) {
+  const Field& f = GetParam();
+  for (const double bad : badValues()) {
+    SCOPED_TRACE(bad);
+    GrindJob job = roomyJob();
+    f.at(job) = bad * f.scale;
+    const auto errors = refusals(job, UnitSystem::kSi);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].field, f.path);
+    EXPECT_TRUE(contains(errors[0].value, std::string(" ") + f.si_unit)) << errors[0].value;
+    EXPECT_TRUE(contains(errors[0].allowed, " to ")) << errors[0].allowed;
+    EXPECT_TRUE(contains(errors[0].allowed, std::string(" ") + f.si_unit)) << errors[0].allowed;
+    EXPECT_EQ(text(validate(job), UnitSystem::kSi), errors[0].text());
+  }
+}
+
+TEST_P(GrindJobField, BadValuesAreToldInShopUnits) {
+  const Field& f = GetParam();
+  for (const double bad : badValues()) {
+    SCOPED_TRACE(bad);
+    GrindJob job = roomyJob();
+    f.at(job) = bad * f.scale;
+    const auto errors = refusals(job, UnitSystem::kShop);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].field, f.file_key);
+    EXPECT_EQ(errors[0].allowed, f.shop_range);
+    EXPECT_TRUE(contains(errors[0].value, std::string(" ") + f.shop_unit)) << errors[0].value;
+    if (!std::isfinite(bad)) continue;
+    EXPECT_NEAR(std::stod(errors[0].value), bad, 1e-9 * std::abs(bad));
+  }
+}
+
+TEST_P(GrindJobField, TheSiRangeIsThatOfTheShop) {
+  const Field& f = GetParam();
+  GrindJob job = roomyJob();
+  f.at(job) = kNan;
+  const auto errors = refusals(job, UnitSystem::kSi);
+  ASSERT_EQ(errors.size(), 1u);
+  const std::string& allowed = errors[0].allowed;
+  const auto to = allowed.find(" to ");
+  ASSERT_NE(to, std::string::npos);
+  EXPECT_NEAR(std::stod(allowed), f.min * f.scale, 1e-9 * std::abs(f.min * f.scale));
+  EXPECT_NEAR(std::stod(allowed.substr(to + 4)), f.max * f.scale, 1e-9 * f.max * f.scale);
+}
+
+TEST_P(GrindJobField, TheEndsOfTheRangeAreAllowed) {
+  const Field& f = GetParam();
+  for (const double shop : {f.min, f.max}) {
+    SCOPED_TRACE(shop);
+    GrindJob job = roomyJob();
+    f.at(job) = shop * f.scale;
+    // Figures that contradict one another at such an end are no matter of the range.
+    const std::string range = f.shop_range;
+    for (const Refusal& error : refusals(job, UnitSystem::kShop)) EXPECT_NE(error.allowed, range) << error.text();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, GrindJobField, ::testing::ValuesIn(kFields), [](const auto& info) {
+  std::string name = info.param.path;
+  for (char& c : name) c = c == '.' ? '_' : c;
+  return name;
+});
+
+TEST(GrindJob, ThePapersJobIsGood) { EXPECT_TRUE(validate(paperJob()).empty()); }
+
+TEST(GrindJob, TakesTheEndsOfAnglesHoweverTheyWereComputed) {
+  for (const double spiral : {60 * kPi / 180, 60 * kDeg, kPi / 3, -60 * kPi / 180, -60 * kDeg, -kPi / 3}) {
+    GrindJob job = paperJob();
+    job.cutter.spiral_angle = spiral;
+    EXPECT_TRUE(validate(job).empty()) << spiral;
+  }
+  for (const double cone : {30 * kPi / 180, 30 * kDeg, kPi / 6}) {
+    GrindJob job = paperJob();
+    job.cutter.cone_angle = cone;
+    EXPECT_TRUE(validate(job).empty()) << cone;
+  }
+}
+
+TEST(GrindJob, TellsEveryBadFigure) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = kNan;
+  job.process.feed = 0;
+  job.process.spark_out = -1;
+  EXPECT_EQ(validate(job).size(), 3u);
+}
+
+/// A contradiction between the figures of a job, and the field its one error names.
+struct Contradiction {
+  const char* name;
+  std::function<void(GrindJob&)> change;
+  const char* field;
+  const char* file_key;
+  const char* value;    ///< as in SI
+  const char* allowed;  ///< a part of it
+};
+
+std::ostream& operator<<(std::ostream& out, const Contradiction& c) { return out << c.name; }
+
+class GrindJobContradiction : public ::testing::TestWithParam<Contradiction> {};
+
+TEST_P(GrindJobContradiction, IsToldOnceWithFieldValueAndAllowed) {
+  const Contradiction& c = GetParam();
+  GrindJob job = paperJob();
+  c.change(job);
+  const auto errors = refusals(job);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].field, c.field);
+  EXPECT_EQ(errors[0].value, c.value);
+  EXPECT_TRUE(contains(errors[0].allowed, c.allowed)) << errors[0].allowed;
+}
+
+TEST_P(GrindJobContradiction, IsToldByTheFilesKey) {
+  const Contradiction& c = GetParam();
+  GrindJob job = paperJob();
+  c.change(job);
+  const auto errors = refusals(job, UnitSystem::kShop);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].field, c.file_key);
+}
+
+// A back taper of 3 deg loses 0.0524 mm of radius per mm: D1 2 mm closes at X = 19.08 mm.
+void backTaper(GrindJob& j, double length, double shank) {
+  j.cutter.end_diameter = 2e-3;
+  j.cutter.cone_angle = -3 * kDeg;
+  j.cutter.flute_length = length;
+  j.process.overtravel_shank = shank;
+  j.process.depth = j.process.infeed = 0.01e-3;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, GrindJobContradiction,
+    ::testing::Values(
+        Contradiction{"ConeClosesInShankOvertravel", [](GrindJob& j) { backTaper(j, 18e-3, 2e-3); },
+                      "process.overtravel_shank", "process.overtravel_mm[1]", "0.002 m", "less than 0.00108"},
+        // 10 mm at 5 deg closes at X = -57.15 mm.
+        Contradiction{"ConeClosesInEndOvertravel", [](GrindJob& j) { j.process.overtravel_end = 58e-3; },
+                      "process.overtravel_end", "process.overtravel_mm[0]", "0.058 m", "less than 0.05715"},
+        Contradiction{"DepthIsTheRadius", [](GrindJob& j) { j.process.depth = 5e-3; }, "process.depth",
+                      "process.depth_mm", "0.005 m", "less than 0.005 m"},
+        Contradiction{"DepthAboveTheThinEndsRadius",
+                      [](GrindJob& j) {
+                        backTaper(j, 10e-3, 0);
+                        j.process.depth = 0.5e-3;
+                      },
+                      "process.depth", "process.depth_mm", "0.0005 m", "less than 0.000475"},
+        Contradiction{"FinishAboveDepth", [](GrindJob& j) { j.process.finish_infeed = 0.6e-3; },
+                      "process.finish_infeed", "process.finish_infeed_mm", "0.0006 m", "up to the depth, 0.0005 m"},
+        Contradiction{"WearIsTheWheelsRadius", [](GrindJob& j) { j.process.wheel_wear = 50e-3; }, "process.wheel_wear",
+                      "process.wheel.wear_mm", "0.05 m", "less than 0.05 m"},
+        // Of 50 mm half a millimetre is left, for two teeth in two passes each.
+        Contradiction{"WearPerPassTakesAllOfTheWheel",
+                      [](GrindJob& j) {
+                        j.tooth_angles = {0, 3};
+                        j.process.spark_out = 1;
+                        j.process.wheel_wear = 49.5e-3;
+                        j.process.wheel_wear_per_pass = 0.125e-3 * (1 + 1e-6);
+                      },
+                      "process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", "0.000125000125 m",
+                      "less than 0.000125 m"},
+        Contradiction{"TooManyPasses",
+                      [](GrindJob& j) {
+                        j.process.depth = 4e-3;
+                        j.process.infeed = 0.1e-6;
+                      },
+                      "process.infeed", "process.infeed_mm", "1e-07 m", "10000 passes"},
+        Contradiction{"TooManyPassesOfAllTeeth",  // 64 times 313 are 20,032
+                      [](GrindJob& j) {
+                        j.tooth_angles.clear();
+                        for (int i = 0; i < 64; ++i) j.tooth_angles.push_back(i * 0.09);
+                        j.process.infeed = j.process.depth / 311;
+                      },
+                      "process.infeed", "process.infeed_mm", "1.607717042e-06 m",
+                      "312 passes per tooth, 20000 of all teeth"},
+        Contradiction{"NoTeeth", [](GrindJob& j) { j.tooth_angles.clear(); }, "cutter.teeth", "cutter.teeth", "0",
+                      "1 to 64"},
+        Contradiction{"TooManySparkOutPasses", [](GrindJob& j) { j.process.spark_out = 101; }, "process.spark_out",
+                      "process.spark_out", "101", "0 to 100"},
+        Contradiction{"NegativeSparkOut", [](GrindJob& j) { j.process.spark_out = -1; }, "process.spark_out",
+                      "process.spark_out", "-1", "0 to 100"},
+        Contradiction{"OrderOutOfRange", [](GrindJob& j) { j.process.order = static_cast<GrindOrder>(2); },
+                      "process.order", "process.order", "2", "0 to 1"},
+        Contradiction{"NegativeOrder", [](GrindJob& j) { j.process.order = static_cast<GrindOrder>(-1); },
+                      "process.order", "process.order", "-1", "0 to 1"},
+        Contradiction{"DirectionOutOfRange", [](GrindJob& j) { j.process.direction = static_cast<StrokeDirection>(2); },
+                      "process.direction", "process.direction", "2", "0 to 1"},
+        Contradiction{"RuleOutOfRange", [](GrindJob& j) { j.interpolation.even_step = static_cast<EvenStepRule>(3); },
+                      "interpolation.even_step", "interpolation.even_step", "3", "0 to 2"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(GrindJob, NamesTheFluteLengthWhereTheConeClosesBeforeItsEnd) {
+  GrindJob job = paperJob();
+  backTaper(job, 25e-3, 0);
+  const auto errors = refusals(job);
+  ASSERT_FALSE(errors.empty());
+  EXPECT_EQ(errors[0].field, "cutter.flute_length");
+  EXPECT_EQ(errors[0].value, "0.025 m");
+  EXPECT_TRUE(contains(errors[0].allowed, "less than 0.01908")) << errors[0].allowed;
+  EXPECT_TRUE(contains(errors[0].allowed, "cone closes"));
+}
+
+TEST(GrindJob, TakesAsMuchAsTheConeAllows) {
+  GrindJob job = paperJob();
+  job.process.overtravel_end = 57e-3;
+  EXPECT_TRUE(validate(job).empty());
+  backTaper(job, 18e-3, 1e-3);
+  job.process.overtravel_end = 100e-3;
+  EXPECT_TRUE(validate(job).empty());
+}
+
+TEST(GrindJob, TakesAsMuchWearAsTheWheelHas) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 3};
+  job.process.spark_out = 1;
+  job.process.wheel_wear = 49.5e-3;
+  job.process.wheel_wear_per_pass = 0.125e-3 * (1 - 1e-6);
+  EXPECT_TRUE(validate(job).empty());
+}
+
+TEST(GrindJob, RefusesTooManyTeeth) {
+  GrindJob job = paperJob();
+  job.tooth_angles.clear();
+  for (int i = 0; i < 65; ++i) job.tooth_angles.push_back(i * 0.09);
+  const auto errors = refusals(job);
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].field, "cutter.teeth");
+  EXPECT_EQ(errors[0].value, "65");
+  job.tooth_angles.pop_back();
+  EXPECT_TRUE(validate(job).empty());
+}
+
+TEST(GrindJob, RefusesTeethOutOfOrder) {
+  const struct {
+    const char* name;
+    std::vector<double> angles;
+    const char* value;
+  } rows[]{{"first not at 0", {0.1, 1}, "0.1 rad"},
+           {"first below 0", {-0.1, 1}, "-0.1 rad"},
+           {"descending", {0, 2, 1.5}, "1.5 rad"},
+           {"twice the same", {0, 2, 2}, "2 rad"},
+           {"a full turn", {0, 2 * kPi}, "6.283185307 rad"},
+           {"beyond a turn", {0, 7}, "7 rad"},
+           {"not a number", {0, kNan}, "nan rad"},
+           {"first not a number", {kNan}, "nan rad"},
+           {"infinite", {0, kInf}, "inf rad"},
+           {"zero again", {0, 0}, "0 rad"}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.name);
+    GrindJob job = paperJob();
+    job.tooth_angles = row.angles;
+    const auto errors = refusals(job);
+    ASSERT_EQ(errors.size(), 1u);
+    EXPECT_EQ(errors[0].field, "cutter.tooth_angles");
+    EXPECT_EQ(errors[0].value, row.value);
+    EXPECT_EQ(errors[0].allowed, "0 first, then ascending, below 6.283185307 rad");
+    const auto shop = refusals(job, UnitSystem::kShop);
+    ASSERT_EQ(shop.size(), 1u);
+    EXPECT_EQ(shop[0].field, "cutter.tooth_angles_deg");
+    EXPECT_TRUE(contains(shop[0].value, " deg"));
+    EXPECT_EQ(shop[0].allowed, "0 first, then ascending, below 360 deg");
+  }
+}
+
+TEST(GrindJob, TakesUnequalTeeth) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 88 * kDeg, 180 * kDeg, 268 * kDeg, 359.999 * kDeg};
+  EXPECT_TRUE(validate(job).empty());
+}
+
+TEST(GrindJob, NamesItsChoicesAsJobFilesDo) {
+  EXPECT_STREQ(toString(GrindOrder::kToothMajor), "tooth_major");
+  EXPECT_STREQ(toString(GrindOrder::kPassMajor), "pass_major");
+  EXPECT_STREQ(toString(StrokeDirection::kFromEnd), "from_end");
+  EXPECT_STREQ(toString(StrokeDirection::kToEnd), "to_end");
+}
+
+/// Depths in mm by hand.
+struct Passes {
+  const char* name;
+  double depth, infeed, finish;
+  int spark_out;
+  std::vector<double> expected;
+};
+
+class PassDepths : public ::testing::TestWithParam<Passes> {};
+
+TEST_P(PassDepths, AreThoseByHand) {
+  const Passes& row = GetParam();
+  GrindProcess process;
+  process.depth = row.depth * 1e-3;
+  process.infeed = row.infeed * 1e-3;
+  process.finish_infeed = row.finish * 1e-3;
+  process.spark_out = row.spark_out;
+  const auto depths = passDepths(process);
+  ASSERT_EQ(depths.size(), row.expected.size());
+  for (std::size_t i = 0; i < depths.size(); ++i) EXPECT_NEAR(depths[i], row.expected[i] * 1e-3, 1e-15);
+}
+
+INSTANTIATE_TEST_SUITE_P(ByHand, PassDepths,
+                         ::testing::Values(Passes{"OnePass", 0.5, 0.5, 0, 0, {0.5}},
+                                           Passes{"InfeedAboveDepth", 0.5, 2, 0, 0, {0.5}},
+                                           Passes{"EvenSteps", 1.5, 0.5, 0, 0, {0.5, 1, 1.5}},
+                                           Passes{"SmallerLast", 1.2, 0.5, 0, 0, {0.5, 1, 1.2}},
+                                           Passes{"RoundingMakesNoPass", 0.3, 0.1, 0, 0, {0.1, 0.2, 0.3}},
+                                           Passes{"Finish", 1.5, 0.5, 0.05, 0, {0.5, 1, 1.45, 1.5}},
+                                           Passes{"FinishTakesItAll", 0.05, 0.5, 0.05, 0, {0.05}},
+                                           Passes{"SparkOut", 1, 0.5, 0, 2, {0.5, 1, 1, 1}},
+                                           Passes{"FinishAndSparkOut", 1.5, 0.5, 0.05, 1, {0.5, 1, 1.45, 1.5, 1.5}},
+                                           Passes{"FinishLargerThanInfeed", 1, 0.25, 0.5, 0, {0.25, 0.5, 1}}),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+/// The passes as "tooth/pass".
+std::vector<std::string> orderOf(const GrindJob& job) {
+  std::vector<std::string> order;
+  for (const ToothPass& p : passOrder(job)) order.push_back(std::to_string(p.tooth) + "/" + std::to_string(p.pass));
+  return order;
+}
+
+TEST(PassOrder, IsThatOfTeethOrOfPasses) {
+  GrindJob job = paperJob();
+  EXPECT_EQ(orderOf(job), std::vector<std::string>{"0/0"});
+  job.tooth_angles = {0, 1, 3};
+  job.process.spark_out = 1;
+  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "0/1", "1/0", "1/1", "2/0", "2/1"}));
+  job.process.order = GrindOrder::kPassMajor;
+  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
+}
+
+// The wheel may reach deeper than its depth, so that a set-up for a core of 3.9 mm may leave a depth of 1.058 mm.
+TEST(AskedDepth, IsThatOfTheCoreWhereOneIsAsked) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = 6e-3;
+  job.cutter.flute_length = 20e-3;
+  job.process.depth = 1.058e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.058e-3);
+  job.cutter.core_diameter = 3.9e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
+  job.process.depth_end = 1.558e-3;
+  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
+  EXPECT_DOUBLE_EQ(askedDepth(job, 10e-3), 1.3e-3);
+  EXPECT_DOUBLE_EQ(askedDepth(job, 20e-3), 1.55e-3);
+}
+
+RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
+  GrindProcess p;
+  p.depth = *test_support::logUniform(0.01e-3, 10e-3);
+  p.infeed = p.depth * *test_support::logUniform(0.003, 2);
+  p.finish_infeed = *rc::gen::arbitrary<bool>() ? p.depth * *test_support::uniform(0, 1) : 0;
+  p.spark_out = *test_support::whole(0, 5);
+  const auto depths = passDepths(p);
+  RC_ASSERT(!depths.empty());
+  RC_ASSERT(depths.back() == p.depth);
+  double before = 0;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const double step = depths[i] - before;
+    if (i + static_cast<std::size_t>(p.spark_out) >= depths.size()) {
+      RC_ASSERT(step == 0);
+    } else {
+      RC_ASSERT(step > 0);
+      RC_ASSERT(step <= std::max(p.infeed, p.finish_infeed) * (1 + 1e-8));
+    }
+    before = depths[i];
+  }
+}
+
+}  // namespace test_grind_job
+}  // namespace flute_grinder

@@ -1,0 +1,361 @@
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/motion/job_plan.h"
+
+#include "motion/generators.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// @file
+/// Whatever a job holds, the answer is a plan that keeps all limits, or a refusal with its reasons.
+
+namespace flute_grinder {
+namespace test_job_fuzz {
+
+using test_support::paperJob;
+using test_support::plainMachine;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kHuge = std::numeric_limits<double>::max();
+constexpr double kTiny = std::numeric_limits<double>::denorm_min();
+
+class Dice {
+ public:
+  explicit Dice(unsigned seed) : engine_(seed) {}
+
+  bool once(int in) { return below(in) == 0; }
+  int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
+  double within(double low, double high) { return std::uniform_real_distribution<>(low, high)(engine_); }
+  double scaled(double low, double high) { return low * std::pow(high / low, within(0, 1)); }
+  template <typename T>
+  T of(std::initializer_list<T> values) {
+    return *(values.begin() + below(static_cast<int>(values.size())));
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// What a field may hold at the worst: no numbers, ends of all ranges and what is next to them.
+std::vector<double> hostileValues(double min, double max) {
+  std::vector<double> values{kNaN, kInf, -kInf, kHuge, -kHuge, kTiny, -kTiny, 0.0, -0.0, -1, min, max, (min + max) / 2};
+  for (const double end : {min, max}) {
+    values.push_back(std::nextafter(end, kInf));
+    values.push_back(std::nextafter(end, -kInf));
+    values.push_back(-end);
+    values.push_back(end * (1 + 1e-9));
+    values.push_back(end * (1 - 1e-9));
+  }
+  return values;
+}
+
+/// Any value of a range, often near its lower end.
+double anyWithin(Dice& dice, double min, double max) {
+  if (min > 0 && dice.once(2)) return dice.scaled(min, max);
+  if (dice.once(3)) return min + (max - min) * dice.scaled(1e-15, 1);
+  return dice.within(min, max);
+}
+
+double hostileOrAny(Dice& dice, double min, double max) {
+  if (!dice.once(3)) return anyWithin(dice, min, max);
+  const std::vector<double> values = hostileValues(min, max);
+  return values[static_cast<std::size_t>(dice.below(static_cast<int>(values.size())))];
+}
+
+std::vector<double> anyTeeth(Dice& dice) {
+  switch (dice.below(12)) {
+    case 0: return {};
+    case 1: return {0, kNaN, 1};
+    case 2: return {kNaN};
+    case 3: return {0, 2, 1};
+    case 4: return {0, 1, 1};
+    case 5: return {0, 2 * units::kPi};
+    case 6: return {0, std::nextafter(2 * units::kPi, 0)};
+    case 7: return {-0.0, kTiny};
+    case 8: return std::vector<double>(100000, 0.5);
+    case 9: {
+      std::vector<double> teeth;
+      for (int i = 0; i < kMaxTeeth + dice.below(2); ++i) teeth.push_back(i * 0.09);
+      return teeth;
+    }
+    default: return {0, dice.within(0, 7)};
+  }
+}
+
+/// Choices, counts and teeth that are out of range now and then.
+void spoilChoices(Dice& dice, GrindJob& job) {
+  const auto whole = [&] { return dice.of({-1, 0, 1, 2, 3, 255, std::numeric_limits<int>::min()}); };
+  if (dice.once(8))
+    job.process.spark_out = dice.of({-1, kMaxSparkOut, kMaxSparkOut + 1, std::numeric_limits<int>::max()});
+  if (dice.once(8)) job.process.order = static_cast<GrindOrder>(whole());
+  if (dice.once(8)) job.process.direction = static_cast<StrokeDirection>(whole());
+  if (dice.once(16)) job.process.z_law = static_cast<ZLaw>(whole());
+  if (dice.once(16)) job.z_corrections.resize(static_cast<std::size_t>(dice.below(3)));
+  if (dice.once(4)) job.interpolation.even_step = static_cast<EvenStepRule>(whole());
+  if (dice.once(16)) job.cutter.cut = static_cast<CutDirection>(whole());
+  if (dice.once(16)) job.process.wheel_profile = static_cast<WheelShape>(whole());
+  if (dice.once(16)) job.wheel_points = {{-4e-3, 50e-3}, {dice.within(-5e-3, 5e-3), 50e-3}};
+  if (dice.once(16)) job.spiral_angles = {job.cutter.spiral_angle, dice.within(-2, 2)};
+  if (dice.once(8)) job.tooth_angles = anyTeeth(dice);
+}
+
+/// A number of a job, and its range in SI.
+struct Number {
+  double& (*of)(GrindJob&);
+  double min, max;
+};
+
+std::vector<Number> numbers() {
+  std::vector<Number> all;
+  visitJobFields([&](const JobField& f, auto of) { all.push_back({of, f.low().si, f.high().si}); });
+  return all;
+}
+
+/// A job with one or some of its numbers spoiled.
+GrindJob spoiledJob(Dice& dice) {
+  GrindJob job = paperJob();
+  const std::vector<Number> all = numbers();
+  for (int i = 0; i <= dice.below(4); ++i) {
+    const Number& n = all[static_cast<std::size_t>(dice.below(static_cast<int>(all.size())))];
+    n.of(job) = hostileOrAny(dice, n.min, n.max);
+  }
+  spoilChoices(dice, job);
+  return job;
+}
+
+/// A job of which every number is within its range, and which is allowed more often than not: small, and drawn to where
+/// cones close.
+GrindJob allowedJob(Dice& dice) {
+  GrindJob job = paperJob();
+  for (const Number& n : numbers()) n.of(job) = anyWithin(dice, n.min, n.max);
+  CutterGeometry& g = job.cutter;
+  GrindProcess& p = job.process;
+  g.end_diameter = dice.scaled(0.1e-3, 10e-3);
+  if (dice.once(2)) g.spiral_angle *= dice.scaled(1e-12, 1);
+  if (dice.once(2)) g.cone_angle *= dice.scaled(1e-12, 1);
+  const double apex = -g.end_diameter / 2 / std::tan(g.cone_angle);
+  const double close = 1 - dice.scaled(1e-15, 1);
+  g.core_diameter = dice.once(2) ? g.end_diameter * dice.within(0, 0.99) : 0;
+  g.flute_length = dice.scaled(0.1e-3, 3e-3);
+  p.overtravel_shank = dice.within(0, 1e-3);
+  p.overtravel_end = dice.within(0, 1e-3);
+  if (apex < 0) p.overtravel_end = std::min(-apex * close, 5e-3);
+  if (apex > 0) p.overtravel_shank = std::max(0.0, std::min(apex * close - g.flute_length, 5e-3));
+  p.depth = dice.scaled(1e-6, g.end_diameter / 4);
+  p.infeed = dice.once(4) ? p.depth / dice.below(4) : p.depth;
+  p.finish_infeed = dice.once(3) ? p.depth * dice.within(0, 1) : 0;
+  p.clearance = dice.scaled(0.1e-3, 2e-3);
+  p.depth_end = dice.once(3) ? p.depth * dice.within(0.1, 2) : 0;
+  p.wheel_angle = p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
+  p.wheel_diameter = 0.1;
+  p.wheel_wear = 0;
+  p.wheel_wear_per_pass = dice.once(3) ? dice.scaled(1e-9, 1e-6) : 0;
+  // A second or so for each tooth and pass, more often than not.
+  const double way = p.clearance + (g.flute_length + p.overtravel_end + p.overtravel_shank) / std::cos(g.spiral_angle);
+  p.feed =
+      dice.once(10) ? dice.scaled(kMinFeed, 10.0 / 60) : std::clamp(way / dice.within(0.1, 2), kMinFeed, 10.0 / 60);
+  job.interpolation.even_step = dice.of({EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact});
+  p.direction = dice.of({StrokeDirection::kFromEnd, StrokeDirection::kToEnd});
+  if (dice.once(4)) job.tooth_angles = {0, dice.within(0.1, 6)};
+  if (job.tooth_angles.size() == 2 && dice.once(2)) job.spiral_angles = {g.spiral_angle, dice.within(-1, 1)};
+  return job;
+}
+
+/// A machine that may have any limits, the impossible included; jobs of a second at the most.
+Machine anyMachine(Dice& dice) {
+  Machine m = plainMachine();
+  if (dice.once(3)) {
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      for (Axes* limit : {&m.limits.max_velocity, &m.limits.max_acceleration, &m.limits.max_jerk}) {
+        if (dice.once(3)) (*limit)[axis] = hostileOrAny(dice, kMinFigure, kMaxFigure);
+      }
+    }
+  } else if (dice.once(2)) {
+    m.limits.max_velocity *= 50;
+    m.limits.max_acceleration *= 1000;
+    m.limits.max_jerk *= 100000;
+  }
+  const int axis = dice.below(kAxisCount);
+  if (dice.once(10)) m.limits.min_position[axis] = hostileOrAny(dice, -kMaxFigure, kMaxFigure);
+  if (dice.once(10)) m.limits.max_position[axis] = hostileOrAny(dice, -kMaxFigure, kMaxFigure);
+  if (dice.once(10)) m.park[axis] = hostileOrAny(dice, -kMaxFigure, kMaxFigure);
+  m.period = dice.once(10) ? hostileOrAny(dice, 50e-6, 0.1) : 1 / dice.within(200, 1000);
+  m.max_job_duration = dice.once(40) ? dice.of({kNaN, kInf, -kInf, 0.0, -1.0, kTiny}) : 2.5;
+  return m;
+}
+
+struct Case {
+  GrindJob job;
+  Machine machine;
+  Axes start;
+  ToothPass first;
+
+  JobPlan plan(const std::function<void(const Setpoint&)>& visit = {}) const {
+    return planJob(job, machine, start, first, visit);
+  }
+};
+
+Case anyCase(Dice& dice, const GrindJob& job) {
+  Case c{job, anyMachine(dice), Axes::Zero(), {}};
+  c.start = c.machine.park;
+  if (dice.once(10)) c.start[dice.below(kAxisCount)] = hostileOrAny(dice, -kMaxFigure, kMaxFigure);
+  const auto whole = [&] {
+    return dice.of({-1, 0, 1, 64, std::numeric_limits<int>::min(), std::numeric_limits<int>::max()});
+  };
+  if (dice.once(10)) c.first = {whole(), whole()};
+  return c;
+}
+
+std::string textOf(const Case& c) {
+  std::ostringstream text;
+  text << c.job << "; " << c.machine << "; start " << c.start.transpose() << "; first " << c.first.tooth << " "
+       << c.first.pass;
+  return text.str();
+}
+
+/// Whether a reason names something, and says something of it. That a setpoint is not a number is the last resort,
+/// which nothing comes to.
+bool sane(const std::string& reason) {
+  const auto has = [&](const char* part) { return reason.find(part) != std::string::npos; };
+  return reason.size() > 10 && reason.size() < 1000 && has(" ") && !has("not a finite number");
+}
+
+/// Plans a case and looks at every setpoint by itself.
+/// @return whether it is a good plan.
+bool planAndJudge(const Case& c) {
+  bool finite = true;
+  bool in_range = true;
+  std::uint64_t count = 0;
+  const AxisLimits& l = c.machine.limits;
+  const JobPlan plan = c.plan([&](const Setpoint& p) {
+    ++count;
+    finite &= p.position.isFinite().all() && p.velocity.isFinite().all() && std::isfinite(p.feed) &&
+              std::isfinite(p.path_error);
+    in_range &= (p.position >= l.min_position).all() && (p.position <= l.max_position).all();
+  });
+  EXPECT_TRUE(finite);
+  EXPECT_EQ(plan.good(), plan.reasons.empty());
+  EXPECT_TRUE(in_range || !plan.good());
+  for (const core::Reason& reason : plan.reasons) {
+    for (const UnitSystem units : {UnitSystem::kSi, UnitSystem::kShop}) {
+      EXPECT_TRUE(sane(text(reason, units))) << text(reason, units);
+    }
+  }
+  if (!plan.good()) return false;
+  EXPECT_EQ(count, plan.statistics.setpoints);
+  EXPECT_LE(plan.statistics.duration, c.machine.max_job_duration);
+  EXPECT_TRUE((plan.statistics.max_velocity <= l.max_velocity * (1 + 1e-6) + 1e-9).all());
+  return true;
+}
+
+/// Plans a case twice and judges the first answer; some of them by what comes of it.
+struct Tally {
+  int good = 0;
+  int refused = 0;
+
+  void judge(const Case& c) {
+    SCOPED_TRACE(textOf(c));
+    ++(planAndJudge(c) ? good : refused);
+    if ((good + refused) % 16 != 0) return;
+    const JobPlan one = c.plan();
+    const JobPlan other = c.plan();
+    EXPECT_EQ(one.fault, other.fault);
+    EXPECT_EQ(text(one.reasons, UnitSystem::kSi), text(other.reasons, UnitSystem::kSi));
+    EXPECT_EQ(one.move_ends, other.move_ends);
+    EXPECT_EQ(one.statistics.setpoints, other.statistics.setpoints);
+  }
+};
+
+TEST(JobFuzz, EveryHostileValueOfEveryFieldIsAnswered) {
+  Dice dice(1);
+  Tally tally;
+  for (const Number& n : numbers()) {
+    for (const double value : hostileValues(n.min, n.max)) {
+      GrindJob job = paperJob();
+      n.of(job) = value;
+      Machine machine = plainMachine();
+      machine.max_job_duration = 2;
+      tally.judge({job, machine, machine.park, {}});
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GT(tally.refused, 100);
+}
+
+TEST(JobFuzz, SpoiledJobsAreAnswered) {
+  Dice dice(2);
+  Tally tally;
+  for (int i = 0; i < 16000 && !HasFailure(); ++i) tally.judge(anyCase(dice, spoiledJob(dice)));
+  EXPECT_GT(tally.refused, 4000);
+}
+
+TEST(JobFuzz, AllowedJobsOfAllKindsAreAnswered) {
+  Dice dice(3);
+  Tally tally;
+  for (int i = 0; i < 6000 && !HasFailure(); ++i) tally.judge(anyCase(dice, allowedJob(dice)));
+  EXPECT_GT(tally.good, 300);
+  EXPECT_GT(tally.refused, 300);
+}
+
+/// Does to a stream whatever an operator can, and more, at random moments.
+class Meddler {
+ public:
+  explicit Meddler(Dice& dice) : dice_(dice) {}
+
+  void meddle(SetpointStream& stream, bool resting) {
+    if (!resting && !dice_.once(150)) return;
+    switch (resting ? dice_.below(4) : dice_.below(5)) {
+      case 0: return stream.retract();
+      case 1:
+        return stream.setFeedOverride(dice_.of({kNaN, kInf, -kInf, -1.0, -0.0, kTiny, 0.0, 1e-3, 1.2, 1.3, kHuge}));
+      case 2:
+      case 3: stream.setFeedOverride(dice_.within(0.1, kMaxFeedOverride)); return stream.resume();
+      default: return stream.hold();
+    }
+  }
+
+ private:
+  Dice& dice_;
+};
+
+/// Runs a stream to its end, or for long enough.
+void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
+  LimitCheck check(stream.program().machine().limits, stream.program().machine().period);
+  Meddler meddler(dice);
+  Setpoint p;
+  for (int i = 0; i < 6000 && !stream.finished(); ++i) {
+    const bool resting = !stream.next(p);
+    if (!resting) {
+      ASSERT_TRUE(p.position.isFinite().all() && p.velocity.isFinite().all() && std::isfinite(p.feed));
+      const auto violation = check.check(p);
+      ASSERT_FALSE(violation) << text(reasonOf(*violation), UnitSystem::kSi);
+    }
+    meddler.meddle(stream, resting);
+  }
+}
+
+TEST(JobFuzz, StreamsOfGoodJobsStayWithinLimitsWhateverIsDoneToThem) {
+  Dice dice(4);
+  int streams = 0;
+  for (int i = 0; i < 1500 && !HasFailure(); ++i) {
+    const Case c = anyCase(dice, allowedJob(dice));
+    const JobPlan plan = c.plan();
+    if (!plan.good()) continue;
+    SCOPED_TRACE(textOf(c));
+    SetpointStream stream(plan.program);
+    meddleToTheEnd(dice, stream);
+    ++streams;
+  }
+  EXPECT_GT(streams, 50);
+}
+
+}  // namespace test_job_fuzz
+}  // namespace flute_grinder

@@ -1,0 +1,347 @@
+#include "flute_grinder/job/wheel_file.h"
+
+#include "flute_grinder/job/job_fields.h"
+
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <string>
+#include <vector>
+
+/// @file
+/// A job gets the wheel of a wheel file as it would get it from keys of its own, and a wheel file's mistakes are told
+/// with its own name and lines.
+
+namespace flute_grinder {
+namespace test_wheel_file {
+
+// Line numbers in the rows below are those of this text.
+const char* const kWheel =
+    "# 1V1\n"                         // 1
+    "profile: angled\n"               // 2
+    "diameter_mm: 100\n"              // 3
+    "width_mm: 8\n"                   // 4
+    "angle_deg: 20\n"                 // 5
+    "side: lower\n"                   // 6
+    "corner_radius_mm: [0.1, 0.2]\n"  // 7
+    "measured:\n"                     // 8
+    "  date: 2026-11-20\n"            // 9
+    "  diameter_mm: 99.4\n"           // 10
+    "  width_mm: 7.9\n"               // 11
+    "  by: anna@grinder-2\n";         // 12
+
+std::string with(const char* text, const std::string& piece, const std::string& replacement) {
+  std::string changed = text;
+  const auto at = changed.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  return changed.replace(at, piece.size(), replacement);
+}
+
+std::string errorOf(const std::string& text) {
+  try {
+    parseWheel(text, "wheel.yaml");
+  } catch (const JobFileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A job whose wheel's keys are these lines.
+std::string jobText(const std::string& wheel) {
+  return "cutter: {end_diameter_mm: 6, cone_angle_deg: -1, spiral_angle_deg: -45, rake_angle_deg: 12,\n"        // 1
+         "  flute_length_mm: 25, teeth: 4, cut: left_hand, rake_tolerance_deg: 0.25, shank_diameter_mm: 10}\n"  // 2
+         "process:\n"                                                                                           // 3
+         "  feed_mm_min: 200\n  depth_mm: 1.5\n  infeed_mm: 0.5\n  finish_infeed_mm: 0.05\n"                    // 4-7
+         "  spark_out: 1\n  clearance_mm: 5\n  overtravel_mm: [1, 2]\n  order: pass_major\n"                    // 8-11
+         "  direction: to_end\n"                                                                                // 12
+         "  wheel:\n" +                                                                                         // 13
+         wheel +                                                                                                // 14-
+         "  setup: {swivel_deg: -46, height_mm: 1.25}\n"
+         "interpolation: {even_step: exact, tolerance_um: 2, rotary_scale_mm_per_rad: 1}\n";
+}
+
+/// A folder with a folder for jobs and one for wheels.
+class WheelOfAJob : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directory(folder_ + "/jobs");
+    std::filesystem::create_directory(folder_ + "/wheels");
+  }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ + "/" + name) << text;
+    return folder_ + "/" + name;
+  }
+
+  static std::string jobErrorOf(const std::string& path) {
+    try {
+      readJobFile(path);
+    } catch (const JobFileError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const test_support::TempFolder temp_;
+  const std::string folder_ = temp_.path();
+};
+
+/// Equal to the last bit.
+void expectSame(const GrindJob& a, const GrindJob& b) {
+  visitJobFields([&](const JobField& field, auto of) { EXPECT_EQ(of(a), of(b)) << field.path; });
+  visitJobChoices([&](const char* path, int, auto of) { EXPECT_EQ(of(a), of(b)) << path; });
+  EXPECT_EQ(a.tooth_angles, b.tooth_angles);
+  ASSERT_EQ(a.wheel_points.size(), b.wheel_points.size());
+  for (std::size_t i = 0; i < a.wheel_points.size(); ++i) {
+    EXPECT_EQ(a.wheel_points[i].w, b.wheel_points[i].w);
+    EXPECT_EQ(a.wheel_points[i].radius, b.wheel_points[i].radius);
+  }
+}
+
+TEST(WheelFile, ReadsTheWheelAsItWasMeasured) {
+  const WheelFile wheel = parseWheel(kWheel, "wheel.yaml");
+  EXPECT_EQ(wheel.process.wheel_profile, WheelShape::kAngled);
+  EXPECT_EQ(wheel.process.wheel_side, WheelFace::kLower);
+  EXPECT_DOUBLE_EQ(wheel.process.wheel_diameter, 0.1);
+  EXPECT_DOUBLE_EQ(wheel.process.wheel_wear, 0.0003);
+  EXPECT_DOUBLE_EQ(wheel.diameter(), 0.0994);
+  EXPECT_DOUBLE_EQ(wheel.process.wheel_width, 0.0079);
+  EXPECT_DOUBLE_EQ(wheel.new_width, 0.008);
+  EXPECT_DOUBLE_EQ(wheel.process.wheel_corner_radius_upper, 0.0002);
+  EXPECT_TRUE(wheel.measured);
+  EXPECT_FALSE(wheel.flange);
+  EXPECT_EQ(wheel.date, "2026-11-20");
+  EXPECT_EQ(wheel.by, "anna@grinder-2");
+}
+
+TEST(WheelFile, MayTellWhereItLiesOnTheFlange) {
+  const WheelFile wheel = parseWheel(with(kWheel, "side: lower\n", "side: lower\nflange_mm: -2.5\n"), "f");
+  ASSERT_TRUE(wheel.flange);
+  EXPECT_DOUBLE_EQ(*wheel.flange, -0.0025);
+}
+
+TEST(WheelFile, WithoutAMeasurementIsNew) {
+  const std::string text = kWheel;
+  const WheelFile wheel = parseWheel(text.substr(0, text.find("measured")), "wheel.yaml");
+  EXPECT_FALSE(wheel.measured);
+  EXPECT_EQ(wheel.process.wheel_wear, 0);
+  EXPECT_DOUBLE_EQ(wheel.process.wheel_width, 0.008);
+}
+
+TEST(WheelFile, KeepsItsWidthWhereOnlyTheDiameterWasMeasured) {
+  EXPECT_DOUBLE_EQ(parseWheel(with(kWheel, "  width_mm: 7.9\n", ""), "f").process.wheel_width, 0.008);
+  EXPECT_EQ(parseWheel(with(kWheel, "  by: anna@grinder-2\n", ""), "f").by, "");
+  EXPECT_EQ(parseWheel(with(kWheel, "2026-11-20", "2026-11-20T08:15:30Z"), "f").date, "2026-11-20T08:15:30Z");
+}
+
+TEST_F(WheelOfAJob, IsTheSameAsWithKeysOfItsOwn) {
+  const std::string own =
+      write("jobs/own.yaml", jobText("    profile: angled\n    diameter_mm: 100\n    width_mm: 7.9\n"
+                                     "    angle_deg: 20\n    side: lower\n    wear_mm: 0.3\n"
+                                     "    corner_radius_mm: [0.1, 0.2]\n"
+                                     "    wear_per_pass_mm: 0.001\n"));
+  write("wheels/angled.yaml", kWheel);
+  const std::string named =
+      write("jobs/named.yaml", jobText("    file: ../wheels/angled.yaml\n    wear_per_pass_mm: 0.001\n"));
+  expectSame(readJobFile(named), readJobFile(own));
+  const std::string absolute =
+      write("absolute.yaml", jobText("    file: " + folder_ + "/wheels/angled.yaml\n    wear_per_pass_mm: 0.001\n"));
+  expectSame(readJobFile(absolute), readJobFile(own));
+}
+
+TEST_F(WheelOfAJob, MayHaveAnyProfile) {
+  const std::pair<const char*, const char*> profiles[]{
+      {"straight", ""}, {"full_radius", ""}, {"points", "points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n"}};
+  for (const auto& [profile, points] : profiles) {
+    SCOPED_TRACE(profile);
+    const std::string keys = std::string("profile: ") + profile + "\ndiameter_mm: 100\nwidth_mm: 8\n" + points;
+    std::string indented = "    " + keys;
+    for (auto at = indented.find('\n'); at + 1 < indented.size(); at = indented.find('\n', at + 1)) {
+      indented.insert(at + 1, "    ");
+    }
+    write("wheels/wheel.yaml", keys);
+    const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
+    const std::string own = write("jobs/own.yaml", jobText(indented + "    wear_mm: 0\n"));
+    expectSame(readJobFile(named), readJobFile(own));
+  }
+}
+
+TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
+  EXPECT_TRUE(rc::check("a wear to a nanometre", [&] {
+    const int wear = *rc::gen::inRange(0, 20'000'000);  // [nm]
+    const int diameter = *rc::gen::inRange(60'000'000, 400'000'000);
+    const auto decimal = [](long long nanometres) {
+      char text[40];
+      std::snprintf(text, sizeof text, "%lld.%06lld", nanometres / 1000000, nanometres % 1000000);
+      return std::string(text);
+    };
+    write("wheels/wheel.yaml",
+          "profile: straight\ndiameter_mm: " + decimal(diameter) +
+              "\nwidth_mm: 3\nmeasured: {date: 2026-11-20, diameter_mm: " + decimal(diameter - 2LL * wear) + "}\n");
+    const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
+    const std::string own =
+        write("jobs/own.yaml", jobText("    profile: straight\n    diameter_mm: " + decimal(diameter) +
+                                       "\n    width_mm: 3\n    wear_mm: " + decimal(wear) + "\n"));
+    const GrindProcess a = readJobFile(named).process, b = readJobFile(own).process;
+    RC_ASSERT(a.wheel_wear == b.wheel_wear);
+    RC_ASSERT(a.wheel_diameter == b.wheel_diameter);
+  }));
+}
+
+TEST_F(WheelOfAJob, CanBeFound) {
+  const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
+  EXPECT_EQ(wheelFileOf(named), folder_ + "/jobs/../wheels/wheel.yaml");
+  EXPECT_EQ(wheelFileOf(write("jobs/own.yaml", jobText("    diameter_mm: 100\n"))), "");
+}
+
+TEST_F(WheelOfAJob, StandsAloneInTheJob) {
+  write("wheels/wheel.yaml", kWheel);
+  for (const char* key : {"diameter_mm: 100", "width_mm: 8", "profile: straight", "wear_mm: 0", "angle_deg: 20",
+                          "side: upper", "corner_radius_mm: [0, 0]", "points_mm: [[-1, 2], [1, 2]]", "colour: red"}) {
+    SCOPED_TRACE(key);
+    const std::string path = write("jobs/job.yaml", jobText(std::string("    file: ../wheels/wheel.yaml\n    ") + key +
+                                                            "\n    wear_per_pass_mm: 0\n"));
+    const std::string name = std::string(key).substr(0, std::string(key).find(':'));
+    EXPECT_EQ(jobErrorOf(path), path + ":15: process.wheel." + name +
+                                    " stands beside process.wheel.file; allowed beside it: "
+                                    "process.wheel.wear_per_pass_mm");
+  }
+}
+
+TEST_F(WheelOfAJob, ThatIsNotThereIsToldAtTheJobsLine) {
+  const std::string path = write("jobs/job.yaml", jobText("    file: ../wheels/none.yaml\n"));
+  EXPECT_EQ(jobErrorOf(path), path + ":14: process.wheel.file = ../wheels/none.yaml: " + folder_ +
+                                  "/jobs/../wheels/none.yaml: cannot be read: No such file or directory; allowed: "
+                                  "a path from the job file's folder, " +
+                                  folder_ + "/jobs");
+  const std::string list = write("jobs/job.yaml", jobText("    file: [1, 2]\n"));
+  EXPECT_EQ(jobErrorOf(list).find(list + ":14: process.wheel.file"), 0u) << jobErrorOf(list);
+}
+
+TEST_F(WheelOfAJob, IsNamedByItsKey) {
+  const std::string path = write("jobs/job.yaml", jobText("    ../wheels/wheel.yaml\n"));
+  EXPECT_EQ(jobErrorOf(path), path +
+                                  ":13: process.wheel = ../wheels/wheel.yaml; allowed: keys of a wheel below it, as "
+                                  "file: PATH for a wheel file");
+}
+
+TEST_F(WheelOfAJob, TellsItsMistakesBesideThoseOfTheJob) {
+  write("wheels/wheel.yaml", with(kWheel, "diameter_mm: 100", "diameter_mm: large"));
+  std::string text = jobText("    file: ../wheels/wheel.yaml\n");
+  text.replace(text.find("spark_out: 1"), 12, "spark_out: x");
+  const std::string path = write("jobs/job.yaml", text);
+  EXPECT_EQ(jobErrorOf(path),
+            folder_ + "/jobs/../wheels/wheel.yaml:3: diameter_mm = large is not a number; allowed: 1 to 500 mm\n" +
+                path + ":8: process.spark_out = x is not a whole number; allowed: 0 to 100");
+}
+
+TEST_F(WheelOfAJob, IsHeldAgainstTheJob) {
+  write("wheels/wheel.yaml", with(kWheel, "diameter_mm: 100", "diameter_mm: 100"));
+  const std::string path = write("jobs/job.yaml", jobText("    file: ../wheels/wheel.yaml\n    wear_per_pass_mm: 2\n"));
+  EXPECT_EQ(jobErrorOf(path), path + ":15: process.wheel.wear_per_pass_mm = 2 mm; allowed: 0 to 1 mm");
+}
+
+TEST(WheelFile, OfEveryShippedOneCanBeRead) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/wheels")) {
+    SCOPED_TRACE(entry.path());
+    EXPECT_NO_THROW(readWheelFile(entry.path().string()));
+    ++count;
+  }
+  EXPECT_GE(count, 3);
+}
+
+/// A mistake in a wheel file and its one message.
+struct Mistake {
+  const char* name;
+  const char* piece;
+  const char* replacement;
+  const char* message;
+};
+
+std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.name; }
+
+class WheelFileMistake : public ::testing::TestWithParam<Mistake> {};
+
+TEST_P(WheelFileMistake, IsToldWithFileLineKeyAndWhatIsAllowed) {
+  EXPECT_EQ(errorOf(with(kWheel, GetParam().piece, GetParam().replacement)),
+            std::string("wheel.yaml:") + GetParam().message);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, WheelFileMistake,
+    ::testing::Values(
+        Mistake{
+            "UnknownKey", "side: lower\n", "side: lower\ncolour: red\n",
+            "7: colour is not a key of a wheel file; allowed: diameter_mm, width_mm, angle_deg, corner_radius_mm[0], "
+            "corner_radius_mm[1], profile, side, flange_mm, measured.date, measured.diameter_mm, "
+            "measured.width_mm, measured.by"},
+        Mistake{"UnknownMeasure", "  by:", "  from:",
+                "12: measured.from is not a key of a wheel file; allowed: measured.date, measured.diameter_mm, "
+                "measured.width_mm, measured.by"},
+        Mistake{
+            "Wear", "angle_deg: 20\n", "angle_deg: 20\nwear_mm: 0.1\n",
+            "6: wear_mm is not a key of a wheel file; allowed: diameter_mm, width_mm, angle_deg, corner_radius_mm[0], "
+            "corner_radius_mm[1], profile, side, flange_mm, measured.date, measured.diameter_mm, "
+            "measured.width_mm, measured.by"},
+        Mistake{"MissingProfile", "profile: angled\n", "profile: angle\n",
+                "2: profile = angle; allowed: straight, angled, full_radius, cup, points"},
+        Mistake{"MissingDiameter", "diameter_mm: 100\n", "", "1: diameter_mm is missing; allowed: 1 to 500 mm"},
+        Mistake{"MissingWidth", "width_mm: 8\n", "", "1: width_mm is missing; allowed: 0.1 to 100 mm"},
+        Mistake{"MissingSide", "side: lower\n", "", "1: side is missing; allowed: upper, lower"},
+        Mistake{"Duplicate", "width_mm: 8\n", "width_mm: 8\nwidth_mm: 8\n", "5: width_mm stands here a second time"},
+        Mistake{"DiameterOutOfRange", "diameter_mm: 100", "diameter_mm: 501",
+                "3: diameter_mm = 501 mm; allowed: 1 to 500 mm"},
+        Mistake{"WidthOutOfRange", "width_mm: 8", "width_mm: .nan", "4: width_mm = nan mm; allowed: 0.1 to 100 mm"},
+        Mistake{"NewWidthOutOfRange", "width_mm: 8", "width_mm: 800", "4: width_mm = 800 mm; allowed: 0.1 to 100 mm"},
+        Mistake{"CornerOutOfRange", "[0.1, 0.2]", "[-0.1, 0.2]",
+                "7: corner_radius_mm[0] = -0.1 mm; allowed: 0 to 50 mm"},
+        Mistake{"HalfACorner", "[0.1, 0.2]", "[0.1]", "1: corner_radius_mm[1] is missing; allowed: 0 to 50 mm"},
+        Mistake{"NoAngle", "angle_deg: 20", "angle_deg: 0",
+                "5: angle_deg = 0 deg; allowed: more than 0 for this profile"},
+        Mistake{"FarFromTheFlange", "side: lower\n", "side: lower\nflange_mm: 100.5\n",
+                "7: flange_mm = 100.5 mm; allowed: -100 to 100 mm"},
+        Mistake{"MissingDate", "  date: 2026-11-20\n", "",
+                "1: measured.date is missing; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},
+        Mistake{"GermanDate", "2026-11-20", "20.11.2026",
+                "9: measured.date = 20.11.2026; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},
+        Mistake{"MissingMeasuredDiameter", "  diameter_mm: 99.4\n", "",
+                "1: measured.diameter_mm is missing; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+        Mistake{"LargerThanSet", "99.4", "100.01",
+                "10: measured.diameter_mm = 100.01 mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+        Mistake{"MeasuredNaN", "99.4", ".nan",
+                "10: measured.diameter_mm = nan mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+        Mistake{"MeasuredNothing", "99.4", "0.5",
+                "10: measured.diameter_mm = 0.5 mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+        Mistake{"MeasuredWord", "99.4", "small",
+                "10: measured.diameter_mm = small is not a number; allowed: 1 to 100 mm, the diameter to which Y = 0 "
+                "is set"},
+        Mistake{"NoWidthLeft", "width_mm: 7.9", "width_mm: 0", "11: measured.width_mm = 0 mm; allowed: 0.1 to 100 mm"},
+        Mistake{"NoRoomForTheCorners", "width_mm: 7.9", "width_mm: 0.25",
+                "7: corner_radius_mm[0] = 0.3 mm; allowed: up to the wheel's width for both corners together, 0.25 mm"},
+        // At 20 deg a radius of 2.8 mm is used up over 2.8 mm / tan 20 deg.
+        Mistake{
+            "ClosedByWear", "diameter_mm: 99.4", "diameter_mm: 5.6",
+            "11: measured.width_mm = 7.9 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"},
+        Mistake{"SecondDocument", "# 1V1\n", "--- 3\n---\n", "2: a second document begins here; allowed: one"},
+        Mistake{"BrokenYaml", "[0.1, 0.2]", "[0.1, 0.2", "8: end of sequence flow not found"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(WheelFile, OfPointsKeepsTheirWidth) {
+  const std::string text =
+      "profile: points\ndiameter_mm: 100\nwidth_mm: 8\npoints_mm: [[-4, 49], [0, 50], [4, 48.5]]\n"
+      "measured: {date: 2026-11-20, diameter_mm: 99, width_mm: 7}\n";
+  EXPECT_EQ(errorOf(text), "wheel.yaml:5: measured.width_mm = 7 mm; allowed: that of its points, 8 mm");
+  EXPECT_EQ(errorOf(with(text.c_str(), "width_mm: 7}", "width_mm: 8}")), "");
+}
+
+}  // namespace test_wheel_file
+}  // namespace flute_grinder

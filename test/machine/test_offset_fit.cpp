@@ -1,0 +1,187 @@
+#include "flute_grinder/machine/machine_geometry.h"
+#include "flute_grinder/machine/offset_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+/// @file
+/// Which work offsets fit which job. Where the wheel's centre must be is computed from the machine's geometry.
+
+namespace flute_grinder {
+namespace test_offset_fit {
+
+using core::OffsetBasis;
+using core::WorkOffset;
+using core::WorkOffsets;
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegree = 0.017453292519943295;
+
+/// A job of D 6 with a wheel of D 100 x 3.
+OffsetBasis basisOf(OffsetMethod method = OffsetMethod::kTouchOff) {
+  return {method, "d6.yaml", "a.yaml", std::string(64, 'a'), 0.006, 0.1, 0.003, 30 * kDegree, 0.0015};
+}
+
+WorkOffset offsetFor(const OffsetBasis& basis) { return {0.001, "anna@grinder", 1.7e9, basis}; }
+
+/// All set for the job of D 6, A never.
+WorkOffsets offsetsFor(const OffsetBasis& basis) {
+  WorkOffsets offsets;
+  for (const int axis : {kX, kY, kZ}) offsets.axes[static_cast<std::size_t>(axis)] = offsetFor(basis);
+  return offsets;
+}
+
+std::string axesOf(const std::vector<core::OffsetMisfit>& misfits) {
+  std::string axes;
+  for (const core::OffsetMisfit& misfit : misfits) axes += "XYZA"[misfit.axis];
+  return axes;
+}
+
+TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsAlways) {
+  const OffsetBasis job = basisOf();
+  EXPECT_TRUE(core::misfits(offsetsFor(job), job).empty());
+  WorkOffsets offsets = offsetsFor(job);
+  offsets.axes[kA] = offsetFor(OffsetBasis{});
+  EXPECT_TRUE(core::misfits(offsets, job).empty());
+}
+
+TEST(OffsetFit, WhatWasNeverSetDoesNotFit) {
+  const auto found = core::misfits(WorkOffsets{}, basisOf());
+  ASSERT_EQ(axesOf(found), "XYZ");
+  EXPECT_EQ(found[1].reason, "Y was never set");
+  for (const auto& misfit : found) EXPECT_FALSE(misfit.change);
+}
+
+TEST(OffsetFit, WhatWasSetBeforeThisWasKeptIsUnknown) {
+  const auto found = core::misfits(offsetsFor(OffsetBasis{}), basisOf());
+  ASSERT_EQ(axesOf(found), "XYZ");
+  EXPECT_EQ(found[1].reason, "Y was set, not known for which job");
+  for (const auto& misfit : found) EXPECT_FALSE(misfit.change);
+}
+
+TEST(OffsetFit, WithoutAJobOnlyXFits) {
+  OffsetBasis none;
+  none.method = OffsetMethod::kTouchOff;
+  const auto found = core::misfits(offsetsFor(none), basisOf());
+  ASSERT_EQ(axesOf(found), "YZ");
+  EXPECT_EQ(found[0].reason, "Y was touched off, not known for which job");
+}
+
+TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
+  OffsetBasis job = basisOf();
+  job.job_name = "d10.yaml";
+  job.end_diameter = 0.01;
+  const auto found = core::misfits(offsetsFor(basisOf()), job);
+  ASSERT_EQ(axesOf(found), "Y");
+  EXPECT_EQ(found[0].reason, "Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); this job has D 10 mm");
+  ASSERT_TRUE(found[0].change);
+  EXPECT_NEAR(*found[0].change, 0.002, 1e-15);
+}
+
+TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
+  struct Row {
+    const char* axes;
+    const char* has;
+    void (*change)(OffsetBasis&);
+  };
+  const Row rows[]{
+      {"Y", "D 6.001 mm", [](OffsetBasis& b) { b.end_diameter += 1e-6; }},
+      {"Z", "height -1.5 mm", [](OffsetBasis& b) { b.height *= -1; }},
+      {"XZ", "swivel 30.06 deg", [](OffsetBasis& b) { b.swivel += 0.06 * kDegree; }},
+      {"XZ", "width of the wheel 2.9 mm", [](OffsetBasis& b) { b.wheel_width -= 1e-4; }},
+      {"XYZ", "another wheel a.yaml, D 100 mm", [](OffsetBasis& b) { b.wheel_digest[63] = 'b'; }},
+      {"XYZ", "wheel b.yaml, D 100 mm", [](OffsetBasis& b) { b.wheel_name = "b.yaml"; }},
+      {"Y", "D nan mm", [](OffsetBasis& b) { b.end_diameter = kNan; }},
+      {"Z", "height nan mm", [](OffsetBasis& b) { b.height = kNan; }},
+      {"XZ", "swivel nan deg", [](OffsetBasis& b) { b.swivel = kNan; }},
+      {"", "", [](OffsetBasis& b) { b.job_name = "other.yaml"; }},
+      {"", "", [](OffsetBasis& b) { b.wheel_name = ""; }},
+      {"", "", [](OffsetBasis& b) { b.swivel += 0.04 * kDegree; }},
+      {"", "", [](OffsetBasis& b) { b.end_diameter += 1e-12; }},
+  };
+  for (const Row& row : rows) {
+    OffsetBasis job = basisOf();
+    row.change(job);
+    const auto found = core::misfits(offsetsFor(basisOf()), job);
+    EXPECT_EQ(axesOf(found), row.axes) << row.has;
+    for (const auto& misfit : found) {
+      EXPECT_EQ(misfit.reason.substr(misfit.reason.find("; ")), std::string("; this job has ") + row.has);
+    }
+  }
+}
+
+TEST(OffsetFit, OfAnotherWheelSwivelOrWidthNothingIsComputed) {
+  for (const auto change :
+       {+[](OffsetBasis& b) { b.wheel_digest[0] = 'b'; }, +[](OffsetBasis& b) { b.wheel_name = "b.yaml"; },
+        +[](OffsetBasis& b) { b.swivel = 0; }, +[](OffsetBasis& b) { b.wheel_width = 0.002; }}) {
+    OffsetBasis job = basisOf();
+    job.height += 0.001;
+    change(job);
+    for (const auto& misfit : core::misfits(offsetsFor(basisOf()), job)) EXPECT_FALSE(misfit.change) << misfit.reason;
+  }
+}
+
+/// Whatever the machine, and wherever its wheel is mounted.
+TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
+  std::mt19937 random(1);
+  const auto between = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  for (int n = 0; n < 200; ++n) {
+    MachineGeometry machine;
+    machine.work_axis_y = between(-0.1, 0.1);
+    machine.work_axis_z = between(-0.1, 0.1);
+    machine.collet_face = between(-0.1, 0.1);
+    machine.swivel_centre = {between(-0.1, 0.1), between(-0.1, 0.1), between(-0.1, 0.1)};
+    machine.flange = between(-0.05, 0.05);
+    const Mounting mounting{between(-0.01, 0.01), between(0.01, 0.1)};
+    GrindJob was;
+    was.cutter.end_diameter = between(0.0001, 0.1);
+    was.process.wheel_diameter = between(0.01, 0.5);
+    was.process.wheel_width = between(0.001, 0.1);
+    was.process.setup_swivel = between(-1, 1);
+    was.process.setup_height = between(-0.05, 0.05);
+    GrindJob is = was;
+    is.cutter.end_diameter = between(0.0001, 0.1);
+    is.process.setup_height = between(-0.05, 0.05);
+    const auto basis = [](const GrindJob& job) {
+      return OffsetBasis{OffsetMethod::kComputed,
+                         "",
+                         "",
+                         std::string(64, 'a'),
+                         job.cutter.end_diameter,
+                         job.process.wheel_diameter,
+                         job.process.wheel_width,
+                         job.process.setup_swivel,
+                         job.process.setup_height};
+    };
+    WorkOffsets offsets = offsetsFor(basis(was));
+    const Eigen::Vector3d before = workZero(machine, was, mounting), after = workZero(machine, is, mounting);
+    for (int axis = kX; axis <= kZ; ++axis) offsets.axes[static_cast<std::size_t>(axis)].value = before[axis];
+    const auto found = core::misfits(offsets, basis(is));
+    ASSERT_EQ(axesOf(found), "YZ");
+    for (const auto& misfit : found) {
+      ASSERT_TRUE(misfit.change);
+      EXPECT_NEAR(before[misfit.axis] + *misfit.change, after[misfit.axis], 1e-15);
+    }
+    EXPECT_NEAR(before.x(), after.x(), 1e-15);
+  }
+}
+
+TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
+  EXPECT_EQ(core::basisText(kY, WorkOffset{}), "never set");
+  EXPECT_EQ(core::basisText(kX, offsetFor(basisOf(OffsetMethod::kProbe))),
+            "probed for swivel 30 deg, wheel a.yaml, D 100 mm, width of the wheel 3 mm (d6.yaml)");
+  EXPECT_EQ(core::basisText(kA, offsetFor(basisOf())), "touched off (d6.yaml)");
+  OffsetBasis none;
+  none.method = OffsetMethod::kByHand;
+  EXPECT_EQ(core::basisText(kX, offsetFor(none)), "set by hand");
+  EXPECT_EQ(core::basisText(kZ, offsetFor(none)), "set by hand, not known for which job");
+}
+
+}  // namespace test_offset_fit
+}  // namespace flute_grinder

@@ -1,0 +1,293 @@
+#pragma once
+
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/motion/axis_limits.h"
+#include "flute_grinder/motion/grind_program.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <ostream>
+#include <stdexcept>
+
+// What the property tests draw from: cutters of both hands, machines and jobs.
+namespace flute_grinder::test_support {
+
+/// Even over [low, high], whatever rapidcheck's size.
+inline rc::Gen<double> uniform(double low, double high) {
+  constexpr std::int64_t steps = std::int64_t{1} << 40;
+  return rc::gen::map(rc::gen::resize(rc::kNominalSize, rc::gen::inRange<std::int64_t>(0, steps + 1)),
+                      [=](std::int64_t i) { return low + (high - low) * (static_cast<double>(i) / steps); });
+}
+
+/// Even in the logarithm over [low, high].
+inline rc::Gen<double> logUniform(double low, double high) {
+  return rc::gen::map(uniform(0, 1), [=](double f) { return std::min(high, low * std::pow(high / low, f)); });
+}
+
+/// One of low, ..., high.
+inline rc::Gen<int> whole(int low, int high) {
+  return rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high + 1));
+}
+
+/// -3 to 30 deg, now and then none or next to none.
+inline rc::Gen<double> coneAngle() {
+  return rc::gen::weightedOneOf<double>({{1, rc::gen::just(0.0)},
+                                         {1, uniform(-1e-8 * units::kDegree, 1e-8 * units::kDegree)},
+                                         {6, uniform(-3 * units::kDegree, 30 * units::kDegree)}});
+}
+
+/// -60 to 60 deg, now and then none.
+inline rc::Gen<double> spiralAngle() {
+  return rc::gen::weightedOneOf<double>(
+      {{1, rc::gen::just(0.0)}, {7, uniform(-60 * units::kDegree, 60 * units::kDegree)}});
+}
+
+/// Length from X = 0 toward the shank (+1) or beyond the end (-1) over which the radius keeps a fifth of what it is at
+/// X = 0; at most `limit`. [m]
+inline double openLength(const CutterGeometry& g, int side, double limit) {
+  const double closing = -side * std::tan(g.cone_angle);
+  return closing > 0 ? std::min(limit, 0.8 * g.end_diameter / 2 / closing) : limit;
+}
+
+/// dZ/dY of the published law: a left-hand cutter is a right-hand one in the mirror.
+inline long double zPerY(const CutterGeometry& g) {
+  return (g.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(static_cast<long double>(g.rake_angle));
+}
+
+inline rc::Gen<CutterGeometry> cutterGeometry() {
+  return rc::gen::exec([] {
+    CutterGeometry g;
+    g.end_diameter = *logUniform(0.3e-3, 30e-3);
+    g.cone_angle = *coneAngle();
+    g.spiral_angle = *spiralAngle();
+    g.rake_angle = *uniform(-20 * units::kDegree, 20 * units::kDegree);
+    g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
+    g.cut = *rc::gen::arbitrary<bool>() ? CutDirection::kLeftHand : CutDirection::kRightHand;
+    g.rake_tolerance = 0.5 * units::kDegree;
+    g.shank_diameter = 10e-3;
+    return g;
+  });
+}
+
+/// Limits as of machines from slow and stiff to fast; wide in position. Period of 500 to 4000 Hz.
+inline rc::Gen<Machine> machine() {
+  return rc::gen::exec([] {
+    Machine m;
+    m.limits.min_position << -10, -10, -10, -1e6;
+    m.limits.max_position << 10, 10, 10, 1e6;
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      const bool rotary = axis == kA;
+      m.limits.max_velocity[axis] = *logUniform(rotary ? 2 : 0.02, rotary ? 60 : 0.5);
+      m.limits.max_acceleration[axis] = *logUniform(rotary ? 10 : 0.2, rotary ? 1000 : 10);
+      m.limits.max_jerk[axis] = *logUniform(rotary ? 300 : 5, rotary ? 1e5 : 1000);
+    }
+    m.period = 1 / *uniform(500, 4000);
+    m.park << 0, 0.1, 0, 0;
+    return m;
+  });
+}
+
+/// One tooth, one or two passes, feeds of 60 to 6000 mm/min, all rules, both directions; its figures pass validate().
+inline rc::Gen<GrindJob> job() {
+  return rc::gen::exec([] {
+    GrindJob j;
+    j.cutter = *cutterGeometry();
+    // Some turns at the most, or else the way back takes most of the time.
+    const double turns = 8 * j.cutter.end_diameter / 2 / std::max(0.01, std::abs(std::tan(j.cutter.spiral_angle)));
+    j.cutter.flute_length = std::min(j.cutter.flute_length, std::max(0.2e-3, turns));
+    j.process.overtravel_end = openLength(j.cutter, -1, *uniform(0, 2e-3));
+    j.process.overtravel_shank = std::min(j.cutter.flute_length / 4, *uniform(0, 2e-3));
+    j.cutter.flute_length -= j.process.overtravel_shank;  // so that the cone stays open beyond the flute
+    j.tooth_angles = {0};
+    j.process.feed = *logUniform(60e-3 / 60, 6000e-3 / 60);
+    j.process.depth = j.cutter.end_diameter / 2 * *uniform(0.05, 0.15);
+    j.process.infeed = j.process.depth;
+    j.process.finish_infeed = 0;
+    j.process.spark_out = *whole(0, 1);
+    j.process.clearance = *uniform(0.1e-3, 2e-3);
+    j.process.direction = *rc::gen::element(StrokeDirection::kFromEnd, StrokeDirection::kToEnd);
+    j.process.wheel_diameter = 100e-3;
+    j.process.wheel_width = 8e-3;
+    j.process.wheel_wear = 0;
+    j.interpolation.even_step =
+        *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
+    j.interpolation.tolerance = *logUniform(0.1e-6, 100e-6);
+    j.interpolation.rotary_scale = *logUniform(0.1e-3, 10e-3);
+    return j;
+  });
+}
+
+/// Over the whole stroke of a job, from hardly any to one that takes much of the limits of Z.
+inline rc::Gen<ZCorrection> zCorrection(const GrindJob& job) {
+  return rc::gen::exec([=] {
+    ZCorrection c;
+    const double length = job.process.overtravel_end + job.cutter.flute_length + job.process.overtravel_shank;
+    c.from = -job.process.overtravel_end;
+    c.pieces = *whole(1, ZCorrection::kMaxPieces);
+    c.piece = length / c.pieces;
+    const double size = length * *logUniform(1e-5, 3e-2);
+    for (int i = 0; i < c.coefficientCount(); ++i) c.coefficients[static_cast<std::size_t>(i)] = size * *uniform(-1, 1);
+    return c;
+  });
+}
+
+inline double edgePerTravel(const CutterGeometry& g) {
+  return std::sqrt(1 + std::pow(std::tan(g.cone_angle), 2) + std::pow(std::tan(g.spiral_angle), 2));
+}
+
+/// A job, and a machine and a start that suit it.
+struct Work {
+  GrindJob job;
+  Machine machine;
+  Axes start = Axes::Zero();
+
+  GrindProgram program() const { return GrindProgram(job, machine, start); }
+};
+
+/// Work whose stroke takes at most `cycles` control cycles, or not many more.
+inline rc::Gen<Work> work(double cycles) {
+  return rc::gen::exec([=] {
+    Work w{*job(), *machine(), Axes::Zero()};
+    CutterGeometry& g = w.job.cutter;
+    GrindProcess& p = w.job.process;
+    const double growth = std::tan(g.cone_angle);
+    for (int i = 0; i < 6; ++i) {
+      const double highest = std::max(-p.overtravel_end * growth, (g.flute_length + p.overtravel_shank) * growth);
+      w.machine.park << g.flute_length / 2, highest + p.clearance + *uniform(0, 2e-3), 1e-3, 0.1;
+      w.start << *uniform(-2e-3, 2e-3), highest + p.clearance * *uniform(-0.5, 1.5), -1e-3, *uniform(-1, 1);
+      const FeedSchedule schedule = w.program().schedule();
+      const double excess = schedule.length() / schedule.feedSpeed() / w.machine.period / cycles;
+      if (excess <= 1.2) return w;
+      g.flute_length = std::max(0.1e-3, g.flute_length / excess);
+      p.overtravel_end /= excess;
+      p.overtravel_shank /= excess;
+    }
+    RC_DISCARD("too slow");
+    return w;
+  });
+}
+
+/// The same with two or three teeth, not evenly spaced, in either order.
+inline rc::Gen<Work> toothedWork(double cycles) {
+  return rc::gen::exec([=] {
+    Work w = *work(cycles);
+    const int teeth = *whole(2, 3);
+    for (int i = 1; i < teeth; ++i) w.job.tooth_angles.push_back(w.job.tooth_angles.back() + *uniform(0.2, 3));
+    w.job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
+    return w;
+  });
+}
+
+/// The same with a correction of Z, which often takes a good part of what the machine's Z can.
+inline rc::Gen<Work> correctedWork(double cycles) {
+  return rc::gen::exec([=] {
+    Work w = *toothedWork(cycles);
+    w.job.process.z_law = ZLaw::kConstantRake;
+    w.job.z_corrections.assign(w.job.tooth_angles.size(), *zCorrection(w.job));
+    const ZCorrection::Bounds bend = w.job.z_corrections[0].bounds();
+    const double speed = w.job.process.feed / edgePerTravel(w.job.cutter);
+    const auto keep = [&](double& limit, double taken, double least) {
+      limit = std::clamp(taken / *uniform(0.1, 1), least, limit);
+    };
+    keep(w.machine.limits.max_acceleration[kZ], bend.second * speed * speed, 0.01);
+    keep(w.machine.limits.max_jerk[kZ], bend.third * speed * speed * speed, 0.1);
+    const FeedSchedule::Stroke stroke{-w.job.process.overtravel_end,
+                                      w.job.cutter.flute_length + w.job.process.overtravel_shank,
+                                      w.job.process.feed,
+                                      w.job.interpolation.tolerance,
+                                      0,
+                                      w.job.z_corrections[0]};
+    // A much bent one may be too slow for a test, or for a job.
+    const FeedSchedule schedule(ConicalCutter(w.job.cutter), stroke, w.machine);
+    RC_PRE(schedule.length() / schedule.feedSpeed() / w.machine.period < 10 * cycles);
+    RC_PRE(schedule.feedSpeed() > 2 * kMinFeed);
+    return w;
+  });
+}
+
+/// The paper's cutter: D1 10 mm, S 30 deg, C 5 deg, r 8 deg, 30 mm.
+inline CutterGeometry paperCutter() {
+  return {10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
+          30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
+}
+
+/// The paper's cutter at 600 mm/min in one pass.
+inline GrindJob paperJob() {
+  GrindJob j;
+  j.cutter = paperCutter();
+  j.tooth_angles = {0};
+  j.process.feed = 0.01;
+  j.process.depth = 0.5e-3;
+  j.process.infeed = 0.5e-3;
+  j.process.clearance = 5e-3;
+  j.process.overtravel_end = 1e-3;
+  j.process.overtravel_shank = 1e-3;
+  j.process.wheel_diameter = 100e-3;
+  j.process.wheel_width = 8e-3;
+  j.interpolation.tolerance = 1e-6;
+  j.interpolation.rotary_scale = 1e-3;
+  return j;
+}
+
+/// A middling tool grinder at 1 kHz.
+inline Machine plainMachine() {
+  Machine m;
+  m.limits.min_position << -0.3, -0.2, -0.2, -200;
+  m.limits.max_position << 0.3, 0.2, 0.2, 200;
+  m.limits.max_velocity << 0.2, 0.1, 0.1, 20;
+  m.limits.max_acceleration << 2, 2, 2, 200;
+  m.limits.max_jerk << 50, 50, 50, 5000;
+  m.period = 1e-3;
+  m.park << 0, 0.05, 0, 0;
+  return m;
+}
+
+}  // namespace flute_grinder::test_support
+
+namespace flute_grinder {
+
+inline std::ostream& operator<<(std::ostream& out, const CutterGeometry& g) {
+  return out << "D1 " << g.end_diameter / units::kMillimetre << " mm, C " << g.cone_angle / units::kDegree << " deg, S "
+             << g.spiral_angle / units::kDegree << " deg, r " << g.rake_angle / units::kDegree << " deg, L "
+             << g.flute_length / units::kMillimetre << " mm";
+}
+
+inline std::ostream& operator<<(std::ostream& out, EvenStepRule rule) { return out << toString(rule); }
+
+inline std::ostream& operator<<(std::ostream& out, StrokeDirection direction) { return out << toString(direction); }
+
+inline std::ostream& operator<<(std::ostream& out, const Machine& m) {
+  const auto row = [&](const char* name, const Axes& a) {
+    out << ", " << name << " " << a[0] << " " << a[1] << " " << a[2] << " " << a[3];
+  };
+  out << "period " << m.period;
+  row("velocity", m.limits.max_velocity);
+  row("acceleration", m.limits.max_acceleration);
+  row("jerk", m.limits.max_jerk);
+  return out;
+}
+
+inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
+  return out << j.cutter << ", " << toString(j.interpolation.even_step) << ", " << toString(j.process.direction)
+             << ", feed " << j.process.feed << " m/s, overtravel " << j.process.overtravel_end << " "
+             << j.process.overtravel_shank << " m, depth " << j.process.depth << " m, clearance " << j.process.clearance
+             << " m, tolerance " << j.interpolation.tolerance << " m, scale " << j.interpolation.rotary_scale
+             << " m/rad, spark out " << j.process.spark_out << ", " << j.tooth_angles.size() << " teeth, "
+             << toString(j.process.order);
+}
+
+namespace test_support {
+
+inline std::ostream& operator<<(std::ostream& out, const Work& w) {
+  return out << w.job << "; " << w.machine << "; start " << w.start[0] << " " << w.start[1] << " " << w.start[2] << " "
+             << w.start[3];
+}
+
+}  // namespace test_support
+
+}  // namespace flute_grinder

@@ -1,0 +1,247 @@
+#pragma once
+
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include "curve/reference.h"
+#include "generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+// What setpoints of a stream must keep to: the axes' limits, the paper's construction, the tolerance and the program.
+namespace flute_grinder::test_support {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kCycles = 1500;  ///< of a stroke: long enough for all phases, short enough for a hundred jobs
+
+inline std::vector<Setpoint> all(SetpointStream& stream) {
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  while (stream.next(p)) setpoints.push_back(p);
+  return setpoints;
+}
+
+inline std::vector<Setpoint> all(const Work& work) {
+  SetpointStream stream(work.program());
+  return all(stream);
+}
+
+/// A step of a stroke seen from the even point before its pair.
+struct SeenPair {
+  Setpoint start, odd, even;
+};
+
+/// All pairs of all strokes.
+inline std::vector<SeenPair> pairsOf(const std::vector<Setpoint>& setpoints) {
+  std::vector<SeenPair> pairs;
+  for (std::size_t i = 2; i < setpoints.size(); i += 2) {
+    if (setpoints[i].move == MoveKind::kStroke) pairs.push_back({setpoints[i - 2], setpoints[i - 1], setpoints[i]});
+  }
+  return pairs;
+}
+
+/// What rounding makes of an axis: some sums of numbers as large as those seen.
+inline Axes roundingOf(const std::vector<Setpoint>& setpoints) {
+  Axes largest = Axes::Zero();
+  for (const Setpoint& p : setpoints) largest = largest.max(p.position.abs());
+  return 2 * kEps * largest;
+}
+
+/// How far the setpoints go beyond a limit, as text; empty where they do not. Position and speed at every one,
+/// acceleration and jerk by differences of the pair ends, with rest before the first and after the last.
+inline std::string beyondLimits(std::vector<Setpoint> setpoints, const Machine& machine) {
+  const Axes noise = roundingOf(setpoints);
+  const AxisLimits& l = machine.limits;
+  const double t = machine.period;
+  for (int i = 0; i < 8; ++i) {
+    setpoints.push_back(setpoints.back());
+    ++setpoints.back().cycle;
+  }
+  setpoints.insert(setpoints.begin(), 6, setpoints.front());
+  const auto text = [&](const char* what, std::size_t i, const Axes& value, const Axes& limit) {
+    std::string axes;
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      axes += " " + ::testing::PrintToString(value[axis]) + "/" + ::testing::PrintToString(limit[axis]);
+    }
+    return std::string(what) + axes + " at cycle " + std::to_string(setpoints[i].cycle) + " " +
+           toString(setpoints[i].move);
+  };
+  const auto within = [&](const Axes& value, const Axes& limit, double noise_factor) {
+    return (value.abs() <= limit * (1 + 1e-9) + noise * noise_factor).all();
+  };
+  for (std::size_t i = 6; i < setpoints.size(); ++i) {
+    const auto p = [&](std::size_t back) { return setpoints[i - back].position; };
+    if (!((p(0) >= l.min_position).all() && (p(0) <= l.max_position).all()))
+      return text("position", i, p(0), l.max_position);
+    const Axes velocity = (p(0) - p(1)) / t;
+    if (!within(velocity, l.max_velocity, 2 / t)) return text("velocity", i, velocity, l.max_velocity);
+    if (i % 2 != 0) continue;
+    const double pair = 2 * t;
+    const Axes acceleration = (p(0) - 2 * p(2) + p(4)) / (pair * pair);
+    if (!within(acceleration, l.max_acceleration, 4 / (pair * pair)))
+      return text("acceleration", i, acceleration, l.max_acceleration);
+    const Axes jerk = (p(0) - 3 * p(2) + 3 * p(4) - p(6)) / (pair * pair * pair);
+    if (!within(jerk, l.max_jerk, 8 / (pair * pair * pair))) return text("jerk", i, jerk, l.max_jerk);
+  }
+  return "";
+}
+
+/// Y over that of the surface at X = 0 at which the wheel is clear of the whole stroke. [m]
+inline double clearHeight(const GrindJob& job) {
+  const double growth = std::tan(job.cutter.cone_angle);
+  const double ends[]{-job.process.overtravel_end, job.cutter.flute_length + job.process.overtravel_shank};
+  return std::max(ends[0] * growth, ends[1] * growth) + job.process.clearance;
+}
+
+/// How far the strokes' points are off what the paper's construction gives, as text; empty where they are not.
+inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const GrindJob& job, std::size_t every) {
+  const ReferenceCurve curve(job.cutter);
+  const Real scale = job.interpolation.rotary_scale;
+  const Axes noise = 4 * roundingOf(setpoints);
+  const Real x_noise = noise[kX];
+  const Real a_noise = noise[kA] + x_noise * std::abs(curve.k) / 0.2L;
+  const auto pairs = pairsOf(setpoints);
+  for (std::size_t i = 0; i < pairs.size(); i += every) {
+    const SeenPair& s = pairs[i];
+    const Real x = s.start.position[kX];
+    const Real slope = scale * curve.slope(x);
+    const Real l = (s.odd.position[kX] - x) * std::sqrt(1 + slope * slope);
+    if (l == 0) continue;
+    const ReferencePair expected = referencePair(job.interpolation.even_step, curve, scale, x, l);
+    const Real x2 = s.even.position[kX] - x;
+    const Real a1 = Real(s.odd.position[kA]) - s.start.position[kA];
+    const Real a2 = Real(s.even.position[kA]) - s.start.position[kA];
+    const bool good = std::abs(x2 - expected.x2) <= 4 * x_noise + 1e-12L * std::abs(x2) &&
+                      std::abs(a1 - expected.a1) <= 1e-11L + a_noise && std::abs(a2 - expected.a2) <= 1e-11L + a_noise;
+    if (!good) {
+      return "cycle " + std::to_string(s.odd.cycle) + ": x2 off by " +
+             std::to_string(static_cast<double>((x2 - expected.x2) * 1e15L)) + "e-15, a by " +
+             std::to_string(static_cast<double>((a1 - expected.a1) * 1e12L)) + "e-12, " +
+             std::to_string(static_cast<double>((a2 - expected.a2) * 1e12L)) + "e-12";
+    }
+  }
+  return "";
+}
+
+/// Whether every odd point leaves the curve from where its pair starts by the tangent's error k b dX^2 / (2 u^2), up to
+/// the next orders, of which 2/3 b dX/u is the largest.
+inline std::string offTheTangent(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
+  const ReferenceCurve curve(job.cutter);
+  const Axes noise = 4 * roundingOf(setpoints);
+  for (const SeenPair& s : pairsOf(setpoints)) {
+    const Real x = s.start.position[kX];
+    const Real dx = s.odd.position[kX] - x;
+    const Real growth = curve.b * dx / curve.u(x);
+    const Real leading = curve.k * curve.b * dx * dx / (2 * curve.u(x) * curve.u(x));
+    const Real before = s.start.step == StepKind::kEven ? s.start.path_error : 0;
+    const Real rounding = noise[kA] + noise[kX] * std::abs(curve.slope(x)) + 1e-15L;
+    if (!(std::abs(s.odd.path_error - before + leading) <= std::abs(leading * growth) + rounding)) {
+      return "cycle " + std::to_string(s.odd.cycle) + " odd error " + ::testing::PrintToString(s.odd.path_error);
+    }
+  }
+  return "";
+}
+
+/// How far a point of a stroke is off the theoretical curve, at the cutter's surface and normal to the helix. [m]
+class Deviation {
+ public:
+  explicit Deviation(const GrindJob& job)
+      : curve_(job.cutter),
+        teeth_(job.tooth_angles),
+        end_radius_(Real(job.cutter.end_diameter) / 2),
+        growth_(std::tan(Real(job.cutter.cone_angle))),
+        normal_(std::cos(std::atan(std::tan(Real(job.cutter.spiral_angle)) * std::cos(Real(job.cutter.cone_angle))))) {}
+
+  double of(const Setpoint& p) const {
+    const Real x = p.position[kX];
+    const Real error = curve_.a(x) - (Real(p.position[kA]) - teeth_[p.tooth]);
+    return static_cast<double>(std::abs(error) * (end_radius_ + x * growth_) * normal_);
+  }
+
+ private:
+  ReferenceCurve curve_;
+  std::vector<double> teeth_;
+  Real end_radius_, growth_, normal_;
+};
+
+/// What every move was for, in the order in which they came.
+inline std::vector<std::string> movesOf(const std::vector<Setpoint>& setpoints) {
+  std::vector<std::string> moves;
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    const std::string move = std::to_string(p.move_index) + " " + toString(p.move) + " of tooth " +
+                             std::to_string(p.tooth) + ", pass " + std::to_string(p.pass);
+    if (moves.empty() || moves.back() != move) moves.push_back(move);
+  }
+  return moves;
+}
+
+/// The largest deviation of the strokes' points. [m]
+inline double largestDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
+  const Deviation deviation(job);
+  double largest = 0;
+  for (const Setpoint& p : setpoints) {
+    if (p.step != StepKind::kNone) largest = std::max(largest, deviation.of(p));
+  }
+  return largest;
+}
+
+/// What the rounding of A makes of a deviation. [m]
+inline double noiseOfDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
+  const double shank = job.cutter.flute_length + job.process.overtravel_shank;
+  const double x = std::max(shank, job.process.overtravel_end);
+  const double radius = job.cutter.end_diameter / 2 + x * std::abs(std::tan(job.cutter.cone_angle));
+  return (8 * roundingOf(setpoints)[kA] + 1e-15) * radius;
+}
+
+/// What a deviation may be: the tolerance, or what the plan of the undisturbed job reports and refuses. [m]
+inline double allowedDeviation(const std::vector<Setpoint>& undisturbed, const GrindJob& job) {
+  return std::max(job.interpolation.tolerance, largestDeviation(undisturbed, job)) * (1 + 1e-9) +
+         noiseOfDeviation(undisturbed, job);
+}
+
+/// Whether every setpoint of a stroke is where the cutter's equations say, goes on from the one before by no more than
+/// the feed override allows, and the strokes begin and end where they are to.
+inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& work) {
+  const GrindProgram program = work.program();
+  const CutterGeometry& g = work.job.cutter;
+  const double from = program.strokeFrom();
+  const double to = program.strokeTo();
+  const double direction = to < from ? -1 : 1;
+  const Axes rounding = 2 * roundingOf(setpoints);
+  const double growth = std::tan(g.cone_angle);
+  const auto z_per_y = static_cast<double>(zPerY(g));
+  const double feed = kMaxFeedOverride * work.job.process.feed / edgePerTravel(g);
+  const double step = feed * work.machine.period;
+  const ReferenceCurve curve(g);
+  const auto thin = static_cast<double>(std::min(curve.u(from), curve.u(to)));
+  const double uneven = 4 * std::abs(static_cast<double>(curve.b)) * step / thin;
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    if (p.step == StepKind::kNone) continue;
+    const Setpoint& before = setpoints[i - 1];
+    const double x = p.position[kX];
+    RC_ASSERT(p.cycle == before.cycle + 1);
+    const double way = direction * (x - before.position[kX]);
+    RC_ASSERT(way >= -rounding[kX]);
+    RC_ASSERT(way <= step * (1 + uneven) + rounding[kX]);
+    if (p.step == StepKind::kEven) {
+      RC_ASSERT(direction * (x - setpoints[i - 2].position[kX]) <= 2 * step * (1 + 1e-9) + rounding[kX]);
+    }
+    RC_ASSERT(direction * (to - x) >= -rounding[kX]);
+    RC_ASSERT(std::abs(p.position[kY] - (x * growth - work.job.process.depth)) <= 2 * rounding[kY]);
+    const Real correction = referenceCorrection(zCorrectionOf(work.job, p.tooth), x);
+    RC_ASSERT(std::abs(p.position[kZ] - (x * growth * z_per_y + correction)) <= 2 * rounding[kZ] + 1e-18);
+    const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
+    if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
+    if (ends) RC_ASSERT(p.move_fraction == 1);
+  }
+}
+
+}  // namespace flute_grinder::test_support

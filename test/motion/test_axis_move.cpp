@@ -1,0 +1,179 @@
+#include "flute_grinder/motion/axis_move.h"
+
+#include "flute_grinder/motion/limit_check.h"
+
+#include "generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_axis_move {
+
+using namespace test_support;
+
+const Axes kFrom(0.01, -0.002, 0.003, 4);
+
+std::vector<Setpoint> all(AxisMove& move) {
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  while (move.next(p)) setpoints.push_back(p);
+  return setpoints;
+}
+
+TEST(AxisMove, HasNothingToDoBeforeItBegins) {
+  AxisMove move(plainMachine());
+  Setpoint p;
+  EXPECT_FALSE(move.next(p));
+  EXPECT_TRUE(move.finished());
+}
+
+TEST(AxisMove, RefusesAMachineWithoutLimitsOfAnAxis) {
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    Machine machine = plainMachine();
+    machine.limits.max_jerk[axis] = 0;
+    EXPECT_THROW(AxisMove{machine}, std::invalid_argument) << axis;
+  }
+}
+
+class AxisMoveAlong : public ::testing::TestWithParam<std::tuple<int, int>> {};
+
+TEST_P(AxisMoveAlong, GoesStraightExactlyToItsEnd) {
+  const auto [axis, direction] = GetParam();
+  AxisMove move(plainMachine());
+  const double to = kFrom[axis] + direction * (axis == kA ? 0.5 : 0.009);
+  move.begin(MoveKind::kLift, kFrom, axis, to, plainMachine().limits.max_velocity[axis]);
+  EXPECT_EQ(move.axis(), axis);
+  EXPECT_EQ(move.direction(), direction);
+  const auto setpoints = all(move);
+  ASSERT_GT(setpoints.size(), 10u);
+  EXPECT_EQ(setpoints.back().cycle % 2, 0u);
+  EXPECT_TRUE((setpoints.front().position == kFrom).all());
+  double at = kFrom[axis];
+  for (std::size_t i = 0; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    ASSERT_EQ(p.cycle, i);
+    ASSERT_EQ(p.move, MoveKind::kLift);
+    Axes expected = kFrom;
+    expected[axis] = p.position[axis];
+    ASSERT_TRUE((p.position == expected).all());
+    ASSERT_GE(direction * (p.position[axis] - at), 0);
+    ASSERT_NEAR(p.velocity[axis], (p.position[axis] - at) / 1e-3, 1e-9);
+    at = p.position[axis];
+  }
+  EXPECT_EQ(at, to);
+  EXPECT_EQ(setpoints.back().move_fraction, 1);
+  EXPECT_TRUE(move.finished());
+}
+
+INSTANTIATE_TEST_SUITE_P(, AxisMoveAlong,
+                         ::testing::Combine(::testing::Values(kX, kY, kZ, kA), ::testing::Values(1, -1)));
+
+TEST(AxisMove, ToWhereTheAxisStandsNothingMoves) {
+  AxisMove move(plainMachine());
+  move.begin(MoveKind::kLift, kFrom, kY, kFrom[kY], 0.01);
+  for (const Setpoint& p : all(move)) EXPECT_TRUE((p.position == kFrom).all());
+  EXPECT_TRUE(move.finished());
+}
+
+TEST(AxisMove, KeepsItsSpeed) {
+  AxisMove move(plainMachine());
+  move.begin(MoveKind::kPosition, kFrom, kX, kFrom[kX] - 0.02, 0.01);
+  double fastest = 0;
+  for (const Setpoint& p : all(move)) fastest = std::max(fastest, -p.velocity[kX]);
+  EXPECT_NEAR(fastest, 0.01, 1e-9);
+}
+
+TEST(AxisMove, StopsAtSpeedZeroAndGoesOnAtAnother) {
+  AxisMove move(plainMachine());
+  move.begin(MoveKind::kPosition, kFrom, kZ, kFrom[kZ] + 0.02, 0.02);
+  Setpoint p;
+  for (int i = 0; i < 200; ++i) ASSERT_TRUE(move.next(p));
+  move.setSpeed(0);
+  const double before = p.position[kZ];
+  while (move.next(p)) {
+  }
+  // From 20 mm/s at 50 m/s^3, below 2 m/s^2: over v sqrt(v/j); at most a pair is begun before.
+  const double braking = 0.02 * std::sqrt(0.02 / 50);
+  EXPECT_GT(p.position[kZ], before);
+  EXPECT_LT(p.position[kZ], before + braking + 2e-3 * 0.02 + 1e-9);
+  EXPECT_FALSE(move.finished());
+  move.setSpeed(std::nan(""));
+  move.setSpeed(-0.01);
+  move.setSpeed(99);
+  EXPECT_FALSE(move.next(p)) << "a speed that is not allowed was taken";
+  move.setSpeed(0.01);
+  while (move.next(p)) {
+  }
+  EXPECT_TRUE(move.finished());
+  EXPECT_EQ(p.position[kZ], kFrom[kZ] + 0.02);
+}
+
+RC_GTEST_PROP(AxisMoveProperty, KeepsTheLimitsAtAnySpeedsAndSlowedDownAtAnyMoment, ()) {
+  const Machine machine = *test_support::machine();
+  AxisMove move(machine);
+  LimitCheck check(machine.limits, machine.period);
+  const int axis = *whole(kX, kA);
+  const int direction = *rc::gen::element(1, -1);
+  const double fastest = machine.limits.max_velocity[axis];
+  const double to = kFrom[axis] + direction * *test_support::logUniform(1e-6, axis == kA ? 3 : 0.1);
+  const double speed = fastest * *uniform(0.01, 1);
+  move.begin(MoveKind::kPosition, kFrom, axis, to, speed);
+  const int slow_down_at = *whole(1, 60);
+  std::vector<int> changes;
+  for (int i = 0; i < 5; ++i) changes.push_back(*whole(0, 300));
+  const bool stays = *whole(0, 1) == 0;
+  Setpoint p;
+  double before = kFrom[axis];
+  bool stopped = false;
+  for (int cycle = 0; cycle < 1000000; ++cycle) {
+    if (!move.next(p)) {
+      RC_ASSERT(p.cycle % 2 == 0u);
+      if (move.finished() || stays) break;
+      move.setSpeed(speed);
+      if (!move.next(p)) break;
+    }
+    RC_ASSERT(!check.check(p));
+    RC_ASSERT(direction * (p.position[axis] - before) >= -1e-15 * std::abs(before));
+    RC_ASSERT(direction * (to - p.position[axis]) >= 0);
+    before = p.position[axis];
+    if (cycle == slow_down_at) {
+      const double factor = *uniform(0.1, 0.5);
+      move.slowDown(factor);
+      check.slowDown(factor);
+    }
+    for (const int at : changes) {
+      if (at != cycle) continue;
+      stopped = *whole(0, 1) == 0;
+      move.setSpeed(stopped ? 0 : fastest * *uniform(0.01, 1));
+    }
+  }
+  RC_ASSERT(stopped || move.finished());
+  if (move.finished()) RC_ASSERT(p.position[axis] == to);
+}
+
+/// The distance of two positions is rounded, and so is their sum. Between round numbers a setpoint often comes within
+/// rounding of the end before the move is finished.
+RC_GTEST_PROP(AxisMoveProperty, EndsExactlyAtItsEndAndIsNeverBeyond, ()) {
+  Machine machine = plainMachine();
+  machine.limits.max_acceleration[kZ] = 0.5;
+  machine.limits.max_jerk[kZ] = 10;
+  AxisMove move(machine);
+  for (int i = 0; i < 10; ++i) {
+    const double from = 0.5e-3 * *whole(-200, 200), to = 0.5e-3 * *whole(-200, 200);
+    move.begin(MoveKind::kPosition, Axes(from, from, from, from), kZ, to, 5e-3 * *whole(1, 20));
+    Setpoint p;
+    while (move.next(p)) {
+      const bool within = to < from ? p.position[kZ] >= to : p.position[kZ] <= to;
+      RC_ASSERT(within);
+    }
+    RC_ASSERT(p.position[kZ] == to);
+  }
+}
+
+}  // namespace test_axis_move
+}  // namespace flute_grinder

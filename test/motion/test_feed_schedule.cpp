@@ -1,0 +1,437 @@
+#include "flute_grinder/motion/feed_schedule.h"
+
+#include "curve/reference.h"
+#include "generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_feed_schedule {
+
+using namespace test_support;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+/// A cutter that comes to a thin end: a 1 mm tip on a 12 deg cone.
+CutterGeometry thinCutter() { return {1e-3, 12 * units::kDegree, 45 * units::kDegree, 8 * units::kDegree, 20e-3}; }
+
+/// Limits that hinder nothing.
+Machine boundless() {
+  Machine m = plainMachine();
+  m.limits.max_velocity.setConstant(1e6);
+  m.limits.max_acceleration.setConstant(1e12);
+  m.limits.max_jerk.setConstant(1e18);
+  return m;
+}
+
+FeedSchedule::Stroke plainStroke(double feed = 0.01) { return {-0.5e-3, 20e-3, feed, 1e-3}; }
+
+/// A cutter, a stroke along it either way, and a machine.
+struct Case {
+  CutterGeometry cutter;
+  FeedSchedule::Stroke stroke;
+  Machine machine;
+
+  static Case draw() {
+    Case c;
+    c.cutter = *test_support::cutterGeometry();
+    c.machine = *test_support::machine();
+    double from = -test_support::openLength(c.cutter, -1, *uniform(0, 2e-3));
+    double to = c.cutter.flute_length;
+    if (*rc::gen::arbitrary<bool>()) std::swap(from, to);
+    c.stroke = {from, to, *test_support::logUniform(1e-3, 0.1), *test_support::logUniform(0.1e-6, 1e-3)};
+    return c;
+  }
+
+  FeedSchedule schedule() const { return FeedSchedule(ConicalCutter(cutter), stroke, machine); }
+};
+
+/// Where the axes are at X, by the paper's equations. [m], A [rad]
+struct Pose {
+  Real axis[kAxisCount];
+};
+
+Pose poseAt(const CutterGeometry& g, const ReferenceCurve& curve, Real x) {
+  const Real y = x * std::tan(Real(g.cone_angle));
+  return {{x, y, y * test_support::zPerY(g), curve.a(x)}};
+}
+
+/// The worst of velocity, acceleration and jerk over their limits, by differences of the axes over the time `h` between
+/// the places given; what rounding of X makes of the differences is let pass.
+struct Excess {
+  double worst = 0;
+  std::string what;
+};
+
+Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
+  const ReferenceCurve curve(c.cutter);
+  const AxisLimits& l = c.machine.limits;
+  const Real x_noise = 2 * kEps * std::max(std::abs(c.stroke.from), std::abs(c.stroke.to));
+  std::vector<Pose> poses;
+  for (const double x : xs) poses.push_back(poseAt(c.cutter, curve, x));
+  Excess result;
+  const auto see = [&](const char* what, int axis, Real value, Real limit, Real noise) {
+    const auto excess = static_cast<double>((std::abs(value) - noise) / limit);
+    if (excess <= result.worst) return;
+    result.worst = excess;
+    result.what = std::string(kJointNames[static_cast<std::size_t>(axis)]) + " " + what;
+  };
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Real per_x[kAxisCount]{1, 1, 1, std::abs(curve.slope(xs[i])) * Real(1.2) + 1};
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      const auto p = [&](std::size_t back) { return poses[i - back].axis[axis]; };
+      const Real noise = x_noise * per_x[axis];
+      if (i >= 1) see("velocity", axis, (p(0) - p(1)) / h, l.max_velocity[axis], 2 * noise / h);
+      if (i >= 2)
+        see("acceleration", axis, (p(0) - 2 * p(1) + p(2)) / (h * h), l.max_acceleration[axis], 4 * noise / (h * h));
+      if (i >= 3)
+        see("jerk", axis, (p(0) - 3 * p(1) + 3 * p(2) - p(3)) / (h * h * h), l.max_jerk[axis], 8 * noise / (h * h * h));
+    }
+  }
+  return result;
+}
+
+/// The one cause for which a feed is cut; empty where it is not, and all where there are several.
+std::string causeOf(const FeedSchedule& schedule) {
+  std::string causes;
+  for (const core::FeedLimit& cut : schedule.feedLimits()) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  return causes;
+}
+
+void expectWithin(const Excess& excess) {
+  if (excess.worst > 1 + 1e-6) RC_FAIL(excess.what + " " + std::to_string(excess.worst) + " of its limit");
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, BeginsAndEndsExactlyWhereTheStrokeDoes, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  RC_ASSERT(schedule.x(0) == c.stroke.from);
+  RC_ASSERT(schedule.x(schedule.length()) == c.stroke.to);
+  RC_ASSERT(schedule.length() >= std::abs(c.stroke.to - c.stroke.from) * (1 - 4 * kEps));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, ComesToTheEndWithoutAJump, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const double before = schedule.length() * (1 - 2 * kEps);
+  RC_ASSERT(std::abs(schedule.x(before) - c.stroke.to) <=
+            1e-14 * std::abs(c.stroke.to - c.stroke.from) +
+                8 * kEps * (std::abs(c.stroke.from) + std::abs(c.stroke.to)));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, GoesOneWayOnly, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const double direction = c.stroke.to > c.stroke.from ? 1 : -1;
+  const int steps = *whole(1000, 3000);
+  for (int i = 1; i <= steps; ++i) {
+    const double before = schedule.x(schedule.length() * (i - 1) / steps);
+    RC_ASSERT(direction * (schedule.x(schedule.length() * i / steps) - before) > 0);
+  }
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, RateIsTheDerivativeOfX, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const double direction = c.stroke.to > c.stroke.from ? 1 : -1;
+  const double h = schedule.length() * 1e-4;
+  for (int i = 0; i < 100; ++i) {
+    const double s = h + (schedule.length() - 2 * h) * (i + 0.5) / 100;
+    const double derivative = direction * (schedule.x(s + h) - schedule.x(s - h)) / (2 * h);
+    const double low = std::min(schedule.rate(s - h), schedule.rate(s + h));
+    const double high = std::max(schedule.rate(s - h), schedule.rate(s + h));
+    const double noise = 1e-9;
+    // A mean of a rate that only rises, or only falls, over the interval; the blend may lie within.
+    RC_ASSERT(derivative >= low - noise);
+    RC_ASSERT(derivative <= high + noise);
+    RC_ASSERT(high - low <= 0.1);
+  }
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, TheRateIsAtMostOneAndNeverZero, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  for (int i = 0; i <= 100; ++i) {
+    const double rate = schedule.rate(schedule.length() * i / 100);
+    RC_ASSERT(rate > 0);
+    RC_ASSERT(rate <= 1 + 4 * kEps);
+  }
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
+  Case c = Case::draw();
+  c.machine.limits = boundless().limits;
+  c.machine.period = 1e-6;
+  c.stroke.tolerance = 1e-3;
+  const FeedSchedule schedule = c.schedule();
+  RC_ASSERT(schedule.feedLimits().empty());
+  const double edge = test_support::edgePerTravel(c.cutter);
+  const double feed = c.stroke.surface_feed;
+  RC_ASSERT(std::abs(schedule.feedSpeed() * edge - feed) <= 4 * kEps * feed);
+  RC_ASSERT(std::abs(schedule.limits().velocity * edge - 1.2 * feed) <= 8 * kEps * feed);
+  RC_ASSERT(std::abs(schedule.length() - std::abs(c.stroke.to - c.stroke.from)) <= 4 * kEps * schedule.length());
+  for (int i = 0; i <= 20; ++i) RC_ASSERT(schedule.rate(schedule.length() * i / 20) == 1);
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, NeverAsksForMoreThanTheFeedAndAFifth, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const double asked = c.stroke.surface_feed / test_support::edgePerTravel(c.cutter);
+  RC_ASSERT(schedule.feedSpeed() <= asked * (1 + 4 * kEps));
+  RC_ASSERT(schedule.limits().velocity >= schedule.feedSpeed());
+  RC_ASSERT(schedule.limits().velocity <= 1.2 * asked * (1 + 8 * kEps));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, LeavesNoRoomForMoreWhereSomethingHoldsTheFeedBack, ()) {
+  const FeedSchedule schedule = Case::draw().schedule();
+  RC_PRE(!schedule.feedLimits().empty());
+  RC_ASSERT(schedule.limits().velocity == schedule.feedSpeed());
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, TellsWhereAHoldsTheFeedBack, ()) {
+  Case c = Case::draw();
+  c.machine.limits.max_velocity[kA] *= *test_support::logUniform(0.01, 1);
+  const FeedSchedule schedule = c.schedule();
+  const bool forward = c.stroke.to > c.stroke.from;
+  const auto ahead = [&](double x, double of) { return forward ? x > of : x < of; };
+  for (const core::FeedLimit& cut : schedule.feedLimits()) {
+    RC_ASSERT(ahead(cut.to_x, cut.from_x));
+    RC_ASSERT(!ahead(c.stroke.from, cut.from_x));
+    RC_ASSERT(!ahead(cut.to_x, c.stroke.to));
+  }
+  bool slower = false;
+  for (int i = 0; i <= 1000; ++i) slower = slower || schedule.rate(schedule.length() * i / 1000) < 1 - 1e-6;
+  RC_PRE(slower);  // and not next to a cylinder, which is as thin everywhere
+  const core::FeedLimit& cut = schedule.feedLimits().back();
+  RC_ASSERT(cut.from_x == c.stroke.from || cut.to_x == c.stroke.to);
+  const double range = cut.to_x - cut.from_x;
+  // The feed nears the full one evenly where the cut ends, and is all but there in the last part of the range.
+  const bool ends_early = cut.to_x != c.stroke.to;
+  const bool begins_late = cut.from_x != c.stroke.from;
+  for (int i = 0; i <= 1000; ++i) {
+    const double s = schedule.length() * i / 1000;
+    const double x = schedule.x(s);
+    const double from = cut.from_x + (begins_late ? 0.1 : 0) * range;
+    const double to = cut.to_x - (ends_early ? 0.1 : 0) * range;
+    if (ahead(x, from) && ahead(to, x)) RC_ASSERT(schedule.rate(s) < 1);
+    const double rounding = 1e-12 * range;
+    if (ahead(cut.from_x - rounding, x) || ahead(x, cut.to_x + rounding)) RC_ASSERT(schedule.rate(s) >= 1 - 4 * kEps);
+  }
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, TheRunUpIsTheWayToTheFeedFromRest, ()) {
+  const FeedSchedule schedule = Case::draw().schedule();
+  const MotionLimits l = schedule.limits();
+  const double speed = schedule.feedSpeed();
+  FeedLaw law(l, 1e3 * (schedule.runUp() + schedule.length()), speed);
+  // Time is cut until the law has just come to its speed.
+  const double all_of_it = speed / l.acceleration + 2 * std::sqrt(speed / l.jerk) + l.acceleration / l.jerk;
+  for (int i = 0; i < 100000 && !law.cruising(); ++i) law.advance(all_of_it / 10000);
+  RC_ASSERT(law.cruising());
+  RC_ASSERT(law.position() >= schedule.runUp() * (1 - 1e-9));
+  RC_ASSERT(law.position() <= schedule.runUp() * (1 + 1e-9) + speed * all_of_it / 10000 * (1 + 1e-9));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, LeavesTheFeedLawSomethingToGoBy, ()) {
+  const MotionLimits limits = Case::draw().schedule().limits();
+  RC_ASSERT(limits.velocity > 0);
+  RC_ASSERT(std::isfinite(limits.velocity));
+  RC_ASSERT(limits.acceleration > 0);
+  RC_ASSERT(std::isfinite(limits.acceleration));
+  RC_ASSERT(limits.jerk > 0);
+  RC_ASSERT(std::isfinite(limits.jerk));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, AnEvenMotionKeepsAllAxesWithinTheirLimits, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const double speed = schedule.limits().velocity;  // of the largest override
+  const double duration = schedule.length() / speed;
+  // At the control cycle or finer, a few thousand places in a window of the stroke.
+  const double h = std::max(std::min(c.machine.period, duration / 2000), 2e-4);
+  const int count = static_cast<int>(std::min(3000.0, duration / h));
+  const double first = std::max(0.0, duration - count * h) * *uniform(0, 1);
+  std::vector<double> xs;
+  for (int i = 0; i < count; ++i) xs.push_back(schedule.x(speed * (first + i * h)));
+  expectWithin(excessOf(c, xs, h));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, AMotionWithStopsKeepsAllAxesWithinTheirLimits, ()) {
+  const Case c = Case::draw();
+  const FeedSchedule schedule = c.schedule();
+  const MotionLimits limits = schedule.limits();
+  FeedLaw law(limits, schedule.length(), limits.velocity);
+  const double h = std::max(c.machine.period, law.timeLeft() / 4000);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> fraction(0, 1);
+  const double chance = *test_support::logUniform(0.002, 0.1);
+  std::vector<double> xs(3, schedule.x(0));
+  for (int i = 0; i < 6000 && !law.finished(); ++i) {
+    if (i < 3000 && fraction(random) < chance)
+      law.setTarget(limits.velocity * std::max(0.0, 1.5 * fraction(random) - 0.5));
+    if (i >= 3000) law.setTarget(limits.velocity);
+    law.advance(h);
+    xs.push_back(schedule.x(law.position()));
+  }
+  for (int i = 0; i < 3; ++i) xs.push_back(xs.back());
+  if (!law.resting()) xs.resize(xs.size() - 3);
+  expectWithin(excessOf(c, xs, h));
+}
+
+RC_GTEST_PROP(FeedScheduleProperty, UsesTheLimitOfAWhereAHindersTheFeed, ()) {
+  // Only the velocity of A is short: it is used up at the thin end, but for the ripple of the odd-even steps.
+  Machine machine = boundless();
+  machine.limits.max_velocity[kA] = *uniform(0.5, 5);
+  machine.period = 1e-4;
+  const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+  const ReferenceCurve curve(thinCutter());
+  const Real a_speed = schedule.limits().velocity * schedule.rate(0) * std::abs(curve.slope(schedule.x(0)));
+  RC_ASSERT(a_speed <= machine.limits.max_velocity[kA]);
+  RC_ASSERT(a_speed >= 0.99 * machine.limits.max_velocity[kA]);
+  RC_ASSERT(causeOf(schedule) == "axis_a velocity");
+}
+
+TEST(FeedSchedule, TurnsAEvenlyWhereItCutsTheFeed) {
+  Machine machine = boundless();
+  machine.limits.max_velocity[kA] = 5;  // 0.01 m/s / 1.43 makes 15 rad/s at the tip, 2 rad/s at the shank
+  const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+  const ReferenceCurve curve(thinCutter());
+  const auto a_speed = [&](double s) { return schedule.rate(s) * static_cast<double>(curve.slope(schedule.x(s))); };
+  EXPECT_NEAR(a_speed(0.5e-3), a_speed(0), 1e-9 * a_speed(0));
+  EXPECT_NEAR(a_speed(1e-3), a_speed(0), 1e-9 * a_speed(0));
+  EXPECT_LT(schedule.rate(0), 0.5);
+  EXPECT_EQ(schedule.rate(schedule.length()), 1);
+}
+
+TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
+  // A allows the feed to grow along the cone faster than X may: dv/dt = b c v, and d2v/dt2 = (b c)^2 v. Y and Z follow
+  // X in proportion, by tan C and tan C sin r.
+  Case c;
+  c.cutter = {1e-3, 20 * units::kDegree, 10 * units::kDegree, 8 * units::kDegree, 20e-3};
+  c.stroke = {0, 20e-3, 0.01, 1e-3};
+  const double growth = std::tan(20 * units::kDegree);
+  const double per_x[]{1, growth, growth * std::sin(8 * units::kDegree)};
+  const char* const names[]{"axis_x", "axis_y", "axis_z"};
+  for (const int axis : {kX, kY, kZ}) {
+    for (const bool by_jerk : {true, false}) {
+      SCOPED_TRACE(names[axis]);
+      c.machine = boundless();
+      c.machine.limits.max_velocity[kA] = 2.5;
+      (by_jerk ? c.machine.limits.max_jerk : c.machine.limits.max_acceleration)[axis] =
+          (by_jerk ? 0.1 : 0.02) * per_x[axis];
+      const FeedSchedule schedule = c.schedule();
+      EXPECT_EQ(causeOf(schedule), std::string(names[axis]) + (by_jerk ? " jerk" : " acceleration"));
+      EXPECT_GT(schedule.limits().acceleration, 0);
+      EXPECT_GT(schedule.limits().jerk, 0);
+      std::vector<double> xs;
+      const double h = 2e-3;
+      for (double s = 0; s < schedule.length(); s += h * schedule.limits().velocity) xs.push_back(schedule.x(s));
+      const Excess excess = excessOf(c, xs, h);
+      EXPECT_LE(excess.worst, 1 + 1e-6) << excess.what;
+    }
+  }
+}
+
+TEST(FeedSchedule, TellsEveryCauseWithItsRange) {
+  // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
+  // and as much as X where the radius is v tan S / 5 rad/s.
+  Machine machine = boundless();
+  const double asked = 0.01 / test_support::edgePerTravel(thinCutter());
+  machine.limits.max_velocity[kX] = asked / 2;
+  machine.limits.max_velocity[kA] = 5;
+  machine.period = 1e-6;
+  for (const bool backward : {false, true}) {
+    FeedSchedule::Stroke stroke = plainStroke();
+    if (backward) std::swap(stroke.from, stroke.to);
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
+    ASSERT_EQ(causeOf(schedule), "axis_x velocity, axis_a velocity");
+    const core::FeedLimit& along = schedule.feedLimits()[0];
+    const core::FeedLimit& tip = schedule.feedLimits()[1];
+    EXPECT_EQ(along.from_x, stroke.from);
+    EXPECT_EQ(along.to_x, stroke.to);
+    const double end = (asked / 2 / 5 - 0.5e-3) / std::tan(12 * units::kDegree);
+    EXPECT_EQ(backward ? tip.to_x : tip.from_x, -0.5e-3);
+    EXPECT_NEAR(backward ? tip.from_x : tip.to_x, end, 0.01e-3);
+  }
+}
+
+TEST(FeedSchedule, IsTheSameEitherWay) {
+  Machine machine = plainMachine();
+  machine.limits.max_velocity[kA] = 5;
+  FeedSchedule::Stroke back = plainStroke();
+  std::swap(back.from, back.to);
+  const FeedSchedule there(ConicalCutter(thinCutter()), plainStroke(), machine);
+  const FeedSchedule here(ConicalCutter(thinCutter()), back, machine);
+  EXPECT_NEAR(there.length(), here.length(), 1e-15);
+  for (int i = 0; i <= 20; ++i) {
+    const double s = there.length() * i / 20;
+    EXPECT_NEAR(there.x(s), here.x(here.length() - s), 1e-15);
+    EXPECT_NEAR(there.rate(s), here.rate(here.length() - s), 1e-12);
+  }
+}
+
+TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
+  const auto limitedBy = [](Machine machine, double tolerance = 1e-3) {
+    FeedSchedule::Stroke stroke = plainStroke();
+    stroke.tolerance = tolerance;
+    return causeOf(FeedSchedule(ConicalCutter(thinCutter()), stroke, machine));
+  };
+  const double x_speed = 0.01 / test_support::edgePerTravel(thinCutter());
+  EXPECT_EQ(limitedBy(boundless()), "");
+  EXPECT_EQ(limitedBy(boundless(), 1e-9), "interpolation tolerance");
+  Machine m = boundless();
+  m.limits.max_velocity[kX] = x_speed / 2;
+  EXPECT_EQ(limitedBy(m), "axis_x velocity");
+  m = boundless();
+  m.limits.max_velocity[kY] = x_speed / 10;
+  EXPECT_EQ(limitedBy(m), "axis_y velocity");
+  m = boundless();
+  m.limits.max_velocity[kZ] = x_speed / 100;
+  EXPECT_EQ(limitedBy(m), "axis_z velocity");
+  m = boundless();
+  m.limits.max_velocity[kA] = 1;
+  EXPECT_EQ(limitedBy(m), "axis_a velocity");
+  m = boundless();
+  m.limits.max_acceleration[kA] = 1;
+  EXPECT_EQ(limitedBy(m), "axis_a acceleration");
+  m = boundless();
+  m.limits.max_jerk[kA] = 1;
+  EXPECT_EQ(limitedBy(m), "axis_a jerk");
+}
+
+TEST(FeedSchedule, OfACylinderIsNotBentByA) {
+  CutterGeometry cylinder = thinCutter();
+  cylinder.cone_angle = 0;
+  Machine machine = boundless();
+  machine.limits.max_velocity[kA] = 2;
+  const FeedSchedule schedule(ConicalCutter(cylinder), plainStroke(), machine);
+  // k = 2000 tan 45 deg = 2000 rad/m: 1 mm/s
+  EXPECT_NEAR(schedule.limits().velocity, 1e-3, 1e-12);
+  EXPECT_NEAR(schedule.length(), 20.5e-3, 1e-15);
+  EXPECT_EQ(schedule.rate(0), 1);
+  EXPECT_EQ(causeOf(schedule), "axis_a velocity");
+}
+
+TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {
+  FeedSchedule::Stroke stroke = plainStroke(0.1);
+  stroke.tolerance = 1e-6;
+  const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, boundless());
+  const ReferenceCurve curve(thinCutter());
+  const Real u = curve.u(stroke.from);
+  const Real dx = schedule.limits().velocity * schedule.rate(0) * boundless().period;
+  const Real normal =
+      std::cos(std::atan(std::tan(Real(thinCutter().spiral_angle)) * std::cos(Real(thinCutter().cone_angle))));
+  const Real deviation = std::abs(curve.k * curve.b) * dx * dx / (2 * u * u) * u * Real(0.5e-3) * normal;
+  EXPECT_LE(static_cast<double>(deviation), 1e-6);
+  EXPECT_GE(static_cast<double>(deviation), 0.9e-6);
+}
+
+}  // namespace test_feed_schedule
+}  // namespace flute_grinder

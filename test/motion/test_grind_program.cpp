@@ -1,0 +1,427 @@
+#include "flute_grinder/motion/grind_program.h"
+
+#include "curve/reference.h"
+#include "generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_grind_program {
+
+using namespace test_support;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+GrindProgram programOf(const GrindJob& job, const ToothPass& first = {}) {
+  return GrindProgram(job, plainMachine(), plainMachine().park, first);
+}
+
+std::vector<MoveKind> kindsOf(const GrindProgram& program) {
+  std::vector<MoveKind> kinds;
+  for (const Move& move : program.moves()) kinds.push_back(move.kind);
+  return kinds;
+}
+
+/// Tooth and pass of every stroke, as "tooth/pass".
+std::vector<std::string> strokesOf(const GrindProgram& program) {
+  std::vector<std::string> strokes;
+  for (const Move& move : program.moves()) {
+    if (move.kind == MoveKind::kStroke) strokes.push_back(std::to_string(move.tooth) + "/" + std::to_string(move.pass));
+  }
+  return strokes;
+}
+
+const Move& firstOf(const GrindProgram& program, MoveKind kind) {
+  for (const Move& move : program.moves()) {
+    if (move.kind == kind) return move;
+  }
+  throw std::logic_error("no such move");
+}
+
+std::string errorOf(const std::function<void()>& make) {
+  try {
+    make();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Two teeth, three passes.
+GrindJob manyPasses() {
+  GrindJob j = paperJob();
+  j.tooth_angles = {0, 3};
+  j.process.depth = 1.5e-3;
+  return j;
+}
+
+TEST(GrindProgram, OfOnePassIndexesGoesOverTheWorkDownAlongAndOut) {
+  EXPECT_EQ(kindsOf(programOf(paperJob())),
+            (std::vector<MoveKind>{MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
+                                   MoveKind::kStroke, MoveKind::kRetract, MoveKind::kReturn}));
+}
+
+TEST(GrindProgram, StartingInTheWorkBeginsWithALift) {
+  Axes start;
+  start << 0.01, 0, 0, 1;
+  const GrindProgram program(paperJob(), plainMachine(), start);
+  const Move& lift = program.moves().front();
+  EXPECT_EQ(lift.kind, MoveKind::kLift);
+  EXPECT_EQ(lift.to[kX], start[kX]);
+  EXPECT_EQ(lift.to[kZ], start[kZ]);
+  EXPECT_EQ(lift.to[kA], start[kA]);
+  // It may be another cutter's work: this one's clearance plane is no measure.
+  EXPECT_EQ(lift.to[kY], plainMachine().park[kY]);
+  EXPECT_EQ(program.moves()[1].kind, MoveKind::kIndex);
+}
+
+TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  const GrindProgram program = programOf(job, {1, 0});
+  const test_support::ReferenceCurve curve(job.cutter);
+  const double growth = std::tan(5 * units::kDegree);
+  const double sin_rake = std::sin(8 * units::kDegree);
+  const Move& index = firstOf(program, MoveKind::kIndex);
+  EXPECT_EQ(index.to[kX], plainMachine().park[kX]);
+  EXPECT_EQ(index.to[kY], plainMachine().park[kY]);
+  EXPECT_EQ(index.to[kZ], plainMachine().park[kZ]);
+  EXPECT_NEAR(index.to[kA], 2 + static_cast<double>(curve.a(-1e-3L)), 1e-15);
+  const Move& position = firstOf(program, MoveKind::kPosition);
+  EXPECT_NEAR(position.to[kX], -1e-3, 1e-18);
+  EXPECT_EQ(position.to[kY], plainMachine().park[kY]);
+  EXPECT_NEAR(position.to[kZ], -1e-3 * growth * sin_rake, 1e-18);
+  EXPECT_EQ(position.to[kA], index.to[kA]);
+  const Move& approach = firstOf(program, MoveKind::kApproach);
+  EXPECT_NEAR(approach.to[kY], -1e-3 * growth + 5e-3, 1e-17);
+  const Move& infeed = firstOf(program, MoveKind::kInfeed);
+  EXPECT_NEAR(infeed.to[kY], -1e-3 * growth - 0.5e-3, 1e-17);
+  const Move& stroke = firstOf(program, MoveKind::kStroke);
+  EXPECT_NEAR(stroke.to[kX], 31e-3, 1e-17);
+  EXPECT_NEAR(stroke.to[kY], 31e-3 * growth - 0.5e-3, 1e-17);
+  EXPECT_NEAR(stroke.to[kZ], 31e-3 * growth * sin_rake, 1e-17);
+  EXPECT_NEAR(stroke.to[kA], 2 + static_cast<double>(curve.a(31e-3L)), 1e-14);
+}
+
+TEST(GrindProgram, TakesAllPassesOfAToothBeforeTheNext) {
+  EXPECT_EQ(strokesOf(programOf(manyPasses())), (std::vector<std::string>{"0/0", "0/1", "0/2", "1/0", "1/1", "1/2"}));
+}
+
+TEST(GrindProgram, TakesAPassOfAllTeethBeforeTheNext) {
+  GrindJob job = manyPasses();
+  job.process.order = GrindOrder::kPassMajor;
+  EXPECT_EQ(strokesOf(programOf(job)), (std::vector<std::string>{"0/0", "1/0", "0/1", "1/1", "0/2", "1/2"}));
+}
+
+TEST(GrindProgram, EveryPassOfManyHasItsMoves) {
+  std::vector<MoveKind> expected;
+  for (int i = 0; i < 6; ++i) {
+    expected.insert(expected.end(), {MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
+                                     MoveKind::kStroke, MoveKind::kRetract});
+  }
+  expected.push_back(MoveKind::kReturn);
+  EXPECT_EQ(kindsOf(programOf(manyPasses())), expected);
+}
+
+TEST(GrindProgram, EveryPassGoesToItsDepth) {
+  const GrindProgram program = programOf(manyPasses());
+  const double growth = std::tan(5 * units::kDegree);
+  for (const Move& move : program.moves()) {
+    if (move.kind != MoveKind::kInfeed) continue;
+    EXPECT_NEAR(move.to[kY], -1e-3 * growth - (move.pass + 1) * 0.5e-3, 1e-16);
+  }
+}
+
+TEST(GrindProgram, GoesFromTheShankToTheEndWhenTold) {
+  GrindJob job = paperJob();
+  job.process.direction = StrokeDirection::kToEnd;
+  const GrindProgram program = programOf(job);
+  EXPECT_NEAR(program.strokeFrom(), 31e-3, 1e-17);
+  EXPECT_NEAR(program.strokeTo(), -1e-3, 1e-18);
+  EXPECT_NEAR(firstOf(program, MoveKind::kPosition).to[kX], 31e-3, 1e-17);
+  EXPECT_NEAR(firstOf(program, MoveKind::kStroke).to[kX], -1e-3, 1e-18);
+}
+
+TEST(GrindProgram, WearOfTheWheelGoesDeeper) {
+  GrindJob worn = paperJob();
+  worn.process.wheel_wear = 0.3e-3;
+  const GrindProgram fresh_program = programOf(paperJob());
+  const GrindProgram worn_program = programOf(worn);
+  for (std::size_t i = 0; i < fresh_program.moves().size(); ++i) {
+    const MoveKind kind = fresh_program.moves()[i].kind;
+    const double deeper = kind == MoveKind::kInfeed || kind == MoveKind::kStroke ? 0.3e-3 : 0;
+    EXPECT_NEAR(fresh_program.moves()[i].to[kY] - worn_program.moves()[i].to[kY], deeper, 1e-17) << toString(kind);
+  }
+}
+
+TEST(GrindProgram, ContinuesFromAPassOfATooth) {
+  EXPECT_EQ(strokesOf(programOf(manyPasses(), {0, 2})), (std::vector<std::string>{"0/2", "1/0", "1/1", "1/2"}));
+  EXPECT_EQ(strokesOf(programOf(manyPasses(), {1, 2})), (std::vector<std::string>{"1/2"}));
+  GrindJob job = manyPasses();
+  job.process.order = GrindOrder::kPassMajor;
+  EXPECT_EQ(strokesOf(programOf(job, {1, 1})), (std::vector<std::string>{"1/1", "0/2", "1/2"}));
+}
+
+TEST(GrindProgram, RefusesAFirstPassThatIsNotThere) {
+  for (const ToothPass& first : {ToothPass{-1, 0}, ToothPass{2, 0}, ToothPass{0, -1}, ToothPass{0, 3}}) {
+    const std::string error = errorOf([&] { programOf(manyPasses(), first); });
+    EXPECT_TRUE(contains(error, "first_tooth = " + std::to_string(first.tooth))) << error;
+    EXPECT_TRUE(contains(error, "first_pass = " + std::to_string(first.pass))) << error;
+    EXPECT_TRUE(contains(error, "allowed: 0 to 1 and 0 to 2")) << error;
+  }
+}
+
+TEST(GrindProgram, ReturnsToThePark) {
+  Machine machine = plainMachine();
+  machine.park << 0.05, 0.06, 0.01, 0.7;
+  const GrindProgram program(paperJob(), machine, machine.park);
+  EXPECT_EQ(program.moves().back().kind, MoveKind::kReturn);
+  EXPECT_TRUE((program.moves().back().to == machine.park).all());
+}
+
+/// A machine or a start that no job may run on, and a part of the text that says so.
+struct Unfit {
+  const char* name;
+  std::function<void(Machine&, Axes&)> change;
+  const char* text;
+};
+
+std::ostream& operator<<(std::ostream& out, const Unfit& unfit) { return out << unfit.name; }
+
+class GrindProgramUnfit : public ::testing::TestWithParam<Unfit> {};
+
+TEST_P(GrindProgramUnfit, IsRefusedWithText) {
+  Machine machine = plainMachine();
+  Axes start = machine.park;
+  GetParam().change(machine, start);
+  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, start); });
+  EXPECT_TRUE(contains(error, GetParam().text)) << "got: " << error;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, GrindProgramUnfit,
+    ::testing::Values(
+        Unfit{"ZeroPeriod", [](Machine& m, Axes&) { m.period = 0; }, "period"},
+        Unfit{"NegativePeriod", [](Machine& m, Axes&) { m.period = -1e-3; }, "period"},
+        Unfit{"NanPeriod", [](Machine& m, Axes&) { m.period = kNan; }, "period"},
+        Unfit{"LongPeriod", [](Machine& m, Axes&) { m.period = 2; }, "period"},
+        Unfit{"InfinitePeriod", [](Machine& m, Axes&) { m.period = kInf; }, "period"},
+        Unfit{"ZeroVelocity", [](Machine& m, Axes&) { m.limits.max_velocity[kX] = 0; }, "velocity"},
+        Unfit{"NegativeVelocity", [](Machine& m, Axes&) { m.limits.max_velocity[kA] = -1; }, "velocity"},
+        Unfit{"NanVelocity", [](Machine& m, Axes&) { m.limits.max_velocity[kY] = kNan; }, "velocity"},
+        Unfit{"InfiniteVelocity", [](Machine& m, Axes&) { m.limits.max_velocity[kY] = kInf; }, "velocity"},
+        Unfit{"ZeroAcceleration", [](Machine& m, Axes&) { m.limits.max_acceleration[kZ] = 0; }, "acceleration"},
+        Unfit{"NanAcceleration", [](Machine& m, Axes&) { m.limits.max_acceleration[kX] = kNan; }, "acceleration"},
+        Unfit{"ZeroJerk", [](Machine& m, Axes&) { m.limits.max_jerk[kA] = 0; }, "jerk"},
+        Unfit{"NanJerk", [](Machine& m, Axes&) { m.limits.max_jerk[kA] = kNan; }, "jerk"},
+        Unfit{"NoRange", [](Machine& m, Axes&) { m.limits.min_position[kX] = m.limits.max_position[kX]; },
+              "position limits"},
+        Unfit{"RangeUpsideDown", [](Machine& m, Axes&) { m.limits.min_position[kZ] = 1; }, "position limits"},
+        Unfit{"NanMinimum", [](Machine& m, Axes&) { m.limits.min_position[kY] = kNan; }, "position limits"},
+        Unfit{"InfiniteMaximum", [](Machine& m, Axes&) { m.limits.max_position[kA] = kInf; }, "position limits"},
+        Unfit{"NanStart", [](Machine&, Axes& start) { start[kA] = kNan; }, "start"},
+        Unfit{"InfiniteStart", [](Machine&, Axes& start) { start[kX] = kInf; }, "start"},
+        Unfit{"NanPark", [](Machine& m, Axes&) { m.park[kZ] = kNan; }, "park"},
+        Unfit{"ParkInTheWork", [](Machine& m, Axes&) { m.park[kY] = 7e-3; }, "park position axis_y = 0.007 m"}),
+    [](const auto& info) { return std::string(info.param.name); });
+
+TEST(GrindProgram, TellsHowHighTheParkMustBe) {
+  Machine machine = plainMachine();
+  machine.park[kY] = 7e-3;
+  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, plainMachine().park); });
+  EXPECT_TRUE(contains(error, "at least 0.0077")) << error;  // 2.712 mm + 5 mm
+}
+
+TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
+  Machine machine = plainMachine();
+  machine.limits.max_velocity[kA] = 1e-5;
+  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, machine.park); });
+  EXPECT_TRUE(contains(error, "process.feed")) << error;
+  EXPECT_TRUE(contains(error, "axis_a velocity")) << error;
+}
+
+TEST(GrindProgram, TellsTheHeightAtWhichAllOfTheStrokeIsClear) {
+  EXPECT_NEAR(programOf(paperJob()).clearanceHeight(), 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-17);
+  GrindJob back_taper = paperJob();
+  back_taper.cutter.cone_angle = -3 * units::kDegree;
+  EXPECT_NEAR(programOf(back_taper).clearanceHeight(), 1e-3 * std::tan(3 * units::kDegree) + 5e-3, 1e-17);
+}
+
+TEST(GrindProgram, IndexesFromToothToToothAtTheStartOfTheirStrokes) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1.5, 3.3};  // not evenly spaced
+  for (const double hand : {1, -1}) {
+    for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+      job.cutter.spiral_angle = hand * 30 * units::kDegree;
+      job.process.direction = direction;
+      const GrindProgram program = programOf(job);
+      const double from = direction == StrokeDirection::kFromEnd ? -1e-3 : 31e-3;
+      const double to = 30e-3 - from;
+      const test_support::ReferenceCurve curve(job.cutter);
+      std::vector<double> indexed;
+      std::vector<double> reached;
+      for (const Move& move : program.moves()) {
+        if (move.kind == MoveKind::kIndex) indexed.push_back(move.to[kA]);
+        if (move.kind == MoveKind::kStroke) reached.push_back(move.to[kA]);
+      }
+      ASSERT_EQ(indexed.size(), 3u);
+      ASSERT_EQ(reached.size(), 3u);
+      for (std::size_t tooth = 0; tooth < 3; ++tooth) {
+        EXPECT_NEAR(indexed[tooth], job.tooth_angles[tooth] + static_cast<double>(curve.a(from)), 1e-14);
+        EXPECT_NEAR(reached[tooth], job.tooth_angles[tooth] + static_cast<double>(curve.a(to)), 1e-14);
+      }
+      EXPECT_GT(hand * (reached[0] - indexed[0]) * (to - from), 0);  // the left hand turns the other way
+    }
+  }
+}
+
+/// Y of every infeed over that of the surface there, in the order of the moves. [m]
+std::vector<double> infeedsOf(const GrindProgram& program) {
+  std::vector<double> infeeds;
+  for (const Move& move : program.moves()) {
+    if (move.kind == MoveKind::kInfeed) infeeds.push_back(move.to[kY] - move.to[kX] * std::tan(5 * units::kDegree));
+  }
+  return infeeds;
+}
+
+/// Two teeth; 0.5 mm, 0.95 mm, finished to 1 mm, and once more without infeed.
+GrindJob wornJob() {
+  GrindJob j = paperJob();
+  j.tooth_angles = {0, 3};
+  j.process.depth = 1e-3;
+  j.process.infeed = 0.5e-3;
+  j.process.finish_infeed = 0.05e-3;
+  j.process.spark_out = 1;
+  j.process.wheel_wear = 0.2e-3;
+  j.process.wheel_wear_per_pass = 0.01e-3;
+  return j;
+}
+
+void expectInfeeds(const GrindProgram& program, const std::vector<double>& expected_mm) {
+  const auto infeeds = infeedsOf(program);
+  ASSERT_EQ(infeeds.size(), expected_mm.size());
+  for (std::size_t i = 0; i < infeeds.size(); ++i) EXPECT_NEAR(infeeds[i], -expected_mm[i] * 1e-3, 1e-16) << i;
+}
+
+TEST(GrindProgram, TakesUpTheWearOfEveryPassBeforeTheNext) {
+  GrindJob job = wornJob();
+  expectInfeeds(programOf(job), {0.7, 1.16, 1.22, 1.23, 0.74, 1.2, 1.26, 1.27});
+  job.process.order = GrindOrder::kPassMajor;
+  expectInfeeds(programOf(job), {0.7, 0.71, 1.17, 1.18, 1.24, 1.25, 1.26, 1.27});
+  job.process.direction = StrokeDirection::kToEnd;
+  expectInfeeds(programOf(job), {0.7, 0.71, 1.17, 1.18, 1.24, 1.25, 1.26, 1.27});
+}
+
+TEST(GrindProgram, CountsTheWearOfThePassesThatWereGroundBefore) {
+  expectInfeeds(programOf(wornJob(), {1, 1}), {1.2, 1.26, 1.27});
+}
+
+RC_GTEST_PROP(GrindProgramProperty, WearMovesYOfInfeedsAndStrokesOnly, ()) {
+  Work work = *test_support::toothedWork(3000);
+  work.job.process.wheel_wear = *test_support::uniform(0, 1e-3);
+  const GrindProgram without = work.program();
+  const double wear = *test_support::uniform(1e-6, 1e-4);
+  work.job.process.wheel_wear_per_pass = wear;
+  const GrindProgram with = work.program();
+  RC_ASSERT(with.moves().size() == without.moves().size());
+  const double growth = std::tan(work.job.cutter.cone_angle);
+  double deeper = -wear;
+  double depth = 0;  // of the pass, below the surface
+  for (std::size_t i = 0; i < with.moves().size(); ++i) {
+    const Move& worn = with.moves()[i];
+    Axes moved = worn.to - without.moves()[i].to;
+    const bool cuts = worn.kind == MoveKind::kInfeed || worn.kind == MoveKind::kStroke;
+    if (worn.kind == MoveKind::kInfeed) {
+      deeper += wear;
+      depth = worn.to[kX] * growth - worn.to[kY];
+    }
+    if (worn.kind == MoveKind::kStroke) RC_ASSERT(std::abs(worn.to[kX] * growth - worn.to[kY] - depth) <= 1e-16);
+    RC_ASSERT(std::abs(moved[kY] + (cuts ? deeper : 0)) <= 1e-16);
+    moved[kY] = 0;
+    RC_ASSERT((moved == 0).all());
+  }
+}
+
+/// Which axes a move is for.
+std::vector<int> axesOf(MoveKind kind) {
+  switch (kind) {
+    case MoveKind::kIndex: return {kA};
+    case MoveKind::kPosition: return {kX, kZ};
+    case MoveKind::kLift:
+    case MoveKind::kApproach:
+    case MoveKind::kInfeed:
+    case MoveKind::kRetract: return {kY};
+    default: return {kX, kY, kZ, kA};
+  }
+}
+
+RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnly, ()) {
+  const GrindProgram program = (*test_support::toothedWork(3000)).program();
+  Axes at = program.start();
+  for (const Move& move : program.moves()) {
+    const auto axes = axesOf(move.kind);
+    for (int axis = 0; axis < kAxisCount; ++axis) {
+      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) RC_ASSERT(move.to[axis] == at[axis]);
+    }
+    at = move.to;
+  }
+}
+
+RC_GTEST_PROP(GrindProgramProperty, MovesXZAndABelowTheClearancePlaneInStrokesOnly, ()) {
+  const Work work = *test_support::toothedWork(3000);
+  const GrindProgram program = work.program();
+  const double growth = std::tan(work.job.cutter.cone_angle);
+  const double plane =
+      std::max(program.strokeFrom() * growth, program.strokeTo() * growth) + work.job.process.clearance;
+  RC_ASSERT(std::abs(program.clearanceHeight() - plane) <= 1e-15);
+  Axes at = work.start;
+  for (const Move& move : program.moves()) {
+    const bool only_y = move.to[kX] == at[kX] && move.to[kZ] == at[kZ] && move.to[kA] == at[kA];
+    if (move.kind != MoveKind::kStroke && !only_y) {
+      RC_ASSERT(std::min(at[kY], move.to[kY]) >= plane - 1e-15);
+    }
+    at = move.to;
+  }
+}
+
+RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {
+  const Work work = *test_support::work(3000);
+  const GrindProgram program = work.program();
+  const bool low = work.start[kY] < work.machine.park[kY];
+  RC_ASSERT((program.moves().front().kind == MoveKind::kLift) == low);
+  if (low) RC_ASSERT(program.moves().front().to[kY] == work.machine.park[kY]);
+  for (std::size_t i = 1; i < program.moves().size(); ++i) RC_ASSERT(program.moves()[i].kind != MoveKind::kLift);
+}
+
+RC_GTEST_PROP(GrindProgramProperty, EveryToothGetsEveryPassOnce, ()) {
+  GrindJob job = paperJob();
+  job.process.depth = 1e-3 * *test_support::uniform(0.1, 2);
+  job.process.infeed = job.process.depth / *test_support::uniform(0.5, 6);
+  job.process.spark_out = *test_support::whole(0, 2);
+  job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
+  const int teeth = *test_support::whole(1, 6);
+  for (int i = 1; i < teeth; ++i) job.tooth_angles.push_back(i);
+  const auto passes = static_cast<int>(passDepths(job.process).size());
+  std::vector<int> seen(static_cast<std::size_t>(teeth * passes));
+  const GrindProgram program = programOf(job);
+  for (const Move& move : program.moves()) {
+    if (move.kind == MoveKind::kStroke) ++seen.at(static_cast<std::size_t>(move.tooth * passes + move.pass));
+  }
+  for (const int count : seen) RC_ASSERT(count == 1);
+}
+
+}  // namespace test_grind_program
+}  // namespace flute_grinder

@@ -1,0 +1,353 @@
+#include "curve/reference.h"
+#include "plans.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_job_plan {
+
+using namespace test_support;
+
+TEST(JobPlan, OfThePapersJobIsGoodAndHasNoReasons) {
+  const JobPlan plan = planOf(paperJob());
+  EXPECT_TRUE(plan.good());
+  EXPECT_EQ(plan.fault, PlanFault::kNone);
+  EXPECT_TRUE(plan.reasons.empty());
+  ASSERT_NE(plan.program, nullptr);
+  EXPECT_EQ(causesOf(plan), "");
+  EXPECT_NEAR(plan.statistics.min_feed, 0.01, 1e-8);
+  EXPECT_NEAR(plan.statistics.max_feed, 0.01, 1e-8);
+}
+
+TEST(JobPlan, VisitsWhatTheStreamGives) {
+  std::vector<Setpoint> visited;
+  const Machine machine = plainMachine();
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  SetpointStream stream(*plan.program);
+  Setpoint p;
+  std::size_t i = 0;
+  for (; stream.next(p); ++i) {
+    ASSERT_LT(i, visited.size());
+    ASSERT_TRUE((visited[i].position == p.position).all());
+    ASSERT_EQ(visited[i].cycle, p.cycle);
+  }
+  EXPECT_EQ(i, visited.size());
+}
+
+TEST(JobPlan, RefusesAnInvalidJobWithAllReasons) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = -1;
+  job.process.feed = std::numeric_limits<double>::quiet_NaN();
+  const JobPlan plan = planOf(job);
+  EXPECT_FALSE(plan.good());
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  EXPECT_EQ(plan.program, nullptr);
+  ASSERT_EQ(plan.reasons.size(), 2u);
+  EXPECT_TRUE(contains(textOf(plan), "cutter.end_diameter = -1 m; allowed: "));
+  EXPECT_TRUE(contains(textOf(plan), "process.feed = nan m/s; allowed: "));
+}
+
+TEST(JobPlan, TellsInTheUnitsAskedFor) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = -1e-3;
+  const Machine machine = plainMachine();
+  const JobPlan plan = planJob(job, machine, machine.park);
+  EXPECT_TRUE(contains(text(plan.reasons, UnitSystem::kShop), "cutter.end_diameter_mm = -1 mm"));
+}
+
+TEST(JobPlan, RefusesAFirstPassThatIsNotThere) {
+  const Machine machine = plainMachine();
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {1, 0});
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  EXPECT_TRUE(contains(textOf(plan), "first_tooth = 1"));
+}
+
+TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
+  Machine machine = plainMachine();
+  machine.swivel = {-0.5, 0.75};
+  GrindJob job = paperJob();
+  for (const double swivel : {-0.5, 0.0, 0.75}) {
+    job.process.setup_swivel = swivel;
+    EXPECT_TRUE(planOf(job, machine).good()) << swivel;
+  }
+  for (const double swivel : {-0.500001, 0.750001}) {
+    job.process.setup_swivel = swivel;
+    const JobPlan plan = planOf(job, machine);
+    EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+    EXPECT_TRUE(contains(textOf(plan), "; allowed: -0.5 to 0.75 rad, to which the machine swivels")) << textOf(plan);
+  }
+}
+
+TEST(JobPlan, RefusesABadMachine) {
+  Machine machine = plainMachine();
+  machine.period = 0;
+  EXPECT_EQ(planOf(paperJob(), machine).fault, PlanFault::kInvalidJob);
+}
+
+TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
+  // 64 teeth in 300 passes of 5 mm + 32 mm sqrt(1 + tan^2 5 + tan^2 30) at 0.1 mm/min: 42 mm each, 25,200 s.
+  GrindJob job = paperJob();
+  job.tooth_angles.clear();
+  for (int i = 0; i < 64; ++i) job.tooth_angles.push_back(i * 0.09);
+  job.process.infeed = job.process.depth / 300;
+  job.process.feed = 0.1e-3 / 60;
+  const Machine machine = plainMachine();
+  int looks = 0;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, {}, [&](double) { return ++looks > 0; });
+  EXPECT_EQ(plan.fault, PlanFault::kTooLong);
+  EXPECT_EQ(plan.program, nullptr);
+  EXPECT_EQ(looks, 0);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  const double pass = (5 + 32 * test_support::edgePerTravel(job.cutter)) / 0.1 * 60;
+  std::ostringstream expected;
+  expected << "max_job_duration = 86400 s: the job takes " << 64 * 300 * pass
+           << " s or more for 19200 passes of its teeth; raise process.feed_mm_min or process.infeed_mm, or the "
+              "parameter";
+  EXPECT_EQ(text(plan.reasons[0], UnitSystem::kShop), expected.str());
+}
+
+TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {
+  Machine machine = plainMachine();
+  const double whole = planOf(paperJob()).statistics.duration;
+  machine.max_job_duration = whole + 1e-6;
+  EXPECT_TRUE(planOf(paperJob(), machine).good());
+  machine.max_job_duration = whole - 2 * machine.period;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.fault, PlanFault::kTooLong);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_TRUE(contains(textOf(plan), "max_job_duration = ")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan),
+                       " s: the job takes longer for 1 pass of its teeth; raise process.feed or process.infeed, or the "
+                       "parameter"))
+      << textOf(plan);
+  EXPECT_LE(static_cast<double>(visited.back().cycle) * machine.period, whole);
+}
+
+TEST(JobPlan, CountsOnlyThePassesThatAreLeft) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  job.process.spark_out = 4;
+  Machine machine = plainMachine();
+  machine.max_job_duration = planOf(job).statistics.duration * 0.7;
+  for (const GrindOrder order : {GrindOrder::kToothMajor, GrindOrder::kPassMajor}) {
+    job.process.order = order;
+    EXPECT_EQ(planOf(job, machine).fault, PlanFault::kTooLong);
+    const ToothPass half = order == GrindOrder::kToothMajor ? ToothPass{1, 0} : ToothPass{1, 2};
+    const JobPlan plan = planJob(job, machine, machine.park, half);
+    EXPECT_TRUE(plan.good()) << textOf(plan);
+  }
+}
+
+TEST(JobPlan, AsksItsWatchAllTheTime) {
+  GrindJob job = paperJob();
+  job.process.spark_out = 9;
+  const Machine machine = plainMachine();
+  std::uint64_t visited = 0;
+  std::uint64_t seen = 0;
+  std::uint64_t longest = 0;
+  std::vector<double> done;
+  const JobPlan plan = planJob(
+      job, machine, machine.park, {}, [&](const Setpoint&) { ++visited; },
+      [&](double part) {
+        longest = std::max(longest, visited - seen);
+        seen = visited;
+        done.push_back(part);
+        return true;
+      });
+  ASSERT_TRUE(plan.good()) << textOf(plan);
+  EXPECT_LE(std::max(longest, visited - seen), 5000u);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+  EXPECT_LE(done.front(), 0.01);
+  EXPECT_GT(done.back(), 0.8);
+  EXPECT_LE(done.back(), 1);
+}
+
+TEST(JobPlan, IsGivenUpByItsWatch) {
+  const Machine machine = plainMachine();
+  GrindJob job = paperJob();
+  job.process.spark_out = 9;
+  std::uint64_t visited = 0;
+  int looks = 0;
+  const JobPlan plan = planJob(
+      job, machine, machine.park, {}, [&](const Setpoint&) { ++visited; }, [&](double) { return ++looks < 3; });
+  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(looks, 3);
+  EXPECT_EQ(visited, plan.statistics.setpoints);
+  EXPECT_LE(visited, 10000u);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_TRUE(contains(textOf(plan), "given up"));
+}
+
+/// D1 1.6 mm, C 15 deg and next to no spiral, with an overtravel up to next to the apex.
+GrindJob apexJob(double short_of_apex, double spiral_deg) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = 1.6e-3;
+  job.cutter.cone_angle = 15 * units::kDegree;
+  job.cutter.spiral_angle = spiral_deg * units::kDegree;
+  job.process.depth = job.process.infeed = 0.1e-3;
+  job.process.overtravel_end = 0.8e-3 / std::tan(job.cutter.cone_angle) * (1 - short_of_apex);
+  return job;
+}
+
+// Steps far longer than the way to the apex made the path nan, and that ended the process where the stroke's did.
+TEST(JobPlan, GoesNoFartherTowardAnApexThanItsStepsHold) {
+  struct Apex {
+    double short_of_apex, spiral_deg, feed_mm_min, tolerance, scale;
+    StrokeDirection direction;
+    EvenStepRule rule;
+  };
+  const Apex all[]{{1.2e-4, 9.9e-4, 4104, 1.3e-9, 0.227, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {2.6e-5, 2.8e-4, 3921, 1.5e-6, 0.035, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {5.6e-4, 7e-4, 9059, 1.1e-10, 0.266, StrokeDirection::kToEnd, EvenStepRule::kPublished},
+                   {7.3e-4, 4.2e-4, 1055, 3.4e-10, 0.21, StrokeDirection::kFromEnd, EvenStepRule::kThirdOrder},
+                   {1.3e-6, 2e-6, 5634, 6.8e-9, 0.161, StrokeDirection::kFromEnd, EvenStepRule::kThirdOrder},
+                   {1e-6, 1e-6, 600, 1e-6, 1e-3, StrokeDirection::kFromEnd, EvenStepRule::kPublished}};
+  for (const Apex& apex : all) {
+    SCOPED_TRACE(apex.short_of_apex);
+    GrindJob job = apexJob(apex.short_of_apex, apex.spiral_deg);
+    job.cutter.flute_length = 0.5e-3;
+    job.process.feed = apex.feed_mm_min * units::kMillimetrePerMinute;
+    job.process.direction = apex.direction;
+    job.interpolation = {apex.rule, apex.tolerance, apex.scale};
+    ASSERT_TRUE(validate(job).empty());
+    for (const Machine& machine : {plainMachine(), strongMachine()}) {
+      bool finite = true;
+      const JobPlan plan =
+          planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { finite &= p.position.isFinite().all(); });
+      EXPECT_TRUE(finite);
+      EXPECT_EQ(plan.good(), plan.reasons.empty());
+      EXPECT_FALSE(contains(textOf(plan), "nan")) << textOf(plan);
+    }
+  }
+}
+
+TEST(JobPlan, NamesTheControlRateWhereTheApexIsTooNear) {
+  GrindJob job = apexJob(1e-6, 0);
+  const JobPlan plan = planOf(job, strongMachine());
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  // An eighth of the 0.8 um / tan 15 deg of radius left, each millisecond: 22.4 um/min.
+  EXPECT_TRUE(contains(textOf(plan), "process.feed: control rate allows 3.8")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "at X = -0.002985")) << textOf(plan);
+}
+
+TEST(JobPlan, RefusesAToleranceThatNoFeedMeets) {
+  GrindJob job = paperJob();
+  job.interpolation.tolerance = 1e-15;
+  const JobPlan plan = planOf(job);
+  EXPECT_FALSE(plan.good());
+  EXPECT_TRUE(contains(textOf(plan), "tolerance")) << textOf(plan);
+}
+
+TEST(JobPlan, RefusesPublishedWhereItDriftsOffTheTolerance) {
+  // The even points of `published` drift by half of the odd points' error, in rad; six times the radius makes it too
+  // much.
+  GrindJob job = steepJob();
+  job.process.feed = 0.1;
+  job.interpolation.tolerance = 0.2e-6;
+  const JobPlan published = planOf(job, strongMachine());
+  EXPECT_EQ(published.fault, PlanFault::kTolerance) << textOf(published);
+  EXPECT_EQ(published.reasons.size(), 1u);
+  EXPECT_TRUE(contains(textOf(published), "interpolation.tolerance = 2e-07 m")) << textOf(published);
+  EXPECT_EQ(causesOf(published), "interpolation tolerance");
+  EXPECT_GT(published.statistics.max_deviation, 0.2e-6);
+}
+
+TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
+  GrindJob job = steepJob();
+  job.process.feed = 600 * units::kMillimetrePerMinute;
+  const auto deviationAt = [&](double override_fraction) {
+    SetpointStream stream(GrindProgram(job, strongMachine(), strongMachine().park));
+    stream.setFeedOverride(override_fraction);
+    const ConicalCutter cutter(job.cutter);
+    double largest = 0;
+    for (Setpoint p; stream.next(p);) {
+      const double deviation = std::abs(p.path_error) * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
+      largest = std::max(largest, deviation);
+    }
+    return largest;
+  };
+  job.interpolation.tolerance = 1e-6;  // not in the way
+  const double at_feed = deviationAt(1);
+  const double at_fastest = deviationAt(kMaxFeedOverride);
+  ASSERT_GT(at_fastest, 1.3 * at_feed);
+  job.interpolation.tolerance = 0.97 * at_fastest;
+  EXPECT_EQ(planOf(job, strongMachine()).fault, PlanFault::kTolerance);
+  job.interpolation.tolerance = 1.03 * 1.44 * at_feed;
+  EXPECT_TRUE(planOf(job, strongMachine()).good());
+  EXPECT_LE(deviationAt(kMaxFeedOverride), job.interpolation.tolerance);
+}
+
+TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
+  GrindJob job = steepJob();
+  job.process.feed = 0.1;
+  job.interpolation.tolerance = 0.2e-6;
+  for (const EvenStepRule rule : {EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
+    job.interpolation.even_step = rule;
+    const JobPlan plan = planOf(job, strongMachine());
+    EXPECT_TRUE(plan.good()) << toString(rule) << ": " << textOf(plan);
+    EXPECT_EQ(causesOf(plan), "interpolation tolerance");
+    EXPECT_LE(plan.statistics.max_deviation, 0.2e-6);
+    EXPECT_GT(plan.statistics.max_deviation, 0.18e-6);
+  }
+}
+
+TEST(JobPlan, CutsTheFeedForTheTolerance) {
+  GrindJob job = steepJob();
+  job.process.feed = 0.1;
+  job.interpolation.tolerance = 0.1e-6;
+  job.interpolation.even_step = EvenStepRule::kExact;
+  const JobPlan plan = planOf(job);
+  ASSERT_TRUE(plan.good()) << textOf(plan);
+  EXPECT_LE(plan.statistics.max_deviation, 0.1e-6);
+  EXPECT_LT(plan.statistics.max_feed, 0.1);
+}
+
+TEST(JobPlan, NamesTheAxisThatHindersTheFeedAtASmallEnd) {
+  GrindJob job = steepJob();
+  job.cutter.end_diameter = 0.5e-3;
+  job.process.depth = job.process.infeed = 0.05e-3;
+  job.process.feed = 0.05;
+  job.interpolation.tolerance = 100e-6;
+  const JobPlan plan = planOf(job);
+  ASSERT_TRUE(plan.good()) << textOf(plan);
+  EXPECT_EQ(causesOf(plan).find("axis_a"), 0u) << causesOf(plan);
+}
+
+TEST(JobPlan, RefusesAFeedBelowTheSlowest) {
+  Machine machine = plainMachine();
+  machine.limits.max_velocity[kA] = 1e-5;
+  const JobPlan plan = planOf(paperJob(), machine);
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  EXPECT_TRUE(contains(textOf(plan), "axis_a velocity")) << textOf(plan);
+}
+
+/// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.
+RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
+  const Work work = *test_support::work(2000);
+  const JobPlan plan = planJob(work.job, work.machine, work.start);
+  RC_ASSERT(reasonsWith(plan, "axis_").empty());
+  RC_ASSERT(plan.good() == plan.reasons.empty());
+  RC_ASSERT(plan.good() || plan.fault == PlanFault::kTolerance);
+  RC_ASSERT((plan.statistics.max_velocity <= work.machine.limits.max_velocity * (1 + 1e-6)).all());
+}
+
+RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
+  Work work = *test_support::work(2000);
+  work.job.interpolation.even_step = EvenStepRule::kExact;
+  const JobPlan plan = planJob(work.job, work.machine, work.start);
+  RC_ASSERT(plan.fault != PlanFault::kTolerance);
+  RC_ASSERT(plan.statistics.max_deviation <= work.job.interpolation.tolerance);
+}
+
+}  // namespace test_job_plan
+}  // namespace flute_grinder

@@ -1,0 +1,445 @@
+#include "flute_grinder/motion/limit_check.h"
+
+#include "generators.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_limit_check {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kPeriod = 1.0 / 1024;  // exact in binary, as are the limits below
+
+AxisLimits plainLimits() {
+  AxisLimits l;
+  l.min_position << -0.25, -0.5, -0.125, -16;
+  l.max_position << 0.5, 0.25, 0.25, 32;
+  l.max_velocity << 0.125, 0.25, 0.5, 8;
+  l.max_acceleration << 1, 2, 4, 64;
+  l.max_jerk << 64, 128, 256, 4096;
+  return l;
+}
+
+/// Feeds positions of one axis to a check, the others at rest at zero.
+class Feeder {
+ public:
+  explicit Feeder(int axis, const AxisLimits& limits = plainLimits()) : axis_(axis), check_(limits, kPeriod) {}
+
+  std::optional<LimitViolation> feed(double position) {
+    Setpoint p;
+    p.cycle = cycle_++;
+    p.position[axis_] = position;
+    p.move = MoveKind::kStroke;
+    return check_.check(p);
+  }
+
+  /// The first violation of a course of positions.
+  std::optional<LimitViolation> feedAll(const std::vector<double>& positions) {
+    for (const double position : positions) {
+      if (auto violation = feed(position)) return violation;
+    }
+    return std::nullopt;
+  }
+
+  LimitCheck& check() { return check_; }
+
+ private:
+  int axis_;
+  LimitCheck check_;
+  std::uint64_t cycle_ = 0;
+};
+
+/// Pair ends, with points half way between.
+std::vector<double> withMiddles(const std::vector<double>& ends) {
+  std::vector<double> positions{ends.front()};
+  for (std::size_t i = 1; i < ends.size(); ++i) {
+    positions.push_back((ends[i - 1] + ends[i]) / 2);
+    positions.push_back(ends[i]);
+  }
+  return positions;
+}
+
+class LimitCheckAxis : public ::testing::TestWithParam<int> {};
+
+TEST_P(LimitCheckAxis, LetsPassWhatIsAtTheEndsOfItsRange) {
+  const int axis = GetParam();
+  const AxisLimits l = plainLimits();
+  EXPECT_FALSE(Feeder(axis).feed(l.max_position[axis]));
+  EXPECT_FALSE(Feeder(axis).feed(l.min_position[axis]));
+}
+
+TEST_P(LimitCheckAxis, CatchesAPositionBeyondItsRange) {
+  const int axis = GetParam();
+  const AxisLimits l = plainLimits();
+  const double above = l.max_position[axis] * (1 + 1e-12);
+  const double below = l.min_position[axis] * (1 + 1e-12);
+  const auto high = Feeder(axis).feed(above);
+  ASSERT_TRUE(high);
+  EXPECT_EQ(high->axis, axis);
+  EXPECT_EQ(high->quantity, LimitedQuantity::kPosition);
+  EXPECT_EQ(high->value, above);
+  EXPECT_EQ(high->limit, l.max_position[axis]);
+  const auto low = Feeder(axis).feed(below);
+  ASSERT_TRUE(low);
+  EXPECT_EQ(low->axis, axis);
+  EXPECT_EQ(low->quantity, LimitedQuantity::kPosition);
+  EXPECT_EQ(low->value, below);
+  EXPECT_EQ(low->limit, l.min_position[axis]);
+}
+
+TEST_P(LimitCheckAxis, CatchesWhatIsNotFinite) {
+  const int axis = GetParam();
+  for (const double bad : {kNan, kInf, -kInf}) {
+    SCOPED_TRACE(bad);
+    const auto first = Feeder(axis).feed(bad);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->axis, axis);
+    EXPECT_EQ(first->quantity, LimitedQuantity::kNotFinite);
+    EXPECT_NE(text(reasonOf(*first), UnitSystem::kSi).find("is not a finite number"), std::string::npos);
+    Feeder later(axis);
+    EXPECT_FALSE(later.feedAll({0, 0, 0}));
+    const auto violation = later.feed(bad);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->axis, axis);
+    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
+    EXPECT_EQ(violation->cycle, 3u);
+  }
+}
+
+/// Evenly up to a speed over pairs, within acceleration and jerk, then on at it.
+std::vector<double> rampTo(double speed, double acceleration, double jerk) {
+  const double pair = 2 * kPeriod;
+  std::vector<double> ends{0, 0};
+  double a = 0;
+  double v = 0;
+  // A change of acceleration of jerk * pair per pair; back again such that the speed is met.
+  while (v < speed) {
+    const double back = a * a / (2 * jerk);
+    if (v + back + a * pair >= speed && a > jerk * pair)
+      a -= jerk * pair;
+    else
+      a = std::min(acceleration, a + jerk * pair);
+    v = std::min(speed, v + a * pair);
+    ends.push_back(ends.back() + v * pair);
+  }
+  for (int i = 0; i < 5; ++i) ends.push_back(ends.back() + speed * pair);
+  return withMiddles(ends);
+}
+
+TEST_P(LimitCheckAxis, LetsPassAndCatchesSpeed) {
+  const int axis = GetParam();
+  AxisLimits l = plainLimits();
+  l.max_acceleration.setConstant(1e9);
+  l.max_jerk.setConstant(1e12);
+  const double v = l.max_velocity[axis];
+  EXPECT_FALSE(Feeder(axis, l).feedAll({0, v * kPeriod, 2 * v * kPeriod, v * kPeriod, 0}));
+  const double faster = v * (1 + 1e-6);
+  const auto violation = Feeder(axis, l).feedAll({0, 0, 0, -faster * kPeriod});
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->axis, axis);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kVelocity);
+  EXPECT_NEAR(violation->value, -faster, 1e-12);
+  EXPECT_EQ(violation->limit, v);
+  EXPECT_EQ(violation->cycle, 3u);
+}
+
+TEST_P(LimitCheckAxis, LetsPassAndCatchesAccelerationOfPairEnds) {
+  const int axis = GetParam();
+  AxisLimits l = plainLimits();
+  l.max_velocity.setConstant(1e9);
+  l.max_jerk.setConstant(1e12);
+  const double pair = 2 * kPeriod;
+  const double a = l.max_acceleration[axis];
+  // p = a t^2 / 2 sampled gives second differences a pair^2 exactly.
+  const auto course = [&](double acceleration) {
+    std::vector<double> ends{0, 0, 0};
+    for (int i = 1; i < 5; ++i) ends.push_back(acceleration * pair * pair * i * i / 2);
+    return withMiddles(ends);
+  };
+  EXPECT_FALSE(Feeder(axis, l).feedAll(course(a)));
+  EXPECT_FALSE(Feeder(axis, l).feedAll(course(-a)));
+  const auto violation = Feeder(axis, l).feedAll(course(-a * (1 + 1e-6)));
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->axis, axis);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
+  EXPECT_NEAR(violation->value, -a * (1 + 1e-6), 1e-9 * a);
+  EXPECT_EQ(violation->limit, a);
+  EXPECT_EQ(violation->cycle % 2, 0u);
+}
+
+TEST_P(LimitCheckAxis, LetsPassAndCatchesJerkOfPairEnds) {
+  const int axis = GetParam();
+  AxisLimits l = plainLimits();
+  l.max_velocity.setConstant(1e9);
+  l.max_acceleration.setConstant(1e9);
+  const double pair = 2 * kPeriod;
+  const double j = l.max_jerk[axis];
+  // p = j t (t^2 - pair^2) / 6 has third differences j pair^3 exactly, from rest at -pair, 0 and pair.
+  const auto course = [&](double jerk) {
+    std::vector<double> ends{0, 0, 0};
+    for (int i = 2; i < 6; ++i) ends.push_back(jerk * pair * pair * pair * i * (i * i - 1) / 6);
+    return withMiddles(ends);
+  };
+  EXPECT_FALSE(Feeder(axis, l).feedAll(course(j)));
+  EXPECT_FALSE(Feeder(axis, l).feedAll(course(-j)));
+  const auto violation = Feeder(axis, l).feedAll(course(j * (1 + 1e-6)));
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->axis, axis);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kJerk);
+  EXPECT_NEAR(violation->value, j * (1 + 1e-6), 1e-9 * j);
+  EXPECT_EQ(violation->limit, j);
+}
+
+TEST_P(LimitCheckAxis, LetsPassARampWithinAllLimits) {
+  const int axis = GetParam();
+  const AxisLimits l = plainLimits();
+  const auto ramp = rampTo(l.max_velocity[axis] / 2, l.max_acceleration[axis] / 2, l.max_jerk[axis] / 4);
+  EXPECT_FALSE(Feeder(axis).feedAll(ramp));
+}
+
+TEST_P(LimitCheckAxis, DoesNotTakeTheAlternationOfOddAndEvenStepsForAcceleration) {
+  const int axis = GetParam();
+  const AxisLimits l = plainLimits();
+  Feeder feeder(axis);
+  const double off = l.max_velocity[axis] * kPeriod * 0.9;
+  ASSERT_GT(off / (kPeriod * kPeriod), 10 * l.max_acceleration[axis]);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(feeder.feed(i % 2 == 1 ? off : 0)) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LimitCheckAxis, ::testing::Range(0, kAxisCount), [](const auto& info) {
+  return std::string(kJointNames[static_cast<std::size_t>(info.param)]);
+});
+
+TEST(LimitCheck, TakesTheFirstSetpointAsPrecededByRest) {
+  Feeder feeder(kX);
+  EXPECT_FALSE(feeder.feed(0.4));
+  EXPECT_TRUE((feeder.check().velocity() == 0).all());
+  EXPECT_TRUE((feeder.check().acceleration() == 0).all());
+  EXPECT_TRUE((feeder.check().jerk() == 0).all());
+}
+
+TEST(LimitCheck, StartsFromRest) {
+  // A first pair at a speed that is allowed asks for v / pair, far above the acceleration.
+  Feeder feeder(kX);
+  const double way = 0.1 * kPeriod;
+  const auto violation = feeder.feedAll({0, way, 2 * way});
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
+  EXPECT_EQ(violation->cycle, 2u);
+  EXPECT_NEAR(violation->value, 0.1 / (2 * kPeriod), 1e-9);
+}
+
+TEST(LimitCheck, ForgetsThePastAtARestart) {
+  Feeder feeder(kX);
+  EXPECT_FALSE(feeder.feedAll({0, 0, 0, 0}));
+  feeder.check().restart();
+  EXPECT_FALSE(feeder.feedAll({0.25, 0.25, 0.25}));
+  Feeder untold(kX);
+  EXPECT_FALSE(untold.feedAll({0, 0, 0, 0}));
+  EXPECT_TRUE(untold.feed(0.25));
+}
+
+/// A tenth of the highest speed, in pairs.
+constexpr double kWay = 0.0125 * 2 * kPeriod;
+
+/// Up to that speed, and some pairs at it.
+std::vector<double> upToSpeed() { return rampTo(0.0125, 0.25, 16); }
+
+TEST(LimitCheck, KnowsThatAxesWhichStoodGoOnMoreSlowly) {
+  for (const double factor : {0.5, 0.2, 0.1}) {
+    Feeder feeder(kX);
+    const std::vector<double> ends = upToSpeed();
+    ASSERT_FALSE(feeder.feedAll(ends));
+    feeder.check().slowDown(factor);
+    for (int i = 1; i <= 10; ++i) {
+      ASSERT_FALSE(feeder.feed(ends.back() + i * factor * kWay / 2)) << factor << ", setpoint " << i;
+    }
+  }
+}
+
+TEST(LimitCheck, CatchesTheFullSpeedOfAxesThatStood) {
+  Feeder feeder(kX);
+  const std::vector<double> ends = upToSpeed();
+  ASSERT_FALSE(feeder.feedAll(ends));
+  feeder.check().slowDown(0.5);
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay / 2));
+  const auto violation = feeder.feed(ends.back() + kWay);
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
+  EXPECT_NEAR(violation->value, 0.0125 / 2 / (2 * kPeriod), 1e-6);
+}
+
+TEST(LimitCheck, ASlowDownAmidAPairIsOfTheNext) {
+  Feeder feeder(kX);
+  const std::vector<double> ends = upToSpeed();
+  ASSERT_FALSE(feeder.feedAll(ends));
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay / 2));
+  feeder.check().slowDown(0.5);
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay)) << "this pair goes on as it was begun";
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay + kWay / 4));
+  EXPECT_FALSE(feeder.feed(ends.back() + kWay + kWay / 2));
+}
+
+/// All violations of the last setpoint checked, as "axis quantity".
+std::vector<std::string> allOf(const LimitCheck& check) {
+  static const char* const quantities[]{"position", "velocity", "acceleration", "jerk", "not finite"};
+  std::vector<std::string> all;
+  for (const LimitViolation& v : check) {
+    all.push_back(std::string(kJointNames[static_cast<std::size_t>(v.axis)]) + " " +
+                  quantities[static_cast<std::size_t>(v.quantity)]);
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(LimitCheck, HasNoneOfASetpointThatIsGood) {
+  LimitCheck check(plainLimits(), kPeriod);
+  EXPECT_EQ(check.begin(), check.end());
+  EXPECT_FALSE(check.check(Setpoint{}));
+  EXPECT_EQ(check.begin(), check.end());
+}
+
+TEST(LimitCheck, HasAllOfASetpointOfWhichTheFirstIsTold) {
+  LimitCheck check(plainLimits(), kPeriod);
+  Setpoint p;
+  p.position[kX] = 1;
+  p.position[kA] = -17;
+  const auto first = check.check(p);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(allOf(check), (std::vector<std::string>{"axis_a position", "axis_x position"}));
+  EXPECT_EQ(first->axis, check.begin()->axis);
+  EXPECT_EQ(first->quantity, check.begin()->quantity);
+  EXPECT_EQ(first->value, 1);
+}
+
+TEST(LimitCheck, HasEveryKindOfEveryAxisAtOnce) {
+  LimitCheck check(plainLimits(), kPeriod);
+  Setpoint p;
+  for (p.cycle = 0; p.cycle < 2; ++p.cycle) EXPECT_FALSE(check.check(p));
+  p.position.setConstant(100);  // from 0 within a pair
+  EXPECT_TRUE(check.check(p));
+  std::vector<std::string> expected;
+  for (const char* const axis : {"axis_a", "axis_x", "axis_y", "axis_z"}) {
+    for (const char* const quantity : {"acceleration", "jerk", "position", "velocity"}) {
+      expected.push_back(std::string(axis) + " " + quantity);
+    }
+  }
+  EXPECT_EQ(allOf(check), expected);
+  for (const LimitViolation& v : check) {
+    EXPECT_EQ(v.cycle, 2u);
+    EXPECT_EQ(v.x, 100);
+  }
+}
+
+// At 16 rad a position is exact to 3.6e-15 rad at best, which over a period makes 3.6e-12 rad/s; the limit of 1e-3
+// rad/s lets 1e-12 rad/s of its own pass.
+TEST(LimitCheck, LetsAsManyRoundingsPassAsItIsTold) {
+  AxisLimits l = plainLimits();
+  l.max_velocity[kA] = 1.0 / 1024;
+  const auto passes = [&](double roundings, int epsilons) {
+    LimitCheck check(l, kPeriod, roundings);
+    Setpoint p;
+    p.position[kA] = 16;
+    check.check(p);
+    p.cycle = 1;
+    p.position[kA] += l.max_velocity[kA] * kPeriod + epsilons * 16 * std::numeric_limits<double>::epsilon();
+    return !check.check(p);
+  };
+  EXPECT_TRUE(passes(1, 2));
+  EXPECT_FALSE(passes(1, 4));
+  EXPECT_TRUE(passes(LimitCheck::kUnplannedRoundings, 6));
+  EXPECT_FALSE(passes(LimitCheck::kUnplannedRoundings, 8));
+}
+
+TEST(LimitCheck, ForgetsThoseOfTheSetpointBefore) {
+  AxisLimits l = plainLimits();
+  l.max_velocity.setConstant(1e9);
+  LimitCheck check(l, kPeriod);
+  Setpoint p;
+  p.cycle = 1;  // within a pair: neither acceleration nor jerk
+  p.position[kX] = 1;
+  EXPECT_TRUE(check.check(p));
+  EXPECT_EQ(allOf(check), std::vector<std::string>{"axis_x position"});
+  p.position << 0, 1, 0, 0;
+  EXPECT_TRUE(check.check(p));
+  EXPECT_EQ(allOf(check), std::vector<std::string>{"axis_y position"});
+  p.position.setZero();
+  EXPECT_FALSE(check.check(p));
+  EXPECT_EQ(check.begin(), check.end());
+}
+
+TEST(LimitCheck, TellsWhatTheSetpointsAskOfTheAxes) {
+  AxisLimits l = plainLimits();
+  l.max_velocity.setConstant(1e9);
+  l.max_acceleration.setConstant(1e9);
+  l.max_jerk.setConstant(1e12);
+  LimitCheck check(l, kPeriod);
+  Setpoint p;
+  const double t = 2 * kPeriod;
+  const auto x = [](double s) { return s * (0.02 + s * (0.3 + s * 5)); };
+  for (int i = 0; i <= 8; ++i) {
+    p.cycle = static_cast<std::uint64_t>(i);
+    p.position[kX] = x(i * kPeriod);
+    check.check(p);
+  }
+  EXPECT_NEAR(check.velocity()[kX], (x(8 * kPeriod) - x(7 * kPeriod)) / kPeriod, 1e-12);
+  EXPECT_NEAR(check.acceleration()[kX], (x(4 * t) - 2 * x(3 * t) + x(2 * t)) / (t * t), 1e-9);
+  EXPECT_NEAR(check.jerk()[kX], 6 * 5, 1e-5);
+}
+
+TEST(LimitCheck, TellsAxisAmountLimitMoveCycleAndPlace) {
+  LimitViolation v;
+  v.axis = kX;
+  v.quantity = LimitedQuantity::kPosition;
+  v.value = 0.301;
+  v.limit = 0.3;
+  v.cycle = 1204;
+  v.x = 0.301;
+  v.move = MoveKind::kStroke;
+  EXPECT_EQ(text(reasonOf(v), UnitSystem::kSi),
+            "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)");
+}
+
+TEST(LimitCheck, TellsTheUnitsOfEveryQuantity) {
+  LimitViolation v;
+  v.axis = kA;
+  v.value = -12;
+  v.limit = 10;
+  v.quantity = LimitedQuantity::kVelocity;
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a velocity -12 rad/s is 2 rad/s beyond its limit 10 rad/s"),
+            std::string::npos);
+  v.quantity = LimitedQuantity::kAcceleration;
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a acceleration -12 rad/s^2 is 2 rad/s^2 beyond"),
+            std::string::npos);
+  v.axis = kZ;
+  v.quantity = LimitedQuantity::kJerk;
+  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_z jerk -12 m/s^3 is 2 m/s^3 beyond"), std::string::npos);
+}
+
+RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {
+  // p = c (wt - sin wt) begins at rest; its derivatives reach 2 c w, c w^2 and c w^3, and so do its differences.
+  const int axis = *test_support::whole(0, 3);
+  const double w = *test_support::logUniform(1, 100);
+  const double c = 0.06 / w;
+  AxisLimits l = plainLimits();
+  l.max_velocity[axis] = 2 * c * w;
+  l.max_acceleration[axis] = c * w * w;
+  l.max_jerk[axis] = c * w * w * w;
+  Feeder feeder(axis, l);
+  for (int i = 0; i < 3000; ++i) {
+    const double t = i * kPeriod * w;
+    RC_ASSERT(!feeder.feed(c * (t - std::sin(t))));
+  }
+}
+
+}  // namespace test_limit_check
+}  // namespace flute_grinder

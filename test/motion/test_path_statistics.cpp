@@ -1,0 +1,230 @@
+#include "curve/reference.h"
+#include "plans.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_path_statistics {
+
+using namespace test_support;
+
+/// Every statistic once more, from the setpoints that the visitor saw.
+core::PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
+  const ReferenceCurve curve(job.cutter);
+  const CutterGeometry& g = job.cutter;
+  const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
+  core::PathStatistics s;
+  s.setpoints = setpoints.size();
+  s.duration = static_cast<double>(setpoints.size() - 1) * period;
+  const auto end = [&](std::size_t i, std::size_t back) {
+    return i >= 2 * back ? setpoints[i - 2 * back].position : setpoints[0].position;
+  };
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    s.move_duration[static_cast<std::size_t>(p.move)] += period;
+    const Axes velocity = (p.position - setpoints[i - 1].position) / period;
+    const Axes before =
+        i < 2 ? Axes(Axes::Zero()) : Axes((setpoints[i - 1].position - setpoints[i - 2].position) / period);
+    s.max_velocity = s.max_velocity.max(velocity.abs());
+    s.ripple_acceleration = s.ripple_acceleration.max((velocity - before).abs() / period);
+    if (i % 2 == 0) {
+      const double pair = 2 * period;
+      s.max_acceleration = s.max_acceleration.max((end(i, 0) - 2 * end(i, 1) + end(i, 2)).abs() / (pair * pair));
+      s.max_jerk = s.max_jerk.max((end(i, 0) - 3 * end(i, 1) + 3 * end(i, 2) - end(i, 3)).abs() / (pair * pair * pair));
+    }
+    if (p.step == StepKind::kNone) continue;
+    const Real x = p.position[kX];
+    const auto error = static_cast<double>(std::abs(curve.a(x) - (Real(p.position[kA]) - job.tooth_angles[p.tooth])));
+    (p.step == StepKind::kOdd ? s.max_odd_error : s.max_even_error) =
+        std::max(p.step == StepKind::kOdd ? s.max_odd_error : s.max_even_error, error);
+    const Real radius = Real(g.end_diameter) / 2 + x * std::tan(Real(g.cone_angle));
+    s.max_deviation = std::max(s.max_deviation, static_cast<double>(error * radius * normal));
+    if (p.step == StepKind::kEven && p.at_feed) {
+      const double feed =
+          std::abs(p.position[kX] - setpoints[i - 2].position[kX]) / (2 * period) * test_support::edgePerTravel(g);
+      s.min_feed = s.min_feed == 0 ? feed : std::min(s.min_feed, feed);
+      s.max_feed = std::max(s.max_feed, feed);
+    }
+  }
+  return s;
+}
+
+void expectNear(const Axes& value, const Axes& expected, double noise) {
+  for (int axis = 0; axis < kAxisCount; ++axis)
+    EXPECT_NEAR(value[axis], expected[axis], 1e-9 * expected[axis] + noise) << axis;
+}
+
+void expectSame(const GrindJob& job, const Machine& machine) {
+  std::vector<Setpoint> setpoints;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { setpoints.push_back(p); });
+  ASSERT_TRUE(plan.good()) << textOf(plan);
+  const core::PathStatistics& s = plan.statistics;
+  const core::PathStatistics expected = accumulate(setpoints, job, machine.period);
+  EXPECT_EQ(s.setpoints, expected.setpoints);
+  EXPECT_NEAR(s.duration, expected.duration, 1e-9);
+  for (std::size_t i = 0; i < kMoveKindCount; ++i)
+    EXPECT_NEAR(s.move_duration[i], expected.move_duration[i], 1e-9) << i;
+  EXPECT_NEAR(s.max_odd_error, expected.max_odd_error, 1e-14);
+  EXPECT_NEAR(s.max_even_error, expected.max_even_error, 1e-14);
+  EXPECT_NEAR(s.max_deviation, expected.max_deviation, 1e-16);
+  EXPECT_NEAR(s.min_feed, expected.min_feed, 1e-9 * expected.min_feed);
+  EXPECT_NEAR(s.max_feed, expected.max_feed, 1e-9 * expected.max_feed);
+  expectNear(s.max_velocity, expected.max_velocity, 1e-11);
+  expectNear(s.max_acceleration, expected.max_acceleration, 1e-8);
+  expectNear(s.max_jerk, expected.max_jerk, 1e-4);
+  expectNear(s.ripple_acceleration, expected.ripple_acceleration, 1e-8);
+}
+
+TEST(JobPlan, TellsTheStatisticsOfThePapersJob) { expectSame(paperJob(), plainMachine()); }
+
+TEST(JobPlan, TellsTheStatisticsOfManyTeethAndPasses) {
+  GrindJob job = steepJob();
+  job.interpolation.even_step = EvenStepRule::kThirdOrder;
+  job.interpolation.tolerance = 10e-6;
+  job.tooth_angles = {0, 2, 4};
+  job.process.infeed = 0.1e-3;
+  job.process.spark_out = 1;
+  job.process.order = GrindOrder::kPassMajor;
+  job.process.direction = StrokeDirection::kToEnd;
+  expectSame(job, plainMachine());
+}
+
+TEST(JobPlan, MovesTakeTheWholeTime) {
+  const JobPlan plan = planOf(paperJob());
+  double sum = 0;
+  for (const double duration : plan.statistics.move_duration) sum += duration;
+  EXPECT_NEAR(sum, plan.statistics.duration, 1e-9);
+}
+
+/// Checks move_ends against the setpoints' own moves.
+void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& start, bool rc = false) {
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, start, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  std::vector<std::uint64_t> expected;
+  std::size_t i = 0;
+  for (const Move& move : plan.program->moves()) {
+    // The next setpoints of that kind, tooth and pass are the move's; there are none if it has no length.
+    while (i + 1 < visited.size() && visited[i + 1].move == move.kind && visited[i + 1].tooth == move.tooth &&
+           visited[i + 1].pass == move.pass) {
+      ++i;
+    }
+    expected.push_back(visited[i].cycle);
+  }
+  if (rc) {
+    RC_ASSERT(plan.move_ends == expected);
+    RC_ASSERT(plan.move_ends.back() + 1 == plan.statistics.setpoints);
+  } else {
+    EXPECT_EQ(plan.move_ends, expected);
+    EXPECT_EQ(plan.move_ends.back() + 1, plan.statistics.setpoints);
+  }
+}
+
+TEST(JobPlan, TellsWhereEveryMoveEnds) { expectMoveEnds(paperJob(), plainMachine(), plainMachine().park); }
+
+TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
+  GrindJob job = paperJob();
+  job.cutter.spiral_angle = 0;  // A never turns
+  job.process.spark_out = 2;
+  expectMoveEnds(job, plainMachine(), plainMachine().park);
+}
+
+RC_GTEST_PROP(JobPlanProperty, TellsWhereEveryMoveEnds, ()) {
+  const Work work = *test_support::toothedWork(500);
+  expectMoveEnds(work.job, work.machine, work.start, true);
+}
+
+RC_GTEST_PROP(JobPlanProperty, MovesTakeTheWholeTime, ()) {
+  const Work work = *test_support::toothedWork(500);
+  std::array<std::uint64_t, kMoveKindCount> cycles{};
+  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
+    if (p.cycle > 0) ++cycles.at(static_cast<std::size_t>(p.move));
+  });
+  double sum = 0;
+  for (std::size_t i = 0; i < kMoveKindCount; ++i) {
+    const double duration = static_cast<double>(cycles[i]) * work.machine.period;
+    RC_ASSERT(std::abs(plan.statistics.move_duration[i] - duration) <= 1e-9 * (1 + duration));
+    sum += plan.statistics.move_duration[i];
+  }
+  RC_ASSERT(std::abs(sum - plan.statistics.duration) <= 1e-9 * (1 + sum));
+}
+
+/// Where the pairs' own feed is below the one asked for, apart from the ramps at the stroke's ends; in the order of the
+/// stroke.
+std::pair<double, double> slowRange(const JobPlan& plan, const std::vector<Setpoint>& setpoints) {
+  const GrindJob& job = plan.program->job();
+  const double period = plan.program->machine().period;
+  const double edge = test_support::edgePerTravel(job.cutter);
+  std::vector<double> slow;
+  for (std::size_t i = 2; i < setpoints.size(); i += 2) {
+    if (setpoints[i].step == StepKind::kNone) continue;
+    const double x = setpoints[i].position[kX];
+    const double before = setpoints[i - 2].position[kX];
+    const double ramp = 0.2e-3;
+    const bool ramps =
+        std::min(std::abs(x - plan.program->strokeFrom()), std::abs(x - plan.program->strokeTo())) < ramp;
+    if (!ramps && std::abs(x - before) / (2 * period) * edge < job.process.feed * (1 - 1e-4)) slow.push_back(x);
+  }
+  if (slow.empty()) return {0, 0};
+  return {slow.front(), slow.back()};
+}
+
+TEST(JobPlan, TellsWhereTheFeedIsCut) {
+  // 10 mm/s along the edge ask A for 1.015 rad/s at X = -1 mm and for 0.653 rad/s at 31 mm.
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    SCOPED_TRACE(toString(direction));
+    GrindJob job = paperJob();
+    job.process.direction = direction;
+    Machine machine = strongMachine();
+    machine.limits.max_velocity[kA] = 0.8;
+    std::vector<Setpoint> visited;
+    const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+    ASSERT_TRUE(plan.good()) << textOf(plan);
+    ASSERT_EQ(causesOf(plan), "axis_a velocity");
+    const core::FeedLimit& cut = plan.statistics.feed_limits[0];
+    const auto [from, to] = slowRange(plan, visited);
+    const bool from_end = direction == StrokeDirection::kFromEnd;
+    EXPECT_EQ(from_end ? cut.from_x : cut.to_x, -1e-3);
+    EXPECT_NEAR(from_end ? cut.from_x : cut.to_x, from_end ? from : to, 0.3e-3);  // up to the ramp
+    EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, from_end ? to : from, 0.1e-3);
+    // Where v k/u = 0.8 rad/s, by hand.
+    const double growth = std::tan(5 * units::kDegree);
+    const double x =
+        (0.01 / test_support::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
+    EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, x, 0.1e-3);
+  }
+}
+
+TEST(JobPlan, TellsThatTheFeedIsCutAllAlong) {
+  GrindJob job = paperJob();
+  Machine machine = strongMachine();
+  machine.limits.max_velocity[kX] = 0.004;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  ASSERT_EQ(causesOf(plan), "axis_x velocity");
+  EXPECT_EQ(plan.statistics.feed_limits[0].from_x, -1e-3);
+  EXPECT_EQ(plan.statistics.feed_limits[0].to_x, 31e-3);
+  const auto [from, to] = slowRange(plan, visited);
+  EXPECT_NEAR(from, -1e-3, 0.3e-3);
+  EXPECT_NEAR(to, 31e-3, 0.3e-3);
+}
+
+TEST(JobPlan, ReportsTheRippleOfTheOddEvenSteps) {
+  // A turns by 2 kappa dl once per pair: |k b| v^2 / u^2 on the mean, twice that by single cycles, at X = -1 mm.
+  const JobPlan plan = planOf(paperJob());
+  const ReferenceCurve curve(paperJob().cutter);
+  const Real speed = 0.01 / test_support::edgePerTravel(paperJob().cutter);
+  const Real thin = 2 * curve.k * curve.b * speed * speed;
+  EXPECT_GE(plan.statistics.ripple_acceleration[kA], static_cast<double>(thin / (curve.u(0.001L) * curve.u(0.001L))));
+}
+
+}  // namespace test_path_statistics
+}  // namespace flute_grinder

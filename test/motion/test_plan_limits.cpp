@@ -1,0 +1,181 @@
+#include "curve/reference.h"
+#include "plans.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_plan_limits {
+
+using namespace test_support;
+
+/// What a plan should object to: setpoints beyond the upper limit of an axis, counted by moves.
+struct Beyond {
+  std::uint64_t count = 0;
+  double worst = 0;
+};
+
+std::map<MoveKind, Beyond> beyondUpperLimit(const std::vector<Setpoint>& setpoints, int axis, double limit) {
+  std::map<MoveKind, Beyond> moves;
+  for (const Setpoint& p : setpoints) {
+    if (p.position[axis] <= limit) continue;
+    Beyond& beyond = moves[p.move];
+    ++beyond.count;
+    beyond.worst = std::max(beyond.worst, p.position[axis]);
+  }
+  return moves;
+}
+
+/// Whether a plan has one reason for each kind of move that is beyond the upper limit of an axis, with its worst and
+/// the count, and no other for that axis.
+void expectReasons(const JobPlan& plan, const std::vector<Setpoint>& setpoints, int axis, double limit) {
+  const auto moves = beyondUpperLimit(setpoints, axis, limit);
+  const std::string name = kJointNames[static_cast<std::size_t>(axis)];
+  EXPECT_EQ(reasonsWith(plan, name).size(), moves.size()) << textOf(plan);
+  for (const auto& [kind, beyond] : moves) {
+    const auto reasons = reasonsWith(plan, std::string("(") + toString(kind) + ", cycle");
+    std::string reason;
+    for (const std::string& r : reasons) reason = contains(r, name) ? r : reason;
+    std::ostringstream worst;
+    worst << name << " position " << beyond.worst << ' ' << axisUnit(axis) << " is ";
+    EXPECT_TRUE(contains(reason, worst.str())) << worst.str() << " in\n" << textOf(plan);
+    std::ostringstream beyond_limit;
+    beyond_limit << "beyond its limit " << limit << ' ' << axisUnit(axis);
+    EXPECT_TRUE(contains(reason, beyond_limit.str())) << reason;
+    const std::string others = "; the worst of " + std::to_string(beyond.count) + " setpoints";
+    if (beyond.count > 1) {
+      EXPECT_TRUE(contains(reason, others)) << others << " in\n" << reason;
+    } else {
+      EXPECT_FALSE(contains(reason, "worst of")) << reason;
+    }
+  }
+}
+
+TEST(JobPlan, RefusesAWayBeyondAnAxisLimitWithTheAmount) {
+  Machine machine = plainMachine();
+  machine.limits.max_position[kX] = 0.030;  // the stroke goes to 31 mm
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  ASSERT_EQ(plan.reasons.size(), 3u) << textOf(plan);  // stroke, and retract and return from its end
+  EXPECT_EQ(textOf(plan).find("axis_x position 0.031 m is 0.001 m beyond its limit 0.03 m (stroke, cycle "), 0u)
+      << textOf(plan);
+  expectReasons(plan, visited, kX, 0.030);
+  // It goes through to the end.
+  EXPECT_TRUE((visited.back().position == machine.park).all());
+  EXPECT_EQ(plan.statistics.setpoints, visited.size());
+}
+
+TEST(JobPlan, TellsOfEveryAxisThatIsBeyondItsLimits) {
+  Machine machine = plainMachine();
+  machine.limits.max_position << 0.030, 0.04, 0.2, 2;
+  machine.limits.min_position[kZ] = -1e-5;  // the stroke begins at -12 um
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  expectReasons(plan, visited, kX, 0.030);
+  expectReasons(plan, visited, kY, 0.04);
+  expectReasons(plan, visited, kA, 2);
+  std::set<MoveKind> low;
+  for (const Setpoint& p : visited) {
+    if (p.position[kZ] < -1e-5) low.insert(p.move);
+  }
+  EXPECT_EQ(low.size(), reasonsWith(plan, "axis_z").size()) << textOf(plan);
+  EXPECT_FALSE(low.empty());
+}
+
+TEST(JobPlan, TellsOfASingleSetpointWithoutACount) {
+  std::vector<double> xs;
+  const auto see = [&](const Setpoint& p) {
+    if (p.move == MoveKind::kStroke) xs.push_back(p.position[kX]);
+  };
+  Machine machine = plainMachine();
+  planJob(paperJob(), machine, machine.park, {}, see);
+  const double last = *std::max_element(xs.begin(), xs.end());
+  xs.erase(std::remove(xs.begin(), xs.end(), last), xs.end());
+  machine.limits.max_position[kX] = (last + *std::max_element(xs.begin(), xs.end())) / 2;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  ASSERT_EQ(beyondUpperLimit(visited, kX, machine.limits.max_position[kX])[MoveKind::kStroke].count, 1u);
+  const auto reasons = reasonsWith(plan, "(stroke, cycle");
+  ASSERT_EQ(reasons.size(), 1u) << textOf(plan);
+  EXPECT_FALSE(contains(reasons[0], "worst of")) << reasons[0];
+}
+
+TEST(JobPlan, TellsAllLimitsOfManyTeethInOneTextEach) {
+  Machine machine = plainMachine();
+  machine.limits.max_position[kX] = 0.030;
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1, 2};
+  job.process.spark_out = 1;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
+  EXPECT_EQ(plan.reasons.size(), 5u) << textOf(plan);  // now index and position leave from beyond the limit too
+  expectReasons(plan, visited, kX, 0.030);
+}
+
+TEST(JobPlan, RefusesATurnBeyondTheLimitOfA) {
+  Machine machine = plainMachine();
+  machine.limits.max_position[kA] = 2;
+  const JobPlan plan = planOf(paperJob(), machine);
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  // It is at (tan S / tan C) ln(31 mm * 2 tan C / 10 mm + 1) at the end of the stroke.
+  const double growth = std::tan(5 * units::kDegree);
+  const double end = std::tan(30 * units::kDegree) / growth * std::log1p(31e-3 * 2 * growth / 10e-3);
+  std::ostringstream text;
+  text << "axis_a position " << end << " rad is ";
+  EXPECT_TRUE(contains(textOf(plan), text.str())) << text.str() << " in\n" << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "beyond its limit 2 rad")) << textOf(plan);
+}
+
+TEST(JobPlan, RefusesAStartBeyondALimit) {
+  const Machine machine = plainMachine();
+  Axes start = machine.park;
+  start[kX] = -0.5;
+  const JobPlan plan = planJob(paperJob(), machine, start);
+  EXPECT_EQ(plan.fault, PlanFault::kLimit);
+  EXPECT_TRUE(contains(textOf(plan), "axis_x position -0.5 m")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "limit -0.3 m")) << textOf(plan);
+}
+
+TEST(JobPlan, TellsToleranceAndLimitsTogether) {
+  GrindJob job = steepJob();
+  job.process.feed = 0.1;
+  job.interpolation.tolerance = 0.2e-6;
+  Machine machine = strongMachine();
+  machine.limits.max_position[kX] = 0.015;
+  std::uint64_t off = 0;
+  std::vector<Setpoint> visited;
+  const Real normal =
+      std::cos(std::atan(std::tan(Real(job.cutter.spiral_angle)) * std::cos(Real(job.cutter.cone_angle))));
+  const ReferenceCurve curve(job.cutter);
+  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) {
+    visited.push_back(p);
+    if (p.step == StepKind::kNone) return;
+    const Real x = p.position[kX];
+    const Real radius = Real(job.cutter.end_diameter) / 2 + x * std::tan(Real(job.cutter.cone_angle));
+    if (std::abs(curve.a(x) - Real(p.position[kA])) * radius * normal > 0.2e-6L) ++off;
+  });
+  EXPECT_FALSE(plan.good());
+  expectReasons(plan, visited, kX, 0.015);
+  const auto tolerance = reasonsWith(plan, "interpolation.tolerance");
+  ASSERT_EQ(tolerance.size(), 1u) << textOf(plan);
+  ASSERT_GT(off, 1u);
+  EXPECT_TRUE(contains(tolerance[0], "; the worst of " + std::to_string(off) + " setpoints")) << tolerance[0];
+  std::ostringstream worst;
+  worst << "deviates by " << plan.statistics.max_deviation << " m";
+  EXPECT_TRUE(contains(tolerance[0], worst.str())) << tolerance[0];
+  EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis_x").size());
+}
+
+}  // namespace test_plan_limits
+}  // namespace flute_grinder

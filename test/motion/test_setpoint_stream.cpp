@@ -1,0 +1,340 @@
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include "flute_grinder/motion/limit_check.h"
+
+#include "stream_checks.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+
+namespace flute_grinder {
+namespace test_setpoint_stream {
+
+using namespace test_support;
+
+TEST(SetpointStream, StartsAtRestWhereTheAxesStand) {
+  Axes start;
+  start << 0.01, 0.04, -0.002, 0.3;
+  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_EQ(p.cycle, 0u);
+  EXPECT_TRUE((p.position == start).all());
+  EXPECT_TRUE((p.velocity == 0).all());
+  EXPECT_EQ(p.feed, 0);
+  EXPECT_EQ(p.path_error, 0);
+  EXPECT_EQ(p.step, StepKind::kNone);
+  EXPECT_FALSE(p.at_feed);
+}
+
+TEST(SetpointStream, LeavesTheSetpointAsItWasAtTheEnd) {
+  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  Setpoint p;
+  while (stream.next(p)) {
+  }
+  const Setpoint last = p;
+  EXPECT_FALSE(stream.next(p));
+  EXPECT_EQ(p.cycle, last.cycle);
+  EXPECT_TRUE((p.position == last.position).all());
+}
+
+TEST(SetpointStream, KeepsThePapersCutterWithinAMicroradianAt60MillimetresPerMinute) {
+  GrindJob job = paperJob();
+  job.process.feed = 60 * units::kMillimetrePerMinute;
+  for (const EvenStepRule rule : {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
+    SCOPED_TRACE(toString(rule));
+    job.interpolation.even_step = rule;
+    SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+    const ReferenceCurve curve(job.cutter);
+    double whole_stroke = 0;
+    double flute = 0;
+    for (const Setpoint& p : all(stream)) {
+      if (p.step != StepKind::kOdd) continue;
+      const double x = p.position[kX];
+      const double error = static_cast<double>(std::abs(curve.a(x) - Real(p.position[kA])));
+      whole_stroke = std::max(whole_stroke, error);
+      if (x >= 0 && x <= 30e-3) flute = std::max(flute, error);
+    }
+    // k b dX^2 / (2 u^2) with dX = 1 mm/s * 1 ms / 1.158: 7.53e-10 rad at X = 0, 7.80e-10 at the overtravel's end.
+    EXPECT_LT(whole_stroke, 7.9e-10);
+    EXPECT_GT(whole_stroke, 7.7e-10);
+    EXPECT_LT(flute, 7.6e-10);
+    EXPECT_GT(flute, 7.5e-10);
+  }
+}
+
+TEST(SetpointStream, YAndZFollowXInTheStroke) {
+  GrindJob job = paperJob();
+  job.process.wheel_wear = 0.2e-3;
+  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+  const double growth = std::tan(5 * units::kDegree);
+  for (const Setpoint& p : all(stream)) {
+    if (p.move != MoveKind::kStroke) continue;
+    const double x = p.position[kX];
+    ASSERT_NEAR(p.position[kY], x * growth - 0.5e-3 - 0.2e-3, 1e-15);
+    ASSERT_NEAR(p.position[kZ], x * growth * std::sin(8 * units::kDegree), 1e-15);
+  }
+}
+
+TEST(SetpointStream, EveryToothStandsAtItsAngle) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1.5, 3.3};
+  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+  const ReferenceCurve curve(job.cutter);
+  std::map<int, int> seen;
+  for (const Setpoint& p : all(stream)) {
+    if (p.step != StepKind::kEven) continue;
+    ++seen[p.tooth];
+    ASSERT_NEAR(p.position[kA] - job.tooth_angles[p.tooth], static_cast<double>(curve.a(p.position[kX])), 1e-6);
+  }
+  EXPECT_EQ(seen.size(), 3u);
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, CyclesCountFromZeroWithoutGap, ()) {
+  std::uint64_t expected = 0;
+  for (const Setpoint& p : all(*test_support::work(kCycles))) RC_ASSERT(p.cycle == expected++);
+  RC_ASSERT(expected % 2 == 1u);  // the start and then pairs
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, EveryMoveTakesAnEvenNumberOfCycles, ()) {
+  const auto setpoints = all(*test_support::work(kCycles));
+  for (std::size_t i = 1; i + 1 < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    const Setpoint& q = setpoints[i + 1];
+    if (p.move_index != q.move_index) RC_ASSERT(p.cycle % 2 == 0u);
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, StrokesGoOddAndEvenByTurnsAndOtherMovesDoNot, ()) {
+  for (const Setpoint& p : all(*test_support::work(kCycles))) {
+    if (p.cycle == 0 || p.move != MoveKind::kStroke) {
+      RC_ASSERT(p.step == StepKind::kNone);
+      RC_ASSERT(p.path_error == 0);
+      RC_ASSERT(!p.at_feed);
+    } else {
+      RC_ASSERT(p.step == (p.cycle % 2 == 1 ? StepKind::kOdd : StepKind::kEven));
+    }
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
+  const Work work = *toothedWork(kCycles / 3);
+  const GrindProgram program = work.program();
+  const auto setpoints = all(work);
+  const ReferenceCurve curve(work.job.cutter);
+  const bool exact = work.job.interpolation.even_step == EvenStepRule::kExact;
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    const Move& move = program.moves().at(p.move_index);
+    RC_ASSERT(p.move == move.kind);
+    RC_ASSERT(p.tooth == move.tooth);
+    RC_ASSERT(p.pass == move.pass);
+    const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
+    RC_ASSERT(p.move_fraction >= 0);
+    RC_ASSERT(p.move_fraction <= 1);
+    if (!ends) continue;
+    RC_ASSERT(p.move_fraction == 1);
+    if (p.move == MoveKind::kStroke) {
+      RC_ASSERT(std::abs(p.position[kX] - move.to[kX]) <= 1e-12);
+      RC_ASSERT(std::abs(p.position[kY] - move.to[kY]) <= 1e-12);
+      RC_ASSERT(std::abs(p.position[kZ] - move.to[kZ]) <= 1e-12);
+      if (exact) {
+        RC_ASSERT(std::abs(p.position[kA] - move.to[kA]) <= 1e-12 * (1 + static_cast<double>(std::abs(curve.k))));
+      }
+    } else {
+      RC_ASSERT((p.position == move.to).all());
+    }
+  }
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()) {
+  const Work work = *toothedWork(kCycles / 3);
+  const auto setpoints = all(work);
+  const double clear = clearHeight(work.job) - 1e-15;
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    const Axes way = p.position - setpoints[i - 1].position;
+    if (p.move == MoveKind::kIndex) {
+      RC_ASSERT(way[kX] == 0 && way[kY] == 0 && way[kZ] == 0);
+      RC_ASSERT(p.position[kY] >= clear);
+    }
+    if (p.move == MoveKind::kPosition) {
+      RC_ASSERT(way[kY] == 0 && way[kA] == 0);
+      RC_ASSERT(p.position[kY] >= clear);
+    }
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, WearNeverMovesYWithinAPass, ()) {
+  Work work = *toothedWork(kCycles / 3);
+  work.job.process.wheel_wear = *uniform(0, 1e-3);
+  work.job.process.wheel_wear_per_pass = *uniform(1e-6, 1e-4);
+  const auto setpoints = all(work);
+  const double growth = std::tan(work.job.cutter.cone_angle);
+  const double rounding = 4 * roundingOf(setpoints)[kY];
+  double deeper = work.job.process.depth + work.job.process.wheel_wear;
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Setpoint& p = setpoints[i];
+    if (p.step != StepKind::kNone) RC_ASSERT(std::abs(p.position[kY] - p.position[kX] * growth + deeper) <= rounding);
+    const bool pass_ends = p.move == MoveKind::kRetract && setpoints[i - 1].move == MoveKind::kStroke;
+    if (pass_ends) deeper += work.job.process.wheel_wear_per_pass;
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxes, ()) {
+  const Work work = *test_support::work(kCycles);
+  RC_ASSERT(beyondLimits(all(work), work.machine) == "");
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, TellsTheMeanVelocityOfTheCycle, ()) {
+  const Work work = *test_support::work(kCycles);
+  const auto setpoints = all(work);
+  for (std::size_t i = 1; i < setpoints.size(); ++i) {
+    const Axes moved = setpoints[i].position - setpoints[i - 1].position;
+    RC_ASSERT(((setpoints[i].velocity * work.machine.period - moved).abs() <= 4 * kEps * moved.abs()).all());
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) {
+  const Work work = *test_support::work(kCycles);
+  const ReferenceCurve curve(work.job.cutter);
+  const auto setpoints = all(work);
+  const Axes noise = roundingOf(setpoints);
+  for (const Setpoint& p : setpoints) {
+    if (p.step == StepKind::kNone) continue;
+    const Real error = curve.a(p.position[kX]) - Real(p.position[kA]);
+    RC_ASSERT(std::abs(p.path_error - error) <= Real(4 * noise[kA] + 1e-15));
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstruction, ()) {
+  const Work work = *test_support::work(kCycles);
+  RC_ASSERT(offTheConstruction(all(work), work.job, 37) == "");
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, OddPointsLeaveTheCurveByTheTangentsErrorOnly, ()) {
+  const Work work = *test_support::work(kCycles);
+  RC_ASSERT(offTheTangent(all(work), work.job) == "");
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, ExactEvenPointsAreOnTheCurve, ()) {
+  Work work = *test_support::work(kCycles);
+  work.job.interpolation.even_step = EvenStepRule::kExact;
+  const auto setpoints = all(work);
+  const double rounding = 4 * roundingOf(setpoints)[kA] + 1e-15;
+  for (const Setpoint& p : setpoints) {
+    if (p.step == StepKind::kEven) RC_ASSERT(std::abs(p.path_error) <= rounding);
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, ExactNeverLeavesTheTolerance, ()) {
+  Work work = *test_support::work(kCycles);
+  work.job.interpolation.even_step = EvenStepRule::kExact;
+  const CutterGeometry& g = work.job.cutter;
+  const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
+  for (const Setpoint& p : all(work)) {
+    if (p.step == StepKind::kNone) continue;
+    const Real radius = Real(g.end_diameter) / 2 + p.position[kX] * std::tan(Real(g.cone_angle));
+    RC_ASSERT(std::abs(p.path_error) * radius * normal <= work.job.interpolation.tolerance * Real(1 + 1e-9));
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {
+  const Work work = *test_support::work(kCycles);
+  const auto one = all(work);
+  const auto other = all(work);
+  RC_ASSERT(one.size() == other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    RC_ASSERT(std::memcmp(one[i].position.data(), other[i].position.data(), sizeof(double) * kAxisCount) == 0);
+    RC_ASSERT(std::memcmp(one[i].velocity.data(), other[i].velocity.data(), sizeof(double) * kAxisCount) == 0);
+    RC_ASSERT(std::memcmp(&one[i].path_error, &other[i].path_error, sizeof(double)) == 0);
+    RC_ASSERT(std::memcmp(&one[i].feed, &other[i].feed, sizeof(double)) == 0);
+  }
+}
+
+TEST(SetpointStream, IsFinishedAtItsEndOnly) {
+  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  Setpoint p;
+  EXPECT_FALSE(stream.finished());
+  while (stream.next(p))
+    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
+  EXPECT_TRUE(stream.finished());
+  stream.resume();
+  EXPECT_FALSE(stream.next(p));
+}
+
+TEST(SetpointStream, TellsMoveAndProgress) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+  const auto moves = stream.program().moves();
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_EQ(p.move_index, 0u);
+  EXPECT_EQ(p.move_fraction, 0);
+  Setpoint before = p;
+  for (; stream.next(p); before = p) {
+    if (p.move_index == before.move_index) {
+      ASSERT_GE(p.move_fraction, before.move_fraction);
+    } else {
+      ASSERT_EQ(p.move_index, before.move_index + 1);
+      ASSERT_LT(p.move_fraction, 0.5);
+    }
+    // Of a stroke that is not cut for an axis it is the way in X.
+    if (p.step == StepKind::kEven) {
+      ASSERT_NEAR(p.move_fraction, (p.position[kX] + 1e-3) / 32e-3, 1e-12);
+    }
+    if (p.move == MoveKind::kApproach) {
+      const double from = moves[p.move_index - 1].to[kY];
+      ASSERT_NEAR(p.move_fraction, (p.position[kY] - from) / (moves[p.move_index].to[kY] - from), 1e-12);
+    }
+  }
+  EXPECT_EQ(p.move_index, moves.size() - 1);
+}
+
+// planJob() refuses every program that comes to this: a tooth that is nowhere.
+TEST(SetpointStream, ThatCannotGoOnGivesWhatEveryCheckRefuses) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {std::numeric_limits<double>::quiet_NaN()};
+  const Machine machine = plainMachine();
+  SetpointStream stream(GrindProgram(job, machine, machine.park));
+  LimitCheck check(machine.limits, machine.period);
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_FALSE(check.check(p));
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_TRUE(stream.next(p));
+    stream.hold();
+    stream.retract();
+    stream.resume();
+    const auto violation = check.check(p);
+    ASSERT_TRUE(violation);
+    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
+    ASSERT_FALSE(stream.finished());
+  }
+}
+
+TEST(SetpointStream, SharesItsProgram) {
+  const Machine machine = plainMachine();
+  const auto program = std::make_shared<const GrindProgram>(paperJob(), machine, machine.park);
+  SetpointStream shared(program);
+  SetpointStream owned(*program);
+  EXPECT_EQ(&shared.program(), program.get());
+  Setpoint p, q;
+  while (shared.next(p)) {
+    ASSERT_TRUE(owned.next(q));
+    ASSERT_TRUE((p.position == q.position).all());
+  }
+  EXPECT_FALSE(owned.next(q));
+}
+
+}  // namespace test_setpoint_stream
+}  // namespace flute_grinder

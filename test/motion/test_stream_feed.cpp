@@ -1,0 +1,333 @@
+// The feed of a stream's strokes, as planned and overridden.
+
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include "stream_checks.h"
+#include "stream_rides.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_stream_feed {
+
+using namespace test_support;
+
+RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeed, ()) {
+  const Work work = *test_support::work(kCycles);
+  const GrindProgram program = work.program();
+  const double edge = edgePerTravel(work.job.cutter);
+  const double speed = program.schedule().feedSpeed();
+  if (program.schedule().feedLimits().empty()) {
+    RC_ASSERT(std::abs(speed * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
+  }
+  const auto setpoints = all(work);
+  const double rounding = roundingOf(setpoints)[kX];
+  for (const SeenPair& s : pairsOf(setpoints)) {
+    RC_ASSERT(s.odd.at_feed == s.even.at_feed);
+    if (!s.odd.at_feed) continue;
+    const double pair = 2 * speed * work.machine.period;
+    RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.start.position[kX]) - pair) <= 1e-6 * pair + 2 * rounding);
+    RC_ASSERT(std::abs(s.even.feed - speed * edge) <= 1e-9 * speed * edge);
+  }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathOnly, ()) {
+  const Work work = *test_support::work(kCycles);
+  const double step = work.program().schedule().feedSpeed() * work.machine.period;
+  const auto setpoints = all(work);
+  const double rounding = 2 * roundingOf(setpoints)[kX];
+  const ReferenceCurve curve(work.job.cutter);
+  for (const SeenPair& s : pairsOf(setpoints)) {
+    if (!s.odd.at_feed) continue;
+    // 2 |kappa| dl tan theta = 2 sin^2 theta |b| dX / u
+    const Real u = curve.u(s.start.position[kX]);
+    const Real slope = work.job.interpolation.rotary_scale * curve.k / u;
+    const Real growth = std::abs(curve.b) * step / u;
+    const Real bound = 2 * slope * slope / (1 + slope * slope) * growth * (1 + 4 * growth) + 1e-6L;
+    RC_ASSERT(std::abs(std::abs(s.odd.position[kX] - s.start.position[kX]) / step - 1) <= bound + rounding / step);
+    RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.odd.position[kX]) / step - 1) <= bound + rounding / step);
+  }
+}
+
+TEST(SetpointStream, GoesAtFeedForMostOfThePapersStroke) {
+  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  std::size_t strokes = 0;
+  std::size_t at_feed = 0;
+  for (const Setpoint& p : all(stream)) {
+    if (p.move == MoveKind::kStroke) ++strokes;
+    if (p.at_feed) ++at_feed;
+  }
+  EXPECT_GT(at_feed, strokes * 9 / 10);
+  EXPECT_LT(at_feed, strokes);
+}
+
+/// The paper's job at a feed, on a machine with gentle limits.
+Work gentleWork(double feed) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.job.process.feed = feed;
+  work.machine.limits.max_velocity << 0.2, 0.2, 0.2, 20;
+  work.machine.limits.max_acceleration << 0.5, 0.5, 0.5, 62.83;
+  work.machine.limits.max_jerk << 10, 10, 10, 1257;
+  return work;
+}
+
+class EvenFeed : public ::testing::TestWithParam<int> {};  // [mm/min]
+
+TEST_P(EvenFeed, IsHeldOverTheMiddleHalfOfTheStroke) {
+  const Work work = gentleWork(GetParam() * units::kMillimetrePerMinute);
+  double slowest_pair = 1e9;
+  double fastest_pair = 0;
+  double slowest_step = 1e9;
+  double fastest_step = 0;
+  for (const SeenPair& s : pairsOf(all(work))) {
+    const double x[]{s.start.position[kX], s.odd.position[kX], s.even.position[kX]};
+    if (x[0] < 7e-3 || x[2] > 23e-3) continue;  // of -1 mm to 31 mm
+    slowest_pair = std::min(slowest_pair, x[2] - x[0]);
+    fastest_pair = std::max(fastest_pair, x[2] - x[0]);
+    for (const double step : {x[1] - x[0], x[2] - x[1]}) {
+      slowest_step = std::min(slowest_step, step);
+      fastest_step = std::max(fastest_step, step);
+    }
+  }
+  ASSERT_GT(fastest_pair, 0);
+  RecordProperty("pairs", ::testing::PrintToString(fastest_pair / slowest_pair - 1));
+  RecordProperty("steps", ::testing::PrintToString(fastest_step / slowest_step - 1));
+  EXPECT_LT(fastest_pair / slowest_pair, 1.000001);
+  EXPECT_LT(fastest_step / slowest_step, 1.0001);
+}
+
+TEST_P(EvenFeed, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
+  const Work work = gentleWork(GetParam() * units::kMillimetrePerMinute);
+  // The quickest way from rest to rest over 32 mm that X's limits allow: full acceleration is reached at both feeds or
+  // not by v j against a^2. The other axes' limits can only make it slower.
+  const double v = work.job.process.feed / edgePerTravel(work.job.cutter);
+  const double a = 0.5;
+  const double j = 10;
+  const double ramp = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
+  ASSERT_LT(ramp * v, 32e-3);
+  const double quickest = 32e-3 / v + ramp;
+  std::size_t cycles = 0;
+  for (const Setpoint& p : all(work)) cycles += p.step != StepKind::kNone ? 1 : 0;
+  const double duration = static_cast<double>(cycles) * work.machine.period;
+  RecordProperty("excess", ::testing::PrintToString(duration / quickest - 1));
+  EXPECT_GE(duration, quickest * (1 - 1e-9));
+  EXPECT_LE(duration, quickest * 1.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(MillimetresPerMinute, EvenFeed, ::testing::Values(600, 1800));
+
+/// Of the paper's job where nothing cuts the feed, in X. [m/s]
+double paperSpeed() { return 0.01 / edgePerTravel(paperJob().cutter); }
+
+TEST(SetpointStream, AnotherFeedTakesEffectWithTheNextPair) {
+  for (const bool at_pair_end : {true, false}) {
+    PaperStroke ride(10e-3);
+    PaperStroke undisturbed(10e-3);
+    if (!at_pair_end) {
+      ride.next();
+      undisturbed.next();
+    }
+    ASSERT_TRUE(ride.last().at_feed);
+    ride.stream().setFeedOverride(0.5);
+    if (!at_pair_end) {
+      ride.next();
+      undisturbed.next();
+      EXPECT_EQ(ride.last().position[kX], undisturbed.last().position[kX]);
+    }
+    // The speed falls with the law's jerk j: the pair of 2 T falls short by j (2 T)^3 / 6.
+    const double pair = 2e-3;
+    const double jerk = ride.stream().program().schedule().limits().jerk;
+    const double before = ride.last().position[kX];
+    ride.next();
+    ride.next();
+    EXPECT_NEAR(ride.last().position[kX] - before, paperSpeed() * pair - jerk * pair * pair * pair / 6, 1e-14);
+    EXPECT_FALSE(ride.last().at_feed);
+  }
+}
+
+TEST(SetpointStream, AnotherFeedIsReachedAsSoonAsTheLimitsAllow) {
+  for (const double fraction : {0.1, 0.5, 0.9, 1.1, 1.2}) {
+    SCOPED_TRACE(fraction);
+    PaperStroke ride(10e-3);
+    const MotionLimits limits = ride.stream().program().schedule().limits();
+    const double change = std::abs(fraction - 1) * paperSpeed();
+    ASSERT_LT(change, limits.acceleration * limits.acceleration / limits.jerk);
+    const double time = 2 * std::sqrt(change / limits.jerk);
+    ride.stream().setFeedOverride(fraction);
+    int pairs = 0;
+    for (; !ride.last().at_feed || pairs == 0; ++pairs) {
+      const double before = ride.last().position[kX];
+      ASSERT_TRUE(ride.next() && ride.next());
+      const double speed = (ride.last().position[kX] - before) / 2e-3;
+      EXPECT_GE(speed, std::min(1.0, fraction) * paperSpeed() * (1 - 1e-9));  // neither past the one nor the other
+      EXPECT_LE(speed, std::max(1.0, fraction) * paperSpeed() * (1 + 1e-9));
+    }
+    EXPECT_LE(pairs, static_cast<int>(std::ceil(time / 2e-3)) + 1);
+    const double before = ride.last().position[kX];
+    ASSERT_TRUE(ride.next() && ride.next());
+    EXPECT_NEAR((ride.last().position[kX] - before) / 2e-3, fraction * paperSpeed(), 1e-9 * paperSpeed());
+    EXPECT_NEAR(ride.last().feed, fraction * 0.01, 1e-12);
+    EXPECT_TRUE(ride.last().at_feed);
+  }
+}
+
+TEST(SetpointStream, NoFeedRestsOnThePathUntilThereIsFeedAgain) {
+  PaperStroke ride(10e-3);
+  ride.stream().setFeedOverride(0);
+  ride.runToRest();
+  const Setpoint rest = ride.last();
+  EXPECT_EQ(rest.move, MoveKind::kStroke);
+  EXPECT_LT(rest.position[kX], 11e-3);
+  EXPECT_FALSE(ride.stream().finished());
+  EXPECT_TRUE(ride.stream().onPath());
+  EXPECT_FALSE(ride.next());
+  ride.stream().resume();  // which is for holds
+  EXPECT_FALSE(ride.next());
+  ride.stream().setFeedOverride(1e-3);
+  ASSERT_TRUE(ride.next());
+  EXPECT_EQ(ride.last().cycle, rest.cycle + 1);
+  ride.stream().setFeedOverride(1);
+  ride.runToRest();
+  EXPECT_TRUE(ride.stream().finished());
+}
+
+TEST(SetpointStream, AFeedThatThereIsNotIsNotTaken) {
+  const double not_taken[]{
+      std::numeric_limits<double>::quiet_NaN(), -1e-9, -1, 1.2 + 1e-9, 100, std::numeric_limits<double>::infinity(),
+      -std::numeric_limits<double>::infinity()};
+  for (const double fraction : not_taken) {
+    SCOPED_TRACE(fraction);
+    PaperStroke ride(10e-3);
+    PaperStroke untouched(10e-3);
+    ride.stream().setFeedOverride(0.7);
+    untouched.stream().setFeedOverride(0.7);
+    ride.stream().setFeedOverride(fraction);
+    while (untouched.next()) {
+      ASSERT_TRUE(ride.next());
+      ASSERT_TRUE((ride.last().position == untouched.last().position).all());
+    }
+    EXPECT_FALSE(ride.next());
+  }
+}
+
+TEST(SetpointStream, TheInfeedGoesAtTheOverriddenFeedToo) {
+  for (const double fraction : {0.25, 1.0, 1.2}) {
+    SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+    stream.setFeedOverride(fraction);
+    double fastest = 0;
+    Setpoint p;
+    while (stream.next(p)) {
+      if (p.move == MoveKind::kInfeed) fastest = std::max(fastest, -p.velocity[kY]);
+    }
+    EXPECT_NEAR(fastest, fraction * 0.01, 1e-12);
+  }
+}
+
+/// The number of cycles of every rapid of a job, by its move.
+std::map<std::uint32_t, int> rapidsOf(const std::vector<Setpoint>& setpoints) {
+  std::map<std::uint32_t, int> rapids;
+  for (const Setpoint& p : setpoints) {
+    if (p.move != MoveKind::kInfeed && p.move != MoveKind::kStroke) ++rapids[p.move_index];
+  }
+  return rapids;
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, RapidsKeepTheirSpeedWhateverTheFeed, ()) {
+  const Work work = *toothedWork(kCycles / 3);
+  SetpointStream stream(work.program());
+  stream.setFeedOverride(*uniform(0.1, 1.2));
+  RC_ASSERT(rapidsOf(all(stream)) == rapidsOf(all(work)));
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, AtAnotherFeedEveryPairGoesAtThatFeed, ()) {
+  const Work work = *test_support::work(kCycles);
+  SetpointStream stream(work.program());
+  const double fraction = *uniform(0.1, 1.2);
+  stream.setFeedOverride(fraction);
+  const FeedSchedule& schedule = stream.program().schedule();
+  const double most = schedule.limits().velocity;
+  const double speed = std::min(fraction * schedule.feedSpeed(), most);
+  const auto setpoints = all(stream);
+  const double rounding = roundingOf(setpoints)[kX];
+  for (const SeenPair& s : pairsOf(setpoints)) {
+    if (!s.odd.at_feed) continue;
+    const double pair = 2 * speed * work.machine.period;
+    RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.start.position[kX]) - pair) <= 1e-6 * pair + 2 * rounding);
+  }
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAskedFor, ()) {
+  Work work = *test_support::work(kCycles);
+  work.machine.limits.max_velocity.setConstant(1e3);
+  work.machine.limits.max_acceleration.setConstant(1e6);
+  work.machine.limits.max_jerk.setConstant(1e9);
+  work.job.interpolation.tolerance = 1e-3;
+  SetpointStream stream(work.program());
+  RC_PRE(stream.program().schedule().feedLimits().empty());
+  const double fraction = *uniform(0.1, 1.2);
+  stream.setFeedOverride(fraction);
+  const double feed = fraction * work.job.process.feed;
+  int at_feed = 0;
+  double fastest = 0;
+  for (const Setpoint& p : all(stream)) {
+    if (p.step == StepKind::kNone) continue;
+    fastest = std::max(fastest, p.feed);
+    if (!p.at_feed) continue;
+    ++at_feed;
+    RC_ASSERT(std::abs(p.feed - feed) <= 1e-9 * feed);
+  }
+  RC_ASSERT(at_feed > 0);
+  RC_ASSERT(fastest <= feed * (1 + 1e-9));
+}
+
+TEST(SetpointStream, WhereACutsTheFeedNoOverrideMakesItFaster) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.machine.limits.max_velocity[kA] = 0.95;  // 8.637 mm/s ask for 1.015 rad/s at X = -1 mm, and for 0.653 at 31 mm
+  const auto largestTurn = [&](double fraction) {
+    SetpointStream stream(work.program());
+    stream.setFeedOverride(fraction);
+    double turn = 0;
+    double speed = 0;
+    Setpoint p;
+    while (stream.next(p)) {
+      if (p.step == StepKind::kNone) continue;
+      turn = std::max(turn, std::abs(p.velocity[kA]));
+      speed = std::max(speed, p.velocity[kX]);
+    }
+    return std::make_pair(turn, speed);
+  };
+  const auto [turn, speed] = largestTurn(1);
+  EXPECT_LE(turn, 0.95);
+  EXPECT_GT(turn, 0.94);
+  EXPECT_NEAR(speed, paperSpeed(), 1e-4 * paperSpeed());
+  const auto [faster_turn, faster_speed] = largestTurn(1.2);
+  EXPECT_LE(faster_turn, 0.95);
+  EXPECT_NEAR(faster_speed, speed, 1e-9);
+  const auto [slower_turn, slower_speed] = largestTurn(0.5);
+  EXPECT_LE(slower_turn, 0.95 / 2 * (1 + 1e-3));
+  EXPECT_NEAR(slower_speed, speed / 2, 1e-4 * speed);
+}
+
+TEST(SetpointStream, GoesAsFarTowardTheOverrideAsAnAxisAllows) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.machine.limits.max_velocity[kX] = 1.1 * paperSpeed();
+  SetpointStream stream(work.program());
+  stream.setFeedOverride(1.2);
+  double fastest = 0;
+  for (const Setpoint& p : all(stream)) fastest = std::max(fastest, p.step == StepKind::kNone ? 0 : p.velocity[kX]);
+  EXPECT_LE(fastest, 1.1 * paperSpeed());
+  EXPECT_GT(fastest, 1.099 * paperSpeed());
+}
+
+}  // namespace test_stream_feed
+}  // namespace flute_grinder

@@ -1,0 +1,199 @@
+// A stream that is held, slowed down and given other feeds at any moment.
+
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include "flute_grinder/motion/limit_check.h"
+
+#include "stream_checks.h"
+#include "stream_rides.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace flute_grinder {
+namespace test_stream_hold {
+
+using namespace test_support;
+
+TEST(SetpointStream, HeldBeforeItBeginsDoesNotMove) {
+  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  stream.hold();
+  const auto setpoints = all(stream);
+  ASSERT_EQ(setpoints.size(), 1u);
+  EXPECT_TRUE((setpoints[0].position == plainMachine().park).all());
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HeldItStopsOnThePathUnderTheLimits, ()) {
+  const Work work = *test_support::work(kCycles);
+  const auto undisturbed = all(work);
+  SetpointStream stream(work.program());
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  const auto hold_at = static_cast<std::size_t>(static_cast<double>(undisturbed.size()) * *uniform(0, 1));
+  for (std::size_t i = 0; i < hold_at && stream.next(p); ++i) setpoints.push_back(p);
+  stream.hold();
+  while (stream.next(p)) {
+    setpoints.push_back(p);
+    RC_ASSERT(setpoints.size() <= undisturbed.size() + 2);  // a stop is never longer than the way to the end
+  }
+  if (setpoints.empty()) return;
+  RC_ASSERT(!stream.next(p));
+  RC_ASSERT(setpoints.back().cycle % 2 == 0u);
+  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HeldInTheStrokeItStaysInTheStroke, ()) {
+  const Work work = *test_support::work(kCycles);
+  const GrindProgram program = work.program();
+  const auto undisturbed = all(work);
+  std::size_t first = 0;
+  while (undisturbed[first].step == StepKind::kNone) ++first;
+  std::size_t last = first;
+  while (undisturbed[last].step != StepKind::kNone) ++last;
+  const auto hold_at = first + static_cast<std::size_t>(static_cast<double>(last - first) * *uniform(0, 1));
+  SetpointStream stream(program);
+  Setpoint p;
+  for (std::size_t i = 0; i < hold_at; ++i) {
+    stream.next(p);
+    RC_ASSERT((p.position == undisturbed[i].position).all());
+  }
+  stream.hold();
+  const double direction = program.strokeTo() > program.strokeFrom() ? 1 : -1;
+  double x = hold_at > first ? p.position[kX] : program.strokeFrom();
+  // The acceleration is taken back, and then it is braked, as from full speed at the most.
+  const MotionLimits l = program.schedule().limits();
+  const double back = l.acceleration / l.jerk;
+  const double full = l.velocity * l.jerk > l.acceleration * l.acceleration ? l.velocity / l.acceleration + back
+                                                                            : 2 * std::sqrt(l.velocity / l.jerk);
+  const double cycles = (std::min(back, std::sqrt(2 * l.velocity / l.jerk)) + full) / work.machine.period + 4;
+  int count = 0;
+  while (stream.next(p)) {
+    RC_ASSERT(++count <= cycles);
+    if (hold_at == first) continue;  // in front of the stroke it rests already
+    RC_ASSERT(p.move == MoveKind::kStroke);
+    RC_ASSERT(direction * (p.position[kX] - x) >= -1e-15);
+    RC_ASSERT(direction * (program.strokeTo() - p.position[kX]) >= -1e-15);
+    x = p.position[kX];
+  }
+}
+
+TEST(SetpointStream, HeldItRestsAsSoonAsTheLimitsAllow) {
+  PaperStroke ride(10e-3);
+  const MotionLimits limits = ride.stream().program().schedule().limits();
+  const double speed = 0.01 / edgePerTravel(paperJob().cutter);
+  ASSERT_LT(speed, limits.acceleration * limits.acceleration / limits.jerk);
+  const double way = speed * std::sqrt(speed / limits.jerk);
+  const double x = ride.last().position[kX];
+  const std::uint64_t cycle = ride.last().cycle;
+  ride.stream().hold();
+  ride.runToRest();
+  EXPECT_NEAR(ride.last().position[kX] - x, way, 1e-12);
+  EXPECT_EQ(ride.last().cycle - cycle, 2 * std::ceil(2 * std::sqrt(speed / limits.jerk) / 2e-3));
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ()) {
+  const Work work = *toothedWork(kCycles / 3);
+  const auto undisturbed = all(work);
+  const auto moments = momentsInStrokes(undisturbed, 3);
+  const Ride ride = rideWithHoldsAndOverrides(work, moments);
+  RC_ASSERT(ride.requests_in_strokes >= 6);  // three for each of two teeth at least: some hundreds in all
+  const auto setpoints = ride.setpoints();
+  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
+  RC_ASSERT(movesOf(setpoints) == movesOf(undisturbed));
+  checkStrokes(setpoints, work);
+  RC_ASSERT(largestDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
+  Work work = *test_support::work(kCycles / 3);
+  work.job.interpolation.even_step = *rc::gen::element(EvenStepRule::kThirdOrder, EvenStepRule::kExact);
+  const double without = largestDeviation(all(work), work.job);
+  RC_PRE(without > 1e-12);
+  work.job.interpolation.tolerance = without * *uniform(0.3, 3);  // at a third it cuts the feed to some half
+  const auto undisturbed = all(work);
+  const double allowed = work.job.interpolation.tolerance * (1 + 1e-9) + noiseOfDeviation(undisturbed, work.job);
+  RC_ASSERT(largestDeviation(undisturbed, work.job) <= allowed);
+  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(undisturbed, 3));
+  RC_ASSERT(largestDeviation(ride.setpoints(), work.job) <= allowed);
+  RC_ASSERT(largestDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, ()) {
+  const Work work = *test_support::work(kCycles);
+  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4));
+  RC_ASSERT(ride.requests_in_strokes >= 4);
+  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
+  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");      // and none needs a rest to be gone on from
+}
+
+/// Slowed down at random moments, held and brought up again now and then.
+RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxesThatStood, ()) {
+  const Work work = *test_support::work(kCycles);
+  SetpointStream stream(work.program());
+  LimitCheck check(work.machine.limits, work.machine.period);
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
+  const double share = *logUniform(1e-3, 0.3);
+  std::vector<Setpoint> setpoints;
+  Setpoint p;
+  for (int cycle = 0; cycle < 100000 && !stream.finished(); ++cycle) {
+    const bool calm = cycle > 2000;
+    if (!setpoints.empty() && !calm && chance(random) < share) {
+      const double factor = 1 / periods(random);
+      stream.slowDown(factor);
+      check.slowDown(factor);
+    }
+    if (!calm && chance(random) < share / 10) stream.hold();
+    if (!stream.next(p)) {
+      stream.resume();
+      continue;
+    }
+    setpoints.push_back(p);
+    const auto violation = check.check(p);
+    RC_ASSERT(!violation || violation->quantity == LimitedQuantity::kPosition);
+  }
+  RC_ASSERT(stream.finished());
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+}
+
+TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
+  GrindJob job = paperJob();
+  Axes start = plainMachine().park;
+  SetpointStream stream(GrindProgram(job, plainMachine(), start));
+  SetpointStream undisturbed(stream.program());
+  Setpoint p, q;
+  const auto step = [&] {
+    ASSERT_TRUE(stream.next(p));
+    ASSERT_TRUE(undisturbed.next(q));
+  };
+  while (!(p.at_feed && p.step == StepKind::kOdd)) step();
+  const Axes even_before = p.position;
+  stream.slowDown(0.2);
+  step();
+  EXPECT_TRUE((p.position == q.position).all()) << "its second step is made as planned";
+  const double x = p.position[kX];
+  const double full = 2 * (x - even_before[kX]);
+  step();
+  step();
+  // Then a fifth, and what the jerk adds in two cycles.
+  EXPECT_NEAR(p.position[kX] - x, full / 5, 0.02 * full);
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstruction, ()) {
+  const Work work = *test_support::work(kCycles);
+  const auto setpoints = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4)).setpoints();
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
+}
+
+}  // namespace test_stream_hold
+}  // namespace flute_grinder

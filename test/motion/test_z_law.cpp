@@ -1,0 +1,171 @@
+// A job whose Z is corrected: where the axes go, and that they keep their limits.
+
+#include "flute_grinder/motion/job_plan.h"
+
+#include "stream_rides.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace flute_grinder {
+namespace test_z_law {
+
+using namespace test_support;
+
+/// By the paper and the recursion of de Boor. [m]
+double zOf(const GrindJob& job, double x) {
+  const Real slope = std::tan(Real(job.cutter.cone_angle)) * zPerY(job.cutter);
+  return static_cast<double>(x * slope + referenceCorrection(job.z_corrections.at(0), x));
+}
+
+double largestCoefficient(const ZCorrection& c) {
+  double largest = 0;
+  for (const double v : c.coefficients) largest = std::max(largest, std::abs(v));
+  return largest;
+}
+
+/// The paper's job with a bow of Z, in coefficients of `height`.
+GrindJob bentJob(double height) {
+  GrindJob job = paperJob();
+  job.process.z_law = ZLaw::kConstantRake;
+  ZCorrection c;
+  c.from = -1e-3;
+  c.pieces = 8;
+  c.piece = 32e-3 / c.pieces;
+  for (int i = 0; i < c.coefficientCount(); ++i) {
+    c.coefficients[static_cast<std::size_t>(i)] = height * std::cos(0.7 * i);
+  }
+  job.z_corrections = {c};
+  return job;
+}
+
+RC_GTEST_PROP(ZCorrectionProperty, IsTheSplineOfItsCoefficients, ()) {
+  const GrindJob job = *test_support::job();
+  const ZCorrection c = *zCorrection(job);
+  const double x = c.from + c.piece * c.pieces * *uniform(0, 1);
+  const double expected = static_cast<double>(referenceCorrection(c, x));
+  RC_ASSERT(std::abs(c.at(x).z - expected) <= 1e-14 * largestCoefficient(c));
+}
+
+RC_GTEST_PROP(ZCorrectionProperty, ItsDerivativesKeepWithinTheirBounds, ()) {
+  const GrindJob job = *test_support::job();
+  const ZCorrection c = *zCorrection(job);
+  const ZCorrection::Bounds bounds = c.bounds();
+  double second = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const ZCorrection::Value v = c.at(c.from + c.piece * c.pieces * i / 200);
+    RC_ASSERT(v.first >= bounds.least_first - 1e-9 * std::abs(bounds.least_first));
+    RC_ASSERT(v.first <= bounds.largest_first + 1e-9 * std::abs(bounds.largest_first));
+    RC_ASSERT(std::abs(v.second) <= bounds.second * (1 + 1e-9));
+    RC_ASSERT(std::abs(v.third) <= bounds.third * (1 + 1e-9));
+    second = std::max(second, std::abs(v.second));
+  }
+  // Not so wide that they would slow every stroke.
+  if (c.pieces > 1) RC_ASSERT(second > bounds.second / 50);
+}
+
+RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrection, ()) {
+  const Work work = *correctedWork(kCycles / 3);
+  const auto setpoints = all(work);
+  checkStrokes(setpoints, work);
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  // The moves to a stroke's start, and from its end.
+  const GrindProgram program = work.program();
+  for (const Move& move : program.moves()) {
+    const bool to_end = move.kind == MoveKind::kStroke || move.kind == MoveKind::kRetract;
+    if (!to_end && move.kind != MoveKind::kPosition && move.kind != MoveKind::kInfeed) continue;
+    const double x = to_end ? program.strokeTo() : program.strokeFrom();
+    const double rounding = 1e-14 * largestCoefficient(work.job.z_corrections[0]) + roundingOf(setpoints)[kZ];
+    RC_ASSERT(std::abs(move.to[kZ] - zOf(work.job, x)) <= rounding);
+  }
+}
+
+RC_GTEST_PROP(ZLawProperty, AllLimitsOfAllAxesAreKept, ()) {
+  const Work work = *correctedWork(kCycles / 3);
+  const auto setpoints = all(work);
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
+}
+
+RC_GTEST_PROP(ZLawProperty, HeldAndAtOtherFeedsItIsTheSameCurveWithinTheLimits, ()) {
+  const Work work = *correctedWork(kCycles / 3);
+  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 3));
+  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
+  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");
+  checkStrokes(ride.setpoints(), work);
+}
+
+RC_GTEST_PROP(ZLawProperty, AfterARetractItIsTheSameCurveWithinTheLimits, ()) {
+  const Work work = *correctedWork(kCycles / 3);
+  const Ride ride = rideWithRetracts(work, all(work), 4);
+  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
+  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");
+  checkStrokes(ride.setpoints(), work);
+  // The plunge back ends on the curve too, and the move to above it.
+  for (std::size_t i = 1; i < ride.given.size(); ++i) {
+    const Setpoint &p = ride.given[i].p, &before = ride.given[i - 1].p;
+    if (p.step == StepKind::kNone || before.step != StepKind::kNone || ride.given[i - 1].on_path) continue;
+    const double rounding = 4 * roundingOf(ride.setpoints())[kZ];
+    RC_ASSERT(std::abs(before.position[kZ] - zOf(work.job, before.position[kX])) <= rounding);
+  }
+}
+
+RC_GTEST_PROP(ZLawProperty, ThePlanSeesTheStreamsBits, ()) {
+  const Work work = *correctedWork(kCycles / 3);
+  std::vector<Setpoint> planned;
+  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) { planned.push_back(p); });
+  RC_PRE(!planned.empty());  // the numbers of some are not allowed
+  const auto streamed = all(work);
+  RC_ASSERT(planned.size() == streamed.size());
+  for (std::size_t i = 0; i < planned.size(); ++i) RC_ASSERT((planned[i].position == streamed[i].position).all());
+}
+
+TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {
+  GrindJob job = paperJob();
+  job.process.z_law = ZLaw::kConstantRake;
+  job.z_corrections = {ZCorrection{}};
+  const auto expected = all({paperJob(), plainMachine(), plainMachine().park});
+  const auto setpoints = all({job, plainMachine(), plainMachine().park});
+  ASSERT_EQ(setpoints.size(), expected.size());
+  for (std::size_t i = 0; i < setpoints.size(); ++i) {
+    EXPECT_TRUE((setpoints[i].position == expected[i].position).all()) << i;
+  }
+}
+
+TEST(ZLaw, AJobWithoutItsCorrectionsIsRefused) {
+  GrindJob job = bentJob(1e-5);
+  job.z_corrections.clear();
+  EXPECT_THROW(GrindProgram(job, plainMachine(), plainMachine().park), std::invalid_argument);
+  const JobPlan plan = planJob(job, plainMachine(), plainMachine().park);
+  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_NE(plan.reasons[0].detail.find("withZLaw()"), std::string::npos);
+  // And no correction is taken that was not asked for.
+  GrindJob published = bentJob(1e-3);
+  published.process.z_law = ZLaw::kPublished;
+  EXPECT_EQ(zCorrectionOf(published, 0).pieces, 0);
+}
+
+TEST(ZLaw, ASlightBowCostsNoFeed) {
+  const GrindProgram program(bentJob(30e-6), plainMachine(), plainMachine().park);
+  EXPECT_TRUE(program.schedule().feedLimits().empty());
+  const GrindProgram straight(paperJob(), plainMachine(), plainMachine().park);
+  EXPECT_EQ(program.schedule().feedSpeed(), straight.schedule().feedSpeed());
+}
+
+TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
+  Machine machine = plainMachine();
+  machine.limits.max_jerk[kZ] = 2e-3;
+  const JobPlan plan = planJob(bentJob(500e-6), machine, machine.park);
+  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  ASSERT_EQ(plan.statistics.feed_limits.size(), 1u);
+  EXPECT_EQ(plan.statistics.feed_limits[0].cause, "axis_z jerk");
+  EXPECT_LT(plan.statistics.max_feed, 0.0099);
+  EXPECT_LT(plan.statistics.max_jerk[kZ], 2.001e-3);
+}
+
+}  // namespace test_z_law
+}  // namespace flute_grinder

@@ -1,0 +1,29 @@
+// Prints the paper's Table 1: the curve of its cutter, interpolated in odd-even steps of 0.2.
+
+#include "flute_grinder/curve/step_table.h"
+#include "flute_grinder/curve/units.h"
+
+#include <cstdio>
+
+using namespace flute_grinder;
+
+int main() {
+  CutterGeometry geometry;
+  geometry.end_diameter = 10 * units::kMillimetre;
+  geometry.cone_angle = 5 * units::kDegree;
+  geometry.spiral_angle = 30 * units::kDegree;
+  geometry.rake_angle = 8 * units::kDegree;
+  geometry.flute_length = 30 * units::kMillimetre;
+
+  // The paper measures X in mm and A in rad, so that one radian counts for a millimetre.
+  const StepTable table = interpolateBySteps(ConicalCutter(geometry), units::kMillimetrePerRadian,
+                                             EvenStepRule::kPublished, 0.2 * units::kMillimetre);
+
+  std::printf("point   X [mm]  A [rad]  error [1e-4 rad]\n");
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const StepTable::Row& row = table.rows[i];
+    std::printf("%5zu  %7.4f  %7.4f  %16.4f\n", i, row.point.x / units::kMillimetre, row.point.a, row.error() / 1e-4);
+  }
+  std::printf("%zu points; largest error %.4e rad (odd), %.4e rad (even)\n", table.rows.size() - 1,
+              table.largest_odd_error, table.largest_even_error);
+}

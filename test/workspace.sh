@@ -59,7 +59,7 @@ check_space() (
   # Without parameters it does not start, and says so.
   { ! rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'parameter /second/'
   rosrun neighbour grinder </dev/null | tee "$folder/state"
-  grep -q '^ready; axis X .* mm; .* deg$' "$folder/state"
+  grep -q '^ready; axis_0 .*; A(1 m) = 2 rad$' "$folder/state"
 )
 for space in devel install; do
   share=$workspace/src/flute_grinder

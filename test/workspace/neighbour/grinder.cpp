@@ -1,13 +1,14 @@
-// Waits for the grinder's state, and says with the grinder's libraries where its axes stand.
+// Waits for the grinder's state, prints with the grinder's libraries where its axes are, and a point of the curve.
 
 #include <flute_grinder/GrinderState.h>
+#include <flute_grinder/curve/log_curve.h>
 #include <flute_grinder/drive/robot_hw.h>
 #include <flute_grinder/job/axes.h>
-#include <flute_grinder/job/quantity.h>
 
 #include <ros/ros.h>
 
 #include <iostream>
+#include <string>
 
 int main(int argc, char** argv) {
   using namespace flute_grinder;
@@ -21,9 +22,10 @@ int main(int argc, char** argv) {
   std::cout << state->state_name;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const double rest = 0;
-    const JointStateHandle joint(axisName(axis, UnitSystem::kShop), &state->position[axis], &rest, &rest);
-    std::cout << "; " << joint.getName() << ' ' << text({joint.getPosition(), unitOf(axis, 0)}, UnitSystem::kShop);
+    const JointStateHandle joint("axis_" + std::to_string(axis), &state->position[axis], &rest, &rest);
+    std::cout << "; " << joint.getName() << ' ' << joint.getPosition();
   }
+  std::cout << "; A(1 m) = " << LogCurve(0, 2).a(1) << " rad";
   std::cout << '\n';
   return 0;
 }

@@ -132,8 +132,8 @@ def of_rest():
     """What the node takes of the computer at rest."""
     found = json.loads(subprocess.run([sys.executable, ROOT / 'bench/bench_rest.py', NODE, '--json'], check=True,
                                       stdout=subprocess.PIPE).stdout)
-    for name in 'resident', 'locked':
-        yield 'rest/' + name, of_value('node at rest, %s memory' % name, 'MB', found[name] / 1e6)
+    for key, name in (('resident', 'resident memory'), ('locked', 'address space marked as locked')):
+        yield 'rest/' + key, of_value('node at rest, ' + name, 'MB', found[key] / 1e6)
     yield 'rest/wake_ups', of_value("the loop's wake-ups alone", '% of a core', 100 * found['wake_ups_alone']['processor'])
     shares = [found[threads]['processor'] for threads in ('loop', 'rest')]
     yield 'rest/processor', of_value('node at rest, all threads', '% of a core', 100 * sum(shares), 'rest/wake_ups')

@@ -54,7 +54,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
   } catch (const CLI::ParseError& error) {
-    // A word that nobody knows is told before what is missing, which it may have been meant for.
+    // An unknown word is reported before what is missing, which it may have been meant for.
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app);
     if (unknown.empty()) return app.exit(error) == 0 ? 0 : kUsage;
     std::fprintf(stderr, "%s\nRun with --help for more information.\n", unknown.c_str());
@@ -73,7 +73,7 @@ void occupyStandardStreams() {
   }
 }
 
-/// Whether stdout is a pipe that nobody reads any more, as of `| head -1`.
+/// Whether stdout is a pipe whose reader has gone, as of `| head -1`.
 bool isLeftPipe() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;

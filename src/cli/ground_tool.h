@@ -35,7 +35,7 @@ struct GroundTool {
 /// Measures a cutter. @param at X of the sections [m].
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
 
-/// Measures the cutter of a record; gouges are among the reasons why nobody would want it.
+/// Measures the cutter of a record; gouges are among the reasons why it is unusable.
 GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
                    const std::vector<double>& at);
 

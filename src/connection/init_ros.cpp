@@ -5,7 +5,7 @@
 namespace flute_grinder {
 
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options) {
-  // With a log file named, none is looked for; nobody opens it. First, so that one on the command line counts.
+  // With a log file named, none is looked for; it is never opened. First, so that one on the command line counts.
   static char no_log[] = "__log:=/dev/null";
   std::vector<char*> arguments{no_log};
   arguments.insert(arguments.end(), argv, argv + argc);

@@ -321,7 +321,7 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
 }
 
 /// The better of two: with the lesser problem, then with a complete flute, then with the steadier rake, then with more
-/// of the rake face formed by the wheel's face. Differences of the rake that nobody measures do not count.
+/// of the rake face formed by the wheel's face. Differences of the rake that cannot be measured do not count.
 bool isBetter(const Judged& a, const Judged& b) {
   const auto order = [](const Judged& j) {
     const SolvedSetup& s = j.solved;

@@ -177,7 +177,7 @@ void FlatFile::flattenMap(const YAML::Node& map, const std::string& path, int de
     if (key.find_first_of(".[(") != std::string::npos) {
       refuseKey(line, full, "words without dots and brackets");
     } else if (!keys.insert(key).second) {
-      fail(line, full + " stands here a second time");
+      fail(line, full + " appears twice");
     } else {
       flatten(item.second, full, line, depth + 1);
     }

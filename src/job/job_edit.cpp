@@ -119,7 +119,7 @@ class Outline : public YAML::EventHandler {
     }
     const std::string path = nextPath(mark);
     if (!scalars_.emplace(path, Scalar{byte(mark), mark.line, text, tag}).second) {
-      refuse(mark.line, path + " stands here a second time");
+      refuse(mark.line, path + " appears twice");
     }
   }
 

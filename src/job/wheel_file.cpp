@@ -138,7 +138,7 @@ void check(FlatFile& file, const GrindJob& job, bool measured) {
 }  // namespace
 
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
-  // Of an unknown profile nobody can tell whether it has a side.
+  // Whether an unknown profile has a side is not known.
   if (!file.takeChoice(prefix + "profile", job.process.wheel_profile)) return file.drop(prefix + "side");
   if (isTapered(job.process.wheel_profile)) file.takeChoice(prefix + "side", job.process.wheel_side);
   if (job.process.wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);

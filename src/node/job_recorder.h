@@ -19,7 +19,7 @@ class JobRecorder {
   JobRecorder(std::string grinder, MachineInfo machine, History& history);
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
-  /// Jobs that have not ended, or whose result nobody told, are kept as far as they came.
+  /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
   ~JobRecorder();
 
   /// @param number the loop's number for the job. @param name as for JobRecord.

@@ -23,7 +23,7 @@ bool isDigest(const std::string& text) {
   return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Why nobody can have set an offset for this; empty if somebody can.
+/// Why this cannot be the basis of an offset; empty if it can.
 std::string basisRefusal(const OffsetBasis& basis) {
   if (basis.method >= countOf<OffsetMethod>()) {
     return "basis.method = " + std::to_string(basis.method) + "; allowed: 0 to " +

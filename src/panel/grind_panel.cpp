@@ -165,7 +165,7 @@ QLayout* GrindPanel::layOutButtons() {
     const bool offered = isRequest(request.value) && !isSwitch(request.value) && request.value != MachineEvent::kJog;
     if (offered && request.value != MachineEvent::kCancel) add(request);
   }
-  // Last, so that nobody who wants to resume hits it.
+  // Last, where it is not hit instead of Resume.
   add(rowOf(MachineEvent::kCancel));
   for (const int column : {0, 1, 2, kButtonColumns}) buttons->setColumnStretch(column, 1);
   return buttons;

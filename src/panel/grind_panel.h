@@ -44,7 +44,7 @@ class GrindPanel : public rviz::Panel {
 
  protected:
   /// Qt passes the focus of what is disabled or hidden on to the next widget, where Space would press a button that
-  /// nobody has chosen. It goes to Hold instead, or to none.
+  /// the operator has not chosen. It goes to Hold instead, or to none.
   bool focusNextPrevChild(bool next) override;
 
  private:

@@ -232,7 +232,7 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
 
 void PositionBox::setTolerance(std::optional<double> tolerance) {
   const double decimals = std::ceil(-std::log10(tolerance.value_or(kMicrometre) / kMillimetre) - 1e-9);
-  // 0 and NaN, of a legend that nobody should send, have no logarithm to count by.
+  // 0 and NaN, of a malformed legend, have no logarithm to count by.
   decimals_ = !(decimals <= kMaxDecimals)      ? kMaxDecimals
               : !(decimals >= kFewestDecimals) ? kFewestDecimals
                                                : static_cast<int>(decimals);

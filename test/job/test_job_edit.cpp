@@ -210,7 +210,7 @@ TEST(JobEdit, RefusesWhatItCannotEditWithoutRisk) {
   expectRefused("process:\n  a: 1\n...\n", "job.yaml: cannot be edited");
   expectRefused("process: |\n  a: 1\n", "process is missing");
   expectRefused("process: [\n", "job.yaml:");
-  expectRefused("process:\n  a: 1\n  a: 2\n", "stands here a second time");
+  expectRefused("process:\n  a: 1\n  a: 2\n", "appears twice");
   // UTF-16
   const std::string wide(
       "\xFF\xFEp\0:\0 \0{\0a\0:\0 \0"

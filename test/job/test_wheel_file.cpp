@@ -297,7 +297,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MissingDiameter", "diameter_mm: 100\n", "", "1: diameter_mm is missing; allowed: 1 to 500 mm"},
         Mistake{"MissingWidth", "width_mm: 8\n", "", "1: width_mm is missing; allowed: 0.1 to 100 mm"},
         Mistake{"MissingSide", "side: lower\n", "", "1: side is missing; allowed: upper, lower"},
-        Mistake{"Duplicate", "width_mm: 8\n", "width_mm: 8\nwidth_mm: 8\n", "5: width_mm stands here a second time"},
+        Mistake{"Duplicate", "width_mm: 8\n", "width_mm: 8\nwidth_mm: 8\n", "5: width_mm appears twice"},
         Mistake{"DiameterOutOfRange", "diameter_mm: 100", "diameter_mm: 501",
                 "3: diameter_mm = 501 mm; allowed: 1 to 500 mm"},
         Mistake{"WidthOutOfRange", "width_mm: 8", "width_mm: .nan", "4: width_mm = nan mm; allowed: 0.1 to 100 mm"},

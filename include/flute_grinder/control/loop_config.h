@@ -31,7 +31,7 @@ struct LoopConfig {
   Axes jog_velocity = Axes::Zero();     ///< speed of a jog that names none [m/s], A [rad/s]
   ProbingConfig probing;
   double late_slow_down = 2;  ///< cycle period from which the axes are slowed down, then accelerated again [periods]
-  double late_fault = 10;     ///< a cycle this long is late: the axes continue slowly, then accelerate again [periods]
+  double late_fault = 10;     ///< a cycle this long is late: a fault, unless the drive had buffered commands [periods]
 };
 
 }  // namespace flute_grinder

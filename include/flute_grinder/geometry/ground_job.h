@@ -30,7 +30,7 @@ GroundCutter groundCutterOf(const GrindJob& job);
 /// What a ground cutter was found to be.
 struct CutterCheck {
   std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
-  std::vector<core::Reason> reasons;  ///< why nobody would want it
+  std::vector<core::Reason> reasons;  ///< why it is unusable
 };
 
 /// Measures the ground cutter at both ends and in the middle of the flute: every tooth has a land, the core is whole,
@@ -39,7 +39,7 @@ struct CutterCheck {
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 
 /// The same of the cutter that a plan's job grinds.
-/// @param plan gets the reasons why nobody would want the cutter, and where its flutes are complete. Left as it is if
+/// @param plan gets the reasons why the cutter is unusable, and where its flutes are complete. Left as it is if
 ///        the job's numbers were refused or planning was given up.
 void checkGroundCutter(JobPlan& plan);
 

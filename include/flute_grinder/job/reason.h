@@ -44,7 +44,7 @@ enum class ReasonKind : std::uint8_t {
   kHoming,
   kInterlock,  ///< see `detail`; the job did not begin within `limit`
   kCanceled,
-  // Why nobody would want the tool that a job grinds.
+  // Why a job would grind an unusable tool.
   kRake,        ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kLand,        ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
   kCore,        ///< the wheel cuts through the core; at `x`

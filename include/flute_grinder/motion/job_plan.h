@@ -39,7 +39,7 @@ enum class PlanFault {
   kInvalidJob,
   kLimit,
   kTolerance,
-  kTool,  ///< nobody would want the tool
+  kTool,  ///< the tool would be unusable
   kCollision,
   kTooLong,  ///< longer than Machine::max_job_duration
   kGivenUp,  ///< because PlanWatch returned false

@@ -23,8 +23,8 @@ constexpr std::size_t kMaxUrdfFile = 262144;  ///< longest robot description [by
 /// @throw JobFileError if it cannot be read, and why; if it is empty or longer.
 std::string readTextFile(const std::string& path, std::size_t most = kMaxYamlFile);
 
-/// Refuses what a job does not need and what would be misread: anchors and aliases, with which a short text is a huge one, and
-/// a second document.
+/// Refuses what a job does not need and what would be misread: anchors and aliases, with which a short text is a huge
+/// one, and a second document.
 /// @param name of the file, in messages. @throw JobFileError with the line.
 void checkYaml(const std::string& text, const std::string& name);
 

@@ -431,7 +431,7 @@ std::vector<BadParameter> badParameters() {
     const std::string ns = "joint_limits/" + name + "/";
     const std::string full = "/grinder/" + ns;
     const std::string park = "park_position/" + name;
-    const Number& allowed = numbers()[kMachineNumbers + kNumbersPerAxis * i + 3];
+    const Number allowed = numbers()[kMachineNumbers + kNumbersPerAxis * i + 3];
     add("beyond", park, XmlRpcValue(135.0), {"/grinder/" + park + " = 135", "allowed: " + allowed.range});
     add("short_of", park, XmlRpcValue(-115.0), {"/grinder/" + park + " = -115", "allowed: " + allowed.range});
 

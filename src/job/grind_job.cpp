@@ -159,9 +159,19 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   if (growth < 0) {
     checker.below("cutter.flute_length", c.flute_length, apex, "where the cone closes");
     if (!checker.good()) return;  // the other errors would follow from this one
-    checker.below("process.overtravel_shank", p.overtravel_shank, apex - c.flute_length, "where the cone closes");
+    const double room = apex - c.flute_length;
+    if (!(p.setup_lead > -room)) {
+      checker.refuse(ReasonKind::kOutOfRange, "process.setup_lead", {p.setup_lead, Unit::kMetre}, "",
+                     100 * units::kMillimetre, -room);
+      return;
+    }
+    checker.below("process.overtravel_shank", p.overtravel_shank, room + std::min(0.0, p.setup_lead),
+                  "where the cone closes");
   } else if (growth > 0) {
-    checker.below("process.overtravel_end", p.overtravel_end, -apex, "where the cone closes");
+    checker.below("process.setup_lead", p.setup_lead, -apex, "where the cone closes");
+    if (!checker.good()) return;
+    checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_lead),
+                  "where the cone closes");
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");
   checker.below(p.depth_end > 0 ? "process.depth_end" : "process.depth", p.depthEnd(), radius(c.flute_length),

@@ -1,7 +1,7 @@
 #include "flute_grinder/geometry/setup_solver.h"
 
 #include "flute_grinder/curve/units.h"
-#include "geometry/even_rake.h"
+#include "geometry/fit_setup.h"
 #include "geometry/plane_roots.h"
 #include "geometry/setup_trial.h"
 
@@ -75,7 +75,7 @@ class Search {
         rakes.add(trial_.rake(point, 0));
         if (!request_.core_diameter) continue;
         point.depth = trial_.deepest();
-        cores.add(2 * trial_.coreRadius(point));
+        cores.add(2 * trial_.coreRadius(point, 0));
       }
       if (!unknowns.u) continue;
       for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
@@ -184,7 +184,7 @@ class Search {
 
   double secondError(const SetupPoint& point) const {
     if (!isCylinder()) return rakeError(point, request_.cutter.flute_length);
-    return 2 * trial_.coreRadius(point) / *request_.core_diameter - 1;
+    return 2 * trial_.coreRadius(point, 0) / *request_.core_diameter - 1;
   }
 
   const SetupTrial& trial_;
@@ -288,8 +288,9 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   const WheelSweep sweep = trial.sweep(point);
   Judged judged;
   SolvedSetup& s = judged.solved;
-  s.setup = {point.swivel, point.height};
+  s.setup = {point.swivel, point.height, point.lead};
   s.depth = point.depth;
+  s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
   s.least_rake = s.land = std::numeric_limits<double>::infinity();
   s.largest_rake = -s.least_rake;
   for (int i = 0; i <= SetupTrial::kSections; ++i) {
@@ -306,7 +307,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
     judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
   }
-  s.core_diameter = 2 * trial.coreRadius(point);
+  s.core_diameter = 2 * trial.coreRadius(point, 0);
+  s.core_diameter_end = 2 * trial.coreRadius(point, request.cutter.flute_length);
   measureReach(trial, sweep, s);
   judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length;
   findLimit(request, pitch, s);
@@ -342,11 +344,13 @@ std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
   return best;
 }
 
-/// A good set-up with its errors spread evenly over the flute.
-SolvedSetup evened(const SetupTrial& trial, const SetupRequest& request, const Judged& exact) {
-  const SolvedSetup& s = exact.solved;
-  const Judged even = judge(trial, request, evenRake(trial, request, {s.setup.swivel, s.setup.height, s.depth}));
-  return even.problem || even.cut_short > exact.cut_short ? s : even.solved;
+/// A good set-up with all that is asked, and its errors spread evenly over the flute.
+SolvedSetup fitted(const SetupTrial& trial, const SetupRequest& request, const Judged& start) {
+  const SolvedSetup& s = start.solved;
+  const auto point = fitSetup(trial, request, {s.setup.swivel, s.setup.height, s.depth});
+  if (!point) return s;
+  const Judged fit = judge(trial, request, *point);
+  return fit.problem || fit.cut_short > start.cut_short ? s : fit.solved;
 }
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
@@ -364,7 +368,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   if (request.cutter.cut == CutDirection::kLeftHand) {
     auto result = solveSetup(mirrored(request));
     if (auto* solved = std::get_if<SolvedSetup>(&result)) {
-      solved->setup = {-solved->setup.swivel, -solved->setup.height};
+      solved->setup = {-solved->setup.swivel, -solved->setup.height, solved->setup.lead};
     } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
       refusal = {refusal.problem, -refusal.asked, -refusal.largest, -refusal.least};
     }
@@ -382,8 +386,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
   if (here && !here->problem) {
-    const bool is_exact = search.isCylinder() || request.z_law != ZLaw::kPublished;
-    return is_exact ? here->solved : evened(trial, request, *here);
+    return search.isCylinder() ? here->solved : fitted(trial, request, *here);
   }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {

@@ -177,6 +177,12 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   checker.below(p.depth_end > 0 ? "process.depth_end" : "process.depth", p.depthEnd(), radius(c.flute_length),
                 "the cutter's radius at the flute's end");
   checker.below("cutter.core_diameter", c.core_diameter, c.end_diameter, "the cutter's diameter at the small end");
+  checker.below("cutter.core_diameter_end", c.core_diameter_end, 2 * radius(c.flute_length),
+                "the cutter's diameter at the flute's end");
+  if (c.core_diameter_end > 0 && !(c.core_diameter > 0)) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.core_diameter_end", {c.core_diameter_end, Unit::kMetre},
+                   "0 without cutter.core_diameter");
+  }
   checkWheel(checker, p);
   const double deepest = p.deepest();
   if (!(p.finish_infeed <= deepest)) {

@@ -39,6 +39,9 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.shank_diameter", "cutter.shank_diameter_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.cutter.shank_diameter; });
   visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter; });
   visit(F{"cutter.neck_length", "cutter.neck_length_mm", mm, 0, 500, true}, [](auto& j) -> auto& { return j.cutter.neck_length; });
+  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
+  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_tolerance; });
+  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0, 180, true}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return j.process.feed; });
   visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50}, [](auto& j) -> auto& { return j.process.depth; });
   visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.depth_end; });

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "flute_grinder/geometry/setup_solver.h"
+#include "geometry/setup_trial.h"
+
+#include <optional>
+
+namespace flute_grinder {
+
+/// The set-up of a cone that gives all that is asked: the rake at both ends, the angle of the edge between them, and
+/// the cores. By the published law of Z the rake rises or falls between the ends, so the same error of the other sign
+/// is given to both: the set-up with the least largest error over the flute. Found by Newton's method.
+/// @param trial of a right-hand cutter. @param request of the same, not of a cylinder.
+/// @param start with the asked rake at both ends, and lead 0.
+/// @return the set-up, without the asked cores where they cannot be had as well; nothing if none is found from there.
+std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+
+}  // namespace flute_grinder

@@ -95,7 +95,8 @@ class Fit {
   /// error of the edge's turn [rad], the cores by the asked ones. NaN where there is none.
   Eigen::VectorXd tool(const SetupPoint& point) const {
     Eigen::VectorXd tool(static_cast<Eigen::Index>(figures_.size()));
-    if (!(trial_.cutter().radius(-point.lead) > 0)) return tool.setConstant(std::nan(""));  // beyond the apex
+    const bool is_setup = std::abs(point.swivel) < units::kPi / 2 && trial_.cutter().radius(-point.lead) > 0;
+    if (!is_setup) return tool.setConstant(std::nan(""));
     const double length = request_.cutter.flute_length;
     tool[0] = trial_.rake(point, 0);
     tool[1] = trial_.rake(point, length);
@@ -158,13 +159,11 @@ class Fit {
 
 }  // namespace
 
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
-  for (const bool cores : {true, false}) {
-    const Fit fit(trial, request, cores);
-    const auto exact = fit.exact(start);
-    if (exact) return request.z_law == ZLaw::kPublished ? fit.even(*exact) : *exact;
-  }
-  return std::nullopt;
+std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                                   bool cores) {
+  const Fit fit(trial, request, cores);
+  const auto exact = fit.exact(start);
+  return exact && request.z_law == ZLaw::kPublished ? fit.even(*exact) : exact;
 }
 
 }  // namespace flute_grinder

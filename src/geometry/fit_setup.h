@@ -11,8 +11,10 @@ namespace flute_grinder {
 /// the cores. By the published law of Z the rake rises or falls between the ends, so the same error of the other sign
 /// is given to both: the set-up with the least largest error over the flute. Found by Newton's method.
 /// @param trial of a right-hand cutter. @param request of the same, not of a cylinder.
-/// @param start with the asked rake at both ends, and lead 0.
-/// @return the set-up, without the asked cores where they cannot be had as well; nothing if none is found from there.
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+/// @param start from which the way to what is asked begins.
+/// @param cores whether the asked cores count; else the depth and taper of the start stay.
+/// @return nothing if none is found from there.
+std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                                   bool cores);
 
 }  // namespace flute_grinder

@@ -344,13 +344,53 @@ std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
   return best;
 }
 
-/// A good set-up with all that is asked, and its errors spread evenly over the flute.
-SolvedSetup fitted(const SetupTrial& trial, const SetupRequest& request, const Judged& start) {
-  const SolvedSetup& s = start.solved;
-  const auto point = fitSetup(trial, request, {s.setup.swivel, s.setup.height, s.depth});
-  if (!point) return s;
-  const Judged fit = judge(trial, request, *point);
-  return fit.problem || fit.cut_short > start.cut_short ? s : fit.solved;
+/// With a lead by which the wheel's centre is ahead of where it forms the edge amid the flute.
+std::optional<SetupPoint> withLead(const SetupTrial& trial, SetupPoint point) {
+  const double x = trial.cutter().geometry().flute_length / 2;
+  const auto wall = trial.sweep(point).wall(x, trial.cutter().radius(x), true);
+  if (!wall) return std::nullopt;
+  point.lead = wall->axis_x - x;
+  return trial.cutter().radius(-point.lead) > 0 ? std::optional(point) : std::nullopt;
+}
+
+/// The set-ups of the cylinder that a cone is amid its flute.
+std::vector<SetupPoint> setupsAmid(const SetupRequest& request) {
+  const ConicalCutter cone(request.cutter);
+  const double x = request.cutter.flute_length / 2;
+  SetupRequest cylinder = request;
+  cylinder.cutter.end_diameter = 2 * cone.radius(x);
+  cylinder.cutter.cone_angle = cylinder.y_per_x = 0;
+  cylinder.keep.reset();
+  if (request.core_diameter) {
+    const double at_end = request.core_diameter_end.value_or(*request.core_diameter + 4 * cone.y(x));
+    cylinder.core_diameter = (*request.core_diameter + at_end) / 2;
+  }
+  const SetupTrial trial(ConicalCutter(cylinder.cutter), cylinder.wheel, cylinder.nominal_radius, 0);
+  std::vector<SetupPoint> points = Search(trial, cylinder).solutions(request.least_swivel, request.largest_swivel);
+  for (SetupPoint& point : points) point.height -= cone.z(x);
+  return points;
+}
+
+/// The best set-up with all that is asked, or if it cannot be had, without the cores.
+std::optional<Judged> bestFit(const SetupTrial& trial, const SetupRequest& request, std::vector<SetupPoint> starts) {
+  const bool asks_edge = request.asks_spiral || request.core_diameter_end;
+  if (asks_edge) {
+    const std::vector<SetupPoint> amid = setupsAmid(request);
+    starts.insert(starts.end(), amid.begin(), amid.end());
+    for (std::size_t i = 0, n = starts.size(); i < n; ++i) {
+      if (const auto ahead = withLead(trial, starts[i])) starts.push_back(*ahead);
+    }
+  }
+  for (const bool cores : {true, false}) {
+    std::vector<SetupPoint> fits;
+    for (const SetupPoint& start : starts) {
+      if (const auto fit = fitSetup(trial, request, start, cores)) fits.push_back(*fit);
+    }
+    auto found = best(trial, request, fits);
+    if (found && !found->problem) return found;
+    if (!asks_edge) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
@@ -385,8 +425,14 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
-  if (here && !here->problem) {
-    return search.isCylinder() ? here->solved : fitted(trial, request, *here);
+  const bool good = here && !here->problem;
+  if (good && search.isCylinder()) return here->solved;
+  if (!search.isCylinder()) {
+    std::vector<SetupPoint> starts;
+    if (good) starts.push_back({here->solved.setup.swivel, here->solved.setup.height, here->solved.depth});
+    const auto fit = bestFit(trial, request, starts);
+    if (fit && !(good && fit->cut_short > here->cut_short)) return fit->solved;
+    if (good) return here->solved;
   }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {

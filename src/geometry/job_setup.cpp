@@ -113,7 +113,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
     if (core > 0)
       r.y_per_x = (*r.core_diameter_end - core) / 2 / job.cutter.flute_length - std::tan(job.cutter.cone_angle);
   }
-  r.asks_spiral = job.cutter.spiral_tolerance > 0;
+  r.asks_spiral = job.cutter.spiral_tolerance > 0 || p.setup_lead != 0;
   r.least_swivel = swivel.from;
   r.largest_swivel = swivel.to;
   r.keep = keep;
@@ -235,11 +235,18 @@ void measure(JobSetup& setup) {
   const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
   setup.land = setup.least_rake = std::numeric_limits<double>::infinity();
   setup.largest_rake = -setup.least_rake;
+  setup.least_spiral = setup.least_rake;
+  setup.largest_spiral = setup.largest_rake;
   for (int i = 0; i <= kSections; ++i) {
     const GroundSection section = cutter.section(setup.job.cutter.flute_length * i / kSections);
     if (i == 0) setup.core_diameter = 2 * section.core_radius;
+    if (i == kSections) setup.core_diameter_end = 2 * section.core_radius;
     for (const ToothSection& tooth : section.teeth) {
       setup.land = std::min(setup.land, tooth.land.value_or(0) * section.radius);
+      if (tooth.spiral) {
+        setup.least_spiral = std::min(setup.least_spiral, *tooth.spiral);
+        setup.largest_spiral = std::max(setup.largest_spiral, *tooth.spiral);
+      }
       if (!tooth.rake) continue;
       setup.least_rake = std::min(setup.least_rake, *tooth.rake);
       setup.largest_rake = std::max(setup.largest_rake, *tooth.rake);

@@ -286,7 +286,9 @@ double askedDepth(const GrindJob& job, double x) {
   const GrindProcess& p = job.process;
   const CutterGeometry& c = job.cutter;
   const double at_end = c.core_diameter > 0 ? (c.end_diameter - c.core_diameter) / 2 : p.depth;
-  return at_end + (p.depthEnd() - p.depth) * x / c.flute_length;
+  const double radius = c.end_diameter / 2 + c.flute_length * std::tan(c.cone_angle);  // at the flute's end
+  const double more = c.core_diameter_end > 0 ? radius - c.core_diameter_end / 2 - at_end : p.depthEnd() - p.depth;
+  return at_end + more * x / c.flute_length;
 }
 
 DepthLaw depthLaw(const GrindJob& job, double depth) {

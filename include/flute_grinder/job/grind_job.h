@@ -160,8 +160,8 @@ std::vector<ToothPass> passOrder(const GrindJob& job);
 /// The wheel's wear when each pass begins, as foreseen by the job, in the order of passOrder() [m].
 std::vector<double> wearOfPasses(const GrindJob& job);
 
-/// The depth of the flute that a job asks for at `x`, radial: at the small end that of the core it asks for, or else
-/// its depth [m]. @param x from the small end [m].
+/// The depth of the flute that a job asks for at `x`, radial: at each end that of the core it asks for there, or else
+/// by its depths [m]. @param x from the small end [m].
 double askedDepth(const GrindJob& job, double x);
 
 /// The depth of a pass over X.

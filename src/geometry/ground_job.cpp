@@ -161,7 +161,9 @@ WheelProfile wheelOf(const GrindJob& job) {
   return WheelProfile::angled(p.wheel_diameter, p.wheel_width, angle, cornerRadii(p));
 }
 
-WheelSetup setupOf(const GrindJob& job) { return {job.process.setup_swivel, job.process.setup_height}; }
+WheelSetup setupOf(const GrindJob& job) {
+  return {job.process.setup_swivel, job.process.setup_height, job.process.setup_lead};
+}
 
 GrindStroke strokeOf(const GrindJob& job, int tooth, double depth, double wear) {
   const GrindProcess& p = job.process;

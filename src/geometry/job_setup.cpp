@@ -106,6 +106,14 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   r.nominal_radius = p.wheel_diameter / 2 - p.wheel_wear;  // Y follows the wear
   r.depth = p.depth;
   if (job.cutter.core_diameter > 0) r.core_diameter = job.cutter.core_diameter;
+  if (job.cutter.core_diameter_end > 0) {
+    const double core = job.cutter.core_diameter;
+    r.core_diameter_end = job.cutter.core_diameter_end;
+    // A taper to begin with: that of the asked core.
+    if (core > 0)
+      r.y_per_x = (*r.core_diameter_end - core) / 2 / job.cutter.flute_length - std::tan(job.cutter.cone_angle);
+  }
+  r.asks_spiral = job.cutter.spiral_tolerance > 0 || p.setup_lead != 0;
   r.least_swivel = swivel.from;
   r.largest_swivel = swivel.to;
   r.keep = keep;
@@ -118,7 +126,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
 /// and the depth the taper.
 /// @return what solveSetup() does; nothing if no depth agrees with its taper.
 std::optional<std::variant<SolvedSetup, SetupRefusal>> solveTapered(const GrindJob& job, const SetupRequest& request) {
-  if (!(job.process.depth_end > 0)) return solveSetup(request);
+  if (!(job.process.depth_end > 0) || request.core_diameter_end) return solveSetup(request);
   double depth = request.depth;
   const auto solve = [&](const Range& swivel) {
     SetupRequest tapered = request;
@@ -192,6 +200,12 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   if (keep != SetupFigure::kHeight) {
     take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
   }
+  if (setup.job.cutter.core_diameter_end > 0) {
+    take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
+  }
+  if (solved.setup.lead != p.setup_lead) {
+    take("process.setup_lead", p.setup_lead, solved.setup.lead, units::kMillimetre, kLengthDecimals);
+  }
   setup.overtravel = solved.overtravel;
   setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};
   takeOvertravel(setup);
@@ -221,11 +235,18 @@ void measure(JobSetup& setup) {
   const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
   setup.land = setup.least_rake = std::numeric_limits<double>::infinity();
   setup.largest_rake = -setup.least_rake;
+  setup.least_spiral = setup.least_rake;
+  setup.largest_spiral = setup.largest_rake;
   for (int i = 0; i <= kSections; ++i) {
     const GroundSection section = cutter.section(setup.job.cutter.flute_length * i / kSections);
     if (i == 0) setup.core_diameter = 2 * section.core_radius;
+    if (i == kSections) setup.core_diameter_end = 2 * section.core_radius;
     for (const ToothSection& tooth : section.teeth) {
       setup.land = std::min(setup.land, tooth.land.value_or(0) * section.radius);
+      if (tooth.spiral) {
+        setup.least_spiral = std::min(setup.least_spiral, *tooth.spiral);
+        setup.largest_spiral = std::max(setup.largest_spiral, *tooth.spiral);
+      }
       if (!tooth.rake) continue;
       setup.least_rake = std::min(setup.least_rake, *tooth.rake);
       setup.largest_rake = std::max(setup.largest_rake, *tooth.rake);

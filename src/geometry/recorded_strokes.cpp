@@ -156,7 +156,7 @@ void RecordedStrokes::endStroke() {
 
 RecordedStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
     : cutter(cutterOf(job, tooth)),
-      curve(cutter),
+      curve(cutter, job.process.setup_lead),
       stroke(flute_grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
       angle(job.tooth_angles[static_cast<std::size_t>(tooth)]) {}
 

@@ -62,7 +62,7 @@ class FluteWalls {
       const double axis_x = std::clamp(x_, std::min(s.from, s.to), std::max(s.from, s.to));
       if (std::abs(axis_x - x_) >= nearest) continue;
       nearest = std::abs(axis_x - x_);
-      angle = s.a + LogCurve(cutter_.cutter()).a(axis_x);
+      angle = sweep.a(axis_x);
     }
     return angle;
   }

@@ -38,6 +38,11 @@ std::string overtravelText(const JobSetup& setup) {
   return text;
 }
 
+std::string leadText(const GrindProcess& p) {
+  if (p.setup_lead == 0) return "0 mm: A by the published motion";
+  return format("%.3f mm, of the wheel's centre ahead of where it forms the edge", mm(p.setup_lead));
+}
+
 std::string whatToSet(const JobSetup& setup, const Range& swivel) {
   const GrindProcess& p = setup.job.process;
   return "set\n" + line("wheel", wheelText(p)) +
@@ -46,7 +51,9 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
          line("height", format("%.3f mm, of the wheel's centre above the cutter's axis at Z = 0", mm(p.setup_height))) +
          line("", format("upper face %.3f mm, lower face %.3f mm, where they are deepest in the cutter",
                          mm(upperFaceHeight(setup.job)), mm(lowerFaceHeight(setup.job)))) +
-         line("depth", format("%.3f mm at X = 0", mm(p.depth))) + line("overtravel", overtravelText(setup));
+         line("lead", leadText(p)) +
+         line("depth", format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(p.depth), mm(p.depthEnd()))) +
+         line("overtravel", overtravelText(setup));
 }
 
 /// What the reading of Z takes for granted.
@@ -75,10 +82,14 @@ std::string whatComesOut(const JobSetup& setup) {
   const CutterGeometry& cutter = setup.job.cutter;
   const auto& complete = setup.check.complete;
   std::string core = format("%.3f mm at X = 0", mm(setup.core_diameter));
+  core += format(", %.3f mm at the flute's end", mm(setup.core_diameter_end));
   if (cutter.core_diameter > 0) core += format("; asked %g mm", mm(cutter.core_diameter));
+  if (cutter.core_diameter_end > 0) core += format(" and %g mm", mm(cutter.core_diameter_end));
   return "comes out\n" +
          line("rake", format("%.3f to %.3f deg; asked %g deg within %g deg", deg(setup.least_rake),
                              deg(setup.largest_rake), deg(cutter.rake_angle), deg(cutter.rake_tolerance))) +
+         line("spiral angle", format("%.3f to %.3f deg; asked %g deg", deg(setup.least_spiral),
+                                     deg(setup.largest_spiral), deg(cutter.spiral_angle))) +
          line("core", core) + line("land", format("%.3f mm or more", mm(setup.land))) +
          line("flutes complete",
               complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to)) : std::string("nowhere"));

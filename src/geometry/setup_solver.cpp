@@ -1,7 +1,7 @@
 #include "flute_grinder/geometry/setup_solver.h"
 
 #include "flute_grinder/curve/units.h"
-#include "geometry/even_rake.h"
+#include "geometry/fit_setup.h"
 #include "geometry/plane_roots.h"
 #include "geometry/setup_trial.h"
 
@@ -75,7 +75,7 @@ class Search {
         rakes.add(trial_.rake(point, 0));
         if (!request_.core_diameter) continue;
         point.depth = trial_.deepest();
-        cores.add(2 * trial_.coreRadius(point));
+        cores.add(2 * trial_.coreRadius(point, 0));
       }
       if (!unknowns.u) continue;
       for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
@@ -184,7 +184,7 @@ class Search {
 
   double secondError(const SetupPoint& point) const {
     if (!isCylinder()) return rakeError(point, request_.cutter.flute_length);
-    return 2 * trial_.coreRadius(point) / *request_.core_diameter - 1;
+    return 2 * trial_.coreRadius(point, 0) / *request_.core_diameter - 1;
   }
 
   const SetupTrial& trial_;
@@ -288,8 +288,9 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   const WheelSweep sweep = trial.sweep(point);
   Judged judged;
   SolvedSetup& s = judged.solved;
-  s.setup = {point.swivel, point.height};
+  s.setup = {point.swivel, point.height, point.lead};
   s.depth = point.depth;
+  s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
   s.least_rake = s.land = std::numeric_limits<double>::infinity();
   s.largest_rake = -s.least_rake;
   for (int i = 0; i <= SetupTrial::kSections; ++i) {
@@ -306,7 +307,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
     judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
   }
-  s.core_diameter = 2 * trial.coreRadius(point);
+  s.core_diameter = 2 * trial.coreRadius(point, 0);
+  s.core_diameter_end = 2 * trial.coreRadius(point, request.cutter.flute_length);
   measureReach(trial, sweep, s);
   judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length;
   findLimit(request, pitch, s);
@@ -342,11 +344,53 @@ std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
   return best;
 }
 
-/// A good set-up with its errors spread evenly over the flute.
-SolvedSetup evened(const SetupTrial& trial, const SetupRequest& request, const Judged& exact) {
-  const SolvedSetup& s = exact.solved;
-  const Judged even = judge(trial, request, evenRake(trial, request, {s.setup.swivel, s.setup.height, s.depth}));
-  return even.problem || even.cut_short > exact.cut_short ? s : even.solved;
+/// With a lead by which the wheel's centre is ahead of where it forms the edge amid the flute.
+std::optional<SetupPoint> withLead(const SetupTrial& trial, SetupPoint point) {
+  const double x = trial.cutter().geometry().flute_length / 2;
+  const auto wall = trial.sweep(point).wall(x, trial.cutter().radius(x), true);
+  if (!wall) return std::nullopt;
+  point.lead = wall->axis_x - x;
+  return trial.cutter().radius(-point.lead) > 0 ? std::optional(point) : std::nullopt;
+}
+
+/// The set-ups of the cylinder that a cone is amid its flute.
+std::vector<SetupPoint> setupsAmid(const SetupRequest& request) {
+  const ConicalCutter cone(request.cutter);
+  const double x = request.cutter.flute_length / 2;
+  SetupRequest cylinder = request;
+  cylinder.cutter.end_diameter = 2 * cone.radius(x);
+  cylinder.cutter.cone_angle = cylinder.y_per_x = 0;
+  cylinder.keep.reset();
+  if (request.core_diameter) {
+    const double at_end = request.core_diameter_end.value_or(*request.core_diameter + 4 * cone.y(x));
+    cylinder.core_diameter = (*request.core_diameter + at_end) / 2;
+  }
+  const SetupTrial trial(ConicalCutter(cylinder.cutter), cylinder.wheel, cylinder.nominal_radius, 0);
+  std::vector<SetupPoint> points = Search(trial, cylinder).solutions(request.least_swivel, request.largest_swivel);
+  for (SetupPoint& point : points) point.height -= cone.z(x);
+  return points;
+}
+
+/// The best set-up with all that is asked, or if it cannot be had, without the cores.
+std::optional<Judged> bestFit(const SetupTrial& trial, const SetupRequest& request, std::vector<SetupPoint> starts) {
+  const bool asks_edge = request.asks_spiral || request.core_diameter_end;
+  if (asks_edge) {
+    const std::vector<SetupPoint> amid = setupsAmid(request);
+    starts.insert(starts.end(), amid.begin(), amid.end());
+    for (std::size_t i = 0, n = starts.size(); i < n; ++i) {
+      if (const auto ahead = withLead(trial, starts[i])) starts.push_back(*ahead);
+    }
+  }
+  for (const bool cores : {true, false}) {
+    std::vector<SetupPoint> fits;
+    for (const SetupPoint& start : starts) {
+      if (const auto fit = fitSetup(trial, request, start, cores)) fits.push_back(*fit);
+    }
+    auto found = best(trial, request, fits);
+    if (found && !found->problem) return found;
+    if (!asks_edge) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
@@ -364,7 +408,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   if (request.cutter.cut == CutDirection::kLeftHand) {
     auto result = solveSetup(mirrored(request));
     if (auto* solved = std::get_if<SolvedSetup>(&result)) {
-      solved->setup = {-solved->setup.swivel, -solved->setup.height};
+      solved->setup = {-solved->setup.swivel, -solved->setup.height, solved->setup.lead};
     } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
       refusal = {refusal.problem, -refusal.asked, -refusal.largest, -refusal.least};
     }
@@ -381,9 +425,14 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
-  if (here && !here->problem) {
-    const bool is_exact = search.isCylinder() || request.z_law != ZLaw::kPublished;
-    return is_exact ? here->solved : evened(trial, request, *here);
+  const bool good = here && !here->problem;
+  if (good && search.isCylinder()) return here->solved;
+  if (!search.isCylinder()) {
+    std::vector<SetupPoint> starts;
+    if (good) starts.push_back({here->solved.setup.swivel, here->solved.setup.height, here->solved.depth});
+    const auto fit = bestFit(trial, request, starts);
+    if (fit && !(good && fit->cut_short > here->cut_short)) return fit->solved;
+    if (good) return here->solved;
   }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {

@@ -25,24 +25,33 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       y_per_x_(y_per_x),
       deepest_(std::min(cutter.radius(0),
                         cutter.radius(cutter.geometry().flute_length) + y_per_x * cutter.geometry().flute_length)),
-      face_from_(wheel.largestPlace().to) {
-  // Farther than a wheel reaches at any depth.
-  const double far = 4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length;
-  const double apex = -cutter.radius(0) / cutter.tanCone();
-  longest_ = {cutter.tanCone() > 0 ? std::max(-far, kOfApex * apex) : -far,
-              cutter.tanCone() < 0 ? std::min(far, kOfApex * apex) : far};
+      far_(4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length),
+      face_from_(wheel.largestPlace().to) {}
+
+bool SetupTrial::isSound(const SetupPoint& p) const noexcept {
+  const double length = cutter_.geometry().flute_length;
+  const double at_end = p.depth - (y_per_x_ + p.taper) * length;
+  return p.depth > 0 && p.depth < cutter_.radius(0) && at_end > 0 && at_end < cutter_.radius(length);
 }
 
 WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
   const auto over = [&](const std::array<double, 2>& ends) -> WheelSweep {
-    return {cutter_, wheel_, nominal_radius_, {p.swivel, p.height}, {ends[0], ends[1], -p.depth, y_per_x_, 0}};
+    return {cutter_,
+            wheel_,
+            nominal_radius_,
+            {p.swivel, p.height, p.lead},
+            {ends[0], ends[1], -p.depth, y_per_x_ + p.taper, 0}};
   };
-  WheelSweep longest = over(longest_);
+  // The cone of the stroke's curve is the cutter's, moved by the lead.
+  const double apex = -cutter_.radius(0) / cutter_.tanCone() + p.lead;
   const bool opens = cutter_.tanCone() >= 0;
+  std::array<double, 2> ends{-far_, far_};
+  if (cutter_.tanCone() > 0) ends[0] = std::max(-far_, kOfApex * apex);
+  if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
+  WheelSweep longest = over(ends);
   const double nearest = opens ? 0 : cutter_.geometry().flute_length;
   const auto spoils = longest.spoilsFrom(nearest, cutter_.radius(nearest));
   if (!spoils) return longest;
-  std::array<double, 2> ends = longest_;
   ends[opens ? 0 : 1] = *spoils + kShortOf * (nearest - *spoils);
   return over(ends);
 }
@@ -54,14 +63,21 @@ double SetupTrial::rake(const SetupPoint& point, double x) const {
   return wall ? std::atan(-r * wall->slope) : kNowhere;
 }
 
-double SetupTrial::coreRadius(const SetupPoint& point) const {
-  const double radius = sweep(point).leastRadius(0, std::numeric_limits<double>::max());
+double SetupTrial::turnError(const SetupPoint& point) const {
+  const double length = cutter_.geometry().flute_length;
+  const WheelSweep sweep = this->sweep(point);
+  const auto from = sweep.wall(0, cutter_.radius(0), true), to = sweep.wall(length, cutter_.radius(length), true);
+  return from && to ? to->angle - from->angle - LogCurve(cutter_).a(length) : kNowhere;
+}
+
+double SetupTrial::coreRadius(const SetupPoint& point, double x) const {
+  const double radius = sweep(point).leastRadius(x, std::numeric_limits<double>::max());
   return std::isfinite(radius) ? radius : kNowhere;
 }
 
 double SetupTrial::depthFor(double swivel, double height, double core_radius) const {
   const double depth = sweep({swivel, height, 0}).deeperFor(0, core_radius);
-  return isSound(depth) ? depth : kNowhere;
+  return isSound({swivel, height, depth}) ? depth : kNowhere;
 }
 
 double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {

@@ -6,11 +6,13 @@
 
 namespace flute_grinder {
 
-/// The three figures of a set-up that make the tool.
+/// The figures of a set-up that make the tool.
 struct SetupPoint {
   double swivel = 0;  ///< [rad]
   double height = 0;  ///< of the wheel's centre above the axis at Z = 0 [m]
   double depth = 0;   ///< Y = -depth at X = 0 [m]
+  double lead = 0;    ///< of the wheel's centre in X, see LogCurve [m]
+  double taper = 0;   ///< added to dY/dX, beside the trial's own
 };
 
 /// What a right-hand cutter becomes in a set-up, with a stroke as long as the cone allows.
@@ -28,8 +30,8 @@ class SetupTrial {
   /// X of the sections in which a flute is judged, from 0 at the small end to kSections at the flute's end [m].
   double section(int i) const noexcept { return cutter_.geometry().flute_length * i / kSections; }
 
-  /// Whether a depth at X = 0 is one, and leaves the cutter's axis at both ends of the flute.
-  bool isSound(double depth) const noexcept { return depth > 0 && depth < deepest_; }
+  /// Whether the depth is one, and leaves the cutter's axis, at both ends of the flute.
+  bool isSound(const SetupPoint& point) const noexcept;
   double deepest() const noexcept { return deepest_; }  ///< where the axis is reached, at one of the ends [m]
 
   WheelSweep sweep(const SetupPoint& point) const;
@@ -37,8 +39,12 @@ class SetupTrial {
   /// Radial, at the edge; NaN where the wheel does not reach the outer circle, or the point is none [rad].
   double rake(const SetupPoint& point, double x) const;
 
-  /// Of the section at X = 0; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
-  double coreRadius(const SetupPoint& point) const;
+  /// Of a section; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
+  double coreRadius(const SetupPoint& point, double x) const;
+
+  /// The angle that the ground edge turns through over the flute, less that of the asked helix; NaN where there is no
+  /// edge [rad].
+  double turnError(const SetupPoint& point) const;
 
   /// The depth that leaves a core at X = 0; NaN if no sound one does [m].
   double depthFor(double swivel, double height, double core_radius) const;
@@ -58,9 +64,9 @@ class SetupTrial {
   ConicalCutter cutter_;
   WheelProfile wheel_;
   double nominal_radius_, y_per_x_;
-  double deepest_;                 ///< [m]
-  std::array<double, 2> longest_;  ///< ends of the stroke [m]
-  double face_from_;               ///< w on the wheel from which on its profile belongs to the upper face [m]
+  double deepest_;    ///< [m]
+  double far_;        ///< beyond the flute's ends, where a wheel reaches it at no depth [m]
+  double face_from_;  ///< w on the wheel from which on its profile belongs to the upper face [m]
 };
 
 }  // namespace flute_grinder

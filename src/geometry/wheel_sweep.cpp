@@ -11,6 +11,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 namespace flute_grinder {
 
@@ -53,7 +54,7 @@ double root(const Function& f, double a, double fa, double b, double fb) {
 
 WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
                        const WheelSetup& setup, const GrindStroke& stroke)
-    : curve_(cutter),
+    : curve_(cutter, setup.lead),
       wheel_(wheel),
       stroke_(stroke),
       height_(setup.height),
@@ -61,14 +62,19 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
       cos_(std::cos(setup.swivel)),
       radius_(cutter.geometry().end_diameter / 2),
       centre_(radius_ + nominal_radius + stroke.y),
-      y_per_x_(cutter.tanCone() + stroke.y_per_x),
-      z_per_x_(cutter.tanCone() * cutter.zPerY()) {
+      tan_cone_(cutter.tanCone()),
+      y_per_x_(tan_cone_ + stroke.y_per_x),
+      z_per_x_(tan_cone_ * cutter.zPerY()) {
   if (!(std::abs(setup.swivel) < units::kPi / 2)) {
     std::ostringstream text;
     text << "setup.swivel = " << setup.swivel << " rad; allowed: within (-pi/2, pi/2)";
     throw std::invalid_argument(text.str());
   }
   requireFinite("setup.height", setup.height);
+  if (!(cutter.radius(-setup.lead) > 0)) {
+    throw std::invalid_argument("setup.lead = " + std::to_string(setup.lead) +
+                                " m; allowed: less than the way to the apex");
+  }
   for (const double value : {stroke.from, stroke.to, stroke.y, stroke.y_per_x, stroke.a})
     requireFinite("stroke", value);
   for (const PathDeviation& d : stroke.deviations) {
@@ -117,7 +123,7 @@ PathDeviation WheelSweep::deviationSlope(double axis_x) const noexcept {
 WheelSweep::Pose WheelSweep::pose(double x, double axis_x) const noexcept {
   const PathDeviation off = deviation(axis_x);
   const double z = height_ + axis_x * z_per_x_ + stroke_.z_correction.at(axis_x).z + off.z;
-  return {axis_x, x - axis_x, centre_ + axis_x * y_per_x_ + off.y, z, stroke_.a + curve_.a(axis_x) + off.a};
+  return {axis_x, x - axis_x, centre_ + axis_x * y_per_x_ + off.y, z, a(axis_x) + off.a};
 }
 
 double WheelSweep::lowestPoint(double axis_x) const noexcept {
@@ -161,7 +167,7 @@ WheelSweep::Window WheelSweep::betweenFaces(double x, double r) const noexcept {
 
 int WheelSweep::posesOf(double x, const Window& w) const noexcept {
   const double turn = std::abs(curve_.delta(w.from, w.to - w.from));
-  const double rise = std::abs(z_per_x_ - sin_ / cos_) * (w.to - w.from) / (radius_ * curve_.u(x));
+  const double rise = std::abs(z_per_x_ - sin_ / cos_) * (w.to - w.from) / (radius_ + x * tan_cone_);
   const double poses = std::ceil(std::max(turn, rise) / kPoseTurn);
   return poses < kMaxPoses ? std::max(kMinPoses, static_cast<int>(poses)) : kMaxPoses;
 }

@@ -159,14 +159,30 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   if (growth < 0) {
     checker.below("cutter.flute_length", c.flute_length, apex, "where the cone closes");
     if (!checker.good()) return;  // the other errors would follow from this one
-    checker.below("process.overtravel_shank", p.overtravel_shank, apex - c.flute_length, "where the cone closes");
+    const double room = apex - c.flute_length;
+    if (!(p.setup_lead > -room)) {
+      checker.refuse(ReasonKind::kOutOfRange, "process.setup_lead", {p.setup_lead, Unit::kMetre}, "",
+                     100 * units::kMillimetre, -room);
+      return;
+    }
+    checker.below("process.overtravel_shank", p.overtravel_shank, room + std::min(0.0, p.setup_lead),
+                  "where the cone closes");
   } else if (growth > 0) {
-    checker.below("process.overtravel_end", p.overtravel_end, -apex, "where the cone closes");
+    checker.below("process.setup_lead", p.setup_lead, -apex, "where the cone closes");
+    if (!checker.good()) return;
+    checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_lead),
+                  "where the cone closes");
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");
   checker.below(p.depth_end > 0 ? "process.depth_end" : "process.depth", p.depthEnd(), radius(c.flute_length),
                 "the cutter's radius at the flute's end");
   checker.below("cutter.core_diameter", c.core_diameter, c.end_diameter, "the cutter's diameter at the small end");
+  checker.below("cutter.core_diameter_end", c.core_diameter_end, 2 * radius(c.flute_length),
+                "the cutter's diameter at the flute's end");
+  if (c.core_diameter_end > 0 && !(c.core_diameter > 0)) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.core_diameter_end", {c.core_diameter_end, Unit::kMetre},
+                   "0 without cutter.core_diameter");
+  }
   checkWheel(checker, p);
   const double deepest = p.deepest();
   if (!(p.finish_infeed <= deepest)) {
@@ -270,7 +286,9 @@ double askedDepth(const GrindJob& job, double x) {
   const GrindProcess& p = job.process;
   const CutterGeometry& c = job.cutter;
   const double at_end = c.core_diameter > 0 ? (c.end_diameter - c.core_diameter) / 2 : p.depth;
-  return at_end + (p.depthEnd() - p.depth) * x / c.flute_length;
+  const double radius = c.end_diameter / 2 + c.flute_length * std::tan(c.cone_angle);  // at the flute's end
+  const double more = c.core_diameter_end > 0 ? radius - c.core_diameter_end / 2 - at_end : p.depthEnd() - p.depth;
+  return at_end + more * x / c.flute_length;
 }
 
 DepthLaw depthLaw(const GrindJob& job, double depth) {

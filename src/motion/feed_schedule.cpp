@@ -32,7 +32,7 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
     : y_per_x_(std::max(std::abs(cutter.tanCone()), std::abs(cutter.tanCone() + stroke.taper))),
       from_(stroke.from),
       to_(stroke.to) {
-  const LogCurve curve(cutter);
+  const LogCurve curve(cutter, stroke.lead);
   const double z_per_x = cutter.tanCone() * cutter.zPerY();
   const ZCorrection::Bounds correction = stroke.z_correction.bounds();
   z_per_x_ = std::max(std::abs(z_per_x + correction.least_first), std::abs(z_per_x + correction.largest_first));
@@ -72,7 +72,7 @@ FeedSchedule::ForX FeedSchedule::jerkForX(const AxisLimits& limits, double speed
 }
 
 void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine) {
-  const LogCurve curve(cutter);
+  const LogCurve curve(cutter, stroke.lead);
   const AxisLimits& limits = machine.limits;
   const double b = std::abs(curve.b());
   const double k = std::abs(curve.k());

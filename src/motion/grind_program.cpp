@@ -19,6 +19,7 @@ FeedSchedule::Stroke strokeOf(const GrindJob& job) {
   stroke.from = -job.process.overtravel_end;
   stroke.to = job.cutter.flute_length + job.process.overtravel_shank;
   if (job.process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
+  stroke.lead = job.process.setup_lead;
   stroke.taper = depthLaw(job, job.process.deepest()).taper;
   stroke.surface_feed = job.process.feed;
   // With the published rule, the even points of steep cutters drift by up to the same amount again.
@@ -98,7 +99,8 @@ std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, c
     if (indexOf(helices, geometry.spiral_angle) < helices.size()) continue;
     const ConicalCutter cutter(geometry);
     stroke.z_correction = zCorrectionOf(job, static_cast<int>(tooth));
-    helices.push_back({cutter, LogCurve(cutter), stroke.z_correction, FeedSchedule(cutter, stroke, machine)});
+    helices.push_back(
+        {cutter, LogCurve(cutter, stroke.lead), stroke.z_correction, FeedSchedule(cutter, stroke, machine)});
   }
   return helices;
 }

@@ -48,6 +48,24 @@ TEST(LogCurve, IsTheTextbookFormWhereThatIsDefined) {
     EXPECT_NEAR(curve.a(x), 115.5 / 17.5 * std::log(1 + 17.5 * x), 1e-14);
 }
 
+// Closed form, with the curve's own constants: A(X - lead).
+TEST(LogCurve, WithALeadItIsTheCurveThere) {
+  CutterGeometry back = test_support::paperCutter(), cylinder = back;
+  back.cone_angle = -3 * units::kDegree;
+  cylinder.cone_angle = 0;
+  for (const CutterGeometry& geometry : {test_support::paperCutter(), back, cylinder}) {
+    const LogCurve curve{ConicalCutter(geometry)};
+    for (const double lead : {-8e-3, 0.0, 11.847e-3}) {
+      const LogCurve ahead(ConicalCutter(geometry), lead);
+      for (const double x : {-5e-3, 0.0, 12e-3, 30e-3}) {
+        EXPECT_NEAR(ahead.a(x), curve.a(x - lead), 4e-15) << lead << ' ' << x;
+        EXPECT_NEAR(ahead.slope(x), curve.slope(x - lead), 1e-12) << lead << ' ' << x;
+      }
+      if (lead == 0) EXPECT_EQ(ahead.a(12e-3), curve.a(12e-3));
+    }
+  }
+}
+
 TEST(LogCurve, OfACylinderIsALine) {
   const LogCurve curve(0, 250);
   for (const double x : {-0.01, 0.0, 0.02}) {

@@ -18,6 +18,7 @@ struct Bench {
   double swivel, height, depth;
   int poses = 120, places = 24;
   ZCorrection z_correction{};
+  double lead = 0, taper = 0;  ///< of the wheel's centre, and beside the request's y_per_x
 
   /// dZ/dY
   static double zPerY(const SetupRequest& request) {
@@ -41,7 +42,7 @@ struct Bench {
   End endAt(double x, double r, double s, int side) const {
     const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
     const double y0 =
-        request.cutter.end_diameter / 2 + request.nominal_radius - depth + s * (tan_cone + request.y_per_x);
+        request.cutter.end_diameter / 2 + request.nominal_radius - depth + s * (tan_cone + request.y_per_x + taper);
     const double z0 = height + s * tan_cone * zPerY(request) + z_correction.at(s).z;
     const WheelProfile& wheel = request.wheel;
     const double lower = wheel.lowerFace(), upper = wheel.upperFace();
@@ -67,7 +68,7 @@ struct Bench {
         }
       }
       inside(in);
-      return {side * (std::asin(sine) + turned(s)), in};
+      return {side * (std::asin(sine) + turned(s - lead)), in};
     }
     return {};
   }
@@ -78,8 +79,8 @@ struct Bench {
                          (request.wheel.upperFace() - request.wheel.lowerFace());
     double from = x - 1.5 * reach, to = x + 1.5 * reach;
     const double apex = -request.cutter.end_diameter / 2 / std::tan(request.cutter.cone_angle);
-    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * apex);
-    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * apex);
+    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + lead));
+    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + lead));
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
@@ -106,6 +107,19 @@ struct Bench {
       (one.angle > other.angle ? b : a) = one.angle > other.angle ? right : left;
     }
     return best;
+  }
+
+  /// The angle of the edge at X [rad].
+  double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
+
+  /// The least radius that the wheel reaches at X, by halving, to a nanometre [m].
+  double core(double x) const {
+    double out = 0, in = radius(x);
+    for (int i = 0; i < 40; ++i) {
+      const double middle = (out + in) / 2;
+      (std::isfinite(wall(x, middle, 1).angle) ? in : out) = middle;
+    }
+    return in;
   }
 
   int rakeSide() const { return request.cutter.cut == CutDirection::kRightHand ? 1 : -1; }

@@ -23,10 +23,13 @@ struct CutterGeometry {
   double rake_angle = 0;    ///< r [rad]
   double flute_length = 0;  ///< along the cutter's axis [m]
   CutDirection cut = CutDirection::kRightHand;
-  double rake_tolerance = 0;  ///< largest allowed difference of the ground rake from the asked one [rad]
-  double shank_diameter = 0;  ///< [m]
-  double core_diameter = 0;   ///< asked at the small end; 0: whatever the depth leaves [m]
-  double neck_length = 0;     ///< from the flute's end to the shank; 0: not known [m]
+  double rake_tolerance = 0;     ///< largest allowed difference of the ground rake from the asked one [rad]
+  double shank_diameter = 0;     ///< [m]
+  double core_diameter = 0;      ///< asked at the small end; 0: whatever the depth leaves [m]
+  double neck_length = 0;        ///< from the flute's end to the shank; 0: not known [m]
+  double core_diameter_end = 0;  ///< asked at the flute's end; 0: whatever the depth leaves [m]
+  double core_tolerance = 0;     ///< largest allowed difference of the ground core from the asked one; 0: any [m]
+  double spiral_tolerance = 0;   ///< the same of the edge's spiral angle; 0: any [rad]
 };
 
 /// A part of the cutter's axis.

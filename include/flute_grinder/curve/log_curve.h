@@ -10,9 +10,20 @@ namespace flute_grinder {
 class LogCurve {
  public:
   /// Takes b = 2 tan C / D1 and k = 2 tan S / D1 from a cutter.
-  explicit LogCurve(const ConicalCutter& cutter) noexcept
+  explicit LogCurve(const ConicalCutter& cutter) noexcept : LogCurve(cutter, 0) {}
+
+  /// The cutter's curve for a wheel whose centre is at X when it forms the edge at X - lead: A(X - lead). That is the
+  /// curve of the cone moved by `lead`, which begins at another A.
+  /// @param lead finite; the cone must be open at X = -lead [m].
+  LogCurve(const ConicalCutter& cutter, double lead) noexcept
       : LogCurve(2 * cutter.tanCone() / cutter.geometry().end_diameter,
-                 2 * cutter.tanSpiral() / cutter.geometry().end_diameter) {}
+                 2 * cutter.tanSpiral() / cutter.geometry().end_diameter) {
+    if (lead == 0) return;
+    a0_ = a(-lead);
+    const double at_lead = u(-lead);
+    b_ /= at_lead;
+    k_ /= at_lead;
+  }
 
   /// @param b relative growth of the radius per unit of length [1/m].
   /// @param k slope dA/dX at X = 0 [rad/m].
@@ -21,11 +32,11 @@ class LogCurve {
   double b() const noexcept { return b_; }  ///< [1/m]
   double k() const noexcept { return k_; }  ///< [rad/m]
 
-  /// Radius at X divided by the radius at X = 0; the curve exists where this is positive.
+  /// Radius of the cone at X divided by that at X = 0; the curve exists where this is positive.
   double u(double x) const noexcept { return 1 + b_ * x; }
 
   /// A(X) [rad].
-  double a(double x) const noexcept { return k_ * x * log1pRatio(b_ * x); }
+  double a(double x) const noexcept { return a0_ + k_ * x * log1pRatio(b_ * x); }
 
   /// A(X + dx) - A(X), accurate even if dx is much smaller than X [rad].
   double delta(double x, double dx) const noexcept {
@@ -42,6 +53,7 @@ class LogCurve {
 
   double b_;
   double k_;
+  double a0_ = 0;  ///< A at X = 0 [rad]
 };
 
 }  // namespace flute_grinder

@@ -29,6 +29,8 @@ struct SetupRequest {
   double depth = 0;                                         ///< of the flute at X = 0, where Y = -depth [m]
   double y_per_x = 0;                                       ///< of a core taper, added to the cone's
   std::optional<double> core_diameter;                      ///< at X = 0, in place of the depth [m]
+  std::optional<double> core_diameter_end;                  ///< at the flute's end, in place of y_per_x [m]
+  bool asks_spiral = false;                                 ///< the edge's angle between the ends, by a lead
   double least_swivel = 0, largest_swivel = 0;              ///< that the machine allows [rad]
   /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then
   /// passes the axis at the height R sin r.
@@ -49,8 +51,10 @@ constexpr const auto& rowsOf(SetupLimit) noexcept { return kSetupLimits; }
 struct SolvedSetup {
   WheelSetup setup;
   double depth = 0;                           ///< of the flute: Y = -depth at X = 0 [m]
+  double depth_end = 0;                       ///< the same at the flute's end [m]
   double least_rake = 0, largest_rake = 0;    ///< over the flute [rad]
   double core_diameter = 0;                   ///< at X = 0 [m]
+  double core_diameter_end = 0;               ///< at the flute's end [m]
   double land = 0;                            ///< least over the flute and the teeth, along the circle [m]
   std::array<double, 2> overtravel{};         ///< beyond X = 0 and beyond the flute's end, for it to be complete [m]
   double complete_from = 0, complete_to = 0;  ///< along the cutter; less than the flute only near a cone's apex [m]

@@ -15,6 +15,7 @@ namespace flute_grinder {
 struct WheelSetup {
   double swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+  double lead = 0;    ///< of the wheel's centre, see LogCurve [m]
 };
 
 /// How far the axes are off the job's path at an X.
@@ -85,6 +86,9 @@ class WheelSweep {
 
   const GrindStroke& stroke() const noexcept { return stroke_; }
 
+  /// A of the stroke over X [rad].
+  double a(double axis_x) const noexcept { return stroke_.a + curve_.a(axis_x); }
+
  private:
   /// Where the wheel stands while the axes are at an X, and which way round the cutter.
   struct Pose {
@@ -144,8 +148,8 @@ class WheelSweep {
   GrindStroke stroke_;
   double height_, sin_, cos_;
   double radius_;  ///< of the small end [m]
-  double centre_, y_per_x_, z_per_x_;
-  double apex_;                   ///< X, infinite for a cylinder [m]
+  double centre_, tan_cone_, y_per_x_, z_per_x_;
+  double apex_;                   ///< X at which the stroke's curve ends, infinite for a cylinder [m]
   double deepest_deviation_ = 0;  ///< the least of Y [m]
   Window z_off_{0, 0};            ///< between which Z is off the published law [m]
 };

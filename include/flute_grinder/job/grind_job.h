@@ -85,6 +85,7 @@ struct GrindProcess {
   double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
   double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+  double setup_lead = 0;    ///< of the wheel's centre in X, ahead of where it forms the edge; see LogCurve [m]
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< at the flute's end [m]
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< where the flute is deepest [m]
@@ -159,8 +160,8 @@ std::vector<ToothPass> passOrder(const GrindJob& job);
 /// The wheel's wear when each pass begins, as foreseen by the job, in the order of passOrder() [m].
 std::vector<double> wearOfPasses(const GrindJob& job);
 
-/// The depth of the flute that a job asks for at `x`, radial: at the small end that of the core it asks for, or else
-/// its depth [m]. @param x from the small end [m].
+/// The depth of the flute that a job asks for at `x`, radial: at each end that of the core it asks for there, or else
+/// by its depths [m]. @param x from the small end [m].
 double askedDepth(const GrindJob& job, double x);
 
 /// The depth of a pass over X.

@@ -39,6 +39,9 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.shank_diameter", "cutter.shank_diameter_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.cutter.shank_diameter; });
   visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter; });
   visit(F{"cutter.neck_length", "cutter.neck_length_mm", mm, 0, 500, true}, [](auto& j) -> auto& { return j.cutter.neck_length; });
+  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
+  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_tolerance; });
+  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0, 180, true}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return j.process.feed; });
   visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50}, [](auto& j) -> auto& { return j.process.depth; });
   visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.depth_end; });
@@ -56,6 +59,7 @@ void visitJobFields(const Visit& visit) {
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return j.process.wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return j.process.setup_swivel; });
   visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return j.process.setup_height; });
+  visit(F{"process.setup_lead", "process.setup.lead_mm", mm, -100, 100, true}, [](auto& j) -> auto& { return j.process.setup_lead; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000}, [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000}, [](auto& j) -> auto& { return j.interpolation.rotary_scale; });
   // clang-format on

@@ -1,9 +1,7 @@
-#include "cli/commands.h"
-#include "cli/completion.h"
+#include "cli/command_line.h"
 #include "cli/csv.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
-#include "cli/usage.h"
 #include "flute_grinder/connection/init_ros.h"
 
 #include <ros/ros.h>
@@ -14,25 +12,12 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
+#include <optional>
 #include <vector>
 
 namespace {
 
 using namespace flute_grinder;
-
-constexpr int kUsage = 2;  ///< exit status for wrong usage and unreadable files
-
-void addCompletion(Commands& commands) {
-  const auto shell = std::make_shared<std::string>();
-  auto& command = commands.add("completion", "print a script that completes command lines; source it", "bash",
-                               [&commands] { return std::fputs(bashCompletion(commands.app()).c_str(), stdout), 0; });
-  const std::string bash = "bash";
-  command.add_option("SHELL", *shell, "for which shell")
-      ->required()
-      ->check(CLI::IsMember({bash}).description(""))
-      ->type_name("{" + bash + "}");
-}
 
 int run(int argc, char** argv) {
   const std::vector<char*> arguments =
@@ -40,27 +25,9 @@ int run(int argc, char** argv) {
               ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   // If the master goes away during a call, wait for it as long as for one that is missing.
   ros::master::setRetryTimeout(kPatience);
-  CLI::App app{"Plans jobs for conical end mills and operates the grinder.", "grind"};
-  app.require_subcommand(1);
-  app.footer("Example:\n  rosrun flute_grinder grind plan --help");
-  Commands commands(app);
-  app.set_version_flag("--version", "flute_grinder " FLUTE_GRINDER_VERSION, "print the version and exit");
-  app.add_option("--node", commands.node, "name of the grinder's node")->capture_default_str();
-  addJobCommands(commands);
-  addWheelCommands(commands);
-  addMachineCommands(commands);
-  addOffsetCommands(commands);
-  addCompletion(commands);
-  try {
-    app.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
-  } catch (const CLI::ParseError& error) {
-    // An unknown word is reported before what is missing, which it may have been meant for.
-    const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app);
-    if (unknown.empty()) return app.exit(error) == 0 ? 0 : kUsage;
-    std::fprintf(stderr, "%s\nRun with --help for more information.\n", unknown.c_str());
-    return kUsage;
-  }
-  return commands.carryOut();
+  CommandLine line;
+  const std::optional<int> refused = line.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
+  return refused ? *refused : line.carryOut();
 }
 
 /// Opens a closed stdin, stdout or stderr so that writing fails; otherwise the next file or connection opened would get

@@ -3,7 +3,9 @@
 #include "cli/completion.h"
 #include "cli/offsets.h"
 #include "cli/probe.h"
+#include "flute_grinder/job/quantity.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace flute_grinder {
@@ -50,34 +52,35 @@ void addTouchOff(Commands& commands) {
   addYes(command, options->yes);
 }
 
-void addProbe(Commands& commands) {
+void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
   const auto options = std::make_shared<ProbeOptions>();
+  options->within = row.within / shopScale(unitOf(row.axis, 0));
+  std::string name = row.name;
+  std::replace(name.begin(), name.end(), '_', '-');
+  auto& command = commands.addTo(
+      probe, name, row.help, row.always_for_job ? "--job jobs/unequal_d12_t4.yaml" : "--within 2",
+      Commands::online([&commands, options, cycle = row.value] { return runProbe(commands.node, cycle, *options); }));
+  if (row.axis == kA) {
+    command.add_option("--within", options->within, "the farthest turn to the touch")
+        ->type_name("DEG")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 360.0));
+  } else {
+    addLength(command, "--within", options->within, "the farthest way to the touch", false).capture_default_str();
+  }
+  if (row.always_for_job) {
+    command.add_option("--job", options->job, "job to be ground")->required()->type_name(kYamlFile);
+    addFlange(command, options->flange_mm);
+  } else {
+    addLength(command, "--at", options->at_mm, "sets the work offset of Y so that the diameter is this one", false);
+    command.add_option("--job", options->job, "with --at: job to be ground")->type_name(kYamlFile);
+  }
+}
+
+void addProbe(Commands& commands) {
   auto& probe = commands.add("probe", "measure with the measuring probe, jogged near; Ctrl-C and Ctrl-Z stop it",
                              "end-face --job jobs/unequal_d12_t4.yaml", nullptr);
-  const auto add = [&](const char* name, const char* description, const std::string& example,
-                       int (*action)(const std::string&, const ProbeOptions&)) -> CLI::App* {
-    const auto carry_out = [&commands, options, action] { return action(commands.node, *options); };
-    return &commands.addTo(probe, name, description, example, Commands::online(carry_out));
-  };
-  CLI::App* face =
-      add("end-face", "X: print the stick-out and set the work offset", "--job jobs/unequal_d12_t4.yaml", probeEndFace);
-  CLI::App* diameter =
-      add("diameter", "Y, on four sides: print diameter and run-out of a cylinder", "--within 2", probeDiameter);
-  CLI::App* tooth = add("tooth", "A: touch the first tooth's rake face and set the work offset",
-                        "--job jobs/unequal_d12_t4.yaml", probeTooth);
-  for (CLI::App* command : {face, tooth}) {
-    command->add_option("--job", options->job, "job to be ground")->required()->type_name(kYamlFile);
-    addFlange(*command, options->flange_mm);
-  }
-  for (CLI::App* command : {face, diameter}) {
-    addLength(*command, "--within", options->within_mm, "the farthest way to the touch", false).capture_default_str();
-  }
-  tooth->add_option("--within", options->within_deg, "the farthest turn to the touch")
-      ->type_name("DEG")
-      ->capture_default_str()
-      ->check(CLI::Range(0.01, 360.0));
-  addLength(*diameter, "--at", options->at_mm, "sets the work offset of Y so that the diameter is this one", false);
-  diameter->add_option("--job", options->job, "with --at: job to be ground")->type_name(kYamlFile);
+  for (const ProbingCycleRow& row : kProbingCycles) addCycle(commands, probe, row);
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
   offset_desk_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
                                                 offsetLimits(config.machine.limits, offset_change_limit));
-  probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_);
+  probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_desk_);
   plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
   goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
 }

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <utility>
 
 namespace flute_grinder {
@@ -99,7 +101,6 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   } else if (refused.empty()) {
     core::WorkOffset offset;
     offset.set_by = request.set_by;
-    offset.set_at = ros::WallTime::now().toSec();
     offset.basis = fromMessage(request.basis);
     offset.basis.method = method;
     refused = setWithoutJob(axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
@@ -111,7 +112,22 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   response.large_change = static_cast<std::uint8_t>(large_change);
 }
 
-/// @param offset all but its value. @param large_change whether it is refused because it would change by too much.
+std::string OffsetServer::setProbed(int axis, double value, const std::string& set_by, const GrindGoal& goal) {
+  core::WorkOffset offset;
+  offset.set_by = set_by;
+  offset.basis = basisOf(goal, OffsetMethod::kProbe);
+  const auto answer = std::make_shared<std::promise<std::string>>();
+  std::future<std::string> answered = answer->get_future();
+  thread_.post([=] {
+    bool large_change = false;
+    answer->set_value(setWithoutJob(
+        axis, offset, [=](double) { return value; }, true, large_change));
+  });
+  return answered.get();
+}
+
+/// @param offset all but its value and its time. @param large_change whether it is refused because it would change by
+/// too much.
 /// @return why the offset was not set; empty if it was.
 std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at,
                                         bool large_change_ok, bool& large_change) {
@@ -119,6 +135,7 @@ std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const
   std::string refused = refusal(status);
   if (!refused.empty()) return refused;
   const auto i = static_cast<std::size_t>(axis);
+  offset.set_at = ros::WallTime::now().toSec();
   offset.value = offset_at(status.position[i]);
   refused = travelRefusal(limits_, axis, offset.value);
   if (!refused.empty()) return refused;

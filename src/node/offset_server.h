@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/control/control_loop.h"
@@ -24,6 +25,14 @@ class OffsetServer {
   /// @param loop,gate,store must outlive this object.
   OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store,
                const OffsetLimits& limits);
+
+  /// The work offsets. Thread safe; never waits for the disk.
+  core::WorkOffsets offsets() const { return store_.offsets(); }
+
+  /// Sets a work offset that was probed while the caller shuts jobs out, by any amount. For another thread than the
+  /// one here, for which it waits. @param value [m], A [rad]. @param goal what it is set for.
+  /// @return why it was not set; empty if it was.
+  std::string setProbed(int axis, double value, const std::string& set_by, const GrindGoal& goal);
 
  private:
   /// The offset of an axis whose position is as given [m or rad].

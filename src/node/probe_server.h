@@ -1,39 +1,52 @@
 #pragma once
 
-#include "flute_grinder/Probe.h"
+#include "flute_grinder/ProbeAction.h"
 #include "flute_grinder/control/control_loop.h"
 #include "node/job_gate.h"
+#include "node/offset_server.h"
+#include "node/served_queue.h"
 
-#include <ros/callback_queue.h>
+#include <actionlib/server/action_server.h>
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 
-#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
 
 namespace flute_grinder {
 
-/// Serves `~probe`: a series of jogs that end where the measuring probe touches, for as long as its client repeats
-/// `~probe_alive`. Two threads: one waits for the motion, the other takes these messages, and refuses further calls, so
-/// that none waits and then moves after a stop. A stop goes to the control loop past them, and ends the series.
+/// Serves the action `~probe`: probing cycles, each for as long as its client repeats `~probe_alive`. One goal at a
+/// time; any other is rejected at once, and jobs are shut out meanwhile. Two threads: one waits for the motion, the
+/// other takes the messages. A stop goes to the control loop past them, and ends the cycle.
 class ProbeServer {
  public:
   /// @param private_nh the node's own namespace.
-  /// @param loop,gate must outlive this object.
-  ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
+  /// @param loop,gate,offsets must outlive this object.
+  ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets);
   ~ProbeServer();
 
  private:
-  bool onProbe(Probe::Request& request, Probe::Response& response);
+  using Server = actionlib::ActionServer<ProbeAction>;
+  using GoalHandle = Server::GoalHandle;
+
+  void onGoal(GoalHandle handle);
+  bool isBusy() const;
+  void onCancel(const GoalHandle& handle);
   void onAlive(const std_msgs::Header::ConstPtr& message);
-  void probe(const Probe::Request& request, Probe::Response& response);
+  std::string refusal(const ProbeGoal& goal, const LoopStatus& status) const;
+  void run(GoalHandle handle, std::uint64_t stops);
+  void runUnguarded(GoalHandle& handle, std::uint64_t stops, ProbeResult& result);
 
   ControlLoop& loop_;
   JobGate& gate_;
-  std::atomic<bool> probing_{false};
-  ros::CallbackQueue queue_;
-  ros::ServiceServer service_;
+  OffsetServer& offsets_;
+  mutable std::mutex mutex_;        ///< guards the next; held only to compare, and to post a stop
+  std::optional<GoalHandle> goal_;  ///< that has not ended
+  ServedQueue messages_, motion_;
   ros::Subscriber alive_;
-  ros::AsyncSpinner spinner_;  ///< last member, so that no call is running when the others are destroyed
+  std::unique_ptr<Server> server_;
 };
 
 }  // namespace flute_grinder

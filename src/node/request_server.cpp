@@ -67,7 +67,7 @@ bool RequestServer::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwiv
 }
 
 bool RequestServer::onJogStep(JogStep::Request& request, JogStep::Response& response) {
-  JogRequest jog{request.axis, false, request.distance, request.speed, request.stops};
+  JogRequest jog{request.axis, false, request.distance, request.speed};
   const bool named = request.speed != 0 || request.axis >= kAxisCount;
   if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
   const RequestReply reply = loop_.jog(jog);

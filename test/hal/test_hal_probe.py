@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Shows on the real HAL that a probing move stops at the probe's contact, though commands wait in a buffer, and where it was."""
 
-import threading
 import unittest
 
 import rospy
@@ -14,6 +13,7 @@ from grinder_client import MM, X
 RECORDER = hal_bench.Recorder()
 BUFFER = 0.5  # longer than a host stalls: a drive that runs dry is a fault
 WAY = 3 * MM
+WITHIN = 10 * MM
 SPEED = 2 * MM  # of the first touch, per second, as shipped
 
 
@@ -29,7 +29,7 @@ class TestProbe(unittest.TestCase):
         self.node.end()
 
     def probe(self):
-        return self.grinder.probe(X, 10 * MM)
+        return self.grinder.probe(WITHIN)
 
     def test_it_stops_at_the_contact_and_says_where(self):
         wall = self.at + WAY
@@ -41,12 +41,13 @@ class TestProbe(unittest.TestCase):
         def agree():
             # A host that stalls sees a contact late; the touches then disagree, and it says so.
             answers.append(self.probe())
-            if not answers[-1].success:
+            if answers[-1].message:
                 self.assertIn('the touches spread over', answers[-1].message)
-            return answers[-1].success
+            return not answers[-1].message
 
         gc.poll(agree, 'touches that agree')
-        self.assertAlmostEqual(answers[-1].position, wall, delta=5e-6)
+        ball = rospy.get_param('/grinder/geometry/probe')
+        self.assertAlmostEqual(answers[-1].figures[0].value - ball['x'] - ball['diameter'] / 2, wall, delta=5e-6)
         largest = max(row.position[X] for row in RECORDER.read()[first:])
         # What was in the buffer is played; then the axis comes to rest.
         self.assertGreater(largest, wall)
@@ -54,15 +55,13 @@ class TestProbe(unittest.TestCase):
 
     def test_a_contact_that_does_not_last_is_no_touch(self):
         """It ends while the buffer is played, long before the axis rests."""
-        answers = []
-        probing = threading.Thread(target=lambda: answers.append(self.probe()))
-        probing.start()
-        self.addCleanup(probing.join)
-        self.grinder.wait_for(lambda: self.grinder.joints[-1].position[X] > self.at + 1 * MM, 'the way to the surface')
-        hal_bench.halcmd('setp', 'wall.in0', '-1000')
-        hal_bench.halcmd('setp', 'wall.in0', '1000')
-        probing.join()
-        self.assertEqual(answers[0].message, 'probing ended: the contact was lost again before the axis came to rest')
+        with self.grinder.probing(WITHIN) as cycle:
+            self.grinder.wait_for(lambda: self.grinder.joints[-1].position[X] > self.at + 1 * MM, 'the way to the surface')
+            hal_bench.halcmd('setp', 'wall.in0', '-1000')
+            hal_bench.halcmd('setp', 'wall.in0', '1000')
+            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+            message = cycle.get_result().message
+        self.assertEqual(message, 'probing ended: the contact was lost again before the axis came to rest')
         self.assertLess(self.grinder.wait_rest()[X], self.at + 9 * MM)
 
     def test_without_a_contact_it_goes_all_the_way_and_back(self):

@@ -21,9 +21,9 @@ import rospkg
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, SetpointBatch,
-                               WrittenSetpoint)
-from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, Probe, SetFeedOverride, SetOffset, TouchOff
+from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
+                               ProbeGoal, SetpointBatch, WrittenSetpoint)
+from flute_grinder.srv import ConfirmSwivel, InjectFault, Plan, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
@@ -401,16 +401,29 @@ class Grinder:
     def confirm_swivel(self, angle):
         return self._call('confirm_swivel', ConfirmSwivel, angle)
 
-    def probe(self, axis, distance, stops=0):
-        """Probes, and says again and again that this program is alive."""
+    @contextlib.contextmanager
+    def probing(self, within, cycle=ProbeGoal.END_FACE, **fields):
+        """Has a probing cycle run for a client that repeats that it is alive. Gives the action's client, whose `touches` are
+        the places and touches of the feedback."""
         alive = rospy.Publisher('/%s/probe_alive' % self.name, Header, queue_size=1, tcp_nodelay=True)
+        client = actionlib.SimpleActionClient('/%s/probe' % self.name, ProbeAction)
+        assert client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
         poll(lambda: alive.get_num_connections() > 0, 'a connection')
         timer = rospy.Timer(rospy.Duration(0.05), lambda _: alive.publish(Header(stamp=rospy.Time.now())))
+        client.touches = []
         try:
-            return self._call('probe', Probe, axis, distance, stops)
+            client.send_goal(ProbeGoal(cycle=cycle, within=within, **fields),
+                             feedback_cb=lambda feedback: client.touches.append((feedback.place, feedback.touch)))
+            yield client
         finally:
             timer.shutdown()
             alive.unregister()
+
+    def probe(self, within, cycle=ProbeGoal.END_FACE, **fields):
+        """The result of a probing cycle."""
+        with self.probing(within, cycle, **fields) as client:
+            assert client.wait_for_result(rospy.Duration(PATIENCE)), 'no result'
+            return client.get_result()
 
     def plan(self, goal):
         return self._call('plan', Plan, goal)

@@ -43,7 +43,7 @@ while True:
 
 
 def step(axis, distance, speed=0.0):
-    return grinder()._call('jog_step', JogStep, axis, distance, speed, 0)
+    return grinder()._call('jog_step', JogStep, axis, distance, speed)
 
 
 def send_slowly():

@@ -464,7 +464,7 @@ class TestMemory(OwnNode):
         run.cancel()
         run.wait_complete()
         g.wait_state(GrinderState.READY)
-        self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01, 0).success)
+        self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01).success)
         g.wait_rest()
         g.inject('emergency_stop')
         g.wait_state(GrinderState.FAULT)

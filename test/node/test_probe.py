@@ -2,6 +2,7 @@
 """Shows that the measuring probe finds what stands in the simulated machine: end face, diameter and run-out, and the first tooth;
 that the work offsets follow; and that a stop ends it."""
 
+import contextlib
 import json
 import math
 import os
@@ -10,14 +11,14 @@ import shutil
 import signal
 import subprocess
 import tempfile
-import threading
 import unittest
 
 import rospy
 import rostest
 import yaml
-from flute_grinder.msg import GrinderState, GrindResult
-from flute_grinder.srv import JogStep, Probe
+from actionlib_msgs.msg import GoalStatus
+from flute_grinder.msg import GrinderState, GrindResult, ProbeGoal
+from flute_grinder.srv import JogStep
 from std_srvs.srv import Trigger
 
 import grinder_client as gc
@@ -55,7 +56,7 @@ class ProbeTest(unittest.TestCase):
         return self.client
 
     def jog(self, axis, distance):
-        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM, 0)
+        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
         self.assertTrue(reply.success, reply.message)
         self.client.wait_state(GrinderState.READY)
         self.client.wait_rest()
@@ -66,9 +67,6 @@ class ProbeTest(unittest.TestCase):
         self.jog(Z, -BALL_Z - at[Z])
         self.jog(X, x - BALL_X - at[X])
         self.jog(Y, y - BALL_Y - at[Y])
-
-    def probe(self, axis, distance, stops=0):
-        return self.client.probe(axis, distance, stops)
 
     def grind(self, *arguments):
         return gc.grind('--node', self.client.name, *arguments, timeout=60)
@@ -159,15 +157,22 @@ class TestCycles(ProbeTest):
         self.assertAlmostEqual(self.offset(A)['offset_deg'], math.degrees(angle), delta=0.01)
 
 
-class TestMove(ProbeTest):
-    def test_touches_agree(self):
-        client = self.start()
+class TestTouches(ProbeTest):
+    def test_they_agree_and_are_published(self):
+        self.start()
         self.bring_ball(12 * MM, 0)
-        answer = self.probe(X, 8 * MM)
-        self.assertTrue(answer.success, answer.message)
-        self.assertAlmostEqual(answer.position, 17 * MM - BALL / 2 - BALL_X, delta=TOUCH)
-        self.assertLess(answer.spread, TOUCH)
-        self.assertEqual(answer.axes[A], client.joints[-1].position[A])
+        with self.client.probing(8 * MM) as cycle:
+            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+            result = cycle.get_result()
+            self.assertEqual((cycle.get_state(), result.message), (GoalStatus.SUCCEEDED, ''))
+            self.client.wait_for(lambda: len(cycle.touches) == 4, 'the last feedback')
+            self.assertEqual(cycle.touches, [(0, 0), (0, 1), (0, 2), (0, 3)])
+        self.assertEqual([figure.name for figure in result.figures], ['end face', 'stick-out'])
+        self.assertAlmostEqual(result.figures[0].value, 17 * MM, delta=TOUCH)
+        self.assertLess(result.figures[0].spread, TOUCH)
+        self.assertTrue(math.isnan(result.figures[1].spread))
+        self.assertFalse(result.offset_set)
+        self.assertEqual(self.offset(X)['set_by'], None)
 
     def test_nothing_there(self):
         self.start()
@@ -180,7 +185,7 @@ class TestMove(ProbeTest):
 
     def test_a_probe_that_touches_already(self):
         self.start(dict(BLANK, end_face=-20 * MM, diameter=100 * MM))
-        self.assertIn('jog refused: the probe touches already', self.probe(X, 1 * MM).message)
+        self.assertIn('jog refused: the probe touches already', self.client.probe(1 * MM).message)
 
     def test_touches_that_do_not_agree(self):
         probing = gc.machine()['probing']
@@ -189,7 +194,7 @@ class TestMove(ProbeTest):
         probing['back_off'] = dict(probing['back_off'], axis_x=4.013 * MM)
         self.start(probing=probing)
         self.bring_ball(12 * MM, 0)
-        self.assertRegex(self.probe(X, 8 * MM).message, '^probing ended: the touches spread over .*; allowed: up to ')
+        self.assertRegex(self.client.probe(8 * MM).message, '^probing ended: the touches spread over .*; allowed: up to ')
 
     def test_a_contact_that_does_not_last_is_no_touch(self):
         """It comes and goes at the same place each time, so that the touches would agree."""
@@ -203,52 +208,72 @@ class TestMove(ProbeTest):
         self.assertTrue(self.client.inject('none').success)
         self.cycle('end-face', '--job', JOB)
 
-    def test_requests_are_checked(self):
+    def test_a_blank_clamped_too_short_gives_its_figures_and_no_offset(self):
+        self.start(dict(BLANK, end_face=42 * MM))
+        self.bring_ball(37 * MM, 0)
+        done = self.grind('probe', 'end-face', '--job', JOB)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('stick-out       20.000', done.stdout)
+        self.assertRegex(done.stderr, '^probing ended: stick-out = 20.000. mm; allowed: the flutes\' length or more, ')
+        self.assertEqual(self.offset(X)['set_by'], None)
+
+    def test_goals_are_checked(self):
         self.start()
-        for axis, distance in ((4, 0.001), (X, 0), (X, math.nan), (X, math.inf)):
-            answer = self.probe(axis, distance)
-            self.assertFalse(answer.success)
-            self.assertIn('allowed: ', answer.message)
-        self.assertIn('; allowed: up to 300 mm', self.probe(X, 1.0).message)
+        job = gc.goal_of(gc.SHORT)
+        for wrong, text in (({'cycle': 3}, 'cycle = 3; allowed: 0 to 2'), ({'within': 0}, 'within = 0'),
+                            ({'within': -1 * MM}, 'within = -0.001'), ({'within': math.nan}, 'within = nan'),
+                            ({'within': math.inf}, 'within = inf'), ({'cycle': ProbeGoal.TOOTH}, 'set_offset = false'),
+                            ({'set_offset': True}, 'allowed: '), ({'set_offset': True, 'job': job, 'flange': math.nan}, 'flange'),
+                            ({'set_offset': True, 'job': job, 'set_by': '\n'}, 'set_by has 1 characters')):
+            message = self.client.probe(**{'within': 1 * MM, **wrong}).message
+            self.assertRegex(message, '^probing refused: .*allowed: ')
+            self.assertIn(text, message)
+        self.assertIn('; allowed: up to 300 mm', self.client.probe(1.0).message)
         self.client.disable()
-        self.assertIn('state disabled; allowed: ready', self.probe(X, 0.001).message)
+        self.assertIn('state disabled; allowed: ready', self.client.probe(1 * MM).message)
 
     def test_a_machine_without_a_probe(self):
         geometry = gc.machine()['geometry']
         del geometry['probe']
-        parameters = gc.machine()
-        parameters['geometry'] = geometry
-        self.node = gc.NodeProcess('without_probe', parameters)
-        self.addCleanup(self.node.close)
-        self.client = self.node.client()
-        self.addCleanup(self.client.close)
-        self.client.make_ready()
-        self.assertEqual(self.probe(X, 1 * MM).message, 'probing ended: the machine has no parameter geometry/probe')
+        self.start(geometry=geometry)
         done = self.grind('probe', 'diameter')
-        self.assertEqual((done.returncode, done.stderr), (1, 'parameter /without_probe/geometry/probe is missing\n'))
+        self.assertEqual((done.returncode, done.stderr),
+                         (1, 'probing refused: the machine has no parameter geometry/probe\n'))
 
 
 class TestStop(ProbeTest):
-    def begin(self, distance):
-        answers = []
-        thread = threading.Thread(target=lambda: answers.append(self.probe(X, distance)))
-        thread.start()
-        self.addCleanup(thread.join)
-        self.client.wait_state(GrinderState.JOGGING)
-        return answers, thread
-
-    def test_a_hold_ends_it(self):
+    @contextlib.contextmanager
+    def begun(self):
+        """While a search is under way, of 45 mm into nothing; gives the action's client."""
         self.start()
         self.bring_ball(-35 * MM, 0)
-        answers, thread = self.begin(45 * MM)
-        self.assertTrue(self.client._call('hold', Trigger).success)
-        thread.join()
-        self.assertEqual(answers[0].message, 'probing ended: stopped')
-        at = self.client.wait_rest()[X]
-        self.assertLess(at, 0)
+        with self.client.probing(45 * MM) as cycle:
+            self.client.wait_state(GrinderState.JOGGING)
+            yield cycle
+
+    def assert_stopped(self, cycle, state):
+        self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+        self.assertEqual((cycle.get_state(), cycle.get_result().message), (state, 'probing ended: stopped'))
+        self.assertLess(self.client.wait_rest()[X], 0)
+
+    def test_a_hold_ends_it(self):
+        with self.begun() as cycle:
+            self.assertTrue(self.client.hold().success)
+            self.assert_stopped(cycle, GoalStatus.ABORTED)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
 
-    def test_ctrl_c_ends_a_cycle_between_its_moves_too(self):
+    def test_a_disable_ends_it(self):
+        with self.begun() as cycle:
+            self.assertTrue(self.client.disable().success)
+            self.assert_stopped(cycle, GoalStatus.ABORTED)
+
+    def test_a_cancel_ends_it(self):
+        with self.begun() as cycle:
+            cycle.cancel_goal()
+            self.assert_stopped(cycle, GoalStatus.PREEMPTED)
+        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+
+    def test_ctrl_c_ends_a_cycle_between_its_touches_too(self):
         self.start()
         self.bring_ball(30 * MM, 7 * MM)
         before = self.client.wait_rest()[A]
@@ -258,7 +283,7 @@ class TestStop(ProbeTest):
         self.addCleanup(cycle.stderr.close)
         self.client.wait_for(lambda: abs(self.client.joints[-1].position[A] - before) > 0.1, 'the turn')
         cycle.send_signal(signal.SIGINT)
-        self.assertEqual((cycle.wait(gc.PATIENCE), cycle.stderr.read()), (1, 'A was stopped before its end\n'))
+        self.assertEqual((cycle.wait(gc.PATIENCE), cycle.stderr.read()), (1, 'probing ended: stopped\n'))
         at = self.client.wait_rest()
         self.assertLess(at[A], before + math.pi - 0.1)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
@@ -269,15 +294,12 @@ class TestStop(ProbeTest):
                        largest_spread=dict(probing['largest_spread'], axis_x=1.0))
         self.start(probing=probing)
         self.bring_ball(12 * MM, 0)
-        answers = []
-        thread = threading.Thread(target=lambda: answers.append(self.probe(X, 8 * MM)))
-        thread.start()
-        self.addCleanup(thread.join)
-        # Once after the fast touch, and after each of the three that count.
-        self.client.wait_for(self.turns_away(4), 'the last way off the surface')
-        self.client._call('hold', Trigger)
-        thread.join()
-        self.assertEqual(answers[0].message, 'probing ended: stopped')
+        with self.client.probing(8 * MM) as cycle:
+            # Once after the search, and after each of the three that count.
+            self.client.wait_for(self.turns_away(4), 'the last way off the surface')
+            self.client.hold()
+            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+            self.assertEqual(cycle.get_result().message, 'probing ended: stopped')
 
     def turns_away(self, times):
         """A condition: X has begun to move away from the surface so often, seen at each call."""
@@ -311,53 +333,25 @@ class TestStop(ProbeTest):
         self.assertLess(self.client.wait_rest()[X], at + 20 * MM)
         self.assertIn('probing ended: its client was silent for 1 s; ~probe_alive is to be repeated', self.node.output)
 
-    def test_another_call_meanwhile_is_refused(self):
-        self.start()
-        self.bring_ball(-35 * MM, 0)
-        answers, thread = self.begin(45 * MM)
-        self.assertEqual(self.probe(X, 1 * MM).message, 'probing refused: another probing move is in progress')
-        self.client._call('hold', Trigger)
-        thread.join()
-
-    def test_a_stop_refuses_what_follows(self):
-        self.start()
-        self.bring_ball(12 * MM, 0)
-        answer = self.probe(X, 8 * MM)
-        self.assertTrue(answer.success, answer.message)
-        self.client._call('hold', Trigger)
-        step = self.client._call('jog_step', JogStep, A, 0.1, 1.0, answer.stops)
-        self.assertEqual((step.success, step.message), (False, 'jog refused: a stop came first'))
-        self.assertEqual(self.probe(X, 1 * MM, answer.stops).message,
-                         'probing ended: jog refused: a stop came first')
+    def test_another_goal_meanwhile_is_refused(self):
+        with self.begun() as cycle:
+            self.assertIn('probing refused: another probing cycle is in progress; ', self.client.probe(1 * MM).message)
+            self.client.hold()
+            self.assert_stopped(cycle, GoalStatus.ABORTED)
 
     def test_no_job_starts_meanwhile(self):
-        self.start()
-        self.bring_ball(-35 * MM, 0)
-        answers, thread = self.begin(45 * MM)
-        run = self.client.send(gc.SHORT).wait()
-        # Between two touches the machine is ready, and the goal refused all the same.
-        self.assertEqual(run.status, 'REJECTED')
-        self.assertIn(run.code, (GrindResult.NOT_READY, GrindResult.BUSY))
-        self.client._call('hold', Trigger)
-        thread.join()
-        self.assertFalse(answers[0].success)
+        with self.begun() as cycle:
+            run = self.client.send(gc.SHORT).wait()
+            # Between two touches the machine is ready, and the goal refused all the same.
+            self.assertEqual(run.status, 'REJECTED')
+            self.assertIn(run.code, (GrindResult.NOT_READY, GrindResult.BUSY))
+            self.client.hold()
+            self.assert_stopped(cycle, GoalStatus.ABORTED)
 
     def test_the_end_of_the_node_does_not_wait_for_it(self):
-        self.start()
-        self.bring_ball(-35 * MM, 0)
-        process = self.node.process
-        request = threading.Thread(target=self.probe_until_the_end)
-        request.start()
-        self.addCleanup(request.join)
-        self.client.wait_state(GrinderState.JOGGING)
-        process.terminate()
-        self.assertEqual(process.wait(timeout=gc.PATIENCE), 0)
-
-    def probe_until_the_end(self):
-        try:
-            self.probe(X, 45 * MM)
-        except rospy.ServiceException:
-            pass
+        with self.begun():
+            self.node.process.terminate()
+            self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)
 
 
 if __name__ == '__main__':

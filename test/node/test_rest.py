@@ -66,7 +66,7 @@ class TestRest(unittest.TestCase):
         g.make_ready()
         wait_less_told(g.joints)
         seen = len(g.joints)
-        step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN, 0)
+        step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN)
         self.assertTrue(step.success, step.message)
         g.wait_state(GrinderState.READY)
         moving = [j for j in g.joints[seen:] if j.velocity[Y] != 0]

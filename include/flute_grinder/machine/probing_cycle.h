@@ -1,0 +1,36 @@
+#pragma once
+
+#include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/job/axes.h"
+
+#include <cstdint>
+
+namespace flute_grinder {
+
+/// What the measuring probe measures by itself, once it was jogged near.
+enum class ProbingCycle : std::uint8_t { kEndFace, kDiameter, kTooth };
+
+struct ProbingCycleRow : EnumRow<ProbingCycle> {
+  int axis = kX;               ///< that searches, and whose work offset is set
+  bool always_for_job = true;  ///< as a command; else only to set the work offset, with a known diameter
+  double within = 0;           ///< the farthest way to a touch, unless another is asked for [m], A [rad]
+  const char* help = "";
+};
+
+/// With the names used in messages; on the command line with a hyphen.
+inline constexpr ProbingCycleRow kProbingCycles[]{
+    {{ProbingCycle::kEndFace, "end_face"}, kX, true, 0.005, "X: print the stick-out and set the work offset"},
+    {{ProbingCycle::kDiameter, "diameter"},
+     kY,
+     false,
+     0.005,
+     "Y, on four sides: print diameter and run-out of a cylinder"},
+    {{ProbingCycle::kTooth, "tooth"},
+     kA,
+     true,
+     1.5707963267948966,
+     "A: touch the first tooth's rake face and set the work offset"},
+};
+constexpr auto& rowsOf(ProbingCycle) noexcept { return kProbingCycles; }
+
+}  // namespace flute_grinder

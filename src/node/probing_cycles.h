@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flute_grinder/ProbeGoal.h"
+#include "flute_grinder/ProbeResult.h"
+#include "flute_grinder/machine/probing_cycle.h"
+#include "flute_grinder/motion/work_offsets.h"
+#include "node/prober.h"
+
+#include <string>
+
+namespace flute_grinder {
+
+/// Why a goal is wrong at any time; empty if it is not.
+std::string goalRefusal(const ProbeGoal& goal);
+
+/// Runs a cycle. @param goal that goalRefusal() accepts. @param offsets the work offsets.
+/// @param result gets the figures, as they are measured.
+/// @return the work offset of the cycle's axis; NaN unless goal.set_offset [m], A [rad]
+/// @throw ProbingError; core::ReasonError
+double runCycle(Prober& prober, const ProbeGoal& goal, const core::WorkOffsets& offsets, ProbeResult& result);
+
+}  // namespace flute_grinder

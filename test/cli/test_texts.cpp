@@ -1,0 +1,145 @@
+#include "cli/csv.h"
+#include "cli/json_output.h"
+#include "cli/last_job.h"
+#include "cli/offsets.h"
+#include "cli/time_text.h"
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+// What commands print and write, without a machine.
+namespace flute_grinder {
+namespace test_texts {
+
+std::string contents(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(TimeText, IsToTheSecond) {
+  setenv("TZ", "Europe/Berlin", 1);
+  tzset();
+  // 20 780 days after the epoch, 17:04:13.
+  const double time = 20780 * 86400.0 + 17 * 3600 + 4 * 60 + 13.9;
+  EXPECT_EQ(timeText(time, true), "2026-11-23T17:04:13Z");
+  EXPECT_EQ(timeText(time, false), "2026-11-23 18:04:13");
+}
+
+JobProgress progress() {
+  JobProgress progress;
+  progress.job_name = "mill";
+  progress.job_digest = "0123456789abcdef";
+  progress.cutter.end_diameter = 0.012;
+  progress.cutter.tooth_angles = {0, 1, 2};
+  progress.tooth = 1;
+  progress.pass = 4;
+  progress.x = 0.0123456;
+  return progress;
+}
+
+TEST(LastJob, SaysHowFarItGot) {
+  JobProgress job = progress();
+  EXPECT_EQ(lastJob(job),
+            "mill: D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth; tooth 2, pass 5 not finished, X 12.346 mm "
+            "(0123456789ab)");
+  job.finished = 1;
+  job.job_name.clear();
+  EXPECT_EQ(lastJob(job),
+            "without a name: D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth; finished (0123456789ab)");
+}
+
+TEST(StatusJson, CountsFromOneAndInShopUnits) {
+  GrinderState state;
+  state.state_name = "running";
+  state.state = GrinderState::RUNNING;
+  state.swivel = 0.5;
+  state.feed = 0.01;
+  state.override = 0.75;
+  state.tooth = 2;
+  state.progress = progress();
+  const Json json = toJson("/left", state, nullptr);
+  EXPECT_EQ(json["grinder"], "/left");
+  EXPECT_NEAR(json["swivel_deg"].get<double>(), 90 / M_PI, 1e-12);
+  EXPECT_NEAR(json["feed_mm_min"].get<double>(), 600, 1e-9);
+  EXPECT_EQ(json["override_percent"], 75);
+  EXPECT_EQ(json["tooth"], 3);
+  EXPECT_EQ(json["pass"], 1);
+  EXPECT_TRUE(json["zero_points"].is_null());
+  EXPECT_EQ(json["last_job"]["pass"], 5);
+  EXPECT_EQ(json["last_job"]["cutter"]["teeth"], 3);
+  state.state = GrinderState::READY;
+  state.progress.job_digest.clear();
+  EXPECT_TRUE(toJson("/left", state, nullptr)["tooth"].is_null());
+  EXPECT_TRUE(toJson("/left", state, nullptr)["last_job"].is_null());
+}
+
+TEST(OffsetArgument, IsAnAxisAndAFiniteNumber) {
+  for (const char* good : {"x=0", "y=45.2", "z=-1e-3", "a=.5"}) EXPECT_EQ(offsetRefusal(good), "") << good;
+  for (const char* wrong : {"", "x", "x=", "b=1", "xy=1", "x:1", "x=nan", "x=inf", "x=1 mm", "x=one"}) {
+    EXPECT_EQ(offsetRefusal(wrong).find(std::string(wrong) + "; allowed: AXIS=VALUE"), 0U) << wrong;
+  }
+}
+
+class Csv : public ::testing::Test {
+ protected:
+  std::string path(const char* name) const { return folder_.path() / name; }
+
+ private:
+  test_support::TempFolder folder_;
+};
+
+TEST_F(Csv, HasEveryBit) {
+  TableCsv table(path("table.csv"));
+  CurvePoint point;
+  point.x = 1e-3 / 3;
+  point.a = 0.1;
+  table.write(7, point, 0.3);
+  table.close();
+  double x = 0, a = 0, theory = 0, error = 0;
+  const std::string text = contents(path("table.csv"));
+  const std::string head = "point,x_mm,a_rad,a_theory_rad,error_rad\n7,";
+  ASSERT_EQ(text.substr(0, head.size()), head);
+  ASSERT_EQ(std::sscanf(text.c_str() + head.size(), "%lf,%lf,%lf,%lf", &x, &a, &theory, &error), 4);
+  EXPECT_EQ(x, 1e-3 / 3 / 1e-3);
+  EXPECT_EQ(a, 0.1);
+  EXPECT_EQ(theory, 0.3);
+  EXPECT_EQ(error, 0.3 - 0.1);
+}
+
+TEST_F(Csv, OfNothingLeavesTheFilesAsTheyWere) {
+  std::ofstream(path("old.csv")) << "old";
+  {
+    const TableCsv kept(path("old.csv"));
+    const TableCsv none(path("new.csv"));
+  }
+  EXPECT_EQ(contents(path("old.csv")), "old");
+  EXPECT_FALSE(std::filesystem::exists(path("new.csv")));
+  TableCsv(path("old.csv")).close();
+  EXPECT_EQ(contents(path("old.csv")), "point,x_mm,a_rad,a_theory_rad,error_rad\n");
+}
+
+TEST_F(Csv, ThatCannotBeWrittenIsNamed) {
+  try {
+    const TableCsv table(path("no/such.csv"));
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.what(), path("no/such.csv") + ": cannot be written: No such file or directory");
+  }
+  try {
+    TableCsv("/dev/full").close();
+    FAIL();
+  } catch (const WriteError& error) {
+    EXPECT_STREQ(error.what(), "/dev/full: write failed: No space left on device");
+  }
+}
+
+}  // namespace test_texts
+}  // namespace flute_grinder

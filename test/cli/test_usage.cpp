@@ -1,0 +1,179 @@
+#include "cli/command_line.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+// What the command line says of its arguments; nothing is carried out.
+namespace flute_grinder {
+namespace test_usage {
+
+using Words = std::vector<std::string>;
+
+struct Said {
+  std::optional<int> status;
+  std::string out, err;
+};
+
+Said parse(const Words& words) {
+  std::vector<const char*> arguments{"grind"};
+  for (const std::string& word : words) arguments.push_back(word.c_str());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  CommandLine line;
+  Said said{line.parse(static_cast<int>(arguments.size()), arguments.data()), "", ""};
+  said.out = ::testing::internal::GetCapturedStdout();
+  said.err = ::testing::internal::GetCapturedStderr();
+  return said;
+}
+
+std::string joined(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) text += word + " ";
+  return text;
+}
+
+struct Unknown {
+  Words words;
+  const char* refusal;
+};
+
+TEST(UnknownWord, IsNamedWithTheNearest) {
+  for (const Unknown& it : {
+           Unknown{{"frob"}, "frob: no such command of 'grind'; did you mean 'probe'?"},
+           Unknown{{"stauts"}, "stauts: no such command of 'grind'; did you mean 'status'?"},
+           Unknown{{"hodl"}, "hodl: no such command of 'grind'; did you mean 'hold'?"},
+           Unknown{{"off"}, "off: no such command of 'grind'; did you mean 'offsets'?"},
+           Unknown{{"polish"}, "polish: no such command of 'grind'"},
+           Unknown{{"-"}, "-: no such command of 'grind'"},
+           Unknown{{"wheel", "shw", "w.yaml"}, "shw: no such command of 'grind wheel'; did you mean 'show'?"},
+           Unknown{{"report", "--ros-args"}, "--ros-args: no such option of 'grind report'"},
+           Unknown{{"plan", "--speed=9"}, "--speed: no such option of 'grind plan'"},
+           Unknown{{"plan", "j", "--cvs", "x"}, "--cvs: no such option of 'grind plan'; did you mean '--csv'?"},
+           Unknown{{"jog", "x", "1", "-x"}, "-x: no such option of 'grind jog'"},
+           Unknown{{"--nod", "x", "status"}, "--nod: no such option of 'grind'; did you mean '--node'?"},
+           Unknown{{"status", "--node", "x"}, "--node: goes before the command: grind --node ... status"},
+           Unknown{{"probe", "tooth", "--node", "x"}, "--node: goes before the command: grind --node ... probe tooth"},
+           Unknown{{"hold", "now"}, "now: no such argument of 'grind hold'"},
+           Unknown{{"jog", "x", "1", "2"}, "2: no such argument of 'grind jog'"},
+       }) {
+    const Said said = parse(it.words);
+    EXPECT_EQ(said.status, kUsage) << joined(it.words);
+    EXPECT_EQ(said.err, it.refusal + std::string("\nRun with --help for more information.\n"));
+    EXPECT_EQ(said.out, "");
+  }
+}
+
+TEST(Usage, ThatIsWrongIsRefused) {
+  for (const Words& words : std::vector<Words>{
+           {},
+           {"plan"},
+           {"run"},
+           {"table", "j"},
+           {"table", "j", "--step-length", "0"},
+           {"table", "j", "--step-length", "-0.2"},
+           {"table", "j", "--step-length", "long"},
+           {"table", "j", "--step-length", "nan"},
+           {"table", "j", "--step-length", "0.2", "--even-step", "newest"},
+           {"simulate"},
+           {"spindle"},
+           {"spindle", "1"},
+           {"wheel"},
+           {"wheel", "show"},
+           {"wheel", "turn", "w.yaml"},
+           {"zeros", "j", "--flange", "2"},
+           {"zeros", "j", "--stickout", "nan", "--flange", "2"},
+           {"zeros", "j", "--stickout", "60", "--set", "--machine", "m"},
+           {"zeros", "j", "--stickout", "60", "--set", "--urdf", "u"},
+           {"probe"},
+           {"probe", "end-face"},
+           {"probe", "tooth"},
+           {"probe", "end-face", "--job", "j", "--within", "0"},
+           {"probe", "diameter", "--within", "nan"},
+           {"probe", "diameter", "--at", "-1", "--job", "j"},
+           {"probe", "tooth", "--job", "j", "--within", "361"},
+           {"override"},
+           {"override", "-1"},
+           {"override", "120.5"},
+           {"override", "nan"},
+           {"override", "full"},
+           {"confirm-swivel"},
+           {"confirm-swivel", "90.5"},
+           {"confirm-swivel", "-91"},
+           {"confirm-swivel", "nan"},
+           {"confirm-swivel", "steep"},
+           {"offsets", "--set", "b=1"},
+           {"offsets", "--set", "x="},
+           {"offsets", "--set", "x=nan"},
+           {"offsets", "--set", "x=1mm"},
+           {"touch-off"},
+           {"touch-off", "b"},
+           {"touch-off", "x", "--at", "nan"},
+           {"jog", "b", "1"},
+           {"jog", "x"},
+           {"jog", "x", "1", "--feed", "0"},
+           {"run", "--continue"},
+           {"run", "j", "--continue", "--discard"},
+           {"report", "record.bag", "-o", "report.html", "--job", "0"},
+           {"completion", "fish"},
+           {"completion"},
+       }) {
+    const Said said = parse(words);
+    EXPECT_EQ(said.status, kUsage) << joined(words);
+    EXPECT_NE(said.err, "") << joined(words);
+  }
+}
+
+TEST(Usage, ThatIsRightIsTaken) {
+  for (const Words& words : std::vector<Words>{
+           {"--node", "left/grinder", "status", "--json"},
+           {"table", "j", "--step-length", "0.2", "--even-step", "exact"},
+           {"run", "j", "--continue", "--csv", "c"},
+           {"probe", "tooth", "--job", "j", "--within", "360", "--flange", "2"},
+           {"probe", "diameter", "--at", "10", "--job", "j"},
+           {"jog", "a", "-1.5", "--feed", "10"},
+           {"confirm-swivel", "-90"},
+           {"override", "120"},
+           {"offsets", "--set", "x=-1.5", "--set", "a=2", "--yes"},
+       }) {
+    const Said said = parse(words);
+    EXPECT_FALSE(said.status) << joined(words) << said.err;
+  }
+}
+
+struct Mentioned {
+  const char* command;
+  Words words;
+};
+
+TEST(Help, MentionsWhatACommandTakes) {
+  for (const Mentioned& it : {
+           Mentioned{"table",
+                     {"JOB", "--step-length", "--even-step", "published|third_order|exact", "--csv", "--json"}},
+           Mentioned{"plan", {"JOB", "--csv", "--machine", "--urdf", "--json"}},
+           Mentioned{"simulate", {"FILE", "--at", "--sections", "--csv", "--stl", "--svg", "--job", "--run", "--json"}},
+           Mentioned{"run", {"JOB", "--dry-run", "--continue", "--discard", "--offsets-are-right", "--csv", "Ctrl-Z"}},
+           Mentioned{"report", {"FILE", "--output", "--job", "--machine", "--urdf"}},
+           Mentioned{"wheel", {"show", "measure", "dress"}},
+           Mentioned{"zeros", {"JOB", "--stickout", "--flange", "--set", "--machine", "--urdf", "--json"}},
+           Mentioned{"probe", {"end-face", "diameter", "tooth"}},
+           Mentioned{"override", {"PERCENT", "0 to 120"}},
+           Mentioned{"confirm-swivel", {"DEG", "-90 to 90", "swivel"}},
+           Mentioned{"offsets", {"--set", "AXIS=VALUE", "--job", "--fit", "--yes", "--json"}},
+           Mentioned{"touch-off", {"AXIS", "x|y|z|a", "--at", "--job", "--yes"}},
+           Mentioned{"lift", {"off the work", "without a job"}},
+           Mentioned{"hold", {"stop on the path"}},
+           Mentioned{"cancel", {"end the job"}},
+           Mentioned{"completion", {"bash"}},
+       }) {
+    const Said said = parse({it.command, "--help"});
+    EXPECT_EQ(said.status, 0) << it.command;
+    for (const std::string& word : it.words) EXPECT_NE(said.out.find(word), std::string::npos) << it.command << word;
+    EXPECT_NE(said.out.find("\nExample:\n  rosrun flute_grinder grind " + std::string(it.command)), std::string::npos);
+    EXPECT_NE(parse({"--help"}).out.find("\n  " + std::string(it.command) + " "), std::string::npos) << it.command;
+  }
+}
+
+}  // namespace test_usage
+}  // namespace flute_grinder

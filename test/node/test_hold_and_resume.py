@@ -38,9 +38,11 @@ class TestInterference(unittest.TestCase):
         g = grinder()
         g.make_ready_at_park()
         cls.limits, cls.period = g.limits(), g.period()
+        # Time to interfere in the stroke, even on a host that stalls.
+        cls.replies = [g.set_feed_override(0.3)]
         first_state = len(g.states)
         cls.job_run = run = g.send(JOB).wait_in_stroke(8 * MM)
-        cls.replies = [g.hold()]
+        cls.replies.append(g.hold())
         cls.held = cls.rest_at(g, GrinderState.HELD)
         cls.others = [g.send(gc.SHORT).wait(), g.send(gc.SHORT, dry_run=True).wait()]
         cls.replies += [g.hold(), g.retract()]

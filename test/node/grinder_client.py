@@ -535,24 +535,25 @@ class Grinder:
     def make_ready(self):
         """Takes the machine from any state to ready, homed and at rest, with the swivel set for the paper's job."""
         self.client.cancel_all_goals()
-        idle = (GrinderState.DISABLED, GrinderState.READY, GrinderState.HOMING, GrinderState.FAULT)
-        poll(lambda: self.fresh_state().state in idle, 'the end of all goals')
         self.take_faults_back()
         assert self.set_feed_override(1).success
-        poll(lambda: not self.fresh_state().emergency_stop, 'the emergency stop released')
-        if self.fresh_state().state == GrinderState.FAULT:
-            self.reset()
-        if self.fresh_state().state == GrinderState.HOMING:
-            self.disable()
-        poll(lambda: self.enable().success, 'the power on')
-        self.wait_state(GrinderState.READY)
-        if self.fresh_state().wheel_in_work:
-            assert self.lift().success
-            poll(lambda: not self.fresh_state().wheel_in_work, 'the wheel off the work')
-            self.wait_state(GrinderState.READY)
-        if not self.fresh_state().homed:
-            assert self.home().success
-            self.wait_state(GrinderState.READY)
+
+        def ready():
+            """Whether it is; otherwise requests the next step, if there is one to request in this state."""
+            state = self.fresh_state()
+            if state.state == GrinderState.FAULT:
+                self.reset()
+            elif state.state == GrinderState.DISABLED:
+                self.enable()
+            elif state.state == GrinderState.READY and state.wheel_in_work:
+                self.lift()
+            elif state.state == GrinderState.READY and not state.homed:
+                self.home()
+            else:
+                return state.state == GrinderState.READY
+            return False
+
+        poll(ready, 'the machine ready')
         self.confirm_swivel(PAPER['process.setup_swivel'])
         return self.wait_rest()
 

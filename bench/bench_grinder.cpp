@@ -120,11 +120,10 @@ void collision(benchmark::State& state) {
   Machine clear = machine();
   clear.collision_clearance = 1e-3;
   for (auto _ : state) {
-    JobPlan plan;
-    plan.program = std::make_shared<const GrindProgram>(job, clear, clear.park);
-    checkCollision(plan, MachineShapes(urdf.str()));
-    state.counters["closest_mm"] = plan.closest->distance * 1e3;
-    state.SetLabel(plan.closest->first + " and " + plan.closest->second);
+    const ClosestPlace closest =
+        checkCollision(GrindProgram(job, clear, clear.park), MachineShapes(urdf.str())).closest.value();
+    state.counters["closest_mm"] = closest.distance * 1e3;
+    state.SetLabel(closest.first + " and " + closest.second);
   }
 }
 BENCHMARK(collision)->Unit(benchmark::kMillisecond);
@@ -132,14 +131,7 @@ BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 /// What a plan measures of the ground cutter, for the paper's job and for one of four teeth with wear.
 void checkCutter(benchmark::State& state) {
   const GrindJob job = state.range(0) == 0 ? paperJob(600) : readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
-  const Machine plain = machine();
-  JobPlan plan;
-  plan.program = std::make_shared<const GrindProgram>(job, plain, plain.park);
-  for (auto _ : state) {
-    plan.reasons.clear();
-    checkGroundCutter(plan);
-    benchmark::DoNotOptimize(plan.complete);
-  }
+  for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
 BENCHMARK(checkCutter)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
 

@@ -235,14 +235,11 @@ std::optional<core::Reason> reasonOf(const std::vector<Gouge>& gouges) {
   const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
   const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
   if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kOther;
-  reason.detail = format(
-      "tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
-      "%.3f mm; allowed: up to %.3f mm",
-      deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
-      deepest->x / kMillimetre, kBadGouge / kMillimetre);
-  return reason;
+  return core::otherReason(
+      format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
+             "%.3f mm; allowed: up to %.3f mm",
+             deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
+             deepest->x / kMillimetre, kBadGouge / kMillimetre));
 }
 
 Json number(Value value) { return value ? Json(*value) : Json(nullptr); }

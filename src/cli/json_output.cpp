@@ -57,7 +57,7 @@ Json toJson(const ClosestPlace& place) {
 
 }  // namespace
 
-Json toJson(const JobPlan& plan) {
+Json toJson(const PlannedJob& plan) {
   const core::PathStatistics& s = plan.statistics;
   Json reasons = Json::array();
   for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));

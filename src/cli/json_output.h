@@ -3,12 +3,12 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/messages/json.h"
-#include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/plan/planned_job.h"
 
 namespace flute_grinder {
 
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
-Json toJson(const JobPlan& plan);
+Json toJson(const PlannedJob& plan);
 
 /// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
 /// @param offsets null if they are not known.

@@ -3,10 +3,8 @@
 #include "cli/csv.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
@@ -126,8 +124,8 @@ int runPlan(const PlanOptions& options) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  JobPlan plan = planGroundJob(job, machine, machine.park, {}, visit);
-  checkCollision(plan, MachineShapes(readUrdfFile(options.urdf)));
+  const PlannedJob plan =
+      planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
   if (csv) csv->close();
   if (options.json) {
     print(toJson(plan));

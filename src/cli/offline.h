@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/odd_even_interpolator.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/plan/planned_job.h"
 
 #include <optional>
 #include <string>

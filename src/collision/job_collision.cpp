@@ -125,30 +125,25 @@ CollisionJob collisionJobOf(const GrindProgram& program) {
           workClearance(program)};
 }
 
-void checkCollision(JobPlan& plan, const MachineShapes& machine) {
-  if (!plan.program || plan.fault == PlanFault::kGivenUp) return;
-  core::Reason reason;
+CollisionResult checkCollision(const GrindProgram& program, const MachineShapes& machine) {
   try {
-    const ProgramPath path = pathOf(*plan.program);
-    const CollisionCheck check(machine, collisionJobOf(*plan.program));
-    plan.closest = check.closest(path.points);
-    plan.closest->leg = path.moves.at(plan.closest->leg);
-    const double distance = plan.closest->distance;
-    if (!(distance > 0 && distance >= plan.program->machine().collision_clearance)) {
-      reason = reasonOf(*plan.closest, *plan.program);
-    } else if (auto in_work = check.tooCloseToWork(path.points, outsideCut(*plan.program, path))) {
-      in_work->leg = path.moves.at(in_work->leg);
-      plan.closest = std::move(in_work);
-      reason = reasonInWork(*plan.closest, *plan.program);
-    } else {
-      return;
+    const ProgramPath path = pathOf(program);
+    const CollisionCheck check(machine, collisionJobOf(program));
+    const auto onMove = [&](ClosestPlace place) {
+      place.leg = path.moves.at(place.leg);
+      return place;
+    };
+    const ClosestPlace closest = onMove(check.closest(path.points));
+    if (!(closest.distance > 0 && closest.distance >= program.machine().collision_clearance)) {
+      return {closest, reasonOf(closest, program)};
     }
+    const auto in_work = check.tooCloseToWork(path.points, outsideCut(program, path));
+    if (!in_work) return {closest, std::nullopt};
+    const ClosestPlace in_work_move = onMove(*in_work);
+    return {in_work_move, reasonInWork(in_work_move, program)};
   } catch (const std::invalid_argument& error) {
-    reason.kind = core::ReasonKind::kOther;
-    reason.detail = error.what();
+    return {std::nullopt, core::otherReason(error.what())};
   }
-  if (plan.good()) plan.fault = PlanFault::kCollision;
-  plan.reasons.push_back(std::move(reason));
 }
 
 }  // namespace flute_grinder

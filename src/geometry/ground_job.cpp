@@ -122,13 +122,6 @@ class Checker {
   std::vector<core::Reason> reasons_;
 };
 
-core::Reason otherReason(const std::invalid_argument& error) {
-  core::Reason reason;
-  reason.kind = ReasonKind::kOther;
-  reason.detail = error.what();
-  return reason;
-}
-
 /// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
 GroundCutter groundCutterOf(const GrindJob& job, double same_wear) {
   const std::vector<double> wear = wearOfTeeth(job);
@@ -198,39 +191,12 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
   return {range, checker.take()};
 }
 
-void checkGroundCutter(JobPlan& plan) {
-  if (!plan.program || plan.fault == PlanFault::kGivenUp) return;
-  const GrindJob& job = plan.program->job();
-  std::vector<core::Reason> reasons;
+CutterCheck checkGroundCutter(const GrindJob& job) {
   try {
-    CutterCheck check = checkGroundCutter(job, groundCutterOf(job, kSameWear));
-    plan.complete = check.complete;
-    reasons = std::move(check.reasons);
+    return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {
-    reasons.push_back(otherReason(error));
+    return {std::nullopt, {core::otherReason(error.what())}};
   }
-  if (plan.good() && !reasons.empty()) plan.fault = PlanFault::kTool;
-  plan.reasons.insert(plan.reasons.end(), reasons.begin(), reasons.end());
-}
-
-JobPlan planGroundJob(GrindJob job, const Machine& machine, const Axes& start, const ToothPass& first,
-                      const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
-  JobPlan plan;
-  try {
-    // Of an invalid job, planJob() tells what is wrong.
-    if (validate(job).empty()) job = withZLaw(std::move(job), watch);
-  } catch (const core::ReasonError& error) {
-    plan.fault = error.reason().kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
-    plan.reasons.push_back(error.reason());
-    return plan;
-  } catch (const std::invalid_argument& error) {
-    plan.fault = PlanFault::kTool;
-    plan.reasons.push_back(otherReason(error));
-    return plan;
-  }
-  plan = planJob(job, machine, start, first, visit, watch);
-  checkGroundCutter(plan);
-  return plan;
 }
 
 }  // namespace flute_grinder

@@ -216,10 +216,7 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     refuse(plan, PlanFault::kInvalidJob, error.reason());
     return plan;
   } catch (const std::invalid_argument& error) {
-    core::Reason reason;
-    reason.kind = core::ReasonKind::kOther;
-    reason.detail = error.what();
-    refuse(plan, PlanFault::kInvalidJob, std::move(reason));
+    refuse(plan, PlanFault::kInvalidJob, core::otherReason(error.what()));
     return plan;
   }
   for (const Helix& helix : plan.program->helices()) {

@@ -98,14 +98,13 @@ void GoalServer::onGoal(GoalHandle handle) {
   if (!isPlainName(goal->wheel_name)) {
     return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
   }
-  const GrindJob job = jobFromGoal(*goal);
-  const std::string digest = jobDigest(job);
+  const JobWithDigest job(jobFromGoal(*goal));
   if (!goal->dry_run) {
-    const std::string text = refusal(*goal, digest);
+    const std::string text = refusal(*goal, job.digest());
     if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
-    if (const auto reason = swivelRefusal(job)) return reject(handle, result(GrindResult::NOT_READY, {*reason}));
+    if (const auto reason = swivelRefusal(job.job())) return reject(handle, result(GrindResult::NOT_READY, {*reason}));
   }
-  startPlanning(handle, job, digest);
+  startPlanning(handle, job);
 }
 
 std::string GoalServer::refusal(const GrindGoal& goal, const std::string& digest) const {
@@ -140,7 +139,7 @@ std::string GoalServer::offsetRefusal(const GrindGoal& goal, const std::string& 
   return misfit.empty() ? "" : misfit + "; set them for this job, or start it with --offsets-are-right";
 }
 
-void GoalServer::startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest) {
+void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& job) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
@@ -150,15 +149,14 @@ void GoalServer::startPlanning(const GoalHandle& handle, const GrindJob& job, co
                       : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
   }
   // From here on to the end of the goal the offsets cannot change.
-  Planner::Request request;
+  Planner::Request request{job};
   const core::WorkOffsets offsets = offsets_.offsets();
   request.offset = offsets.values();
-  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
+  const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, GrindResult::NOT_READY, refused);
   }
-  request.job = job;
   request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
   request.for_goal = true;
@@ -170,7 +168,7 @@ void GoalServer::startPlanning(const GoalHandle& handle, const GrindJob& job, co
     gate_.close();
     return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
   }
-  goal_ = Goal{handle, digest, offsets, control};
+  goal_ = Goal{handle, offsets, control};
   busy_ = true;
   thread_.setPeriod(kPollPeriod);
   publishPlanningFeedback();
@@ -183,7 +181,7 @@ void GoalServer::onCancel(const GoalHandle& handle) {
 
 void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
   GoalHandle handle = goal_->handle;
-  const JobPlan& plan = preview->plan;
+  const PlannedJob& plan = *preview->plan;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
   if (recalled || gate_.canceled()) return cancelBeforeStart();
   if (!plan.good()) {
@@ -212,7 +210,8 @@ void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
   goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
-  tracker_.begin(*goal_->preview->plan.program, goal_->digest, name, goal_->preview->first, goal_->number);
+  const PlannedJob& plan = *goal_->preview->plan;
+  tracker_.begin(*plan.program, plan.digest, name, plan.first, goal_->number);
   telemetry_.announceJob(goal_->number, handle.getGoalID(), goal_->preview, name);
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
@@ -336,11 +335,11 @@ void GoalServer::endJob() {
 }
 
 GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
-  const JobPlan& plan = goal_->preview->plan;
+  const PlannedJob& plan = *goal_->preview->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
-    at.tooth = static_cast<std::uint16_t>(goal_->preview->first.tooth);
-    at.pass = static_cast<std::uint16_t>(goal_->preview->first.pass);
+    at.tooth = static_cast<std::uint16_t>(plan.first.tooth);
+    at.pass = static_cast<std::uint16_t>(plan.first.pass);
     at.x = plan.program->start()[kX];
   }
   GrindResult r = result(GrindResult::SUCCESSFUL, "", plan.statistics);

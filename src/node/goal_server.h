@@ -41,7 +41,6 @@ class GoalServer {
   /// The goal being processed.
   struct Goal {
     GoalHandle handle;
-    std::string digest;
     core::WorkOffsets offsets;
     std::shared_ptr<PlanControl> control;
     Phase phase = Phase::kPlanning;
@@ -57,7 +56,7 @@ class GoalServer {
   std::string refusal(const GrindGoal& goal, const std::string& digest) const;
   std::optional<core::Reason> swivelRefusal(const GrindJob& job) const;
   std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const core::WorkOffsets& offsets) const;
-  void startPlanning(const GoalHandle& handle, const GrindJob& job, const std::string& digest);
+  void startPlanning(const GoalHandle& handle, const JobWithDigest& job);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
   void publishPlanningFeedback();

@@ -57,13 +57,14 @@ Json followingJson(const Axes& error) {
 
 }  // namespace
 
-JobRecord::JobRecord(const JobPlan& plan, const ToothPass& first, std::string name)
+JobRecord::JobRecord(const PlannedJob& plan, std::string name)
     : program_(plan.program),
       planned_(plan.statistics),
-      first_(first),
+      digest_(plan.digest),
+      first_(plan.first),
       name_(std::move(name)),
       depths_(passDepths(plan.program->job().process)),
-      pass_(first) {
+      pass_(plan.first) {
   conclusion_.reason = kNoEnd;
 }
 
@@ -128,7 +129,7 @@ void JobRecord::addToStroke(const Setpoint& setpoint, const CycleRecord& record)
 
 Json JobRecord::jobJson() const {
   const GrindJob& job = program_->job();
-  return {{"name", name_}, {"digest", jobDigest(job)}, {"file", flute_grinder::toJson(job)}};
+  return {{"name", name_}, {"digest", digest_}, {"file", flute_grinder::toJson(job)}};
 }
 
 void JobRecord::setZeroPoints(const core::WorkOffsets& offsets, bool said_right) {

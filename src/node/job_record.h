@@ -3,8 +3,8 @@
 #include "flute_grinder/control/cycle_record.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/grind_program.h"
-#include "flute_grinder/motion/job_plan.h"
 #include "flute_grinder/motion/work_offsets.h"
+#include "flute_grinder/plan/planned_job.h"
 #include "node/machine_info.h"
 
 #include <cstdint>
@@ -25,9 +25,9 @@ struct JobConclusion {
 /// override, late cycles. Not thread safe.
 class JobRecord {
  public:
-  /// @param plan of the job, which is good. @param first pass to grind.
+  /// @param plan of the job, which is good.
   /// @param name of the job as its goal gives it.
-  JobRecord(const JobPlan& plan, const ToothPass& first, std::string name);
+  JobRecord(const PlannedJob& plan, std::string name);
 
   /// Adds a cycle. To be called for every cycle from the job's start to its end, in order.
   void addCycle(const CycleRecord& record);
@@ -81,6 +81,7 @@ class JobRecord {
 
   std::shared_ptr<const GrindProgram> program_;
   core::PathStatistics planned_;
+  std::string digest_;
   ToothPass first_;
   std::string name_;
   core::WorkOffsets offsets_;

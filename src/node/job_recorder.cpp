@@ -14,7 +14,7 @@ JobRecorder::~JobRecorder() {
 }
 
 void JobRecorder::announce(std::uint64_t number, const Preview& job, const std::string& name) {
-  const auto record = std::make_shared<JobRecord>(job.plan, job.first, name);
+  const auto record = std::make_shared<JobRecord>(*job.plan, name);
   record->setZeroPoints(job.offsets, job.offsets_are_right);
   jobs_[number].record = record;
 }

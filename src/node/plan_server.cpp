@@ -44,8 +44,7 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   }
   std::promise<std::unique_ptr<Preview>> promise;
   auto answer = promise.get_future();
-  Planner::Request plan_request;
-  plan_request.job = jobFromGoal(request.goal);
+  Planner::Request plan_request{JobWithDigest(jobFromGoal(request.goal))};
   const core::WorkOffsets offsets = offsets_.offsets();
   plan_request.offset = offsets.values();
   plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
@@ -58,7 +57,7 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
     return true;
   }
   const std::shared_ptr<Preview> preview = answer.get();
-  const JobPlan& plan = preview->plan;
+  const PlannedJob& plan = *preview->plan;
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);
   response.duration = plan.statistics.duration;

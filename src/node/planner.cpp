@@ -1,9 +1,5 @@
 #include "node/planner.h"
 
-#include "flute_grinder/collision/job_collision.h"
-#include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/messages/conversions.h"
-
 #include <utility>
 
 namespace flute_grinder {
@@ -55,30 +51,29 @@ std::optional<Planner::Request> Planner::next() {
 }
 
 std::unique_ptr<Preview> Planner::plan(const Request& request) {
-  const std::string digest = jobDigest(request.job);
-  const auto is_kept = [&] {
-    return kept_ && kept_->digest == digest && (kept_->start == request.start).all() &&
-           (kept_->offset == request.offset).all() && kept_->first.tooth == request.first.tooth &&
-           kept_->first.pass == request.first.pass;
-  };
   auto preview = std::make_unique<Preview>();
-  preview->first = request.first;
-  preview->plan = is_kept() ? kept_->plan : makePlan(request);
-  if (!preview->plan.good()) return preview;
-  preview->stream = std::make_unique<SetpointStream>(preview->plan.program);
-  kept_ = Kept{digest, request.start, request.offset, request.first, preview->plan};
+  preview->plan = isKept(request) ? kept_ : std::make_shared<const PlannedJob>(makePlan(request));
+  if (!preview->plan->good()) return preview;
+  preview->stream = std::make_unique<SetpointStream>(preview->plan->program);
+  kept_ = preview->plan;
   return preview;
 }
 
-JobPlan Planner::makePlan(const Request& request) const {
+bool Planner::isKept(const Request& request) const {
+  return kept_ && kept_->digest == request.job.digest() && kept_->first.tooth == request.first.tooth &&
+         kept_->first.pass == request.first.pass && (kept_->program->machine().work_offset == request.offset).all() &&
+         (kept_->program->start() == request.start - request.offset).all();
+}
+
+PlannedJob Planner::makePlan(const Request& request) const {
   const auto watch = [&](double done) {
     request.control->done = done;
     return !request.control->give_up && !goal_waits_;
   };
   Machine machine = machine_;
   machine.work_offset = request.offset;
-  JobPlan plan = planGroundJob(request.job, machine, request.start - request.offset, request.first, {}, watch);
-  checkCollision(plan, shapes_);
+  PlannedJob plan =
+      planWholeJob(request.job, machine, shapes_, request.start - request.offset, request.first, {}, watch);
   if (plan.fault == PlanFault::kGivenUp && goal_waits_)
     plan.reasons.back().detail = "a goal came first; plan again after it";
   return plan;

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "flute_grinder/collision/machine_shapes.h"
-#include "flute_grinder/motion/job_plan.h"
 #include "flute_grinder/motion/work_offsets.h"
+#include "flute_grinder/plan/planned_job.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -10,16 +9,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 #include <thread>
 
 namespace flute_grinder {
 
 /// A plan with what is needed to run its job and to show it.
 struct Preview {
-  JobPlan plan;
-  ToothPass first;                         ///< to grind
-  std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is valid
+  std::shared_ptr<const PlannedJob> plan;
+  std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is good
   core::WorkOffsets offsets;               ///< of a goal's job, whose values are the program's
   bool offsets_are_right = false;          ///< the goal says so
 };
@@ -36,7 +33,7 @@ struct PlanControl {
 class Planner {
  public:
   struct Request {
-    GrindJob job;
+    JobWithDigest job;
     Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
     Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
     ToothPass first;             ///< to grind
@@ -60,7 +57,8 @@ class Planner {
   void run();
   std::optional<Request> next();
   std::unique_ptr<Preview> plan(const Request& request);
-  JobPlan makePlan(const Request& request) const;
+  bool isKept(const Request& request) const;
+  PlannedJob makePlan(const Request& request) const;
 
   const Machine machine_;
   const MachineShapes shapes_;
@@ -71,14 +69,7 @@ class Planner {
   bool ended_ = false;
   std::atomic<bool> goal_waits_{false};
 
-  /// The last good plan, with what it depends on. Used by the thread only.
-  struct Kept {
-    std::string digest;
-    Axes start, offset;
-    ToothPass first;
-    JobPlan plan;
-  };
-  std::optional<Kept> kept_;
+  std::shared_ptr<const PlannedJob> kept_;  ///< the last good plan; used by the thread only
   std::thread thread_;
 };
 

@@ -121,8 +121,8 @@ void Telemetry::clearScene() {
 
 void Telemetry::showJob(const Preview& preview) {
   last_change_ = ros::SteadyTime::now();
-  frames_.show(preview.plan.program);
-  scene_.show(preview.plan.program, preview.first);
+  frames_.show(preview.plan->program);
+  scene_.show(preview.plan->program, preview.plan->digest, preview.plan->first);
 }
 
 void Telemetry::tick() {
@@ -223,7 +223,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
 
 /// The position read, in the job's work coordinates.
 Axes Telemetry::workPosition(const Job& job) const {
-  return record_.position - job.preview->plan.program->machine().work_offset;
+  return record_.position - job.preview->plan->program->machine().work_offset;
 }
 
 void Telemetry::endJob(Job& job) {
@@ -303,7 +303,7 @@ void Telemetry::publishFeedback() {
   Job* job = running();
   if (!job) return;
   const Setpoint& p = job->last;
-  const JobPlan& plan = job->preview->plan;
+  const PlannedJob& plan = *job->preview->plan;
   const double done = plannedCycles(p, plan.move_ends);
   const auto all = static_cast<double>(plan.move_ends.back());
   GrindActionFeedback message;

@@ -91,9 +91,9 @@ void Scene::publishCleared() {
   legend_.publish(Legend());
 }
 
-void Scene::show(const std::shared_ptr<const GrindProgram>& program, const ToothPass& first) {
+void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::string& digest,
+                 const ToothPass& first) {
   const GrindJob& job = program->job();
-  const std::string digest = jobDigest(job);
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
   ToolPath path = continued ? shown_->tool_path : ToolPath(*program);
   shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(*program),

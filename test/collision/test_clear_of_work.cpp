@@ -63,28 +63,29 @@ Machine machineWith(double collision_clearance) {
   return machine;
 }
 
-JobPlan checked(const GrindJob& job, double collision_clearance = 1e-3, const std::optional<Axes>& start = {}) {
+struct Checked : CollisionResult {
+  GrindProgram program;
+};
+
+Checked checked(const GrindJob& job, double collision_clearance = 1e-3, const std::optional<Axes>& start = {}) {
   const Machine machine = machineWith(collision_clearance);
-  JobPlan plan;
-  plan.program = std::make_shared<const GrindProgram>(job, machine, start.value_or(machine.park));
-  checkCollision(plan, MachineShapes(roomyUrdf()));
-  return plan;
+  const GrindProgram program(job, machine, start.value_or(machine.park));
+  return {checkCollision(program, MachineShapes(roomyUrdf())), program};
 }
 
 /// The wheel's rim is at a radius of 5 + 0.5 mm when A indexes and X leaves, and the shank's is 6 mm.
 TEST(ClearOfWork, AWheelThatIndexesInAShankIsRefused) {
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    const JobPlan plan = checked(thickShankJob(direction));
-    EXPECT_EQ(plan.fault, PlanFault::kCollision);
-    ASSERT_EQ(plan.reasons.size(), 1u);
-    const core::Reason& reason = plan.reasons[0];
+    const Checked plan = checked(thickShankJob(direction));
+    ASSERT_TRUE(plan.reason);
+    const core::Reason& reason = *plan.reason;
     EXPECT_EQ(reason.kind, core::ReasonKind::kCollision);
     EXPECT_EQ(reason.field, "process.clearance");
     EXPECT_EQ(reason.detail, "wheel and shank");
     EXPECT_EQ(reason.value, 0);
     EXPECT_EQ(reason.low, 0.5e-3);
     EXPECT_EQ(reason.limit, 0.25e-3);
-    EXPECT_EQ(reason.move, plan.program->moves().at(plan.closest->leg).kind);
+    EXPECT_EQ(reason.move, plan.program.moves().at(plan.closest->leg).kind);
     EXPECT_FALSE(isAtFeed(reason.move));
   }
 }
@@ -93,21 +94,20 @@ TEST(ClearOfWork, AClearanceThatHoldsForTheShankIsEnough) {
   GrindJob job = thickShankJob(StrokeDirection::kFromEnd);
   // The shank takes 1 mm of it, and 1 mm is to be left.
   job.process.clearance = 1.9e-3;
-  EXPECT_EQ(checked(job).fault, PlanFault::kCollision);
+  EXPECT_TRUE(checked(job).reason);
   job.process.clearance = 2.1e-3;
-  EXPECT_TRUE(checked(job).good());
+  EXPECT_FALSE(checked(job).reason);
 }
 
 TEST(ClearOfWork, WithoutACollisionClearanceAContactIsRefused) {
-  EXPECT_EQ(checked(thickShankJob(StrokeDirection::kFromEnd), 0).fault, PlanFault::kCollision);
+  EXPECT_TRUE(checked(thickShankJob(StrokeDirection::kFromEnd), 0).reason);
   // A shank that the run-out may not cut.
   GrindJob job = thickShankJob(StrokeDirection::kFromEnd);
   job.cutter.shank_diameter = 0.02;
   job.process.clearance = 10e-3;
-  const JobPlan plan = checked(job, 0);
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  ASSERT_FALSE(plan.reasons.empty());
-  EXPECT_EQ(plan.reasons[0].field, "");
+  const Checked plan = checked(job, 0);
+  ASSERT_TRUE(plan.reason);
+  EXPECT_EQ(plan.reason->field, "");
 }
 
 /// Beside the point where it is lowest, a wheel of 100 mm is higher by x^2/100 mm, and a cone of 30 deg by x tan C.
@@ -118,24 +118,24 @@ TEST(ClearOfWork, ARapidApproachIntoASteepConeIsRefused) {
   job.process.setup_swivel = 0;
   job.process.setup_height = 0;
   job.process.clearance = 2e-3;
-  const JobPlan plan = checked(job);
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  EXPECT_EQ(plan.reasons.at(0).move, MoveKind::kApproach);
-  EXPECT_EQ(plan.reasons.at(0).detail, "wheel and cutter");
+  const Checked plan = checked(job);
+  ASSERT_TRUE(plan.reason);
+  EXPECT_EQ(plan.reason->move, MoveKind::kApproach);
+  EXPECT_EQ(plan.reason->detail, "wheel and cutter");
   job.process.clearance = 12e-3;
-  EXPECT_TRUE(checked(job).good());
+  EXPECT_FALSE(checked(job).reason);
 }
 
 TEST(ClearOfWork, ALiftOutOfAFluteIsAllowedAndOneFromBelowTheWorkIsNot) {
   GrindJob job = thickShankJob(StrokeDirection::kFromEnd);
   job.process.clearance = 3e-3;
-  EXPECT_TRUE(checked(job, 1e-3, Axes(0.01, -1.6e-3, 0, 1)).good());
+  EXPECT_FALSE(checked(job, 1e-3, Axes(0.01, -1.6e-3, 0, 1)).reason);
   // The wheel's upper side is 3 mm below the cutter.
   const Axes below(0.01, -(0.005 + 0.1 + 3e-3), 0, 0);
-  const JobPlan plan = checked(job, 1e-3, below);
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  EXPECT_EQ(plan.reasons.at(0).move, MoveKind::kLift);
-  EXPECT_EQ(plan.reasons.at(0).field, "");
+  const Checked plan = checked(job, 1e-3, below);
+  ASSERT_TRUE(plan.reason);
+  EXPECT_EQ(plan.reason->move, MoveKind::kLift);
+  EXPECT_EQ(plan.reason->field, "");
 }
 
 /// Distance of a point from a cone about X, from 0 to `length`.
@@ -255,9 +255,9 @@ double distanceOf(const GrindJob& job, const Axes& at) {
 RC_GTEST_PROP(ClearOfWorkProperty, NoSetpointOfAGoodPlanIsTooCloseAndEveryRefusalIsAtItsPlace, ()) {
   const GrindJob job = *randomJob();
   RC_PRE(validate(job).empty());
-  const JobPlan plan = checked(job);
-  RC_CLASSIFY(plan.good());
-  const bool in_work = !plan.good() && !plan.reasons.at(0).field.empty();
+  const Checked plan = checked(job);
+  RC_CLASSIFY(!plan.reason);
+  const bool in_work = plan.reason && !plan.reason->field.empty();
   RC_CLASSIFY(in_work);
   const double allowed = std::min(1e-3, job.process.clearance / 2);
   if (in_work) {
@@ -265,16 +265,16 @@ RC_GTEST_PROP(ClearOfWorkProperty, NoSetpointOfAGoodPlanIsTooCloseAndEveryRefusa
     RC_ASSERT(std::abs(distance - plan.closest->distance) <= kAccuracy);
     RC_ASSERT(distance < allowed + kAccuracy);
   }
-  if (!plan.good()) return;
+  if (plan.reason) return;
   std::mt19937 random(1);
   std::optional<PlacedWheel> groove;
-  for (const Setpoint& p : rapidsOf(*plan.program)) {
+  for (const Setpoint& p : rapidsOf(plan.program)) {
     if (p.move != MoveKind::kRetract) {
       RC_ASSERT(distanceOf(job, p.position) >= allowed - kAccuracy);
       continue;
     }
     // Up from the stroke's end, nothing is touched that the wheel has not cut there.
-    const Move& stroke = plan.program->moves().at(p.move_index - 1);
+    const Move& stroke = plan.program.moves().at(p.move_index - 1);
     RC_ASSERT(stroke.kind == MoveKind::kStroke);
     PlacedWheel cut(job, stroke.to);
     cut.radius += 1e-9;

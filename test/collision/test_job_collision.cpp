@@ -41,33 +41,28 @@ GrindProgram programOf(const GrindJob& job, const Axes& offset = Axes::Zero()) {
   return {job, machine, machine.park - offset};
 }
 
-/// A plan as planJob() makes it, without its setpoints.
-JobPlan checked(const GrindJob& job, const std::string& urdf = shippedUrdf(), const Axes& offset = Axes::Zero()) {
-  JobPlan plan;
-  plan.program = std::make_shared<const GrindProgram>(programOf(job, offset));
-  checkCollision(plan, MachineShapes(urdf));
-  return plan;
+CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),
+                        const Axes& offset = Axes::Zero()) {
+  return checkCollision(programOf(job, offset), MachineShapes(urdf));
 }
 
 TEST(JobCollision, ThePapersJobHitsNothing) {
-  const JobPlan plan = checked(paperJob());
-  EXPECT_TRUE(plan.good());
-  EXPECT_TRUE(plan.reasons.empty());
-  ASSERT_TRUE(plan.closest);
-  EXPECT_GT(plan.closest->distance, 1e-3);
-  EXPECT_NE(plan.closest->second, "shank");
+  const CollisionResult result = checked(paperJob());
+  EXPECT_FALSE(result.reason);
+  ASSERT_TRUE(result.closest);
+  EXPECT_GT(result.closest->distance, 1e-3);
+  EXPECT_NE(result.closest->second, "shank");
 }
 
 TEST(JobCollision, AWheelOf500MmOnAFluteOf160MmIsRefused) {
   GrindJob job = paperJob();
   job.process.wheel_diameter = 0.5;
   job.cutter.flute_length = 0.16;
-  const JobPlan plan = checked(job);
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_EQ(plan.reasons[0].kind, core::ReasonKind::kCollision);
-  EXPECT_EQ(plan.reasons[0].value, 0);
-  EXPECT_EQ(plan.reasons[0].limit, 1e-3);
+  const CollisionResult result = checked(job);
+  ASSERT_TRUE(result.reason);
+  EXPECT_EQ(result.reason->kind, core::ReasonKind::kCollision);
+  EXPECT_EQ(result.reason->value, 0);
+  EXPECT_EQ(result.reason->limit, 1e-3);
 }
 
 TEST(JobCollision, AHitIsRefusedWithoutAClearanceToo) {
@@ -75,10 +70,7 @@ TEST(JobCollision, AHitIsRefusedWithoutAClearanceToo) {
   job.cutter.flute_length = 0.06;
   Machine machine = plainMachine();
   machine.collision_clearance = 0;
-  JobPlan plan;
-  plan.program = std::make_shared<const GrindProgram>(job, machine, machine.park);
-  checkCollision(plan, MachineShapes(shippedUrdf()));
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
+  EXPECT_TRUE(checkCollision(GrindProgram(job, machine, machine.park), MachineShapes(shippedUrdf())).reason);
 }
 
 /// The wheel's rim and the edge of the collet, in the plane Z = 0.
@@ -89,15 +81,15 @@ TEST(JobCollision, ATenthOfAMillimetreDecides) {
     const double across = 0.055 - 0.0016 - 0.021;
     const double x = 0.062 - std::sqrt(std::pow(0.05 + wanted, 2) - across * across);
     job.cutter.flute_length = x - job.process.overtravel_shank;
-    const JobPlan plan = checked(job, SmallMachine().urdf());
-    EXPECT_EQ(plan.good(), wanted > 1e-3) << wanted;
-    EXPECT_NEAR(plan.closest->distance, std::max(0.0, wanted), 3e-6);
-    if (plan.good()) continue;
-    const core::Reason& reason = plan.reasons.at(0);
+    const CollisionResult result = checked(job, SmallMachine().urdf());
+    EXPECT_EQ(!result.reason, wanted > 1e-3) << wanted;
+    EXPECT_NEAR(result.closest->distance, std::max(0.0, wanted), 3e-6);
+    if (!result.reason) continue;
+    const core::Reason& reason = *result.reason;
     EXPECT_EQ(reason.detail, "wheel and collet");
     EXPECT_TRUE(reason.has_place);
-    EXPECT_EQ(reason.value, plan.closest->distance);
-    EXPECT_EQ(reason.x, plan.closest->axes[kX]);
+    EXPECT_EQ(reason.value, result.closest->distance);
+    EXPECT_EQ(reason.x, result.closest->axes[kX]);
   }
 }
 
@@ -158,11 +150,10 @@ TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
   GrindJob job = bentJob();
   job.process.wheel_diameter = 0.5;
   job.cutter.flute_length = 0.16;
-  const JobPlan plan = checked(job);
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_EQ(plan.reasons[0].move, plan.program->moves().at(plan.closest->leg).kind);
-  EXPECT_EQ(plan.reasons[0].x, plan.closest->axes[kX]);
+  const CollisionResult result = checked(job);
+  ASSERT_TRUE(result.reason);
+  EXPECT_EQ(result.reason->move, programOf(job).moves().at(result.closest->leg).kind);
+  EXPECT_EQ(result.reason->x, result.closest->axes[kX]);
 }
 
 TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
@@ -179,16 +170,16 @@ TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
 
 TEST(JobCollision, AShankMayStandOutByTheFlutesDepthAndNoMore) {
   for (const double shank_diameter : {0.008, 0.010, 0.0131}) {
-    EXPECT_TRUE(checked(cylinderJob(shank_diameter)).good()) << shank_diameter;
+    EXPECT_FALSE(checked(cylinderJob(shank_diameter)).reason) << shank_diameter;
   }
   for (const double shank_diameter : {0.0134, 0.02, 0.04}) {
-    const JobPlan plan = checked(cylinderJob(shank_diameter));
-    EXPECT_EQ(plan.fault, PlanFault::kCollision) << shank_diameter;
-    EXPECT_EQ(plan.reasons.at(0).detail, "wheel and shank");
+    const CollisionResult result = checked(cylinderJob(shank_diameter));
+    ASSERT_TRUE(result.reason) << shank_diameter;
+    EXPECT_EQ(result.reason->detail, "wheel and shank");
   }
   GrindJob with_neck = cylinderJob(0.02);
   with_neck.cutter.neck_length = 0.038;
-  EXPECT_TRUE(checked(with_neck).good());
+  EXPECT_FALSE(checked(with_neck).reason);
 }
 
 /// The shipped machine with a place for the origin of a joint.
@@ -213,35 +204,15 @@ TEST(JobCollision, TheWorkOffsetOfXSaysHowFarTheCutterStandsOut) {
     const std::string collet = withChuckMoved(table, "collet", 0.0885, -stands_in);
     const std::string moved = withChuckMoved(collet, "spindle_nose", 0.1225, -stands_in);
     ASSERT_FALSE(moved.empty());
-    const JobPlan expected = checked(paperJob(), moved);
-    const JobPlan plan = checked(paperJob(), shippedUrdf(), {stands_in, 0.02, 0.01, 3});
-    ASSERT_TRUE(plan.closest && expected.closest);
-    EXPECT_NEAR(plan.closest->distance, expected.closest->distance, 4e-6) << stands_in;
-    EXPECT_EQ(plan.closest->first + plan.closest->second, expected.closest->first + expected.closest->second);
-    EXPECT_EQ(plan.good(), expected.good());
+    const CollisionResult expected = checked(paperJob(), moved);
+    const CollisionResult result = checked(paperJob(), shippedUrdf(), {stands_in, 0.02, 0.01, 3});
+    ASSERT_TRUE(result.closest && expected.closest);
+    EXPECT_NEAR(result.closest->distance, expected.closest->distance, 4e-6) << stands_in;
+    EXPECT_EQ(result.closest->first + result.closest->second, expected.closest->first + expected.closest->second);
+    EXPECT_EQ(result.reason.has_value(), expected.reason.has_value());
   }
   // The collet's mouth is 62 mm from the end of a cutter without offset, and the wheel goes to 37 mm.
-  const JobPlan plan = checked(paperJob(), shippedUrdf(), {0.025, 0, 0, 0});
-  EXPECT_EQ(plan.fault, PlanFault::kCollision);
-  EXPECT_EQ(plan.reasons.at(0).detail, "wheel and collet");
-}
-
-TEST(JobCollision, AddsItsReasonToThoseThatAreThere) {
-  JobPlan plan;
-  plan.program = std::make_shared<const GrindProgram>(programOf(cylinderJob(0.04)));
-  plan.fault = PlanFault::kLimit;
-  plan.reasons.resize(2);
-  checkCollision(plan, MachineShapes(shippedUrdf()));
-  EXPECT_EQ(plan.fault, PlanFault::kLimit);
-  EXPECT_EQ(plan.reasons.size(), 3u);
-}
-
-TEST(JobCollision, LeavesAPlanWithoutAProgramAsItIs) {
-  JobPlan plan;
-  plan.fault = PlanFault::kInvalidJob;
-  checkCollision(plan, MachineShapes(shippedUrdf()));
-  EXPECT_TRUE(plan.reasons.empty());
-  EXPECT_FALSE(plan.closest);
+  EXPECT_EQ(checked(paperJob(), shippedUrdf(), {0.025, 0, 0, 0}).reason.value().detail, "wheel and collet");
 }
 
 }  // namespace test_job_collision

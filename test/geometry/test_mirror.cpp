@@ -132,7 +132,7 @@ void expectMirrored(const GroundCutter& right, const GroundCutter& left) {
 std::vector<Setpoint> setpointsOf(const GrindJob& job, JobPlan& plan) {
   const Machine machine = test_support::plainMachine();
   std::vector<Setpoint> setpoints;
-  plan = planGroundJob(job, machine, machine.park, {}, [&](const Setpoint& s) { setpoints.push_back(s); });
+  plan = planJob(withZLaw(job), machine, machine.park, {}, [&](const Setpoint& s) { setpoints.push_back(s); });
   return setpoints;
 }
 
@@ -144,10 +144,12 @@ void expectMirroredPlans(const GrindJob& right, const GrindJob& left) {
   ASSERT_EQ(b.size(), a.size());
   EXPECT_EQ(other.fault, one.fault);
   EXPECT_EQ(other.reasons.size(), one.reasons.size());
-  ASSERT_EQ(other.complete.has_value(), one.complete.has_value());
-  if (one.complete) {
-    EXPECT_NEAR(other.complete->from, one.complete->from, kRounding);
-    EXPECT_NEAR(other.complete->to, one.complete->to, kRounding);
+  const CutterCheck of_right = checkGroundCutter(one.program->job()), of_left = checkGroundCutter(other.program->job());
+  EXPECT_EQ(of_left.reasons.size(), of_right.reasons.size());
+  ASSERT_EQ(of_left.complete.has_value(), of_right.complete.has_value());
+  if (of_right.complete) {
+    EXPECT_NEAR(of_left.complete->from, of_right.complete->from, kRounding);
+    EXPECT_NEAR(of_left.complete->to, of_right.complete->to, kRounding);
   }
   Axes mirror;
   mirror << 1, 1, -1, -1;

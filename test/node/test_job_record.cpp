@@ -54,6 +54,7 @@ class JobRecordTest : public ::testing::Test {
  protected:
   JobRecordTest() {
     plan_.program = std::make_shared<const GrindProgram>(job_, config_.machine, config_.machine.park);
+    plan_.digest = jobDigest(job_);
     plan_.statistics.setpoints = 4321;
     plan_.statistics.duration = 4.32;
     plan_.statistics.max_deviation = 0.5e-6;
@@ -80,7 +81,7 @@ class JobRecordTest : public ::testing::Test {
   /// Of a job whose X was probed, and whose other offsets were never set.
   Preview preview() const {
     Preview job;
-    job.plan = plan_;
+    job.plan = std::make_shared<const PlannedJob>(plan_);
     job.offsets.axes[kX] = {0.012, "anna@grinder", 1.7e9};
     job.offsets.axes[kX].basis.method = OffsetMethod::kProbe;
     job.offsets.axes[kX].basis.wheel_digest = "a";
@@ -116,7 +117,7 @@ class JobRecordTest : public ::testing::Test {
   }
 
   Json recorded() {
-    JobRecord record(plan_, {0, 0}, "short.yaml");
+    JobRecord record(plan_, "short.yaml");
     for (const Cycle& c : cycles_) {
       record.addCycle(c.record);
       if (c.has_setpoint) record.addSetpoint(c.setpoint, c.record);
@@ -140,7 +141,7 @@ class JobRecordTest : public ::testing::Test {
 
   const LoopConfig config_ = test_support::machineConfig();
   const GrindJob job_ = shortJob();
-  JobPlan plan_;
+  PlannedJob plan_;
   std::mt19937 engine_{1};
   std::vector<Cycle> cycles_;
   double time_ = kStart;
@@ -273,7 +274,7 @@ TEST_F(JobRecordTest, TellsJobMachineAndPlan) {
 }
 
 TEST_F(JobRecordTest, TellsWhatItLeavesOut) {
-  JobRecord record(plan_, {0, 0}, "");
+  JobRecord record(plan_, "");
   for (int i = 0; i < 10004; ++i) {
     override_ = i % 2 == 0 ? 0.5 : 1;
     record.addCycle(cycle(MachineState::kRunning).record);

@@ -36,10 +36,15 @@ GrindJob endless() {
   return job;
 }
 
+JobWithDigest changed(const std::function<void(GrindProcess&)>& change) {
+  GrindJob job = paper();
+  change(job.process);
+  return JobWithDigest(job);
+}
+
 /// A request with its outcome.
 struct Asked {
-  explicit Asked(const GrindJob& job) {
-    request.job = job;
+  explicit Asked(const GrindJob& job) : request{JobWithDigest(job)} {
     request.start = machine().park;
     request.control = std::make_shared<PlanControl>();
     request.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
@@ -60,10 +65,10 @@ TEST(Planner, PlansWhatPlanJobPlans) {
   Asked asked(paper());
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
-  ASSERT_TRUE(preview->plan.good());
+  ASSERT_TRUE(preview->plan->good());
   const JobPlan expected = planJob(paper(), machine(), machine().park);
-  EXPECT_EQ(preview->plan.statistics.setpoints, expected.statistics.setpoints);
-  EXPECT_EQ(preview->plan.move_ends, expected.move_ends);
+  EXPECT_EQ(preview->plan->statistics.setpoints, expected.statistics.setpoints);
+  EXPECT_EQ(preview->plan->move_ends, expected.move_ends);
   std::uint64_t streamed = 0;
   for (Setpoint p; preview->stream->next(p);) ++streamed;
   EXPECT_EQ(streamed, expected.statistics.setpoints);
@@ -76,22 +81,21 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
     change(asked.request);
     EXPECT_TRUE(planner.submit(asked.request));
     const auto preview = asked.wait();
-    EXPECT_TRUE(preview->plan.good());
+    EXPECT_TRUE(preview->plan->good());
     EXPECT_TRUE(preview->stream && !preview->stream->finished());
-    return preview->plan.program;
+    return preview->plan->program;
   };
   const auto unchanged = [](Planner::Request&) {};
   const auto program = programOf(unchanged);
   EXPECT_EQ(programOf(unchanged), program);
   const std::vector<std::function<void(Planner::Request&)>> changes{
-      [](Planner::Request& r) { r.job.process.feed *= 0.9; },
-      [](Planner::Request& r) { r.job.process.spark_out = 1; },
+      [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.feed *= 0.9; }); },
+      [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.spark_out = 1; }); },
       [](Planner::Request& r) { r.start[kX] += 1e-9; },
       [](Planner::Request& r) { r.offset[kA] += 1e-9; },
   };
   for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
-  GrindJob two_passes = paper();
-  two_passes.process.spark_out = 1;
+  const JobWithDigest two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
   const auto withFirstPass = [&](int pass) {
     return programOf([&](Planner::Request& r) {
       r.job = two_passes;
@@ -108,7 +112,7 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   Asked asked(job);
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
-  ASSERT_TRUE(preview->plan.good()) << text(preview->plan.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(preview->plan->good()) << text(preview->plan->reasons, UnitSystem::kShop);
   std::vector<Axes> expected;
   planJob(withZLaw(job), machine(), machine().park, {}, [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
@@ -124,8 +128,8 @@ TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
   asked.request.control->give_up = true;
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
-  EXPECT_EQ(preview->plan.fault, PlanFault::kGivenUp);
-  EXPECT_EQ(preview->plan.program, nullptr);
+  EXPECT_EQ(preview->plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(preview->plan->program, nullptr);
 }
 
 TEST(Planner, TellsWhyAJobCannotBeGround) {
@@ -135,9 +139,9 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
   Asked asked(job);
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
-  EXPECT_EQ(preview->plan.fault, PlanFault::kInvalidJob);
-  ASSERT_EQ(preview->plan.reasons.size(), 1U);
-  EXPECT_NE(text(preview->plan.reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
+  EXPECT_EQ(preview->plan->fault, PlanFault::kInvalidJob);
+  ASSERT_EQ(preview->plan->reasons.size(), 1U);
+  EXPECT_NE(text(preview->plan->reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
   EXPECT_FALSE(preview->stream);
 }
 
@@ -151,9 +155,9 @@ TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
   EXPECT_FALSE(planner.submit(second.request));
   EXPECT_FALSE(first.isDone());
   first.request.control->give_up = true;
-  EXPECT_EQ(first.wait()->plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(first.wait()->plan->fault, PlanFault::kGivenUp);
   ASSERT_TRUE(planner.submit(third.request)) << "who has the answer may ask for the next";
-  EXPECT_TRUE(third.wait()->plan.good());
+  EXPECT_TRUE(third.wait()->plan->good());
   EXPECT_FALSE(second.isDone());
 }
 
@@ -166,17 +170,17 @@ TEST(Planner, AGoalGoesFirst) {
   EXPECT_FALSE(planner.submit(other_goal.request));
   EXPECT_FALSE(planner.submit(late.request));
   const auto given_up = plan.wait();
-  ASSERT_EQ(given_up->plan.fault, PlanFault::kGivenUp);
-  EXPECT_EQ(text(given_up->plan.reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
+  ASSERT_EQ(given_up->plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(text(given_up->plan->reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   EXPECT_GT(goal.request.control->done, 0);
   EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
   EXPECT_FALSE(planner.submit(late.request));
   goal.request.control->give_up = true;
-  EXPECT_EQ(text(goal.wait()->plan.reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
+  EXPECT_EQ(text(goal.wait()->plan->reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
   ASSERT_TRUE(planner.submit(next.request));
-  EXPECT_TRUE(next.wait()->plan.good());
+  EXPECT_TRUE(next.wait()->plan->good());
 }
 
 TEST(Planner, ItsEndGivesUpTheGoalThatWaitsToo) {
@@ -195,7 +199,7 @@ TEST(Planner, ItsEndGivesUpAndAnswers) {
   ASSERT_TRUE(planner.submit(asked.request));
   planner.end();
   ASSERT_TRUE(asked.isDone());
-  EXPECT_FALSE(asked.wait()->plan.good());
+  EXPECT_FALSE(asked.wait()->plan->good());
   EXPECT_FALSE(planner.submit(late.request));
 }
 

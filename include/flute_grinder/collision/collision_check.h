@@ -5,7 +5,6 @@
 #include "flute_grinder/geometry/wheel_profile.h"
 #include "flute_grinder/geometry/wheel_sweep.h"
 #include "flute_grinder/job/axes.h"
-#include "flute_grinder/motion/job_plan.h"
 
 #include <limits>
 #include <optional>
@@ -13,6 +12,14 @@
 #include <vector>
 
 namespace flute_grinder {
+
+/// The place on a path where two bodies are closest.
+struct ClosestPlace {
+  double distance = std::numeric_limits<double>::infinity();  ///< 0 if the bodies touch [m]
+  std::string first, second;                                  ///< the bodies: <collision> names, wheel, cutter, shank
+  Axes axes = Axes::Zero();                                   ///< [m], A [rad]
+  std::size_t leg = 0;                                        ///< of the path
+};
 
 /// What a job adds to the machine's bodies.
 struct CollisionJob {

@@ -2,8 +2,8 @@
 
 #include "flute_grinder/collision/collision_check.h"
 #include "flute_grinder/motion/grind_program.h"
-#include "flute_grinder/motion/job_plan.h"
 
+#include <optional>
 #include <vector>
 
 namespace flute_grinder {
@@ -20,11 +20,15 @@ ProgramPath pathOf(const GrindProgram& program);
 /// What the job of a program adds to the machine's bodies. The wheel is that of the job's start.
 CollisionJob collisionJobOf(const GrindProgram& program);
 
-/// Finds the closest place of a job. Takes a few milliseconds.
-/// @param plan gets the closest place, and the reason if the bodies hit each other or come closer than
-///        Machine::collision_clearance, or if the wheel comes too close to the work outside the cut: closer than half
-///        of GrindProcess::clearance, but no more than collision_clearance. Left as it is if the job's numbers were
-///        refused or planning was given up.
-void checkCollision(JobPlan& plan, const MachineShapes& machine);
+/// How close wheel, machine and cutter come to each other.
+struct CollisionResult {
+  std::optional<ClosestPlace> closest;  ///< its leg is a move of the program
+  std::optional<core::Reason> reason;   ///< why that is refused
+};
+
+/// Finds the closest place of a job. Takes a few milliseconds. There is a reason if the bodies hit each other or come
+/// closer than Machine::collision_clearance, if the wheel comes too close to the work outside the cut (closer than half
+/// of GrindProcess::clearance, but no more than collision_clearance), or if the wheel's corner radii do not fit.
+CollisionResult checkCollision(const GrindProgram& program, const MachineShapes& machine);
 
 }  // namespace flute_grinder

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/motion/job_plan.h"
 
 namespace flute_grinder {
 
@@ -30,7 +29,7 @@ GroundCutter groundCutterOf(const GrindJob& job);
 /// What a ground cutter was found to be.
 struct CutterCheck {
   std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
-  std::vector<core::Reason> reasons;  ///< why nobody would want it
+  std::vector<core::Reason> reasons;  ///< why it is refused
 };
 
 /// Measures the ground cutter at both ends and in the middle of the flute: every tooth has a land, the core is whole,
@@ -38,14 +37,9 @@ struct CutterCheck {
 /// otherwise. Takes a few milliseconds.
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 
-/// The same of the cutter that a plan's job grinds.
-/// @param plan gets the reasons why nobody would want the cutter, and where its flutes are complete. Left as it is if
-///        the job's numbers were refused or planning was given up.
-void checkGroundCutter(JobPlan& plan);
-
-/// Plans a job by planJob() with its law of Z, and checks the cutter that it grinds: withZLaw(), planJob() and
-/// checkGroundCutter(). A law of Z that does not exist makes a plan with the reason and without a program.
-JobPlan planGroundJob(GrindJob job, const Machine& machine, const Axes& start, const ToothPass& first = {},
-                      const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
+/// The same of the cutter that a job grinds; teeth share a flute where the wheel's wear between them does not count. A
+/// wheel whose corner radii do not fit its profile is a reason too.
+/// @param job as for groundCutterOf(), with its law of Z.
+CutterCheck checkGroundCutter(const GrindJob& job);
 
 }  // namespace flute_grinder

@@ -74,6 +74,14 @@ struct Reason {
   std::uint64_t count = 0;  ///< number of setpoints of which this is the worst; passes of the job, for kTooLong
 };
 
+/// A reason of kind kOther.
+inline Reason otherReason(std::string detail) {
+  Reason reason;
+  reason.kind = ReasonKind::kOther;
+  reason.detail = std::move(detail);
+  return reason;
+}
+
 /// A reason in words, in which teeth and passes count from 1.
 std::string text(const Reason& reason, UnitSystem units);
 

@@ -5,10 +5,7 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <functional>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace flute_grinder {
@@ -39,7 +36,7 @@ enum class PlanFault {
   kInvalidJob,
   kLimit,
   kTolerance,
-  kTool,  ///< nobody would want the tool
+  kTool,  ///< the ground cutter is not as the job asks
   kCollision,
   kTooLong,  ///< longer than Machine::max_job_duration
   kGivenUp,  ///< because PlanWatch returned false
@@ -50,22 +47,12 @@ enum class PlanFault {
 /// @return false to give up planning.
 using PlanWatch = std::function<bool(double done)>;
 
-/// The place on a path where two bodies are closest.
-struct ClosestPlace {
-  double distance = std::numeric_limits<double>::infinity();  ///< 0 if the bodies touch [m]
-  std::string first, second;                                  ///< the bodies: <collision> names, wheel, cutter, shank
-  Axes axes = Axes::Zero();                                   ///< [m], A [rad]
-  std::size_t leg = 0;                                        ///< of the path; of a plan, the move
-};
-
-/// A job that was generated and checked as a whole.
+/// The setpoints of a job, generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
   std::vector<core::Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
   core::PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
-  std::optional<Range> complete;                ///< where the flutes would be complete, if that was checked
-  std::optional<ClosestPlace> closest;          ///< of wheel, machine and cutter, if that was checked
   std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers or its law of Z were refused
 
   bool good() const { return fault == PlanFault::kNone; }

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "flute_grinder/collision/job_collision.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/motion/job_plan.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace flute_grinder {
+
+/// A job with its digest, which is computed once.
+class JobWithDigest {
+ public:
+  explicit JobWithDigest(GrindJob job) : job_(std::move(job)), digest_(jobDigest(job_)) {}
+
+  const GrindJob& job() const noexcept { return job_; }
+  const std::string& digest() const noexcept { return digest_; }
+
+ private:
+  GrindJob job_;
+  std::string digest_;
+};
+
+/// All that is known of a job before it is ground. Its program holds the job with its law of Z, the machine with the
+/// work offset, and the start.
+struct PlannedJob : JobPlan {
+  std::string digest;                   ///< see jobDigest()
+  ToothPass first;                      ///< to grind
+  std::optional<Range> complete;        ///< where the flutes would be complete, if that was checked
+  std::optional<ClosestPlace> closest;  ///< of wheel, machine and cutter, if that was checked; its leg is a move
+};
+
+/// Plans a job with its law of Z, and checks the cutter that it grinds and that nothing is hit: withZLaw(), planJob(),
+/// checkGroundCutter() and checkCollision(). For any job and machine, the result is either good or has reasons. Cutter
+/// and collisions are checked, too, of a job whose setpoints are refused; a law of Z that does not exist leaves the
+/// result without a program.
+/// @param shapes of the machine. @param start, first, visit, watch as for planJob().
+PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
+                        const Axes& start, const ToothPass& first = {},
+                        const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
+
+}  // namespace flute_grinder

@@ -1,0 +1,57 @@
+#include "flute_grinder/plan/planned_job.h"
+
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/z_law.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace flute_grinder {
+
+namespace {
+
+/// A plan without a program, because there is no law of Z.
+JobPlan refused(core::Reason reason) {
+  JobPlan plan;
+  plan.fault = reason.kind == core::ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+  plan.reasons.push_back(std::move(reason));
+  return plan;
+}
+
+JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+                    const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  // Of an invalid job, planJob() finds what is wrong.
+  if (!validate(job).empty()) return planJob(job, machine, start, first, visit, watch);
+  GrindJob with_law;
+  try {
+    with_law = withZLaw(job, watch);
+  } catch (const core::ReasonError& error) {
+    return refused(error.reason());
+  } catch (const std::invalid_argument& error) {
+    return refused(core::otherReason(error.what()));
+  }
+  return planJob(with_law, machine, start, first, visit, watch);
+}
+
+void refuse(JobPlan& plan, PlanFault fault, const std::vector<core::Reason>& reasons) {
+  if (plan.good() && !reasons.empty()) plan.fault = fault;
+  plan.reasons.insert(plan.reasons.end(), reasons.begin(), reasons.end());
+}
+
+}  // namespace
+
+PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
+                        const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,
+                        const PlanWatch& watch) {
+  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}};
+  if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
+  const CutterCheck cutter = checkGroundCutter(planned.program->job());
+  planned.complete = cutter.complete;
+  refuse(planned, PlanFault::kTool, cutter.reasons);
+  const CollisionResult collision = checkCollision(*planned.program, shapes);
+  planned.closest = collision.closest;
+  if (collision.reason) refuse(planned, PlanFault::kCollision, {*collision.reason});
+  return planned;
+}
+
+}  // namespace flute_grinder

@@ -1,0 +1,92 @@
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/plan/planned_job.h"
+
+#include "collision/machine.h"
+#include "motion/generators.h"
+
+#include <gtest/gtest.h>
+
+namespace flute_grinder {
+namespace test_planned_job {
+
+using core::ReasonKind;
+using units::kDegree;
+
+Machine machine() {
+  Machine m = test_support::plainMachine();
+  m.collision_clearance = 1e-3;
+  return m;
+}
+
+PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const PlanWatch& watch = {}) {
+  return planWholeJob(JobWithDigest(job), on, MachineShapes(shippedUrdf()), on.park, {}, {}, watch);
+}
+
+GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
+
+GrindJob withConstantRake() {
+  GrindJob job = paper();
+  job.process.z_law = ZLaw::kConstantRake;
+  return job;
+}
+
+TEST(PlannedJob, HasWhatItsPartsFind) {
+  const GrindJob job = withConstantRake();
+  const PlannedJob whole = planned(job);
+  ASSERT_TRUE(whole.good()) << core::text(whole.reasons, UnitSystem::kShop);
+  EXPECT_EQ(whole.digest, jobDigest(job));
+  const GrindJob with_law = withZLaw(job);
+  ASSERT_EQ(whole.program->job().z_corrections.size(), 1u);
+  EXPECT_EQ(whole.program->job().z_corrections[0].coefficients, with_law.z_corrections[0].coefficients);
+  EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
+  EXPECT_EQ(whole.complete->to, job.cutter.flute_length);
+  const auto closest = checkCollision(*whole.program, MachineShapes(shippedUrdf())).closest;
+  EXPECT_EQ(whole.closest->distance, closest->distance);
+  EXPECT_EQ(whole.closest->leg, closest->leg);
+}
+
+TEST(PlannedJob, AnInvalidJobIsRefusedByItsNumbersAlone) {
+  GrindJob job = withConstantRake();
+  job.process.depth = 0;
+  const PlannedJob whole = planned(job);
+  EXPECT_EQ(whole.fault, PlanFault::kInvalidJob);
+  EXPECT_EQ(whole.reasons.at(0).field, "process.depth");
+  EXPECT_EQ(whole.digest, jobDigest(job));
+  EXPECT_FALSE(whole.complete || whole.closest);
+}
+
+TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {
+  GrindJob job = withConstantRake();
+  job.process.setup_swivel += 25 * kDegree;
+  const PlannedJob whole = planned(job);
+  EXPECT_EQ(whole.fault, PlanFault::kTool);
+  EXPECT_EQ(whole.program, nullptr);
+  ASSERT_EQ(whole.reasons.size(), 1u);
+  EXPECT_EQ(whole.reasons[0].kind, ReasonKind::kUnevenRake);
+}
+
+TEST(PlannedJob, IsGivenUpByItsWatch) {
+  for (const GrindJob& job : {paper(), withConstantRake()}) {
+    const PlannedJob whole = planned(job, machine(), [](double) { return false; });
+    EXPECT_EQ(whole.fault, PlanFault::kGivenUp);
+    EXPECT_EQ(whole.reasons.size(), 1u);
+    EXPECT_FALSE(whole.complete || whole.closest);
+  }
+}
+
+TEST(PlannedJob, TheFirstFaultCountsAndAllReasonsAreThere) {
+  GrindJob job = paper();
+  job.cutter.rake_angle = 20 * kDegree;  // which the set-up does not grind
+  job.process.wheel_diameter = 0.5;
+  job.cutter.flute_length = 0.16;  // the wheel reaches the chuck
+  const PlannedJob whole = planned(job);
+  EXPECT_EQ(whole.fault, PlanFault::kTool) << core::text(whole.reasons, UnitSystem::kShop);
+  ASSERT_GE(whole.reasons.size(), 2u);
+  EXPECT_EQ(whole.reasons.front().kind, ReasonKind::kRake);
+  EXPECT_EQ(whole.reasons.back().kind, ReasonKind::kCollision);
+}
+
+}  // namespace test_planned_job
+}  // namespace flute_grinder

@@ -3,7 +3,9 @@
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/job/job_fields.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace flute_grinder::core {
 
@@ -18,7 +20,6 @@ class Writer {
 
   std::string what() const {
     switch (r_.kind) {
-      case ReasonKind::kNone: return "";
       case ReasonKind::kOutOfRange: return refused(range() + (r_.detail.empty() ? "" : ", " + r_.detail));
       case ReasonKind::kNotBelow: return refused("less than " + digits(r_.limit) + ", " + r_.detail);
       case ReasonKind::kAbove: return refused("up to " + r_.detail + ", " + digits(r_.limit));
@@ -62,27 +63,8 @@ class Writer {
                " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
                name("process.feed") + " or " + name("process.infeed") + ", or the parameter";
       case ReasonKind::kGivenUp: return r_.detail.empty() ? "given up while it was planned" : "given up: " + r_.detail;
-      case ReasonKind::kOther: return r_.detail;
-      case ReasonKind::kPosition: return axis() + " position " + excess();
-      case ReasonKind::kVelocity: return axis() + " velocity " + excess();
-      case ReasonKind::kAcceleration: return axis() + " acceleration " + excess();
-      case ReasonKind::kJerk: return axis() + " jerk " + excess();
-      case ReasonKind::kNotFinite: return axis() + " position " + value() + " is not a finite number";
-      case ReasonKind::kEmergencyStop: return "emergency stop";
-      case ReasonKind::kDriveFault: return "the drive reports a fault";
-      case ReasonKind::kPowerLost: return "the drive has switched its power off";
-      case ReasonKind::kStaleFeedback: return "no fresh positions from the drive for " + value() + allowed();
-      case ReasonKind::kInvalidFeedback: return axis() + " position from the drive is " + number();
-      case ReasonKind::kFollowingError:
-        return axis() + " following error " + value() + " is beyond its limit " + limit();
-      case ReasonKind::kUnderrun:
-        return "the axes found no setpoint in " + value() + " servo cycles, after setpoint " + std::to_string(r_.cycle);
-      case ReasonKind::kLate: return "the control loop came " + value() + " after the cycle before" + allowed();
-      case ReasonKind::kHoming: return "the drive has not found its reference after " + value() + allowed();
-      case ReasonKind::kInterlock: return r_.detail + " " + value() + " after the job was started" + allowed();
-      case ReasonKind::kCanceled: return "canceled; stopped on the path";
+      default: return filled(rowOf(r_.kind).text);
     }
-    return "";
   }
 
   std::string place() const {
@@ -103,6 +85,30 @@ class Writer {
   }
 
  private:
+  /// A text of kReasonKinds with what its braces stand for.
+  std::string filled(const std::string& text) const {
+    std::string whole;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t open = std::min(text.find('{', at), text.size());
+      whole += text.substr(at, open - at);
+      if (open == text.size()) break;
+      const std::size_t close = text.find('}', open);
+      whole += member(text.substr(open + 1, close - open - 1));
+      at = close + 1;
+    }
+    return whole;
+  }
+  std::string member(const std::string& name) const {
+    if (name == "axis") return axis();
+    if (name == "value") return value();
+    if (name == "limit") return limit();
+    if (name == "detail") return r_.detail;
+    if (name == "cycle") return std::to_string(r_.cycle);
+    if (name == "number") return number();
+    if (name == "excess") return excess();
+    throw std::logic_error("kReasonKinds: no text for {" + name + "}");
+  }
+
   bool ofSetpoint() const {
     return r_.kind == ReasonKind::kTolerance || (ReasonKind::kPosition <= r_.kind && r_.kind <= ReasonKind::kNotFinite);
   }
@@ -119,7 +125,6 @@ class Writer {
   }
   std::string axis() const { return axisName(r_.axis, units_); }
   std::string name(const std::string& path) const { return fieldName(path, units_); }
-  std::string allowed() const { return ", allowed " + limit(); }
   std::string refused(const std::string& allowed) const {
     return name(r_.field) + " = " + digits(r_.value) + "; allowed: " + allowed;
   }

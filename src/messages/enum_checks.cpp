@@ -4,6 +4,7 @@
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/reason.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/machine/probing_cycle.h"
 #include "flute_grinder/motion/setpoint.h"
@@ -76,6 +77,9 @@ static_assert(has<CutDirection>(message_text::kCutter));
 static_assert(has<GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(message_text::kProcess));
 static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<ProbingCycle>(message_text::kProbe));
+// Its other constants are units, which reasons.cpp compares.
+static_assert(hasAllOf<core::ReasonKind>(message_text::kReason) &&
+              countConstants(message_text::kReason) == core::kReasonKindCount + kUnitCount);
 static_assert(has<MachineState>(message_text::kGrinderState));
 static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
 static_assert(PathStatistics::_move_duration_type::static_size == kMoveKindCount, "PathStatistics.move_duration");

@@ -19,19 +19,14 @@ int errorCode(PlanFault fault) {
 }
 
 int errorCode(FaultKind fault) {
-  switch (fault) {
-    case FaultKind::kNone: return GrindResult::SUCCESSFUL;
-    case FaultKind::kEmergencyStop: return GrindResult::EMERGENCY_STOP;
-    case FaultKind::kStaleFeedback: return GrindResult::LINK_LOST;
-    case FaultKind::kFollowingError: return GrindResult::PATH_TOLERANCE_VIOLATED;
-    case FaultKind::kLimit: return GrindResult::LIMIT_VIOLATED;
-    case FaultKind::kDriveFault:
-    case FaultKind::kPowerLost:
-    case FaultKind::kUnderrun:
-    case FaultKind::kLate:
-    case FaultKind::kHoming:
-    case FaultKind::kInvalidFeedback: return GrindResult::HARDWARE_FAULT;
-    case FaultKind::kInterlock: return GrindResult::NOT_READY;
+  switch (rowOf(fault).fault_class) {
+    case FaultClass::kNone: return GrindResult::SUCCESSFUL;
+    case FaultClass::kEmergencyStop: return GrindResult::EMERGENCY_STOP;
+    case FaultClass::kHardware: return GrindResult::HARDWARE_FAULT;
+    case FaultClass::kLinkLost: return GrindResult::LINK_LOST;
+    case FaultClass::kTolerance: return GrindResult::PATH_TOLERANCE_VIOLATED;
+    case FaultClass::kLimit: return GrindResult::LIMIT_VIOLATED;
+    case FaultClass::kNotReady: return GrindResult::NOT_READY;
   }
   return GrindResult::HARDWARE_FAULT;
 }

@@ -7,27 +7,7 @@ namespace flute_grinder {
 namespace {
 
 /// Compares a constant of the message with core's.
-constexpr bool is(std::uint8_t constant, core::ReasonKind kind) { return constant == static_cast<std::uint8_t>(kind); }
 constexpr bool is(std::uint8_t constant, Unit unit) { return constant == static_cast<std::uint8_t>(unit); }
-
-using K = core::ReasonKind;
-static_assert(is(Reason::NONE, K::kNone) && is(Reason::OUT_OF_RANGE, K::kOutOfRange));
-static_assert(is(Reason::NOT_BELOW, K::kNotBelow) && is(Reason::ABOVE, K::kAbove));
-static_assert(is(Reason::NOT_ALLOWED, K::kNotAllowed) && is(Reason::FEED_TOO_LOW, K::kFeedTooLow));
-static_assert(is(Reason::PARK_IN_WORK, K::kParkInWork) && is(Reason::TOLERANCE, K::kTolerance));
-static_assert(is(Reason::TOO_LONG, K::kTooLong) && is(Reason::GIVEN_UP, K::kGivenUp) && is(Reason::OTHER, K::kOther));
-static_assert(is(Reason::POSITION, K::kPosition) && is(Reason::VELOCITY, K::kVelocity));
-static_assert(is(Reason::ACCELERATION, K::kAcceleration) && is(Reason::JERK, K::kJerk));
-static_assert(is(Reason::NOT_FINITE, K::kNotFinite) && is(Reason::EMERGENCY_STOP, K::kEmergencyStop));
-static_assert(is(Reason::DRIVE_FAULT, K::kDriveFault) && is(Reason::POWER_LOST, K::kPowerLost));
-static_assert(is(Reason::STALE_FEEDBACK, K::kStaleFeedback) && is(Reason::INVALID_FEEDBACK, K::kInvalidFeedback));
-static_assert(is(Reason::FOLLOWING_ERROR, K::kFollowingError) && is(Reason::UNDERRUN, K::kUnderrun));
-static_assert(is(Reason::LATE, K::kLate) && is(Reason::HOMING, K::kHoming) && is(Reason::INTERLOCK, K::kInterlock));
-static_assert(is(Reason::CANCELED, K::kCanceled) && is(Reason::RAKE, K::kRake) && is(Reason::LAND, K::kLand));
-static_assert(is(Reason::CORE, K::kCore) && is(Reason::INCOMPLETE, K::kIncomplete));
-static_assert(is(Reason::COLLISION, K::kCollision) && is(Reason::SWIVEL, K::kSwivel));
-static_assert(is(Reason::UNEVEN_RAKE, K::kUnevenRake));
-static_assert(Reason::UNEVEN_RAKE + 1 == core::kReasonKindCount);
 
 static_assert(is(Reason::UNIT_NONE, Unit::kNone) && is(Reason::METRE, Unit::kMetre));
 static_assert(is(Reason::METRE_PER_SECOND, Unit::kMetrePerSecond));

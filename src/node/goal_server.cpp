@@ -212,7 +212,7 @@ void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->preview->plan;
   tracker_.begin(*plan.program, plan.digest, name, plan.first, goal_->number);
-  telemetry_.announceJob(goal_->number, handle.getGoalID(), goal_->preview, name);
+  telemetry_.announceJob(goal_->number, handle.getGoalID().id, goal_->preview, name);
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
     posted = loop_.startJob(goal_->preview->stream.get(), false);
@@ -233,12 +233,18 @@ void GoalServer::poll() {
   cycles_ = status.cycles;
   tracker_.update(status);
   if (!goal_) return;
+  publishFeedback();
   switch (goal_->phase) {
-    case Phase::kPlanning: return publishPlanningFeedback();
+    case Phase::kPlanning: return;
     case Phase::kStarting: return checkStartReply();
     case Phase::kJournaling: return releaseWhenJournaled();
     case Phase::kRunning: return endWhenPublished();
   }
+}
+
+void GoalServer::publishFeedback() {
+  if (goal_->phase == Phase::kPlanning) return publishPlanningFeedback();
+  if (const auto feedback = telemetry_.takeFeedback(goal_->number)) goal_->handle.publishFeedback(*feedback);
 }
 
 void GoalServer::publishPlanningFeedback() {
@@ -324,6 +330,7 @@ void GoalServer::endJob() {
   const std::uint64_t number = goal_->number;
   const bool aborted = status.end == JobEnd::kFault || !goal_->journal_error.empty();
   const GrindResult r = resultOfJob(status);
+  publishFeedback();
   release();
   telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
   if (aborted) {

@@ -59,6 +59,7 @@ class GoalServer {
   void startPlanning(const GoalHandle& handle, const JobWithDigest& job);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
+  void publishFeedback();
   void publishPlanningFeedback();
   void startJob(std::shared_ptr<const Preview> preview);
   void publishJob();

@@ -20,17 +20,6 @@ constexpr double kMillisecond = 1e-3;
 constexpr std::size_t kMaxEntries = 10000;  ///< of holds and of overrides; a client may make any number
 constexpr const char* kNoEnd = "the grinder's program ended before the job did";
 
-bool isHeld(MachineState state) {
-  switch (state) {
-    case MachineState::kHolding:
-    case MachineState::kHeld:
-    case MachineState::kRetracting:
-    case MachineState::kRetracted:
-    case MachineState::kJoggingRetracted: return true;
-    default: return false;
-  }
-}
-
 /// Appends tooth and pass, which count from 1.
 Json placed(Json json, const ToothPass& pass) {
   json["tooth"] = pass.tooth + 1;
@@ -80,7 +69,7 @@ void JobRecord::addCycle(const CycleRecord& record) {
 }
 
 void JobRecord::addToHold(const CycleRecord& record) {
-  const bool held = isHeld(record.state);
+  const bool held = rowOf(record.state).holds_job;
   if (held && !held_) {
     const bool by_operator = record.interlock == Interlock::kNone;
     hold_listed_ = hasRoom(holds_);

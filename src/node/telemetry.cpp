@@ -1,6 +1,5 @@
 #include "node/telemetry.h"
 
-#include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
@@ -76,7 +75,6 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   state_ = own.advertise<GrinderState>("state", 10, true);
   setpoints_ = own.advertise<SetpointBatch>("setpoints", 1000);
-  feedback_ = own.advertise<GrindActionFeedback>("grind/feedback", 50);
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
   diagnostics_period_ = ros::WallDuration(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0));
@@ -91,10 +89,10 @@ void Telemetry::show(std::shared_ptr<const Preview> preview) {
   });
 }
 
-void Telemetry::announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal,
-                            std::shared_ptr<const Preview> preview, const std::string& name) {
-  thread_.post([this, number, goal, preview = std::move(preview), name] {
-    jobs_.push_back({number, goal, preview});
+void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const Preview> preview,
+                            const std::string& name) {
+  thread_.post([this, number, goal_id, preview = std::move(preview), name] {
+    jobs_.push_back({number, goal_id, preview});
     recorder_.announce(number, *preview, name);
   });
 }
@@ -142,7 +140,7 @@ void Telemetry::tick() {
   if (batch_due) {
     publishBatch();
     publishState();
-    publishFeedback();
+    makeFeedback();
   }
   if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update();
   publishDiagnostics();
@@ -213,7 +211,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
   if (lost > 0) publishBatch();
   if (batch_.setpoints.empty()) {
     batch_.header.stamp = ros::Time(record_.time);
-    batch_.goal_id = job.goal.id;
+    batch_.goal_id = job.goal_id;
     batch_.lost = lost;
   }
   batch_.setpoints.push_back(toMessage(setpoint, workPosition(job), written.period));
@@ -230,7 +228,7 @@ void Telemetry::endJob(Job& job) {
   // Written, but never reached the axes.
   for (const Buffered& unplayed : job.buffered) addToBatch(job, unplayed);
   publishBatch();
-  publishFeedback();
+  makeFeedback();
   if (job.shown) scene_.end();
   const std::uint64_t number = job.number;
   recorder_.end(number);
@@ -299,18 +297,14 @@ GrinderState Telemetry::stateMessage() const {
   return message;
 }
 
-void Telemetry::publishFeedback() {
+void Telemetry::makeFeedback() {
   Job* job = running();
   if (!job) return;
   const Setpoint& p = job->last;
   const PlannedJob& plan = *job->preview->plan;
   const double done = plannedCycles(p, plan.move_ends);
   const auto all = static_cast<double>(plan.move_ends.back());
-  GrindActionFeedback message;
-  message.header.stamp = ros::Time(record_.time);
-  message.status.goal_id = job->goal;
-  message.status.status = actionlib_msgs::GoalStatus::ACTIVE;
-  GrindFeedback& feedback = message.feedback;
+  GrindFeedback feedback;
   feedback.state = toString(record_.state);
   feedback.planned = 1;
   feedback.tooth = p.tooth;
@@ -322,7 +316,18 @@ void Telemetry::publishFeedback() {
   feedback.feed = p.feed;
   feedback.path_error = job->largest_error;
   job->largest_error = 0;
-  feedback_.publish(message);
+  const std::lock_guard<std::mutex> lock(feedback_mutex_);
+  if (feedback_ && feedback_number_ == job->number) {
+    feedback.path_error = std::max(feedback.path_error, feedback_->path_error);
+  }
+  feedback_number_ = job->number;
+  feedback_ = std::move(feedback);
+}
+
+std::optional<GrindFeedback> Telemetry::takeFeedback(std::uint64_t number) {
+  const std::lock_guard<std::mutex> lock(feedback_mutex_);
+  if (feedback_number_ != number) return std::nullopt;
+  return std::exchange(feedback_, std::nullopt);
 }
 
 }  // namespace flute_grinder

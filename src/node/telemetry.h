@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/GrindFeedback.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/control_loop.h"
@@ -12,22 +13,23 @@
 #include "node/planner.h"
 #include "node/served_queue.h"
 
-#include <actionlib_msgs/GoalID.h>
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <deque>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace flute_grinder {
 
-/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the action's feedback, the frames and
-/// markers for rviz, and diagnostics; and gathers the records of jobs for the history. Its own thread reads the loop's
-/// records; nothing blocks on it. If it falls too far behind, records are lost, and it reports how many. While nothing
-/// changes, it publishes less often.
+/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the frames and markers for rviz, and
+/// diagnostics; computes a goal's feedback, which GoalServer publishes; and gathers the records of jobs for the
+/// history. Its own thread reads the loop's records; nothing blocks on it. If it falls too far behind, records are
+/// lost, and it reports how many. While nothing changes, it publishes less often.
 class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
@@ -44,9 +46,12 @@ class Telemetry {
   /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
   void show(std::shared_ptr<const Preview> preview);
   /// Announces a job before it starts. Thread safe; never blocks.
-  /// @param number the loop's number for this job. @param name of the job as its goal gives it.
-  void announceJob(std::uint64_t number, const actionlib_msgs::GoalID& goal, std::shared_ptr<const Preview> preview,
+  /// @param number the loop's number for this job. @param goal_id of its goal. @param name of the job as its goal gives
+  /// it.
+  void announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const Preview> preview,
                    const std::string& name);
+  /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
+  std::optional<GrindFeedback> takeFeedback(std::uint64_t number);
   /// The job announced last will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
   /// Tells the result of a job, for its record. Thread safe; never blocks.
@@ -67,7 +72,7 @@ class Telemetry {
 
   struct Job {
     std::uint64_t number;
-    actionlib_msgs::GoalID goal;
+    std::string goal_id;
     std::shared_ptr<const Preview> preview;
     bool shown = false;
     Setpoint last{};                  ///< that reached the axes
@@ -90,7 +95,7 @@ class Telemetry {
   void publishDiagnostics();
   void publishBatch();
   void publishState();
-  void publishFeedback();
+  void makeFeedback();
   Job* running();
   std::uint64_t cycle() const { return records_read_ + record_.records_lost; }  ///< of the loop, since it started
 
@@ -100,7 +105,7 @@ class Telemetry {
   const History& history_;
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
-  ros::Publisher joint_states_, state_, setpoints_, feedback_;
+  ros::Publisher joint_states_, state_, setpoints_;
   Frames frames_;
   Scene scene_;
 
@@ -108,6 +113,9 @@ class Telemetry {
   std::uint64_t records_read_ = 0;
   std::deque<Job> jobs_;  ///< announced; the first may be running
   JobRecorder recorder_;
+  std::mutex feedback_mutex_;  ///< guards the next two
+  std::uint64_t feedback_number_ = 0;
+  std::optional<GrindFeedback> feedback_;  ///< of the job with this number, not taken yet
   bool scene_cleared_ = false;
   SetpointBatch batch_;
   std::uint64_t ticks_ = 0;

@@ -44,19 +44,6 @@ bool isDone(MachineState state, MachineEvent event) {
   }
 }
 
-/// Whether axes may move in a state.
-bool moves(MachineState state) {
-  switch (state) {
-    case MachineState::kDisabled:
-    case MachineState::kReady:
-    case MachineState::kStarting:
-    case MachineState::kHeld:
-    case MachineState::kRetracted:
-    case MachineState::kFault: return false;
-    default: return true;
-  }
-}
-
 /// Whether two cutters fill a view alike.
 bool isSameSize(const Cutter& a, const Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
@@ -308,7 +295,7 @@ void GrindPanel::refresh() {
   position_->show(view);
   section_->refresh(view, job_->job());
   showLegend(view.legend);
-  if (rviz_) rviz_->keepPace(state && moves(*state));
+  if (rviz_) rviz_->keepPace(state && rowOf(*state).moves);
 }
 
 /// With two grinders a window must say whose it is. rviz itself sets the title when it reads or writes a file.

@@ -13,27 +13,6 @@ namespace {
 
 using namespace units;
 
-const char* sentence(MachineState state) {
-  switch (state) {
-    case MachineState::kDisabled: return "The power is off. Enable switches it on.";
-    case MachineState::kReady: return "The power is on, the axes rest. Plan a job, then start it.";
-    case MachineState::kHoming: return "The drive is homing the axes.";
-    case MachineState::kStarting: return "The job waits for spindle and coolant.";
-    case MachineState::kRunning: return "The job moves the axes.";
-    case MachineState::kHolding: return "The axes are stopping on the path.";
-    case MachineState::kHeld: return "The job is held, with the wheel off the work. Resume continues.";
-    case MachineState::kRetracting: return "The wheel is being lifted off the work.";
-    case MachineState::kRetracted: return "The wheel is off the work. Resume continues the job.";
-    case MachineState::kResuming: return "The wheel is returning to where it left the path.";
-    case MachineState::kCanceling: return "The axes stop on the path, the wheel is lifted, then the job ends.";
-    case MachineState::kFault: return "The power is off after a fault. Reset, then enable.";
-    case MachineState::kLifting: return "The wheel is being lifted off the work, without a job.";
-    case MachineState::kJogging: return "An axis is being jogged.";
-    case MachineState::kJoggingRetracted: return "An axis is being jogged; the job waits. Resume returns to the path.";
-  }
-  return "This panel does not know the grinder's state.";
-}
-
 const char* wheelInWork(MachineState state) {
   switch (state) {
     case MachineState::kFault: return "The wheel is in the work: reset, enable, then lift it.";
@@ -83,7 +62,8 @@ std::string describe(const GrinderState& state) {
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)
     return text + "The feed override is 0 %: the axes rest.";
-  return text + sentence(machine);
+  const std::string sentence = rowOf(machine).sentence;
+  return text + (sentence.empty() ? "This panel does not know the grinder's state." : sentence);
 }
 
 std::string done(MachineEvent event) {

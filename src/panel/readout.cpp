@@ -25,22 +25,12 @@ constexpr const char* kRed = "#b00020";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
-  switch (static_cast<MachineState>(grinder.state)) {
-    case MachineState::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
-    case MachineState::kLifting:
-    case MachineState::kJogging:
-    case MachineState::kJoggingRetracted:
-    case MachineState::kHoming:
-    case MachineState::kStarting:
-    case MachineState::kRunning:
-    case MachineState::kResuming: return kBlue;
-    case MachineState::kHolding:
-    case MachineState::kHeld:
-    case MachineState::kRetracting:
-    case MachineState::kRetracted:
-    case MachineState::kCanceling: return kAmber;
-    case MachineState::kFault: return kRed;
-    case MachineState::kDisabled: break;
+  switch (rowOf(static_cast<MachineState>(grinder.state)).group) {
+    case StateGroup::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
+    case StateGroup::kActive: return kBlue;
+    case StateGroup::kPausing: return kAmber;
+    case StateGroup::kFault: return kRed;
+    case StateGroup::kOff: break;
   }
   return kGrey;
 }

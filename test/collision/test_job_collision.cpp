@@ -170,16 +170,16 @@ TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
 
 TEST(JobCollision, AShankMayStandOutByTheFlutesDepthAndNoMore) {
   for (const double shank_diameter : {0.008, 0.010, 0.0131}) {
-    EXPECT_TRUE(checked(cylinderJob(shank_diameter)).good()) << shank_diameter;
+    EXPECT_FALSE(checked(cylinderJob(shank_diameter)).reason) << shank_diameter;
   }
   for (const double shank_diameter : {0.0134, 0.02, 0.04}) {
-    const JobPlan plan = checked(cylinderJob(shank_diameter));
-    EXPECT_EQ(plan.fault, PlanFault::kCollision) << shank_diameter;
-    EXPECT_EQ(plan.reasons.at(0).detail, "wheel and shank");
+    const CollisionResult result = checked(cylinderJob(shank_diameter));
+    ASSERT_TRUE(result.reason) << shank_diameter;
+    EXPECT_EQ(result.reason->detail, "wheel and shank");
   }
   GrindJob with_neck = cylinderJob(0.02);
   with_neck.cutter.neck_length = 0.038;
-  EXPECT_TRUE(checked(with_neck).good());
+  EXPECT_FALSE(checked(with_neck).reason);
 }
 
 /// The shipped machine with a place for the origin of a joint.

@@ -33,10 +33,11 @@ MESSAGES = {
     'src/control/machine_config.cpp': (),
     'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
     'src/control/swivel_range.cpp': (),
-    'src/machine/loop_fault.cpp': (),
+    'include/flute_grinder/machine/loop_fault.h': (),
     'src/machine/offset_fit.cpp': ('width of the wheel',),
     'src/machine/offset_limits.cpp': (),
-    'src/job/reason.cpp': (),
+    'include/flute_grinder/job/reason.h': (),
+    'src/job/reason.cpp': ('kReasonKinds: no text for {',),
     'src/drive/hal_component.cpp': (),
     'src/drive/hal_fifo.cpp': (),
     'src/drive/hal_hardware.cpp': (),
@@ -77,7 +78,7 @@ MESSAGES = {
 
 # A comment, a character, a raw string, or a string, which alone has a group.
 TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"\(.*?\)"|"((?:\\.|[^"\\])*)\"""", re.S)
-FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d')  # what printf or QString fill in
+FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d|\{\w+\}')  # what printf, QString or the text of a reason fill in
 
 
 def read(path):
@@ -169,23 +170,17 @@ def enumerators(path, enum):
 
 def fault_codes():
     """The result's code of each kind of fault."""
-    body = re.search(r'int errorCode\(FaultKind fault\) \{(.*?)\n\}', read('src/messages/error_codes.cpp'), re.S).group(1)
-    found, kinds = {}, []
-    for kind, code in re.findall(r'case FaultKind::k(\w+):|GrindResult::(\w+);', body):
-        kinds += [capitals(kind)] if kind else []
-        if code:
-            found.update({kind: code for kind in kinds})
-            kinds = []
-    return found
+    codes = dict(re.findall(r'case FaultClass::k(\w+): return GrindResult::(\w+);', read('src/messages/error_codes.cpp')))
+    rows = re.findall(r'\{FaultKind::k(\w+),[^}]*FaultClass::k(\w+)\}', read('include/flute_grinder/machine/loop_fault.h'))
+    return {capitals(kind): codes[fault_class] for kind, fault_class in rows}
 
 
 def missing_states(table):
     for name in re.findall(r'\{MachineState::k\w+, "(\w+)"\}', read('include/flute_grinder/machine/machine_state.h')):
         if not any(row.get('state') == '*%s*' % name for row in table):
             yield 'the state %s has no row' % name
-    sentences = re.search(r'const char\* sentence\(.*?\n}', read('src/panel/plain_words.cpp'), re.S).group()
-    for state, text in re.findall(r'case MachineState::k(\w+): return "(.*)";', sentences):
-        name = capitals(state).lower()
+    rows = r'\{MachineState::k\w+, "(\w+)"\},[^"]*"([^"]*)"\}'
+    for name, text in re.findall(rows, read('include/flute_grinder/machine/machine_state.h')):
         if not any(row.get('state') == '*%s*' % name and text in codes(row['the panel says']) for row in table):
             yield 'the row of the state %s lacks "%s"' % (name, text)
 
@@ -201,7 +196,7 @@ def missing_kinds(table):
         pair = [kind, fault_codes().get(kind)]
         if kind != 'LIMIT' and pair not in pairs:  # that has the reasons of the limits
             yield 'the fault %s, %s is in no row' % tuple(pair)
-    for text in re.findall(r'case Interlock::k\w+: return "(.+)";', read('src/machine/loop_fault.cpp')):
+    for text in re.findall(r'\{Interlock::k\w+, "(.+)"\}', read('include/flute_grinder/machine/loop_fault.h')):
         if not any(text in codes(row.get('held because', '')) for row in table):
             yield 'the interlock "%s" has no row' % text
     for name, number in re.findall(r'(?m)^int32 (\w+)=(-?\d+)$', read('action/Grind.action')):

@@ -71,8 +71,7 @@ class JobThreads : public ::testing::Test {
     newest_ = number;
     std::promise<std::unique_ptr<Preview>> promise;
     auto answer = promise.get_future();
-    Planner::Request request;
-    request.job = job_;
+    Planner::Request request{JobWithDigest(job_)};
     request.start = Eigen::Map<const Axes>(before.command.data());
     request.for_goal = true;
     request.control = control;
@@ -85,7 +84,7 @@ class JobThreads : public ::testing::Test {
   }
 
   void start(int number, const Preview& preview, std::uint64_t jobs_before) {
-    if (!preview.plan.good()) {
+    if (!preview.plan->good()) {
       EXPECT_TRUE(gate_.canceled());
       return;
     }
@@ -153,8 +152,7 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     // As the plan service does; a goal goes first.
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     std::promise<void> done;
-    Planner::Request request;
-    request.job = job_;
+    Planner::Request request{JobWithDigest(job_)};
     request.start = machineConfig().machine.park;
     request.control = std::make_shared<PlanControl>();
     request.done = [&](const std::unique_ptr<Preview>&) { done.set_value(); };

@@ -155,9 +155,9 @@ TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
   EXPECT_FALSE(planner.submit(second.request));
   EXPECT_FALSE(first.isDone());
   first.request.control->give_up = true;
-  EXPECT_EQ(first.wait()->plan.fault, PlanFault::kGivenUp);
+  EXPECT_EQ(first.wait()->plan->fault, PlanFault::kGivenUp);
   ASSERT_TRUE(planner.submit(third.request)) << "who has the answer may ask for the next";
-  EXPECT_TRUE(third.wait()->plan.good());
+  EXPECT_TRUE(third.wait()->plan->good());
   EXPECT_FALSE(second.isDone());
 }
 
@@ -170,17 +170,17 @@ TEST(Planner, AGoalGoesFirst) {
   EXPECT_FALSE(planner.submit(other_goal.request));
   EXPECT_FALSE(planner.submit(late.request));
   const auto given_up = plan.wait();
-  ASSERT_EQ(given_up->plan.fault, PlanFault::kGivenUp);
-  EXPECT_EQ(text(given_up->plan.reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
+  ASSERT_EQ(given_up->plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(text(given_up->plan->reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   EXPECT_GT(goal.request.control->done, 0);
   EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
   EXPECT_FALSE(planner.submit(late.request));
   goal.request.control->give_up = true;
-  EXPECT_EQ(text(goal.wait()->plan.reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
+  EXPECT_EQ(text(goal.wait()->plan->reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
   ASSERT_TRUE(planner.submit(next.request));
-  EXPECT_TRUE(next.wait()->plan.good());
+  EXPECT_TRUE(next.wait()->plan->good());
 }
 
 TEST(Planner, ItsEndGivesUpTheGoalThatWaitsToo) {
@@ -199,7 +199,7 @@ TEST(Planner, ItsEndGivesUpAndAnswers) {
   ASSERT_TRUE(planner.submit(asked.request));
   planner.end();
   ASSERT_TRUE(asked.isDone());
-  EXPECT_FALSE(asked.wait()->plan.good());
+  EXPECT_FALSE(asked.wait()->plan->good());
   EXPECT_FALSE(planner.submit(late.request));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/job/move_kind.h"
 #include "flute_grinder/job/quantity.h"
 
@@ -53,7 +54,52 @@ enum class ReasonKind : std::uint8_t {
   kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
   kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
 };
-constexpr int kReasonKindCount = static_cast<int>(ReasonKind::kUnevenRake) + 1;
+
+/// The name is that of the message's constant, in small letters.
+struct ReasonRow : EnumRow<ReasonKind> {
+  /// In words, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}; {excess} is value and
+  /// limit and what lies between, {number} the value without its unit. Null if text() puts the words together.
+  const char* text = nullptr;
+};
+
+inline constexpr ReasonRow kReasonKinds[]{
+    {{ReasonKind::kNone, "none"}, ""},
+    {{ReasonKind::kOutOfRange, "out_of_range"}},
+    {{ReasonKind::kNotBelow, "not_below"}},
+    {{ReasonKind::kAbove, "above"}},
+    {{ReasonKind::kNotAllowed, "not_allowed"}},
+    {{ReasonKind::kFeedTooLow, "feed_too_low"}},
+    {{ReasonKind::kParkInWork, "park_in_work"}},
+    {{ReasonKind::kTolerance, "tolerance"}},
+    {{ReasonKind::kTooLong, "too_long"}},
+    {{ReasonKind::kGivenUp, "given_up"}},
+    {{ReasonKind::kOther, "other"}, "{detail}"},
+    {{ReasonKind::kPosition, "position"}, "{axis} position {excess}"},
+    {{ReasonKind::kVelocity, "velocity"}, "{axis} velocity {excess}"},
+    {{ReasonKind::kAcceleration, "acceleration"}, "{axis} acceleration {excess}"},
+    {{ReasonKind::kJerk, "jerk"}, "{axis} jerk {excess}"},
+    {{ReasonKind::kNotFinite, "not_finite"}, "{axis} position {value} is not a finite number"},
+    {{ReasonKind::kEmergencyStop, "emergency_stop"}, "emergency stop"},
+    {{ReasonKind::kDriveFault, "drive_fault"}, "the drive reports a fault"},
+    {{ReasonKind::kPowerLost, "power_lost"}, "the drive has switched its power off"},
+    {{ReasonKind::kStaleFeedback, "stale_feedback"}, "no fresh positions from the drive for {value}, allowed {limit}"},
+    {{ReasonKind::kInvalidFeedback, "invalid_feedback"}, "{axis} position from the drive is {number}"},
+    {{ReasonKind::kFollowingError, "following_error"}, "{axis} following error {value} is beyond its limit {limit}"},
+    {{ReasonKind::kUnderrun, "underrun"}, "the axes found no setpoint in {value} servo cycles, after setpoint {cycle}"},
+    {{ReasonKind::kLate, "late"}, "the control loop came {value} after the cycle before, allowed {limit}"},
+    {{ReasonKind::kHoming, "homing"}, "the drive has not found its reference after {value}, allowed {limit}"},
+    {{ReasonKind::kInterlock, "interlock"}, "{detail} {value} after the job was started, allowed {limit}"},
+    {{ReasonKind::kCanceled, "canceled"}, "canceled; stopped on the path"},
+    {{ReasonKind::kRake, "rake"}},
+    {{ReasonKind::kLand, "land"}},
+    {{ReasonKind::kCore, "core"}},
+    {{ReasonKind::kIncomplete, "incomplete"}},
+    {{ReasonKind::kCollision, "collision"}},
+    {{ReasonKind::kSwivel, "swivel"}},
+    {{ReasonKind::kUnevenRake, "uneven_rake"}},
+};
+constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
+constexpr int kReasonKindCount = countOf<ReasonKind>();
 
 /// Why a job was refused or has ended, or why the machine stopped, as data; text() converts it to words.
 struct Reason {

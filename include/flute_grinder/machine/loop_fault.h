@@ -18,8 +18,17 @@ enum class Interlock : std::uint8_t {
   kJournal,  ///< does not contain the job yet; only before a job begins
 };
 
-/// Describes the open interlock, e.g. "the spindle is not at speed"; empty for kNone.
-const char* toString(Interlock interlock) noexcept;
+/// The name says which interlock is open.
+inline constexpr EnumRow<Interlock> kInterlocks[]{
+    {Interlock::kNone, ""},
+    {Interlock::kNotHomed, "the axes are not homed"},
+    {Interlock::kSpindle, "the spindle is not at speed"},
+    {Interlock::kCoolant, "no coolant flows"},
+    {Interlock::kProbe, "the measuring probe is in the way"},
+    {Interlock::kSwivel, "the swivel is not at the job's angle"},
+    {Interlock::kJournal, "the journal does not contain the job"},
+};
+constexpr auto& rowsOf(Interlock) noexcept { return kInterlocks; }
 
 /// Why the loop stopped the machine.
 enum class FaultKind : std::uint8_t {
@@ -36,6 +45,32 @@ enum class FaultKind : std::uint8_t {
   kHoming,     ///< the drive did not find its reference
   kInterlock,  ///< a job could not begin; the machine stays ready
 };
+
+/// What a fault is to a goal's client; each is a code of its result.
+enum class FaultClass : std::uint8_t { kNone, kEmergencyStop, kHardware, kLinkLost, kTolerance, kLimit, kNotReady };
+
+struct FaultRow {
+  FaultKind value{};
+  core::ReasonKind reason{};  ///< of kLimit, the violation determines it
+  Unit unit = Unit::kNone;    ///< of value and limit; kMetre is for positions, which are in rad for A
+  FaultClass fault_class = FaultClass::kHardware;
+};
+
+inline constexpr FaultRow kFaultKinds[]{
+    {FaultKind::kNone, core::ReasonKind::kNone, Unit::kNone, FaultClass::kNone},
+    {FaultKind::kEmergencyStop, core::ReasonKind::kEmergencyStop, Unit::kNone, FaultClass::kEmergencyStop},
+    {FaultKind::kDriveFault, core::ReasonKind::kDriveFault, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kPowerLost, core::ReasonKind::kPowerLost, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kStaleFeedback, core::ReasonKind::kStaleFeedback, Unit::kSecond, FaultClass::kLinkLost},
+    {FaultKind::kInvalidFeedback, core::ReasonKind::kInvalidFeedback, Unit::kMetre, FaultClass::kHardware},
+    {FaultKind::kFollowingError, core::ReasonKind::kFollowingError, Unit::kMetre, FaultClass::kTolerance},
+    {FaultKind::kUnderrun, core::ReasonKind::kUnderrun, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kLate, core::ReasonKind::kLate, Unit::kSecond, FaultClass::kHardware},
+    {FaultKind::kLimit, core::ReasonKind::kNone, Unit::kNone, FaultClass::kLimit},
+    {FaultKind::kHoming, core::ReasonKind::kHoming, Unit::kSecond, FaultClass::kHardware},
+    {FaultKind::kInterlock, core::ReasonKind::kInterlock, Unit::kSecond, FaultClass::kNotReady},
+};
+constexpr auto& rowsOf(FaultKind) noexcept { return kFaultKinds; }
 
 /// A fault with its values: plain data, converted to text outside the loop.
 struct LoopFault {

@@ -27,22 +27,78 @@ enum class MachineState : std::uint8_t {
   kJoggingRetracted,  ///< an axis is moved by hand in the middle of a job, with the wheel off the workpiece
 };
 
-inline constexpr EnumRow<MachineState> kMachineStates[]{
-    {MachineState::kDisabled, "disabled"},
-    {MachineState::kReady, "ready"},
-    {MachineState::kHoming, "homing"},
-    {MachineState::kStarting, "starting"},
-    {MachineState::kRunning, "running"},
-    {MachineState::kHolding, "holding"},
-    {MachineState::kHeld, "held"},
-    {MachineState::kRetracting, "retracting"},
-    {MachineState::kRetracted, "retracted"},
-    {MachineState::kResuming, "resuming"},
-    {MachineState::kCanceling, "canceling"},
-    {MachineState::kFault, "fault"},
-    {MachineState::kLifting, "lifting"},
-    {MachineState::kJogging, "jogging"},
-    {MachineState::kJoggingRetracted, "jogging_retracted"},
+/// What people see of a state at a glance.
+enum class StateGroup : std::uint8_t {
+  kOff,      ///< and unknown states
+  kReady,    ///< a job may begin
+  kActive,   ///< the axes move, or are about to
+  kPausing,  ///< the axes stop or rest during a job
+  kFault,
+};
+
+struct StateRow : EnumRow<MachineState> {
+  StateGroup group = StateGroup::kOff;
+  bool moves = true;          ///< whether axes may move
+  bool holds_job = false;     ///< whether a job is held
+  const char* sentence = "";  ///< for people
+};
+
+inline constexpr StateRow kMachineStates[]{
+    {{MachineState::kDisabled, "disabled"}, StateGroup::kOff, false, false, "The power is off. Enable switches it on."},
+    {{MachineState::kReady, "ready"},
+     StateGroup::kReady,
+     false,
+     false,
+     "The power is on, the axes rest. Plan a job, then start it."},
+    {{MachineState::kHoming, "homing"}, StateGroup::kActive, true, false, "The drive is homing the axes."},
+    {{MachineState::kStarting, "starting"},
+     StateGroup::kActive,
+     false,
+     false,
+     "The job waits for spindle and coolant."},
+    {{MachineState::kRunning, "running"}, StateGroup::kActive, true, false, "The job moves the axes."},
+    {{MachineState::kHolding, "holding"}, StateGroup::kPausing, true, true, "The axes are stopping on the path."},
+    {{MachineState::kHeld, "held"},
+     StateGroup::kPausing,
+     false,
+     true,
+     "The job is held, with the wheel off the work. Resume continues."},
+    {{MachineState::kRetracting, "retracting"},
+     StateGroup::kPausing,
+     true,
+     true,
+     "The wheel is being lifted off the work."},
+    {{MachineState::kRetracted, "retracted"},
+     StateGroup::kPausing,
+     false,
+     true,
+     "The wheel is off the work. Resume continues the job."},
+    {{MachineState::kResuming, "resuming"},
+     StateGroup::kActive,
+     true,
+     false,
+     "The wheel is returning to where it left the path."},
+    {{MachineState::kCanceling, "canceling"},
+     StateGroup::kPausing,
+     true,
+     false,
+     "The axes stop on the path, the wheel is lifted, then the job ends."},
+    {{MachineState::kFault, "fault"},
+     StateGroup::kFault,
+     false,
+     false,
+     "The power is off after a fault. Reset, then enable."},
+    {{MachineState::kLifting, "lifting"},
+     StateGroup::kActive,
+     true,
+     false,
+     "The wheel is being lifted off the work, without a job."},
+    {{MachineState::kJogging, "jogging"}, StateGroup::kActive, true, false, "An axis is being jogged."},
+    {{MachineState::kJoggingRetracted, "jogging_retracted"},
+     StateGroup::kActive,
+     true,
+     true,
+     "An axis is being jogged; the job waits. Resume returns to the path."},
 };
 constexpr auto& rowsOf(MachineState) noexcept { return kMachineStates; }
 

@@ -45,9 +45,9 @@ class ProbeTest(unittest.TestCase):
         ProbeTest.started += 1
         parameters = gc.machine()
         # A host that stalls is not to count as a client that is gone, in simulated time.
-        parameters['jog_timeout'] = 5.0
+        parameters['jog_timeout'] = 1.0
         parameters.update(changes)
-        parameters['hardware'].update(pace=5)
+        parameters['hardware'].update(pace=2)
         parameters['hardware'].pop('blank', None)
         if blank:
             parameters['hardware']['blank'] = blank
@@ -311,7 +311,7 @@ class TestStop(ProbeTest):
         return begun
 
     def test_its_end_ends_it_however_it_comes(self):
-        self.start(jog_timeout=1.0)
+        self.start()
         self.bring_ball(-35 * MM, 0)
         before = self.client.wait_rest()[X]
         command = [gc.program('grind'), '--node', self.client.name, 'probe', 'end-face', '--job', JOB, '--within', '45']

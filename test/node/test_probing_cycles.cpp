@@ -134,6 +134,32 @@ TEST_F(ProbingCycles, NothingThereGoesBack) {
   EXPECT_TRUE(result_.figures.empty());
 }
 
+TEST_F(ProbingCycles, TouchesThatDoNotAgreeAreRefused) {
+  start(config(), [face = 0.013, touched = false](const FakeDrive& drive) mutable {
+    const bool touches = beyond(drive, face);
+    // The face yields a little at each touch.
+    if (touched && !touches) face += 3e-6;
+    touched = touches;
+    return touches;
+  });
+  EXPECT_CONTAINS(refusal(goal(ProbeGoal::END_FACE, 0.005)), "the touches spread over 0.00");
+  EXPECT_TRUE(result_.figures.empty());
+}
+
+TEST_F(ProbingCycles, AContactThatIsLostAgainIsNoTouch) {
+  start(config(), [touched = false](const FakeDrive& drive) mutable {
+    const bool begins = beyond(drive, 0.013) && !touched;
+    touched = begins || touched;
+    return begins;
+  });
+  EXPECT_EQ(refusal(goal(ProbeGoal::END_FACE, 0.005)), "the contact was lost again before the axis came to rest");
+}
+
+TEST_F(ProbingCycles, AProbeThatTouchesAlreadyIsRefused) {
+  start(config(), [](const FakeDrive&) { return true; });
+  EXPECT_CONTAINS(refusal(goal(ProbeGoal::END_FACE, 0.005)), "jog refused: the probe touches already");
+}
+
 TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
   for (const std::size_t touch : {1U, 2U, 3U}) {
     touches_.clear();

@@ -11,7 +11,7 @@
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 
-#include <actionlib/client/simple_action_client.h>
+#include <actionlib/client/action_client.h>
 #include <std_msgs/Header.h>
 
 #include <cmath>
@@ -22,7 +22,8 @@ namespace flute_grinder {
 
 namespace {
 
-using ProbeClient = actionlib::SimpleActionClient<ProbeAction>;
+// SimpleActionClient loses an answer that comes before its sendGoal() returns.
+using ProbeClient = actionlib::ActionClient<ProbeAction>;
 
 const ros::WallDuration kAgain(0.05);  ///< between messages that this program is alive
 
@@ -53,12 +54,12 @@ ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
 }
 
 /// Waits for the end of a cycle. Ctrl-C and Ctrl-Z cancel it. @return whether the connection lasted.
-bool awaitCycle(ProbeClient& client, const StateWatch& watch) {
+bool awaitCycle(ProbeClient::GoalHandle& cycle, const StateWatch& watch) {
   bool canceled = false;
-  while (!client.getState().isDone()) {
+  while (cycle.getCommState() != actionlib::CommState::DONE) {
     if (watch.lost()) return false;
     if (!canceled && interrupts() + holds() > 0) {
-      client.cancelGoal();
+      cycle.cancel();
       canceled = true;
     }
     ros::WallDuration(0.002).sleep();
@@ -87,7 +88,7 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
   const ProbeGoal goal = goalOf(row, options);
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);
-  ProbeClient client(nh, "probe", false);
+  ProbeClient client(nh, "probe");
   ros::Publisher publisher = nh.advertise<std_msgs::Header>("probe_alive", 1);
   if (!await(kPatience,
              [&] { return watch.begun() && client.isServerConnected() && publisher.getNumSubscribers() > 0; })) {
@@ -100,9 +101,9 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
     header.stamp = ros::Time::now();
     publisher.publish(header);
   });
-  client.sendGoal(goal);
-  if (!awaitCycle(client, watch)) return fail(kLinkLost);
-  const ProbeResultConstPtr result = client.getResult();
+  ProbeClient::GoalHandle running = client.sendGoal(goal);
+  if (!awaitCycle(running, watch)) return fail(kLinkLost);
+  const ProbeResultConstPtr result = running.getResult();
   if (!result) return fail("probing: no result from the grinder " + nh.getNamespace());
   return printResult(*result, row.axis);
 }

@@ -62,6 +62,8 @@ class Checker {
       if (std::abs(*tooth.rake - asked) <= tolerance) continue;
       add(ReasonKind::kRake, section.x, number, Unit::kRadian, *tooth.rake, asked, tolerance);
     }
+    checkSpiral(section);
+    checkCore(section);
   }
 
   void checkRange(const std::optional<Range>& complete) {
@@ -96,6 +98,31 @@ class Checker {
   std::vector<core::Reason> take() { return std::move(reasons_); }
 
  private:
+  void checkSpiral(const GroundSection& section) {
+    const double tolerance = job_.cutter.spiral_tolerance;
+    for (std::size_t i = 0; i < section.teeth.size() && tolerance > 0; ++i) {
+      const ToothSection& tooth = section.teeth[i];
+      const int number = static_cast<int>(i);
+      const double asked = cutterOf(job_, number).spiral_angle;
+      if (!tooth.complete || !tooth.spiral || std::abs(*tooth.spiral - asked) <= tolerance) continue;
+      add(ReasonKind::kSpiral, section.x, number, Unit::kRadian, *tooth.spiral, asked, tolerance);
+    }
+  }
+
+  /// At an end of the flute where a core is asked.
+  void checkCore(const GroundSection& section) {
+    const CutterGeometry& c = job_.cutter;
+    const bool at_small_end = section.x == 0;
+    const double asked = at_small_end ? c.core_diameter : section.x == c.flute_length ? c.core_diameter_end : 0;
+    const double core = 2 * section.core_radius;
+    if (!(asked > 0 && c.core_tolerance > 0) || std::abs(core - asked) <= c.core_tolerance) return;
+    const std::size_t before = reasons_.size();
+    add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, c.core_tolerance);
+    if (reasons_.size() > before) {
+      reasons_.back().field = at_small_end ? "cutter.core_diameter" : "cutter.core_diameter_end";
+    }
+  }
+
   /// From a tooth to the one whose flute bounds its land [rad].
   double pitch(std::size_t tooth) const {
     const std::vector<double>& angles = job_.tooth_angles;

@@ -44,9 +44,8 @@ void waitForEnd(const sigset_t& signals) {
 
 /// Of the node and its drive.
 std::vector<std::string> services() {
-  std::vector<std::string> names{
-      "~set_feed_override", "~confirm_swivel",       "~jog_step", "~plan", "~set_offset",
-      "~touch_off",         "~hardware/inject_fault"};
+  std::vector<std::string> names{"~set_feed_override", "~confirm_swivel",       "~jog_step", "~plan", "~set_offset",
+                                 "~touch_off",         "~hardware/inject_fault"};
   for (const flute_grinder::EventRow& request : flute_grinder::kMachineEvents) {
     if (request.service) names.push_back(std::string("~") + request.service);
   }

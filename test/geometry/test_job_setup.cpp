@@ -154,6 +154,37 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
   EXPECT_EQ(planRefusal(solved(shipped("paper"))), "");
 }
 
+bool hasReason(const GrindJob& job, core::ReasonKind kind) {
+  const CutterCheck check = checkGroundCutter(job, groundCutterOf(job));
+  return std::any_of(check.reasons.begin(), check.reasons.end(), [&](const auto& r) { return r.kind == kind; });
+}
+
+// By the published motion the paper's cutter gets an edge of 26.8 to 27.9 deg and a core of 7.08 to 12.37 mm.
+TEST(JobSetup, EdgeAndCoresBeyondTheirTolerancesAreRefusedAndFound) {
+  GrindJob job = shipped("paper");
+  job.cutter.core_diameter = 6.8 * kMillimetre;
+  job.cutter.core_diameter_end = 12.05 * kMillimetre;
+  EXPECT_FALSE(hasReason(job, core::ReasonKind::kSpiral));
+  EXPECT_FALSE(hasReason(job, core::ReasonKind::kCoreSize));
+  job.cutter.spiral_tolerance = 3.5 * kDegree;
+  job.cutter.core_tolerance = 0.4 * kMillimetre;
+  EXPECT_FALSE(hasReason(job, core::ReasonKind::kSpiral));
+  EXPECT_FALSE(hasReason(job, core::ReasonKind::kCoreSize));
+  job.cutter.spiral_tolerance = 0.1 * kDegree;
+  job.cutter.core_tolerance = 0.01 * kMillimetre;
+  EXPECT_TRUE(hasReason(job, core::ReasonKind::kSpiral));
+  EXPECT_TRUE(hasReason(job, core::ReasonKind::kCoreSize));
+  const JobSetup setup = solved(job);
+  EXPECT_EQ(planRefusal(setup), "");
+  EXPECT_FALSE(hasReason(setup.job, core::ReasonKind::kSpiral));
+  EXPECT_FALSE(hasReason(setup.job, core::ReasonKind::kCoreSize));
+  EXPECT_NEAR(setup.job.process.setup_lead / kMillimetre, 11.847, 0.015);
+  const auto wrote = [&](const char* key) {
+    return std::any_of(setup.edits.begin(), setup.edits.end(), [&](const JobEdit& e) { return e.key == key; });
+  };
+  for (const char* key : {"process.setup.lead_mm", "process.depth_mm", "process.depth_end_mm"}) EXPECT_TRUE(wrote(key));
+}
+
 TEST(JobSetup, TheCoreIsGroundToAMicrometre) {
   for (const char* name : {"paper", "left_hand_d8_t3", "roughing_d10_t4", "unequal_d12_t4"}) {
     GrindJob job = shipped(name);

@@ -47,7 +47,10 @@ class ProbeTest(unittest.TestCase):
         # A host that stalls is not to count as a client that is gone, in simulated time.
         parameters['jog_timeout'] = 1.0
         parameters.update(changes)
-        parameters['hardware'].update(blank=blank, pace=5)
+        parameters['hardware'].update(pace=3)
+        parameters['hardware'].pop('blank', None)
+        if blank:
+            parameters['hardware']['blank'] = blank
         self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
         self.addCleanup(self.node.close)
         self.client = self.node.client()
@@ -174,28 +177,6 @@ class TestTouches(ProbeTest):
         self.assertFalse(result.offset_set)
         self.assertEqual(self.offset(X)['set_by'], None)
 
-    def test_nothing_there(self):
-        self.start()
-        self.bring_ball(12 * MM, 0)
-        done = self.grind('probe', 'end-face', '--job', JOB, '--within', '1')
-        self.assertEqual((done.returncode, done.stderr), (1, 'probing ended: nothing was touched over 1 mm\n'))
-        # Back where it began.
-        self.assertAlmostEqual(self.client.wait_rest()[X], 12 * MM - BALL_X, delta=1e-6)
-        self.assertEqual(self.offset(X)['set_by'], None)
-
-    def test_a_probe_that_touches_already(self):
-        self.start(dict(BLANK, end_face=-20 * MM, diameter=100 * MM))
-        self.assertIn('jog refused: the probe touches already', self.client.probe(1 * MM).message)
-
-    def test_touches_that_do_not_agree(self):
-        probing = gc.machine()['probing']
-        probing.update(slow=1.0, velocity=dict(probing['velocity'], axis_x=0.05),
-                       largest_spread=dict(probing['largest_spread'], axis_x=1e-9))
-        probing['back_off'] = dict(probing['back_off'], axis_x=4.013 * MM)
-        self.start(probing=probing)
-        self.bring_ball(12 * MM, 0)
-        self.assertRegex(self.client.probe(8 * MM).message, '^probing ended: the touches spread over .*; allowed: up to ')
-
     def test_a_contact_that_does_not_last_is_no_touch(self):
         """It comes and goes at the same place each time, so that the touches would agree."""
         self.start()
@@ -219,15 +200,7 @@ class TestTouches(ProbeTest):
 
     def test_goals_are_checked(self):
         self.start()
-        job = gc.goal_of(gc.SHORT)
-        for wrong, text in (({'cycle': 3}, 'cycle = 3; allowed: 0 to 2'), ({'within': 0}, 'within = 0'),
-                            ({'within': -1 * MM}, 'within = -0.001'), ({'within': math.nan}, 'within = nan'),
-                            ({'within': math.inf}, 'within = inf'), ({'cycle': ProbeGoal.TOOTH}, 'set_offset = false'),
-                            ({'set_offset': True}, 'allowed: '), ({'set_offset': True, 'job': job, 'flange': math.nan}, 'flange'),
-                            ({'set_offset': True, 'job': job, 'set_by': '\n'}, 'set_by has 1 characters')):
-            message = self.client.probe(**{'within': 1 * MM, **wrong}).message
-            self.assertRegex(message, '^probing refused: .*allowed: ')
-            self.assertIn(text, message)
+        self.assertEqual(self.client.probe(math.nan).message, 'probing refused: within = nan; allowed: finite, and above 0')
         self.assertIn('; allowed: up to 300 mm', self.client.probe(1.0).message)
         self.client.disable()
         self.assertIn('state disabled; allowed: ready', self.client.probe(1 * MM).message)
@@ -235,7 +208,7 @@ class TestTouches(ProbeTest):
     def test_a_machine_without_a_probe(self):
         geometry = gc.machine()['geometry']
         del geometry['probe']
-        self.start(geometry=geometry)
+        self.start(None, geometry=geometry)
         done = self.grind('probe', 'diameter')
         self.assertEqual((done.returncode, done.stderr),
                          (1, 'probing refused: the machine has no parameter geometry/probe\n'))

@@ -53,6 +53,8 @@ enum class ReasonKind : std::uint8_t {
   kCollision,   ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
   kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
   kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
+  kSpiral,      ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kCoreSize,    ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
 };
 
 /// The name is that of the message's constant, in small letters.
@@ -97,6 +99,8 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kCollision, "collision"}},
     {{ReasonKind::kSwivel, "swivel"}},
     {{ReasonKind::kUnevenRake, "uneven_rake"}},
+    {{ReasonKind::kSpiral, "spiral"}},
+    {{ReasonKind::kCoreSize, "core_size"}},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();

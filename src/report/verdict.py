@@ -80,7 +80,7 @@ def of_strokes(job_file, strokes, feed_limits, tolerances):
     deviation = Criterion('path deviation', 'µm', None, 0, job_file['interpolation']['tolerance_um'])
     following = Criterion('following error in strokes', 'µm', 2, 0, tolerances['following_error_um'])
     asked = job_file['process']['feed_mm_min']
-    feed = Criterion('feed held', 'mm/min', 1, asked, asked * tolerances['feed_percent'] / 100)
+    feed = Criterion('feed constancy', 'mm/min', 1, asked, asked * tolerances['feed_percent'] / 100)
     cutter = job_file['cutter']
     slowed = [limit for limit in feed_limits if limit['from_x_mm'] < cutter['flute_length_mm'] and limit['to_x_mm'] > 0
               or limit['to_x_mm'] < cutter['flute_length_mm'] and limit['from_x_mm'] > 0]

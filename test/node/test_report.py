@@ -606,14 +606,14 @@ class TestVerdict(ReportCase):
         self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
         self.assertEqual([(c['name'], c['result']) for c in data['criteria']], [
             ('path deviation', 'passed'), ('rake', 'passed'), ('core diameter', 'not asked'), ('land', 'passed'),
-            ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed held', 'passed'),
+            ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed constancy', 'passed'),
             ('late cycles', 'passed')])
 
     def test_each_tolerance_fails_what_is_beyond_it(self):
         data = self.judged()
         figures = {c['name']: c for c in data['criteria']}
         for key, name, percent in (('spiral_angle_deg', 'spiral angle', False), ('following_error_um', 'following error in strokes', False),
-                                   ('feed_percent', 'feed held', True)):
+                                   ('feed_percent', 'feed constancy', True)):
             off = abs(figures[name]['measured'] - figures[name]['asked'])
             off = 100 * off / figures[name]['asked'] if percent else off
             for share, result in ((0.99, 'failed'), (1.01, 'passed')):
@@ -663,7 +663,7 @@ class TestVerdict(ReportCase):
             with open(self.path('changed.json'), 'w') as file:
                 json.dump(record, file)
             found = self.judged(self.path('changed.json'), job=None, feed_percent=5)
-            self.assertEqual(self.result(found, 'feed held'), result, (from_x, to_x))
+            self.assertEqual(self.result(found, 'feed constancy'), result, (from_x, to_x))
 
     def test_record_of_a_drive_that_read_nan(self):
         with open(FILES['recording'].record) as file:
@@ -759,7 +759,7 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assertEqual(page.headings[0], 'paper.yaml')
         self.assertEqual(page.rows['rake'], ['8 ± 0.5 deg'])
         judged = {row[0]: row[4] for row in page.tables['Passed or failed']}
-        self.assertEqual((judged['rake'], judged['feed held']), ('not measured', 'failed'))
+        self.assertEqual((judged['rake'], judged['feed constancy']), ('not measured', 'failed'))
 
     def test_last_is_the_newest(self):
         environment = {**os.environ, 'HOME': FILES['folder']}

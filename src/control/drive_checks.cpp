@@ -52,7 +52,7 @@ std::optional<LoopFault> DriveChecks::findFeedbackFault(const CycleRecord& recor
   for (int i = 0; i < kAxisCount; ++i) {
     const double position = record.position[i];
     if (!std::isfinite(position)) return faultOf(FaultKind::kInvalidFeedback, position, 0, i);
-    const double error = std::abs(record.command_in_effect[i] - position);
+    const double error = record.followingError(i);
     const double allowed = config_.following_error[i];
     if (!(error <= allowed)) return faultOf(FaultKind::kFollowingError, error, allowed, i);
   }

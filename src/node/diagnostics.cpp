@@ -1,6 +1,6 @@
 #include "node/diagnostics.h"
 
-#include "node/cycle_figures.h"
+#include "flute_grinder/record/cycle_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -110,9 +110,7 @@ void Diagnostics::add(const CycleRecord& record) {
   if (!was_powered && isPowered(record.state)) fullest_ = 0;
   // The cycle that ends in a fault still shows its cause.
   if (was_powered || isPowered(record.state)) {
-    for (int i = 0; i < kAxisCount; ++i) {
-      keepLargest(following_error_[i], std::abs(record.command_in_effect[i] - record.position[i]));
-    }
+    for (int i = 0; i < kAxisCount; ++i) keepLargest(following_error_[i], record.followingError(i));
     addBuffer(record.drive);
   }
   if (record.has_setpoint) addSetpoint(record.setpoint, record.command);

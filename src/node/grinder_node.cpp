@@ -2,6 +2,7 @@
 
 #include "flute_grinder/drive/export_drive.h"
 #include "node/crash_guard.h"
+#include "node/machine_topic.h"
 #include "node/plugin_abi.h"
 
 #include <chrono>

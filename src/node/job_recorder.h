@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/record/job_record.h"
 #include "node/history.h"
-#include "node/job_record.h"
 #include "node/planner.h"
 
 #include <cstdint>

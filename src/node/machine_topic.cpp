@@ -1,6 +1,6 @@
 // The message has the name of a struct of core's, which must not be included here.
+#include "node/machine_topic.h"
 #include "flute_grinder/Machine.h"
-#include "node/machine_info.h"
 
 #include <algorithm>
 

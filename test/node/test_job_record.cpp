@@ -1,4 +1,4 @@
-#include "node/job_record.h"
+#include "flute_grinder/record/job_record.h"
 
 #include "control/fixtures.h"
 #include "flute_grinder/job/job_file.h"

@@ -7,6 +7,7 @@
 #include "flute_grinder/machine/swivel.h"
 #include "flute_grinder/motion/setpoint.h"
 
+#include <cmath>
 #include <cstdint>
 
 namespace flute_grinder {
@@ -38,6 +39,9 @@ struct CycleRecord {
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed
   double feed_override = 1;                ///< fraction
   std::uint64_t records_lost = 0;          ///< because the queue was full; counted since the loop started
+
+  /// How far an axis is from `command_in_effect`, from 0 [m], A [rad]; NaN if the drive read NaN. Real-time safe.
+  double followingError(int axis) const noexcept { return std::abs(command_in_effect[axis] - position[axis]); }
 };
 
 }  // namespace flute_grinder

@@ -5,7 +5,7 @@
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/plan/planned_job.h"
-#include "node/machine_info.h"
+#include "flute_grinder/record/machine_info.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,10 +1,10 @@
-#include "node/job_record.h"
+#include "flute_grinder/record/job_record.h"
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "node/cycle_figures.h"
+#include "flute_grinder/record/cycle_figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,7 +108,7 @@ void JobRecord::addToStroke(const Setpoint& setpoint, const CycleRecord& record)
   const ConicalCutter& cutter = program_->cutter(setpoint.tooth);
   keepLargest(stroke.deviation, std::abs(setpoint.path_error) * cutter.radius(x) * cutter.cosHelixToGeneratrix());
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    keepLargest(stroke.following_error[axis], std::abs(record.command_in_effect[axis] - record.position[axis]));
+    keepLargest(stroke.following_error[axis], record.followingError(axis));
   }
   if (setpoint.step != StepKind::kEven || !(x >= 0 && x <= cutter.geometry().flute_length)) return;
   stroke.min_feed = stroke.has_feed ? std::min(stroke.min_feed, setpoint.feed) : setpoint.feed;

@@ -1,4 +1,4 @@
-#include "node/machine_info.h"
+#include "flute_grinder/record/machine_info.h"
 
 #include "flute_grinder/control/loop_config.h"
 

@@ -2,8 +2,6 @@
 
 #include "flute_grinder/job/axes.h"
 
-#include <ros/ros.h>
-
 #include <string>
 
 namespace flute_grinder {
@@ -23,8 +21,5 @@ struct MachineInfo {
 
 /// @param drive type of the drive's plugin.
 MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
-
-/// Publishes it on `~machine`, latched for as long as the publisher is kept.
-ros::Publisher publishMachine(ros::NodeHandle private_nh, const MachineInfo& info);
 
 }  // namespace flute_grinder

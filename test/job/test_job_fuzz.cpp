@@ -144,11 +144,14 @@ GrindJob allowedJob(Dice& dice) {
   const double apex = -g.end_diameter / 2 / std::tan(g.cone_angle);
   const double close = 1 - dice.scaled(1e-15, 1);
   g.core_diameter = dice.once(2) ? g.end_diameter * dice.within(0, 0.99) : 0;
+  g.core_diameter_end = 0;
   g.flute_length = dice.scaled(0.1e-3, 3e-3);
   p.overtravel_shank = dice.within(0, 1e-3);
   p.overtravel_end = dice.within(0, 1e-3);
-  if (apex < 0) p.overtravel_end = std::min(-apex * close, 5e-3);
-  if (apex > 0) p.overtravel_shank = std::max(0.0, std::min(apex * close - g.flute_length, 5e-3));
+  p.setup_lead = dice.once(2) ? std::min(std::abs(apex), 5e-3) * dice.within(-0.5, 0.5) : 0;
+  const double closes = apex + (apex < 0 ? std::max(0.0, p.setup_lead) : std::min(0.0, p.setup_lead));
+  if (apex < 0) p.overtravel_end = std::min(-closes * close, 5e-3);
+  if (apex > 0) p.overtravel_shank = std::max(0.0, std::min(closes * close - g.flute_length, 5e-3));
   p.depth = dice.scaled(1e-6, g.end_diameter / 4);
   p.infeed = dice.once(4) ? p.depth / dice.below(4) : p.depth;
   p.finish_infeed = dice.once(3) ? p.depth * dice.within(0, 1) : 0;

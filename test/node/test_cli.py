@@ -397,7 +397,7 @@ COMMANDS = {
     'run': ['JOB', '--dry-run', '--continue', '--discard', '--offsets-are-right', '--csv', 'Ctrl-Z'],
     'report': ['FILE', '--output', '--job', '--machine', '--urdf'],
     'wheel': ['show', 'measure', 'dress'],
-    'zeros': ['JOB', '--stickout', '--flange', '--set', '--machine', '--urdf', '--json'],
+    'zeros': ['JOB', '--stickout', '--flange', '--set', '--machine', '--urdf', '--yes', '--json'],
     'probe': ['end-face', 'diameter', 'tooth'],
     'override': ['PERCENT', '0 to 120'],
     'confirm-swivel': ['DEG', '-90 to 90', 'swivel'],

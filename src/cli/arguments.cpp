@@ -18,6 +18,10 @@ void addCsv(CLI::App& command, std::string& csv, const char* description) {
 
 void addJson(CLI::App& command, bool& json) { command.add_flag("--json", json, "print only JSON"); }
 
+CLI::Option* addYes(CLI::App& command, bool& yes) {
+  return command.add_flag("--yes", yes, "do not ask before a change by more than the parameter offset_change_limit");
+}
+
 void addCountedJob(CLI::App& command, const char* name, int& number) {
   command.add_option(name, number, "which of a bag's jobs, counted from 1 (default: the last)")
       ->check([](const std::string& text) {

@@ -23,6 +23,9 @@ void addCsv(CLI::App& command, std::string& csv, const char* description);
 /// `--json`.
 void addJson(CLI::App& command, bool& json);
 
+/// `--yes`, in place of the question before a large change of a work offset.
+CLI::Option* addYes(CLI::App& command, bool& yes);
+
 /// Which of a bag's jobs, from 1. @param name of the option.
 void addCountedJob(CLI::App& command, const char* name, int& number);
 

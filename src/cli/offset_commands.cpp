@@ -12,10 +12,6 @@ namespace flute_grinder {
 
 namespace {
 
-void addYes(CLI::App& command, bool& yes) {
-  command.add_flag("--yes", yes, "set it even if it changes by more than the parameter offset_change_limit");
-}
-
 void addOffsets(Commands& commands) {
   const auto options = std::make_shared<OffsetsOptions>();
   auto& command = commands.add(

@@ -12,9 +12,12 @@
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <iostream>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -45,11 +48,26 @@ core::OffsetBasis basisFor(const std::string& job, OffsetMethod method) {
   return basis;
 }
 
-/// @param response of a call that failed with this status, or did not. @return the status.
-template <typename Response>
-int withHint(int status, const Response& response) {
-  if (status != 0 && response.large_change) std::fprintf(stderr, "--yes sets it all the same\n");
-  return status;
+/// Whether who sits at the terminal wants a large change. Without a terminal nobody is asked.
+bool confirmed() {
+  if (isatty(STDIN_FILENO) == 0) {
+    std::fprintf(stderr, "--yes sets it all the same\n");
+    return false;
+  }
+  std::fprintf(stderr, "Set it? [y/N] ");
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "y" || answer == "Y";
+}
+
+/// Prints why an offset was not set. @param set_it_all_the_same carried out if the change was only too large, and is
+/// confirmed. @return the exit status.
+template <typename Response, typename Set>
+int settle(const std::optional<Response>& response, const Set& set_it_all_the_same) {
+  if (!response) return 1;
+  if (response->success) return 0;
+  const int status = fail(response->message);
+  return response->large_change && confirmed() ? set_it_all_the_same() : status;
 }
 
 /// @param node resolved name.
@@ -114,7 +132,7 @@ int show(ros::NodeHandle& nh, bool json) {
 
 /// Fits the offsets to a job that can be computed from what they were set for.
 /// @return the exit status; 1 if an offset must be set anew.
-int fit(ros::NodeHandle& nh, const std::string& job) {
+int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
   const GrindGoal goal = goalFromFile(job);
   const std::optional<WorkOffsets> message = workOffsets(nh);
   if (!message) return noGrinder(nh);
@@ -124,8 +142,8 @@ int fit(ros::NodeHandle& nh, const std::string& job) {
     const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
     if (!misfit.change) {
       status = fail(misfit.reason + "; set it anew");
-    } else if (const int refused =
-                   setWorkOffset(nh, misfit.axis, was.value + *misfit.change, basisOf(goal, was.basis.method), true)) {
+    } else if (const int refused = setWorkOffset(nh, misfit.axis, was.value + *misfit.change,
+                                                 basisOf(goal, was.basis.method), large_change_ok)) {
       return refused;
     }
   }
@@ -141,8 +159,7 @@ int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::Offse
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
-  SetOffset::Response response;
-  return withHint(call<SetOffset>(nh, "set_offset", request, &response), response);
+  return settle(ask<SetOffset>(nh, "set_offset", request), [&] { return setWorkOffset(nh, axis, value, basis, true); });
 }
 
 std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh) {
@@ -168,7 +185,7 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
     const double value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
     if (const int status = setWorkOffset(nh, axis, value, basis, options.yes)) return status;
   }
-  const int fitted = options.fit.empty() ? 0 : fit(nh, options.fit);
+  const int fitted = options.fit.empty() ? 0 : fit(nh, options.fit, options.yes);
   const int shown = show(nh, options.json);
   return fitted != 0 ? fitted : shown;
 }
@@ -183,7 +200,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
   request.set_by = userAtHost();
-  request.basis = toMessage(basisFor(options.job, OffsetMethod::kTouchOff));
+  const core::OffsetBasis basis = basisFor(options.job, OffsetMethod::kTouchOff);
+  request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(options.yes);
   ros::NodeHandle nh(node);
   if (axis == kY) {
@@ -194,12 +212,14 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     if (!refused.empty()) return fail(refused);
     request.position = touchY(job, request.position);
   }
-  TouchOff::Response response;
-  const int status = withHint(call<TouchOff>(nh, "touch_off", request, &response), response);
-  if (status != 0) return status;
+  const std::optional<TouchOff::Response> response = ask<TouchOff>(nh, "touch_off", request);
+  // The value that was confirmed: the axis may have moved since.
+  if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
+    return status;
+  }
   const auto shown = [&](double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop, 9); };
   std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis, UnitSystem::kShop).c_str(),
-              shown(response.value).c_str(), shown(request.position).c_str());
+              shown(response->value).c_str(), shown(request.position).c_str());
   return 0;
 }
 

@@ -19,7 +19,7 @@ struct OffsetsOptions {
   std::vector<std::string> set;  ///< AXIS=VALUE, in mm or deg
   std::string job;               ///< job file, for which they are set
   std::string fit;               ///< job file, to which those that can be computed are fitted
-  bool yes = false;              ///< sets them even if they change by much
+  bool yes = false;              ///< sets them even if they change by much, without a question
   bool json = false;
 };
 
@@ -28,13 +28,14 @@ struct TouchOffOptions {
   std::string axis;          ///< a letter of kAxisLetters
   std::optional<double> at;  ///< of Y, diameter of the blank that the wheel touches; else the work position [mm or deg]
   std::string job;           ///< job file, for which the offset is set
-  bool yes = false;          ///< sets it even if it changes by much
+  bool yes = false;          ///< sets it even if it changes by much, without a question
 };
 
-/// Sets a work offset in the name of who runs this command.
+/// Sets a work offset in the name of who runs this command. A change beyond the parameter offset_change_limit is
+/// confirmed at the terminal; without one it is refused.
 /// @param nh the grinder's namespace.
 /// @param value [m], A [rad]. @param basis what it is set for.
-/// @param large_change_ok it may change by any amount. @return the exit status.
+/// @param large_change_ok it may change by any amount, and nobody is asked. @return the exit status.
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::OffsetBasis& basis, bool large_change_ok);
 
 /// The work offsets; nothing if the grinder does not tell them in time.

@@ -47,6 +47,7 @@ void addZeros(Commands& commands) {
   addMachine(command, options->parameters, options->urdf);
   // The machine is the one that runs.
   for (const char* file : {"--machine", "--urdf"}) set_flag->excludes(command.get_option(file));
+  addYes(command, options->yes)->needs(set_flag);
   addJson(command, options->json);
 }
 

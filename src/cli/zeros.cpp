@@ -72,7 +72,7 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!zero) return 1;
   const core::OffsetBasis basis = basisOf(goalFromFile(options.job), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
-    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, true)) return status;
+    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.yes)) return status;
   }
   printZero(*zero, options.json);
   return 0;

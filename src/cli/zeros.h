@@ -17,6 +17,7 @@ struct ZerosOptions {
   std::string parameters;           ///< YAML of the machine
   std::string urdf;
   bool set = false;  ///< by the grinder's own geometry, as its work offsets
+  bool yes = false;  ///< sets them even if they change by much, without a question
   bool json = false;
 };
 

@@ -128,9 +128,9 @@ def package_file(path):
     return rospkg.RosPack().get_path('flute_grinder') + '/' + path
 
 
-def grind(*arguments, timeout=PATIENCE):
+def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
     """Runs the command line to its end."""
-    return subprocess.run([program('grind'), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    return subprocess.run([program('grind'), *arguments], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           universal_newlines=True, timeout=timeout)
 
 

@@ -74,6 +74,14 @@ class OffsetsTest(unittest.TestCase):
     def grind(self, *arguments):
         return gc.grind('--node', self.client.name, *arguments)
 
+    def grind_answering(self, answer, *arguments):
+        """At a terminal, whose keyboard has typed the answer."""
+        keyboard, terminal = os.openpty()
+        self.addCleanup(os.close, keyboard)
+        self.addCleanup(os.close, terminal)
+        os.write(keyboard, answer.encode() + b'\n')
+        return gc.grind('--node', self.client.name, *arguments, stdin=terminal)
+
     def check_refused(self, answer, text):
         self.assertFalse(answer.success)
         self.assertIn(text, answer.message)
@@ -420,6 +428,30 @@ class TestCommandLine(OffsetsTest):
         self.assertAlmostEqual(values[X], self.rest[X] - 30 * MM, delta=1e-12)
         self.assertAlmostEqual(values[A], self.rest[A] - 30 * DEG, delta=1e-12)
         self.assertAlmostEqual(values[Z], self.rest[Z], delta=1e-12)
+
+    def test_terminal_is_asked_for_a_large_change(self):
+        job = gc.package_file('jobs/paper.yaml')
+        zeros = ('zeros', job, '--stickout', '62', '--flange', '2', '--set')
+        fit = ('offsets', '--fit', gc.job_file(os.path.join(self.folder, 'd40.yaml'), end_diameter_mm=40))
+        self.assertEqual(self.grind('offsets', '--set', 'x=0', '--set', 'y=4', '--job', job).returncode, 0)
+        # X, set for no job, remains to be set after the fit.
+        for command, axis, status in ((('offsets', '--set', 'x=12.3'), X, 0), (('touch-off', 'x', '--at', '30'), X, 0),
+                                      (fit, Y, 1), (zeros, X, 0)):
+            before = self.offsets()
+            refused = self.grind(*command)
+            self.assertEqual(refused.returncode, 1, command)
+            self.assertRegex(refused.stderr, r'would change by .*\n--yes sets it all the same\n')
+            for answer in ('n', '', 'yet'):
+                refused = self.grind_answering(answer, *command)
+                self.assertEqual(refused.returncode, 1, command)
+                self.assertRegex(refused.stderr, r'would change by .*\nSet it\? \[y/N\] ')
+            self.assertEqual(self.offsets().values, before.values)
+            done = self.grind_answering('y\ny\ny', *command)
+            self.assertEqual(done.returncode, status, done.stderr)
+            self.assertNotEqual(self.offsets().values[axis], before.values[axis], command)
+        self.assertEqual(self.grind('offsets', '--set', 'x=-40', '--yes').returncode, 0)
+        self.assertEqual(self.grind(*zeros, '--yes').returncode, 0)
+        self.assertEqual(self.grind('zeros', job, '--stickout', '62', '--flange', '2', '--yes').returncode, 2)
 
     def test_touch_off_y_on_a_blank(self):
         """The wheel's centre is then at (blank + worn wheel) / 2 from the axis, and Y = 0 is at (D1 + new wheel) / 2."""

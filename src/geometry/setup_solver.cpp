@@ -108,8 +108,8 @@ class Search {
 
     /// The least and the largest value, or the nearest ones if the asked one lies between them, and was jumped over.
     Ends around(double asked) const {
-      constexpr double kFar = std::numeric_limits<double>::infinity();
-      Ends all{kFar, -kFar}, nearest{-kFar, kFar};
+      constexpr double far = std::numeric_limits<double>::infinity();
+      Ends all{far, -far}, nearest{-far, far};
       for (const double value : values_) {
         all = {std::min(all.least, value), std::max(all.largest, value)};
         (value < asked ? nearest.least : nearest.largest) =

@@ -128,7 +128,8 @@ void FlatFile::refuseTheRest() {
     const std::string& key = entry.first;
     const std::string suggestion = error_count_ < kMaxReported ? didYouMean(key, known_) : "";
     if (!suggestion.empty()) {
-      fail(line(key), key + " is not a key of a " + kind_ + suggestion);
+      std::string text = key + " is not a key of a ";
+      fail(line(key), text.append(kind_).append(suggestion));
       continue;
     }
     const std::string section = key.substr(0, key.find('.') + 1);

@@ -1,4 +1,4 @@
-#include "network/peer_limits.h"
+#include "flute_grinder/network/peer_limits.h"
 
 #include "network/original_symbol.h"
 

@@ -3,8 +3,9 @@
 /// the answer of a publisher, and divides by a UDPROS datagram size that the peer chooses. These definitions override
 /// the library's own in the node's program.
 
+#include "flute_grinder/network/dropped_messages.h"
+#include "flute_grinder/network/peer_limits.h"
 #include "network/original_symbol.h"
-#include "network/peer_limits.h"
 
 #include <ros/connection.h>
 #include <ros/console.h>
@@ -18,7 +19,9 @@
 #include <cstring>
 #include <functional>
 #include <string>
+#include <vector>
 
+using flute_grinder::kDroppedHead;
 using flute_grinder::kMaxPeerMessage;
 using flute_grinder::originalSymbol;
 using XmlRpc::XmlRpcValue;
@@ -63,11 +66,18 @@ void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
   if (success) std::memcpy(&length, buffer.get(), sizeof length);
   if (length <= kMaxPeerMessage) return next(this, connection, buffer, size, success);
   const SubscriptionPtr subscription = parent_.lock();
-  ROS_WARN_STREAM("a message of " << length << " bytes on " << (subscription ? subscription->getName() : "a topic")
-                                  << " is dropped; allowed: " << kMaxPeerMessage << ": "
-                                  << connection->getRemoteString());
-  skip(connection, length,
-       [this] { connection_->read(sizeof length, [this](const auto&... read) { onMessageLength(read...); }); });
+  const std::string topic = subscription ? subscription->getName() : "a topic";
+  ROS_WARN_STREAM("a message of " << length << " bytes on " << topic << " is dropped; allowed: " << kMaxPeerMessage
+                                  << ": " << connection->getRemoteString());
+  const auto read_next = [this] {
+    connection_->read(sizeof length, [this](const auto&... read) { onMessageLength(read...); });
+  };
+  connection->read(kDroppedHead, [=](const ConnectionPtr& from, const boost::shared_array<std::uint8_t>& head,
+                                     std::uint32_t read, bool good) {
+    if (!good) return;
+    flute_grinder::reportDropped(topic, length, std::vector<std::uint8_t>(head.get(), head.get() + read));
+    skip(from, length - read, read_next);
+  });
 }
 
 /// Reads a header, a request, or a message of the announced length; drops the connection if that is too long.

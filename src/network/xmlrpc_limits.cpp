@@ -3,8 +3,8 @@
 /// parses nested values recursively until the stack overflows. These definitions override the library's own in the
 /// node's program.
 
+#include "flute_grinder/network/peer_limits.h"
 #include "network/original_symbol.h"
-#include "network/peer_limits.h"
 
 #include <unistd.h>
 #include <xmlrpcpp/XmlRpcServerConnection.h>

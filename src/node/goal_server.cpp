@@ -4,6 +4,8 @@
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
+#include "flute_grinder/network/dropped_messages.h"
+#include "flute_grinder/network/peer_limits.h"
 #include "node/plain_name.h"
 
 #include <utility>
@@ -77,7 +79,35 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
       nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
       [this](const GoalHandle& handle) { onCancel(handle); }, false);
   server_->start();
+  rejected_ = nh.advertise<GrindActionResult>("grind/result", 50);
+  dropped_topic_ = nh.resolveName("grind/goal");
+  setOnDropped(dropped_topic_, [this](std::uint32_t length, std::vector<std::uint8_t> head) {
+    rejectDropped(length, std::move(head));
+  });
   thread_.start();
+}
+
+GoalServer::~GoalServer() {
+  setOnDropped(dropped_topic_, {});
+  thread_.stop();
+}
+
+void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const {
+  GrindActionResult answer;
+  ros::serialization::IStream stream(head.data(), static_cast<std::uint32_t>(head.size()));
+  try {
+    std_msgs::Header header;
+    stream.next(header);
+    stream.next(answer.status.goal_id);
+  } catch (const ros::serialization::StreamOverrunException&) {
+    return;  // an id that is longer than any client's: the log has the message's length
+  }
+  answer.header.stamp = ros::Time::now();
+  answer.status.status = actionlib_msgs::GoalStatus::REJECTED;
+  answer.status.text = "a goal of " + std::to_string(length) + " bytes; allowed: " + std::to_string(kMaxPeerMessage) +
+                       "; give fewer teeth";
+  answer.result = result(GrindResult::INVALID_GOAL, answer.status.text);
+  rejected_.publish(answer);
 }
 
 void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -27,7 +28,7 @@ class GoalServer {
   /// @param the rest must outlive this object.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
              Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets);
-  ~GoalServer() { thread_.stop(); }
+  ~GoalServer();
 
   /// Whether there is a goal that has not ended. Thread safe.
   bool busy() const { return busy_; }
@@ -51,6 +52,8 @@ class GoalServer {
     ros::SteadyTime last_feedback{};  ///< while planning
   };
 
+  /// Answers a goal that was dropped for its length; in roscpp's network thread.
+  void rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const;
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const GrindGoal& goal, const std::string& digest) const;
@@ -86,6 +89,8 @@ class GoalServer {
   ros::SteadyTime last_cycle_;  ///< when that count was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
+  ros::Publisher rejected_;    ///< of goals that the action server never sees
+  std::string dropped_topic_;  ///< on which goals come
   ServedQueue thread_;
   ros::Publisher job_;  ///< the goal about to start; a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;

@@ -21,7 +21,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from actionlib_msgs.msg import GoalID
+from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
 from flute_grinder.srv import Plan, PlanRequest
 
@@ -354,11 +354,19 @@ class TestPeers(Attacked):
         goals.publish(goal)
         self.grinder.wait_for(lambda: [r.result.error_code for r in self.grinder.results if r.status.goal_id.id == 'next'] ==
                               [GrindResult.BUSY], 'the answer to the next goal')
+        # Too many teeth, under an id as clients make them.
+        many = gc.goal_of(gc.paper(tooth_angles=[i * 1e-5 for i in range(LONGEST_MESSAGE // 8 + 1)]))
+        goals.publish(GrindActionGoal(goal_id=GoalID(id='many'), goal=many))
+        answers = lambda: [r for r in self.grinder.results if r.status.goal_id.id == 'many']
+        self.grinder.wait_for(answers, 'the answer to a goal that is too long')
+        answer, = answers()
+        self.assertEqual((answer.status.status, answer.result.error_code), (GoalStatus.REJECTED, GrindResult.INVALID_GOAL))
+        self.assertRegex(answer.status.text, r'^a goal of 26\d{4} bytes; allowed: 262144; give fewer teeth$')
         cancels.publish(GoalID())
         self.assertEqual(self.run_.wait().status, 'PREEMPTED')
         self.assertEqual([publisher.get_num_connections() for publisher in (cancels, goals)], [1, 1])
         self.assertEqual(len(re.findall(r'a message of \d+ bytes on /attacked/grind/(?:cancel|goal) is dropped; allowed: 262144',
-                                        self.node.output)), 2)
+                                        self.node.output)), 3)
 
     def publisher(self, topic, kind):
         publisher = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)

@@ -589,11 +589,14 @@ def shipped_machine():
         return yaml.safe_load(text)
 
 
-def machine():
-    """The same on a host that may stall, without a blank that a jog would touch."""
+def machine(pace=1):
+    """The same on a host that may stall, without a blank that a jog would touch. Simulated time runs `pace` times as fast as the
+    clock; what a test interferes with in a stroke is then to have a feed that is as much lower."""
     with open(package_file('test/patient.yaml')) as text:
         parameters = dict(shipped_machine(), **yaml.safe_load(text))
     del parameters['hardware']['blank']
+    if pace != 1:
+        parameters['hardware']['pace'] = pace
     return parameters
 
 

@@ -5,16 +5,14 @@ back in use. What the control loop does, cycle by cycle, is shown in test/contro
 
 import unittest
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 import path_checks as checks
-from grinder_client import A, DEG, LIFT, MM, STROKE, X, Y, Z, grinder
+from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, X, Y, Z, grinder
 
 # Steep enough for every axis to move by more than its following error may be.
-STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM)
+STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, feed=120 * MM_MIN)
 STEEP_CLEAR = checks.Helix(STEEP).y(31 * MM) + 1 * MM
 
 # fault, joint: code and text of the result
@@ -95,7 +93,8 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertEqual([lifted[i] for i in (X, Z, A)], [at_reset[i] for i in (X, Z, A)])
         self.assertAlmostEqual(lifted[Y], STEEP_CLEAR, delta=1.01e-7)  # an encoder's count
         self.assertFalse(g.lift().success)
-        run = g.run(dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.clearance': 12 * MM}))
+        run = g.run(dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.clearance': 12 * MM,
+                              'process.feed': 600 * MM_MIN}))
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(run.setpoints[1].move, LIFT)
         self.assertEqual(checks.excesses(run.setpoints, g.limits(), g.period()), [])
@@ -113,8 +112,3 @@ class TestFaultAtRest(unittest.TestCase):
         self.assertFalse(reply.success)
         self.assertRegex(reply.message, r'^enable refused: the emergency stop is pressed')
         self.assertEqual(g.fresh_state().state, GrinderState.DISABLED)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_faults')
-    rostest.rosrun('flute_grinder', 'faults', '__main__')

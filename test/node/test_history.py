@@ -27,7 +27,7 @@ from grinder_client import DEG, EVEN, MM, MM_MIN, STROKE, UM, X, Y
 from test_diagnostics import Reports
 
 # Two unequal teeth of a cone in two passes; with time to interfere in a stroke, even on a host that stalls.
-FEED = 400  # mm/min
+FEED = 80  # mm/min
 JOB = gc.paper(flute_length=8 * MM, feed=FEED * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 2.0], infeed=0.3 * MM,
                cone_angle=8 * DEG)
 NAME = r'\d{8}T\d{6}\.\d{3}Z\.json'
@@ -76,7 +76,7 @@ class Kept(unittest.TestCase):
 
     @classmethod
     def start(cls):
-        cls.node = gc.NodeProcess(cls.name, dict(gc.machine(), history=cls.parameter, history_limit=float(cls.limit)))
+        cls.node = gc.NodeProcess(cls.name, dict(gc.machine(pace=5), history=cls.parameter, history_limit=float(cls.limit)))
         cls.grinder = cls.node.client()
 
     @classmethod

@@ -7,8 +7,6 @@ import itertools
 import math
 import unittest
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
@@ -16,7 +14,7 @@ import path_checks as checks
 from grinder_client import A, DEG, INFEED, LIFT, MM, MM_MIN, POSITION, STROKE, UM, X, Y, Z, grinder
 
 # Every axis moves in the stroke, and there is time to interfere.
-JOB = gc.paper(cone_angle=10 * DEG, feed=2000 * MM_MIN)
+JOB = gc.paper(cone_angle=10 * DEG, feed=400 * MM_MIN)
 HELIX = checks.Helix(JOB)
 END = 31 * MM
 CLEAR = HELIX.y(END) + 5 * MM
@@ -69,7 +67,7 @@ class TestInterference(unittest.TestCase):
         shown = g.wait_state(state)
         at = g.wait_rest()
         setpoints, feedback = len(cls.job_run.setpoints), len(cls.job_run.feedback)
-        positions = g.positions_over(0.2)
+        positions = g.positions_over(1)
         g.wait_for(lambda: len(cls.job_run.feedback) > feedback + 2, 'feedback')
         return {'state': shown, 'at': at, 'positions': positions, 'last': cls.job_run.last,
                 'new': len(cls.job_run.setpoints) - setpoints, 'fraction': cls.job_run.feedback[-1].stroke_fraction}
@@ -79,8 +77,9 @@ class TestInterference(unittest.TestCase):
 
     def test_states_follow_one_another(self):
         states = self.states[1:] if self.states[0] == 'ready' else self.states
-        self.assertEqual(states, ['starting', 'running', 'holding', 'held', 'retracting', 'retracted', 'resuming',
-                                  'running', 'ready'])
+        # It is holding for a few cycles only, which may not be published.
+        self.assertEqual([s for s in states if s != 'holding'],
+                         ['starting', 'running', 'held', 'retracting', 'retracted', 'resuming', 'running', 'ready'])
 
     def test_axes_rest_while_held_retracted_and_without_feed(self):
         for rest in (self.held, self.retracted, self.stopped):
@@ -152,10 +151,5 @@ class TestRefusals(unittest.TestCase):
         self.check_refused(('home', 'lift'), 'disabled', 'enable, disable, reset')
         self.assertTrue(g.enable().success)
         # So slow that it is under way for as long as it takes.
-        g.send(gc.paper(feed=100 * MM_MIN, clearance=0.5 * MM)).wait_in_stroke(-1 * MM)
+        g.send(gc.paper(feed=20 * MM_MIN, clearance=0.5 * MM)).wait_in_stroke(-1 * MM)
         self.check_refused(('enable',), 'running', 'disable, hold, cancel')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_hold_and_resume')
-    rostest.rosrun('flute_grinder', 'hold_and_resume', '__main__')

@@ -15,7 +15,7 @@ import path_checks as checks
 from grinder_client import DEG, MM, MM_MIN
 
 # Every axis moves in the stroke, and there is time for something to be lost.
-JOB = gc.paper(cone_angle=10 * DEG, flute_length=20 * MM, feed=1500 * MM_MIN)
+JOB = gc.paper(cone_angle=10 * DEG, flute_length=20 * MM, feed=300 * MM_MIN)
 
 NOT_HOMED = 'the axes are not homed'
 NO_SPINDLE = 'the spindle is not at speed'
@@ -23,9 +23,9 @@ NO_COOLANT = 'no coolant flows'
 
 
 class InterlockTest(unittest.TestCase):
-    def start(self, equipment, axes=(), **parameters):
+    def start(self, equipment, axes=(), pace=1, **parameters):
         """A node of its own with this equipment."""
-        parameters = dict(gc.machine(), **parameters)
+        parameters = dict(gc.machine(pace), **parameters)
         parameters['hardware'].update(equipment)
         for joint, values in dict(axes).items():
             parameters['hardware'][joint].update(values)
@@ -69,7 +69,7 @@ class TestLostInTheStroke(InterlockTest):
     def test_job_goes_on_after_spindle_and_coolant_and_not_after_the_reference(self):
         # Home is not far, so that it does not take long.
         axes = {joint: {'homing_velocity': 0.5} for joint in gc.JOINTS[:3]}
-        self.client = g = self.start({'spindle_run_up_time': 0.2}, axes)
+        self.client = g = self.start({'spindle_run_up_time': 0.2}, axes, pace=5)
         g.make_ready()
         run = g.send(JOB).wait_in_stroke(4 * MM)
         state = self.lose('spindle_lost', NO_SPINDLE)

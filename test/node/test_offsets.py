@@ -23,7 +23,7 @@ from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z
 # The job then stays within the machine's limits, and the cutter stands out of the collet, not in.
 OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
 # Time enough to do something in a stroke.
-SLOW = gc.paper(feed=300 * MM_MIN, clearance=1 * MM)
+SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # An encoder's count, and what is lost by rounding.
 COUNT = 2e-6
 
@@ -43,7 +43,7 @@ class OffsetsTest(unittest.TestCase):
     def start(self, environment=(), **changes):
         """Starts a node on the folder; each has a name of its own, since the master remembers those that were killed."""
         OffsetsTest.started += 1
-        parameters = gc.machine()
+        parameters = gc.machine(pace=5)
         parameters.update(journal=os.path.join(self.folder, 'journal'), offsets=self.file)
         parameters['hardware']['spindle_run_up_time'] = 0.0
         parameters['hardware'].update(changes)
@@ -141,7 +141,7 @@ class TestJob(OffsetsTest):
         self.client.send(SLOW).wait_in_stroke(3 * MM)
         self.node.end(signal.SIGKILL)
         at = self.client.positions()
-        hardware = gc.machine()['hardware']
+        hardware = gc.machine(pace=5)['hardware']
         self.start(**{joint: dict(hardware[joint], start_position=at[i]) for i, joint in enumerate(gc.JOINTS)})
         self.assertTrue(self.client.fresh_state().wheel_in_work)
         self.set_offsets([0, 0, 0, 0])
@@ -295,7 +295,7 @@ class TestRestart(OffsetsTest):
 
     def test_a_job_is_continued_with_its_own_offsets_only(self):
         self.set_offsets(OFFSETS)
-        job = gc.paper(flute_length=5 * MM, feed=600 * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 1.0])
+        job = gc.paper(flute_length=5 * MM, feed=120 * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 1.0])
         run = self.client.send(job).wait_past(lambda s: s.tooth == 1 and s.move == STROKE, 'the second tooth')
         run.cancel()
         run.wait()

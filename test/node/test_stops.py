@@ -34,14 +34,14 @@ ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
 # Takes a second or more.
 LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM)
 # Time enough to do something in a stroke.
-SLOW = gc.paper(feed=300 * MM_MIN, clearance=1 * MM)
+SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 
 ENDED_BY_CANCEL = ('PREEMPTED', 'RECALLED')
 
 
 def machine():
     """One that loses no time with its spindle, and plans whatever it is asked to."""
-    parameters = gc.machine()
+    parameters = gc.machine(pace=5)
     parameters['hardware']['spindle_run_up_time'] = 0.0
     parameters['max_job_duration'] = 1e9
     return parameters
@@ -135,7 +135,8 @@ class TestPlanning(NodeTest):
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
 
     def test_it_tells_how_far_it_is(self):
-        run = self.send_planning(LONG_TO_PLAN, dry_run=True)
+        # Not one whose plan the node has kept.
+        run = self.send_planning(dict(LONG_TO_PLAN, **{'process.feed': 0.9 * MM_MIN}), dry_run=True)
         run.wait()
         parts = [f.planned for f in run.feedback if f.state == 'planning']
         self.assertEqual(parts, sorted(parts))
@@ -229,7 +230,7 @@ class TestTheWayDown(NodeTest):
     def release_disk(self):
         os.remove(self.delay)
 
-    TWO_PASSES = gc.paper(flute_length=5 * MM, feed=1500 * MM_MIN, clearance=1 * MM, infeed=0.3 * MM)
+    TWO_PASSES = gc.paper(flute_length=5 * MM, feed=300 * MM_MIN, clearance=1 * MM, infeed=0.3 * MM)
 
     def test_cancel_does_not_wait_for_the_disk(self):
         self.start_on_slow_disk()
@@ -378,10 +379,7 @@ class TestTheEnd(NodeTest):
     """However the process ends, the axes stop on the path, where the loop lives."""
 
     def setUp(self):
-        parameters = machine()
-        # A stalled host is not late by 0.3 s.
-        parameters['late_cycle'] = {'slow_down': 300.0, 'fault': 300.0}
-        self.start(parameters).make_ready()
+        self.start(machine()).make_ready()
 
     def check_end(self, with_signal, status):
         run = self.send_into_stroke()
@@ -411,7 +409,10 @@ class TestTheEnd(NodeTest):
         self.assertEqual(told, {run.id})
 
     def test_frozen_loop_is_a_fault(self):
-        """The axes stay where the last setpoint was."""
+        """The axes stay where the last setpoint was. A stalled host does not freeze it for 0.3 s."""
+        parameters = gc.machine()
+        parameters['late_cycle'] = {'slow_down': 300.0, 'fault': 300.0}
+        self.start(parameters).make_ready()
         run = self.send_into_stroke()
         self.node.process.send_signal(signal.SIGSTOP)
         time.sleep(1)  # how late it is to be

@@ -15,14 +15,14 @@ from grinder_client import DEG, MM, MM_MIN
 
 WANTED = 31.769
 # Long enough for something to happen meanwhile.
-LONG = gc.paper(feed=1500 * MM_MIN)
+LONG = gc.paper(feed=300 * MM_MIN)
 TO_SET = 'set it to 31.769 deg and confirm it: grind confirm-swivel 31.769'
 
 
 class SwivelTest(unittest.TestCase):
     def start(self, swivel=None):
         """A node of its own, ready, with nothing confirmed."""
-        parameters = gc.machine()
+        parameters = gc.machine(pace=5)
         if swivel is not None:
             parameters['hardware']['swivel'] = swivel * DEG
         self.node = gc.NodeProcess('own_grinder', parameters)

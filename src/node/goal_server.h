@@ -89,10 +89,10 @@ class GoalServer {
   ros::SteadyTime last_cycle_;  ///< when that count was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
-  ros::Publisher rejected_;    ///< of goals that the action server never sees
   std::string dropped_topic_;  ///< on which goals come
-  ServedQueue thread_;
-  ros::Publisher job_;  ///< the goal about to start; a recorder may connect to its sender too late
+  ServedQueue thread_;         ///< whose queue those below take their callbacks from
+  ros::Publisher job_;         ///< the goal about to start; a recorder may connect to its sender too late
+  ros::Publisher rejected_;    ///< results of goals that the action server never sees
   std::unique_ptr<Server> server_;
 };
 

@@ -47,7 +47,7 @@ class ProbeTest(unittest.TestCase):
         # A host that stalls is not to count as a client that is gone, in simulated time.
         parameters['jog_timeout'] = 1.0
         parameters.update(changes)
-        parameters['hardware'].update(pace=3)
+        parameters['hardware'].update(pace=2)
         parameters['hardware'].pop('blank', None)
         if blank:
             parameters['hardware']['blank'] = blank

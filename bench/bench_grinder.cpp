@@ -115,7 +115,7 @@ BENCHMARK(planTool)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// Whether anything is hit in the whole paper job: the URDF read, and the closest place of all pairs of bodies found.
 void collision(benchmark::State& state) {
   std::ostringstream urdf;
-  urdf << std::ifstream(SOURCE_DIR "/urdf/grinder.urdf").rdbuf();
+  urdf << std::ifstream("urdf/grinder.urdf").rdbuf();
   const GrindJob job = paperJob(600);
   Machine clear = machine();
   clear.collision_clearance = 1e-3;
@@ -130,14 +130,14 @@ BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 
 /// What a plan measures of the ground cutter, for the paper's job and for one of four teeth with wear.
 void checkCutter(benchmark::State& state) {
-  const GrindJob job = state.range(0) == 0 ? paperJob(600) : readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  const GrindJob job = state.range(0) == 0 ? paperJob(600) : readJobFile("jobs/unequal_d12_t4.yaml");
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
 BENCHMARK(checkCutter)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
 
 /// The whole tool of `grind simulate`: four teeth with a flute each, or sharing one, in 60 sections of 64 rings.
 void simulateTool(benchmark::State& state) {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
   const bool shared = state.range(0) != 0;
   state.SetLabel(shared ? "same flutes" : "a flute each");
   job.process.wheel_wear_per_pass = shared ? 0 : 1e-6;

@@ -9,7 +9,7 @@ namespace flute_grinder {
 
 /// The paper's cutter, as in jobs/paper.yaml, at a feed of its own.
 inline GrindJob paperJob(double feed_mm_min, EvenStepRule rule = EvenStepRule::kPublished) {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  GrindJob job = readJobFile("jobs/paper.yaml");
   job.process.feed = feed_mm_min * units::kMillimetrePerMinute;
   job.interpolation.even_step = rule;
   return job;

@@ -7,7 +7,7 @@
 namespace flute_grinder {
 
 inline std::string shippedUrdf() {
-  std::ifstream file(SOURCE_DIR "/urdf/grinder.urdf");
+  std::ifstream file("urdf/grinder.urdf");
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

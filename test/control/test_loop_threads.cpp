@@ -81,7 +81,7 @@ class LoopThreads : public testing::Test {
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
   }
 
-  const GrindJob job_ = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  const GrindJob job_ = readJobFile("jobs/paper.yaml");
   FakeDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
   std::atomic<bool> busy_{true}, cycling_{true};

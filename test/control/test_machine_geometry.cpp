@@ -22,7 +22,7 @@ namespace test_machine_geometry {
 const double kDegree = std::acos(-1.0) / 180;
 
 urdf::Model urdfModel() {
-  std::ifstream file(SOURCE_DIR "/urdf/grinder.urdf");
+  std::ifstream file("urdf/grinder.urdf");
   std::ostringstream text;
   text << file.rdbuf();
   urdf::Model model;
@@ -32,7 +32,7 @@ urdf::Model urdfModel() {
 
 /// Of config/grinder.yaml.
 MachineGeometry shippedGeometry() {
-  const YAML::Node node = YAML::LoadFile(SOURCE_DIR "/config/grinder.yaml")["geometry"];
+  const YAML::Node node = YAML::LoadFile("config/grinder.yaml")["geometry"];
   MachineGeometry geometry;
   geometry.work_axis_y = node["work_axis"]["y"].as<double>();
   geometry.work_axis_z = node["work_axis"]["z"].as<double>();
@@ -43,7 +43,7 @@ MachineGeometry shippedGeometry() {
   return geometry;
 }
 
-GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 /// Where a link stands in the root's frame.
 Eigen::Isometry3d poseOf(const urdf::Model& model, const std::string& name,

@@ -21,7 +21,7 @@ using core::ReasonKind;
 using units::kDegree;
 using units::kMillimetre;
 
-GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 /// A machine on which every shipped job can be planned.
 Machine roomyMachine() {
@@ -61,7 +61,7 @@ GrindJob cylinder(double swivel_deg) {
 
 TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
     SCOPED_TRACE(entry.path());
     const GrindJob job = readJobFile(entry.path());
     const CutterCheck check = checked(job);

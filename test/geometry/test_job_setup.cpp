@@ -21,7 +21,7 @@ using units::kMillimetre;
 
 constexpr Range kMachine{-60 * kDegree, 60 * kDegree};
 
-GrindJob shipped(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob shipped(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 JobSetup solved(const GrindJob& job, std::optional<SetupFigure> keep = std::nullopt) {
   const auto result = solveJobSetup(job, kMachine, keep);
@@ -58,7 +58,7 @@ const JobEdit* editOf(const JobSetup& setup, const std::string& key) {
 // Rounded to what is written, the rake is off by as much at both ends as between them, from the smallest cutter to the
 // largest.
 TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
-  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
     const GrindJob job = readJobFile(entry.path());
     const JobSetup setup = solved(job);
     const double asked = job.cutter.rake_angle / kDegree, length = job.cutter.flute_length;

@@ -27,7 +27,7 @@ using units::kMillimetre;
 constexpr double kRounding =
     1e-7;  ///< and the precision of a search, which sees a mirror image from its other end [m], [rad]
 
-GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 /// The job in the mirror that turns Z round. The first tooth stays the first, the others change their order.
 GrindJob mirrored(GrindJob job) {

@@ -26,7 +26,7 @@ using units::kPi;
 
 constexpr double kNearly = 1e-6;  ///< [rad]
 
-GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 /// A ball at a distance and an angle about the axis.
 struct Ball {

@@ -46,7 +46,7 @@ Error errorOf(int pass, MoveKind move, const Axes& error) {
 
 /// One tooth of the shipped roughing cutter in six passes: 0.4 to 1.6 mm, then a finishing pass and a spark-out.
 GrindJob roughing() {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/roughing_d10_t4.yaml");
+  GrindJob job = readJobFile("jobs/roughing_d10_t4.yaml");
   job.tooth_angles = {0};
   job.process.wheel_wear_per_pass = 0;
   job.process.feed *= 3;
@@ -224,7 +224,7 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
 
 // Its walls are so curved that a shallower pass lies far inside of them, but beyond their tangent.
 TEST(Gouges, AShallowerPassIsNone) {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/left_hand_d8_t3.yaml");
+  GrindJob job = readJobFile("jobs/left_hand_d8_t3.yaml");
   job.tooth_angles = {0};
   EXPECT_TRUE(gougesOf(job, recordOf(job, kExact), 1e-6).empty());
   EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);

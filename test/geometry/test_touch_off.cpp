@@ -23,7 +23,7 @@ constexpr double kMicron = 1e-6;
 const double kEdge = 1.5 * kMillimetre * std::cos(31.769 * kDegree);  ///< above the middle of the wheel
 
 /// A wheel of 3 mm at a height of 2.788 mm, by its swivel of 31.769 deg.
-GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
 
 GrindJob worn() {
   GrindJob job = paper();
@@ -203,9 +203,9 @@ MachineGeometry machine() {
 }
 
 TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/unequal_d12_t4.yaml");
+  GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
   const MachineGeometry m = machine();
-  const auto above = wheelAboveSwivel(SOURCE_DIR "/jobs/unequal_d12_t4.yaml", job, m);
+  const auto above = wheelAboveSwivel("jobs/unequal_d12_t4.yaml", job, m);
   ASSERT_TRUE(above);
   EXPECT_NEAR(*above / kMillimetre, 23.5 - 2 - 1.5, 1e-9);
   for (const double swivel : {38.734, -55.0, 0.0}) {
@@ -221,7 +221,7 @@ TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
 }
 
 TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
-  EXPECT_FALSE(wheelAboveSwivel(SOURCE_DIR "/jobs/paper.yaml", paper(), machine()));
+  EXPECT_FALSE(wheelAboveSwivel("jobs/paper.yaml", paper(), machine()));
 }
 
 }  // namespace test_touch_off

@@ -21,7 +21,7 @@ namespace test_job_edit {
 
 using Edits = std::vector<JobEdit>;
 
-constexpr const char* kName = SOURCE_DIR "/jobs/job.yaml";  // where a wheel file is relative to
+constexpr const char* kName = "jobs/job.yaml";  // where a wheel file is relative to
 
 std::string readText(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -33,7 +33,7 @@ std::string readText(const std::filesystem::path& path) {
 
 std::vector<std::string> shippedJobs() {
   std::vector<std::string> texts;
-  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) texts.push_back(readText(entry));
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) texts.push_back(readText(entry));
   return texts;
 }
 

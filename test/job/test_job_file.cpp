@@ -94,7 +94,7 @@ bool hasLineWith(const std::string& text, const std::vector<std::string>& parts)
 }
 
 TEST(JobFile, ReadsThePapersJob) {
-  const GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  const GrindJob job = readJobFile("jobs/paper.yaml");
   EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.01);
   EXPECT_DOUBLE_EQ(job.cutter.cone_angle, kPi / 36);
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, kPi / 6);
@@ -617,9 +617,7 @@ TEST_F(JobFileOnDisk, ThatIsMissing) {
   EXPECT_EQ(fileErrorOf(path_), path_ + ": cannot be read: No such file or directory");
 }
 
-TEST_F(JobFileOnDisk, ThatIsAFolder) {
-  EXPECT_EQ(fileErrorOf(SOURCE_DIR "/jobs"), SOURCE_DIR "/jobs: cannot be read: Is a directory");
-}
+TEST_F(JobFileOnDisk, ThatIsAFolder) { EXPECT_EQ(fileErrorOf("jobs"), "jobs: cannot be read: Is a directory"); }
 
 TEST_F(JobFileOnDisk, ThatIsEmpty) {
   std::ofstream(path_).close();

@@ -29,11 +29,11 @@ void expectSameBits(const GrindJob& job) {
   EXPECT_EQ(jobDigest(back), jobDigest(job));
 }
 
-GrindJob paper() { return readJobFile(SOURCE_DIR "/jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
 
 TEST(JobJson, OfEveryShippedJobIsTheSameJob) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
     SCOPED_TRACE(entry.path());
     expectSameBits(readJobFile(entry.path()));
     ++jobs;

@@ -13,7 +13,7 @@
 namespace flute_grinder {
 namespace test_offset_basis {
 
-const std::string kJob = SOURCE_DIR "/jobs/unequal_d12_t4.yaml";
+const std::string kJob = "jobs/unequal_d12_t4.yaml";
 
 TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   const core::OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kProbe);
@@ -24,7 +24,7 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   EXPECT_EQ(basis.wheel_diameter, 0.1);
   EXPECT_EQ(basis.wheel_width, 0.003);
   EXPECT_TRUE(basis.hasJob());
-  EXPECT_EQ(goalFromFile(SOURCE_DIR "/jobs/paper.yaml").wheel_name, "");
+  EXPECT_EQ(goalFromFile("jobs/paper.yaml").wheel_name, "");
 }
 
 /// The job that asks for nothing but what its wheel is.

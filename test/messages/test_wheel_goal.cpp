@@ -14,7 +14,7 @@ namespace flute_grinder {
 namespace test_wheel_goal {
 
 std::string withKeys(const std::string& job, const std::string& file, const std::string& keys) {
-  std::ifstream stream(SOURCE_DIR "/jobs/" + job + ".yaml");
+  std::ifstream stream("jobs/" + job + ".yaml");
   std::ostringstream text;
   text << stream.rdbuf();
   std::string changed = text.str();
@@ -24,7 +24,7 @@ std::string withKeys(const std::string& job, const std::string& file, const std:
 }
 
 void expectSame(const std::string& job, const std::string& file, const std::string& keys) {
-  const GrindJob named = readJobFile(SOURCE_DIR "/jobs/" + job + ".yaml");
+  const GrindJob named = readJobFile("jobs/" + job + ".yaml");
   const GrindJob own = parseJob(withKeys(job, file, keys), "own.yaml");
   EXPECT_TRUE(goalFromJob(named) == goalFromJob(own));
   EXPECT_EQ(jobDigest(named), jobDigest(own));

@@ -99,7 +99,7 @@ TEST_F(ProbingCycles, EndFaceGivesTheStickOutAndXOfTheJob) {
   ProbeGoal probe = goal(ProbeGoal::END_FACE, 0.005);
   probe.set_offset = 1;
   probe.flange = 0.002;
-  probe.job = goalFromJob(readJobFile(SOURCE_DIR "/jobs/paper.yaml"));
+  probe.job = goalFromJob(readJobFile("jobs/paper.yaml"));
   ASSERT_EQ(goalRefusal(probe), "");
   const double offset = run(probe);
   ASSERT_EQ(result_.figures.size(), 2U);
@@ -189,7 +189,7 @@ TEST_F(ProbingCycles, GoalsThatAreWrongAreRefused) {
   EXPECT_CONTAINS(goalRefusal(good), "diameter = 0");
   good.diameter = 0.01;
   EXPECT_CONTAINS(goalRefusal(good), "allowed: ");  // without a job
-  good.job = goalFromJob(readJobFile(SOURCE_DIR "/jobs/paper.yaml"));
+  good.job = goalFromJob(readJobFile("jobs/paper.yaml"));
   EXPECT_EQ(goalRefusal(good), "");
   good.flange = std::nan("");
   EXPECT_EQ(goalRefusal(good), "flange = nan; allowed: finite");

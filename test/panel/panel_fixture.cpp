@@ -126,8 +126,9 @@ void Panel::picture(const std::string& name) {
   std::string wrong;
   const auto looksGood = [&] { return (wrong = wrongs(*panel_)).empty(); };
   EXPECT_TRUE(QTest::qWaitFor(looksGood, kPatience)) << wrong;
-  QDir().mkpath(SCREENSHOTS);
-  EXPECT_TRUE(panel_->grab().save(QString(SCREENSHOTS "/panel_%1.png").arg(QString::fromStdString(name))));
+  const QString folder = qEnvironmentVariable("SCREENSHOTS", "screenshots");
+  QDir().mkpath(folder);
+  EXPECT_TRUE(panel_->grab().save(folder + "/panel_" + QString::fromStdString(name) + ".png"));
 }
 
 }  // namespace flute_grinder

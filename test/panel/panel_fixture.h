@@ -53,7 +53,8 @@ class Panel {
   /// Those of the requests whose buttons are enabled.
   Names enabledRequests();
 
-  /// Looks for what is wrong with the picture of the panel, and keeps it as build/screenshots/panel_NAME.png.
+  /// Looks for what is wrong with the picture of the panel, and keeps it as panel_NAME.png in the folder SCREENSHOTS of
+  /// the environment.
   void picture(const std::string& name);
 
  private:

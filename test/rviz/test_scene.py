@@ -37,7 +37,7 @@ HELIX = checks.Helix(JOB)
 DEPTHS = [0.3 * MM, 0.5 * MM]
 FIELD_OF_VIEW = 0.7853981  # [rad]
 HELD = 2  # the tooth in whose last pass the job is held
-PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
+PICTURES = os.environ['SCREENSHOTS']
 TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
 
 class Rviz:

@@ -23,7 +23,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr std::uint32_t kMaxBytes = 3000000;
 
-GrindJob jobOf(const std::string& name) { return readJobFile(SOURCE_DIR "/jobs/" + name + ".yaml"); }
+GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 std::vector<Marker> solidOf(const MarkerArray& array, const std::string& ns) {
   std::vector<Marker> found;
@@ -53,7 +53,7 @@ void expectFit(const GrindJob& job) {
 }
 
 TEST(GroundMarkers, OfEveryJobFitAMessage) {
-  for (const auto& file : std::filesystem::directory_iterator(SOURCE_DIR "/jobs")) {
+  for (const auto& file : std::filesystem::directory_iterator("jobs")) {
     SCOPED_TRACE(file.path());
     expectFit(readJobFile(file.path()));
   }

@@ -19,8 +19,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 GrindProgram program() {
-  return GrindProgram(readJobFile(SOURCE_DIR "/jobs/paper.yaml"), test_support::plainMachine(),
-                      test_support::plainMachine().park);
+  return GrindProgram(readJobFile("jobs/paper.yaml"), test_support::plainMachine(), test_support::plainMachine().park);
 }
 
 /// What a drive must never say, and may all the same.
@@ -134,7 +133,7 @@ TEST(PathMarkers, AreLinesOfAWidth) {
 }
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
-  GrindJob job = readJobFile(SOURCE_DIR "/jobs/paper.yaml");
+  GrindJob job = readJobFile("jobs/paper.yaml");
   job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
   job.process.depth = job.process.infeed = 0.01e-3;
   const MarkerArray array =

@@ -84,11 +84,11 @@ void FeedLaw::follow(int segment) noexcept {
   acceleration_ = state.acceleration;
 }
 
-std::uint64_t FeedLaw::skipCruise(double dt, double margin) noexcept {
+std::uint64_t FeedLaw::skipCruise(double dt, double margin, std::uint64_t at_most) noexcept {
   if (!cruising() || time_ < segments_[segment_].start_time + margin) return 0;
   const double end = segment_ + 1 < segment_count_ ? segments_[segment_ + 1].start_time : end_time_;
   std::uint64_t count = 0;
-  for (; time_ + 2 * dt < end - 2 * margin; count += 2) {
+  for (; count + 2 <= at_most && time_ + 2 * dt < end - 2 * margin; count += 2) {
     // One by one, to round as advance() does.
     time_ += dt;
     time_ += dt;

@@ -137,6 +137,9 @@ class ShapePlanner {
 
   /// The jerk at a setpoint comes from the three pairs before it too.
   static constexpr std::uint64_t kReach = 6;
+  /// Left out at a time [cycles], some microseconds: a move of hours can be given up too, and ends with the longest
+  /// job.
+  static constexpr std::uint64_t kMostSkipped = 4096;
   /// What is generated of the end of a move: setpoints to compare with, and as many to check [cycles].
   static constexpr double kEnd = 2 * kReach;
 
@@ -157,7 +160,7 @@ class ShapePlanner {
 
   void skipCruise(const Setpoint& p) {
     if (cycles_ <= kReach || to_recall_ > 0) return;
-    const std::uint64_t count = stream_.skipCruise(kReach);
+    const std::uint64_t count = stream_.skipCruise(kReach, kMostSkipped);
     if (count > 0) skipped(p, count);
   }
 

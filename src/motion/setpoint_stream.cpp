@@ -128,9 +128,9 @@ void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noe
   }
 }
 
-std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles) noexcept {
+std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles, std::uint64_t at_most) noexcept {
   if (current_.move == MoveKind::kStroke) return 0;
-  const std::uint64_t count = law_.skipCruise(period_, static_cast<double>(cycles) * period_);
+  const std::uint64_t count = law_.skipCruise(period_, static_cast<double>(cycles) * period_, at_most);
   if (count == 0) return 0;
   current_.cycle += count;
   current_.position = from_ + way_ * law_.position();

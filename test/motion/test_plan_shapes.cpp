@@ -145,16 +145,21 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
   }
 }
 
-// A plan that is not of all setpoints is watched too.
-TEST(PlanShapes, AreGivenUp) {
+// A plan that is not of all setpoints is watched too, in a stroke and in a rapid of months.
+class PlanShapesGivenUp : public ::testing::TestWithParam<double> {};
+
+TEST_P(PlanShapesGivenUp, Are) {
   Work work{paperJob(), plainMachine(), plainMachine().park};
   work.job.process.feed /= 3;
+  work.start[kX] = work.machine.limits.min_position[kX] = GetParam();
+  work.machine.max_job_duration = 1e9;
   int looks = 0;
   const JobPlan plan = planJob(work.job, work.machine, work.start, {}, {}, [&](double) { return ++looks < 2; });
   EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
   EXPECT_EQ(looks, 2);
   EXPECT_EQ(textOf(plan), "given up while it was planned\n");
 }
+INSTANTIATE_TEST_SUITE_P(FromAnywhere, PlanShapesGivenUp, ::testing::Values(-1, -1e9));
 
 }  // namespace test_plan_shapes
 }  // namespace flute_grinder

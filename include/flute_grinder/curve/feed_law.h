@@ -49,8 +49,9 @@ class FeedLaw {
 
   /// Where the motion has run at the target speed for `margin` [s], and does so for longer than twice that: advances in
   /// pairs of `dt` [s] for as long as it is more than twice `margin` to the end of the target speed.
+  /// @param at_most how often it may advance by `dt`.
   /// @return the number of times that it advanced by `dt`.
-  std::uint64_t skipCruise(double dt, double margin) noexcept;
+  std::uint64_t skipCruise(double dt, double margin, std::uint64_t at_most) noexcept;
 
   double position() const noexcept { return position_; }  ///< from the start of the motion
   double speed() const noexcept { return speed_; }        ///< never negative, except by rounding

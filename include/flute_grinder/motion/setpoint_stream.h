@@ -94,8 +94,9 @@ class SetpointStream {
 
   /// Between two pairs of a straight move that runs at its speed, and has done so for some cycles: leaves out the
   /// setpoints up to twice as many cycles before the end of that.
+  /// @param at_most how many setpoints may be left out.
   /// @return the number of setpoints left out; 0 at any other time.
-  std::uint64_t skipCruise(std::uint64_t cycles) noexcept;
+  std::uint64_t skipCruise(std::uint64_t cycles, std::uint64_t at_most) noexcept;
 
  private:
   /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.

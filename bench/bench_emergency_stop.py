@@ -74,7 +74,7 @@ def main():
     recorder = hal_bench.Recorder()
     rospy.init_node('bench_emergency_stop')
     button = Button()
-    node = hal_bench.Node()
+    node = hal_bench.Node(buffer=None)
     grinder = gc.Grinder()
     print('%-8s %-12s %8s %11s %11s %14s' % ('cores', 'emerg. stop', 'presses', 'median', 'largest', 'ended before'))
     for cores in ('idle', 'loaded'):

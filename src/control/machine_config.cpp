@@ -142,7 +142,7 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   LoopConfig config;
   config.name = model.getName();
   config.machine.period = 1 / p.number("control_rate", 10, 20000);
-  config.feedback_timeout = p.number("feedback_timeout", 0, 1);
+  config.feedback_timeout = p.number("feedback_timeout", 0, 10);
   config.enable_timeout = p.number("enable_timeout", 0, 60);
   config.homing_timeout = p.number("homing_timeout", 0, 3600);
   config.spindle_timeout = p.number("spindle_timeout", 0, 600);

@@ -56,8 +56,8 @@ XmlRpcValue toXmlRpc(const YAML::Node& node) {
   return value;
 }
 
-std::string packageUrdf() { return fileText(SOURCE_DIR "/urdf/grinder.urdf"); }
-XmlRpcValue packageParameters() { return toXmlRpc(YAML::Load(fileText(SOURCE_DIR "/config/grinder.yaml"))); }
+std::string packageUrdf() { return fileText("urdf/grinder.urdf"); }
+XmlRpcValue packageParameters() { return toXmlRpc(YAML::Load(fileText("config/grinder.yaml"))); }
 
 LoopConfig read(const std::string& urdf, const XmlRpcValue& parameters) {
   return readMachineConfig(urdf, ParameterReader(parameters, "/grinder"));
@@ -355,7 +355,7 @@ constexpr std::size_t kMachineNumbers = 23;  ///< that are no axis' own; they co
 
 std::vector<Number> numbers() {
   std::vector<Number> all{{"control_rate", "10 to 20000", false, false},
-                          {"feedback_timeout", "0 to 1", true, false},
+                          {"feedback_timeout", "0 to 10", true, false},
                           {"enable_timeout", "0 to 60", true, false},
                           {"homing_timeout", "0 to 3600", true, false},
                           {"spindle_timeout", "0 to 600", true, false},
@@ -417,7 +417,7 @@ std::vector<BadParameter> badParameters() {
   }
   add("too_slow", "control_rate", XmlRpcValue(9.5), {"/grinder/control_rate = 9.5", "allowed: 10 to 20000"});
   add("too_fast", "control_rate", XmlRpcValue(20001), {"/grinder/control_rate = 20001", "allowed: 10 to 20000"});
-  add("too_long", "feedback_timeout", XmlRpcValue(1.5), {"/grinder/feedback_timeout = 1.5", "allowed: 0 to 1"});
+  add("too_long", "feedback_timeout", XmlRpcValue(10.5), {"/grinder/feedback_timeout = 10.5", "allowed: 0 to 10"});
   add("too_long", "enable_timeout", XmlRpcValue(61), {"/grinder/enable_timeout = 61", "allowed: 0 to 60"});
   add("too_long", "homing_timeout", XmlRpcValue(3601), {"/grinder/homing_timeout = 3601", "allowed: 0 to 3600"});
   add("too_long", "spindle_timeout", XmlRpcValue(601), {"/grinder/spindle_timeout = 601", "allowed: 0 to 600"});

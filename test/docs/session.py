@@ -108,7 +108,7 @@ class Session:
         own = re.search(r' config:=(\S+)', command)
         config = pathlib.Path(own.group(1).replace('$HOME', str(self.home))) if own else ROOT / 'config/grinder.yaml'
         path = self.folder / ('machine_%d.yaml' % len(self.launched))
-        path.write_text(re.sub(r'(?m)^late_cycle:.*', '', config.read_text()) + (ROOT / 'test/patient.yaml').read_text())
+        path.write_text(re.sub(r'(?m)^(late_cycle|jog_timeout):.*', '', config.read_text()) + (ROOT / 'test/patient.yaml').read_text())
         command = command.replace(own.group(), '') if own else command
         if self.in_hal:
             command += ' hal_config:=%s' % (ROOT / 'test/hal/patient.yaml')

@@ -3,6 +3,7 @@ the grinder that a test may stop, kill and start anew."""
 
 import collections
 import ctypes
+import functools
 import os
 import signal
 import subprocess
@@ -31,6 +32,10 @@ class Datum(ctypes.Union):
 
 class Stream(ctypes.Structure):
     _fields_ = [('component', ctypes.c_int), ('memory', ctypes.c_int), ('fifo', ctypes.c_void_p)]
+
+
+# Of the drive [s]: longer than a host stalls.
+BUFFER = 0.5
 
 
 class Recorder:
@@ -65,6 +70,12 @@ class Recorder:
         first = self.now()
         gc.poll(lambda: len(self.read()) >= first + cycles, '%d servo cycles' % cycles)
         return self.rows[first:first + cycles]
+
+
+@functools.lru_cache(None)
+def recorder():
+    """That of the process, since a row is read but once."""
+    return Recorder()
 
 
 def halcmd(*words):
@@ -106,13 +117,15 @@ def parameters(**hardware):
 
 
 class Node:
-    """A grinder's node on HAL. Longer than shipped (None), the time-outs let a host that stalls not end a test."""
+    """A grinder's node on HAL. Longer than shipped (None), buffer and time-outs let a host that stalls not end a test."""
 
-    def __init__(self, name='grinder', prefix=(), feedback_timeout=1, **hardware):
+    def __init__(self, name='grinder', prefix=(), feedback_timeout=10, buffer=BUFFER, **hardware):
         self.name = name
         machine = parameters(**hardware)
+        if buffer:
+            machine['hardware']['buffer'] = buffer
         if feedback_timeout:
-            machine['feedback_timeout'] = machine['jog_timeout'] = feedback_timeout
+            machine.update(feedback_timeout=feedback_timeout, jog_timeout=1)
         folder = tempfile.mkdtemp()
         # For a test that starts the node as somebody else.
         os.chmod(folder, 0o777)

@@ -14,8 +14,7 @@ from hal_bench import gc
 import path_checks as checks
 from grinder_client import MM, MM_MIN
 
-RECORDER = hal_bench.Recorder()
-BUFFER = 0.2
+RECORDER = hal_bench.recorder()
 # Longer than any host stalls.
 NEVER = 1000
 AXES = 'xyza'
@@ -50,15 +49,13 @@ class TestHoming(unittest.TestCase):
         hal_bench.patience(NEVER)
         set_homed(False)
         hal_bench.halcmd('sets', 'homing', 'false')
-        self.node = hal_bench.Node(buffer=BUFFER)
+        node = hal_bench.Node()
+        self.addCleanup(node.end)
         self.grinder = gc.Grinder()
+        self.addCleanup(self.grinder.close)
         self.assertTrue(self.grinder.enable().success)
         self.grinder.wait_state(GrinderState.READY)
         self.limits, self.period = self.grinder.limits(), self.grinder.period()
-
-    def tearDown(self):
-        self.grinder.close()
-        self.node.end()
 
     def begin(self):
         """Homing, as far as HAL says that it is under way; returns the number of the first row of it."""
@@ -73,12 +70,12 @@ class TestHoming(unittest.TestCase):
         first = self.begin()
         set_reference(RECORDER.over(1)[0].position, reading)
         # More than the FIFO holds, so that some of it has the old reference and some of it the new one.
-        RECORDER.over(int(BUFFER / self.period / 2))
+        RECORDER.over(int(hal_bench.BUFFER / self.period / 2))
         set_homed(True)
         hal_bench.halcmd('sets', 'homing', 'false')
         self.grinder.wait_state(GrinderState.READY)
         wait_signal('home', 'FALSE')
-        RECORDER.over(int(2 * BUFFER / self.period))
+        RECORDER.over(int(2 * hal_bench.BUFFER / self.period))
         return RECORDER.read()[first:]
 
     def check_still(self, rows):

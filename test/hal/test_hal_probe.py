@@ -10,8 +10,7 @@ import hal_bench
 from hal_bench import gc
 from grinder_client import MM, X
 
-RECORDER = hal_bench.Recorder()
-BUFFER = 0.5  # longer than a host stalls: a drive that runs dry is a fault
+RECORDER = hal_bench.recorder()
 WAY = 3 * MM
 WITHIN = 10 * MM
 SPEED = 2 * MM  # of the first touch, per second, as shipped
@@ -20,13 +19,11 @@ SPEED = 2 * MM  # of the first touch, per second, as shipped
 class TestProbe(unittest.TestCase):
     def setUp(self):
         hal_bench.patience(1000)
-        self.node = hal_bench.Node(buffer=BUFFER)
+        node = hal_bench.Node()
+        self.addCleanup(node.end)
         self.grinder = gc.Grinder()
+        self.addCleanup(self.grinder.close)
         self.at = self.grinder.make_ready()[X]
-
-    def tearDown(self):
-        self.grinder.close()
-        self.node.end()
 
     def probe(self):
         return self.grinder.probe(WITHIN)
@@ -51,7 +48,7 @@ class TestProbe(unittest.TestCase):
         largest = max(row.position[X] for row in RECORDER.read()[first:])
         # What was in the buffer is played; then the axis comes to rest.
         self.assertGreater(largest, wall)
-        self.assertLess(largest, wall + SPEED * BUFFER + 1 * MM)
+        self.assertLess(largest, wall + SPEED * hal_bench.BUFFER + 1 * MM)
 
     def test_a_contact_that_does_not_last_is_no_touch(self):
         """It ends while the buffer is played, long before the axis rests."""

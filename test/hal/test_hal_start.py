@@ -48,7 +48,8 @@ class TestRefusals(unittest.TestCase):
             self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
             grinder.close()
         finally:
-            self.assertEqual(node.end(), 0, node.output)
+            status = node.end()
+        self.assertEqual(status, 0, node.output)
 
     def test_hal_absent(self):
         self.check("LinuxCNC's HAL is not there (No such file or directory); start it first: halcmd -f FILE.hal",
@@ -76,7 +77,7 @@ class TestRefusals(unittest.TestCase):
 
     def test_fifo_not_deep_enough(self):
         self.check_in_hal('streamer    depth=4096', 'streamer    depth=90',
-                          "HAL's streamer.0 has depth=90; allowed: 100 or more for this buffer")
+                          "HAL's streamer.0 has depth=90; allowed: 100 or more for this buffer", buffer=0.05)
 
     def test_signals_missing(self):
         self.check_in_hal('newsig probe-free bit\nsets probe-free true\n', '', 'HAL lacks the signals probe-free;')

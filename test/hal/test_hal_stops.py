@@ -16,8 +16,7 @@ from hal_bench import gc
 import path_checks as checks
 from grinder_client import A, DEG, MM, STROKE, X, Y, Z
 
-RECORDER = hal_bench.Recorder()
-BUFFER = 0.2
+RECORDER = hal_bench.recorder()
 # Longer than any host stalls.
 NEVER = 1000
 HEARTBEAT = 0.05
@@ -28,7 +27,7 @@ AGAIN = dict(STEEP, **{'cutter.flute_length': 5 * MM, 'process.feed': 3000 * gc.
 class Stop:
     """What holds of every stop. Each test runs into the stop anew."""
 
-    buffer = BUFFER
+    buffer = hal_bench.BUFFER
 
     def setUp(self):
         hal_bench.press_emergency_stop(False)
@@ -41,12 +40,10 @@ class Stop:
 
     def start(self):
         self.node = hal_bench.Node(buffer=self.buffer)
+        self.addCleanup(self.node.end)
+        self.addCleanup(self.node.send, signal.SIGCONT)
         self.grinder = gc.Grinder()
-
-    def tearDown(self):
-        self.grinder.close()
-        self.node.send(signal.SIGCONT)
-        self.node.end()
+        self.addCleanup(self.grinder.close)
 
     def wait_power_off(self):
         gc.poll(lambda: not RECORDER.over(1)[-1].enabled, 'the power off')

@@ -12,7 +12,7 @@ import hal_bench
 from hal_bench import gc
 import path_checks as checks
 
-RECORDER = hal_bench.Recorder()
+RECORDER = hal_bench.recorder()
 # Long, so that a host that stalls does not decide the test.
 BUFFER = 1.0
 # Of the bench's streamer.
@@ -27,14 +27,11 @@ class TestStream(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         hal_bench.patience(2 * BUFFER)
-        cls.node = hal_bench.Node(buffer=BUFFER)
+        node = hal_bench.Node(buffer=BUFFER)
+        cls.addClassCleanup(node.end)
         cls.grinder = gc.Grinder()
+        cls.addClassCleanup(cls.grinder.close)
         cls.grinder.make_ready()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.grinder.close()
-        cls.node.end()
 
     def record(self, job):
         """Runs a job; returns its setpoints, and the rows from the first setpoint to where HAL goes on at rest."""
@@ -77,7 +74,6 @@ class TestStream(unittest.TestCase):
         self.assertEqual(bits(row.position), bits(row.command))
         self.assertEqual(self.grinder.wait_rest(), list(row.position))
         self.assertEqual(self.grinder.fresh_state().state, GrinderState.READY)
-
 
 
 if __name__ == '__main__':

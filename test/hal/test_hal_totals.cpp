@@ -14,8 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t kDepth = 4096;  ///< of the bench's streamer
-constexpr std::uint32_t kBuffer = 200;  ///< of totals.test
+constexpr std::uint32_t kDepth = 4096;   ///< of the bench's streamer
+constexpr std::uint32_t kBuffer = 1000;  ///< of totals.test
 constexpr int kSamplerKey = 0x48534130;
 constexpr const char* kSamplerTypes = "ffffffffbbus";
 const ros::Duration kPeriod(0.001);

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""group.py MODULE...: runs modules of tests one after another, with the node that the launch file has started; for rostest, which
-starts the master and the node anew for each <test>."""
+"""group.py NAME...: runs modules of tests, or single cases of them, one after another, with the node that the launch file has
+started; for rostest, which starts the master and the node anew for each <test>."""
 
+import pathlib
 import sys
 
 import rospy
 import rostest
 
-MODULES = [argument for argument in sys.argv[1:] if argument.startswith('test_')]
+NAMES = [argument for argument in sys.argv[1:] if argument.startswith('test_')]
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'hal'))
 
 
 def load_tests(loader, _tests, _pattern):
-    return loader.loadTestsFromNames(MODULES)
+    return loader.loadTestsFromNames(NAMES)
 
 
 if __name__ == '__main__':

@@ -123,7 +123,7 @@ BAD_PARAMETERS = [
     ('offsets_is_a_number', 'offsets', 7, 'allowed: a text'),
     ('offsets_empty', 'offsets', '', 'allowed: a text'),
     ('feedback_timeout_missing', 'feedback_timeout', None, 'missing; allowed: a number'),
-    ('feedback_timeout_nan', 'feedback_timeout', math.nan, 'nan; allowed: 0 to 1'),
+    ('feedback_timeout_nan', 'feedback_timeout', math.nan, 'nan; allowed: 0 to 10'),
     ('enable_timeout_inf', 'enable_timeout', math.inf, 'inf; allowed: 0 to 60'),
     ('homing_timeout_missing', 'homing_timeout', None, 'missing; allowed: a number'),
     ('homing_timeout_nan', 'homing_timeout', math.nan, 'nan; allowed: 0 to 3600'),

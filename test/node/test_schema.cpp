@@ -226,6 +226,19 @@ TEST_P(SchemaOfFile, ChoicesAreTaken) {
   });
 }
 
+TEST(Schema, SaysWhichToothAnglesAreAllowed) {
+  const YAML::Node entry = schema("job")["cutter.tooth_angles_deg"];
+  const YAML::Node job =
+      with(without(goodJob(), "cutter.teeth"), "cutter.tooth_angles_deg", std::vector<int>{0, 90, 90});
+  try {
+    parseJob(YAML::Dump(job), "file");
+    FAIL();
+  } catch (const JobFileError& error) {
+    const std::string allowed = entry["allowed"].as<std::string>() + " " + entry["unit"].as<std::string>();
+    EXPECT_TRUE(ends(error.what(), ": cutter.tooth_angles_deg = 90 deg; allowed: " + allowed)) << error.what();
+  }
+}
+
 TEST_P(SchemaOfFile, ThereAreNoOtherKeys) {
   const Lines lines = refusal(with(good_, "strange", 1));
   ASSERT_EQ(lines.size(), 1U);

@@ -51,11 +51,7 @@ double flangeOf(const std::string& job, const std::optional<double>& flange_mm) 
   return *flange;
 }
 
-MachineGeometry geometryOf(const ros::NodeHandle& nh) {
-  XmlRpc::XmlRpcValue parameters;
-  nh.getParam("", parameters);
-  return readMachineGeometry(ParameterReader(parameters, nh.getNamespace()));
-}
+MachineGeometry geometryOf(const ros::NodeHandle& nh) { return readMachineGeometry(ParameterReader(nh)); }
 
 int printZeros(const ZerosOptions& options) {
   const MachineGeometry geometry = readMachineFiles(options.parameters, options.urdf).geometry;

@@ -78,16 +78,6 @@ void readProbing(const ParameterReader& p, const std::string& joint, int axis, L
   probing.largest_spread[axis] = value("largest_spread", 1);
 }
 
-int readTouches(const ParameterReader& p) {
-  constexpr const char* name = "probing/touches";
-  // Of one touch alone there is no spread.
-  const double touches = p.number(name, 2, 100);
-  if (touches == std::floor(touches)) return static_cast<int>(touches);
-  std::ostringstream text;
-  text << "parameter " << p.name(name) << " = " << touches << "; allowed: a whole number";
-  throw ParameterError(text.str());
-}
-
 void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, LoopConfig& config) {
   const urdf::Joint& joint = axisJoint(model, axis);
   const std::string name = joint.name;
@@ -151,7 +141,8 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.jog_timeout = p.number("jog_timeout", kMinJogTimeout, 1);
   config.geometry = readMachineGeometry(p);
   config.probing.slow = p.number("probing/slow", kSmallest, 1);
-  config.probing.touches = readTouches(p);
+  // Of one touch alone there is no spread.
+  config.probing.touches = p.whole("probing/touches", 2, 100);
   config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);

@@ -1,7 +1,7 @@
 #include "drive/hal_hardware.h"
 
+#include "drive/hal_parameters.h"
 #include "flute_grinder/drive/export_drive.h"
-#include "flute_grinder/drive/parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,22 +25,12 @@ void nap(std::int64_t nanoseconds) {
 }  // namespace
 
 bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
-  XmlRpc::XmlRpcValue parameters, root_parameters;
-  robot_hw_nh.getParam("", parameters);
-  root_nh.getParam("", root_parameters);
-  const ParameterReader p(parameters, robot_hw_nh.getNamespace());
-  const double control_rate =
-      ParameterReader(root_parameters, root_nh.getNamespace()).number("control_rate", 10, 20000);
-  // Half of the loop's history, because a stalled HAL may let a few cycles start while the FIFO is full.
-  constexpr double most = kMaxCommandsWaiting / 2.0;
-  buffer_ =
-      static_cast<std::uint32_t>(std::lround(p.number("buffer", 2 / control_rate, most / control_rate) * control_rate));
-  const int streamer = static_cast<int>(p.number("streamer", 0, 7));
-
-  component_ = std::make_unique<HalComponent>(p.text("component"));
-  fifo_ = std::make_unique<HalFifo>(component_->id(), streamer, 2 * buffer_);
+  const HalParameters parameters = readHalParameters(ParameterReader(root_nh), ParameterReader(robot_hw_nh));
+  buffer_ = parameters.buffer;
+  component_ = std::make_unique<HalComponent>(parameters.component);
+  fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, 2 * buffer_);
   makePins();
-  checkServoThread(control_rate);
+  checkServoThread(parameters.control_rate);
   return true;
 }
 

@@ -1,5 +1,8 @@
 #include "flute_grinder/drive/parameters.h"
 
+#include <ros/node_handle.h>
+
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -8,15 +11,16 @@ namespace flute_grinder {
 ParameterReader::ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns)
     : parameters_(parameters), ns_(std::move(ns)) {}
 
+ParameterReader::ParameterReader(const ros::NodeHandle& nh) : ns_(nh.getNamespace()) { nh.getParam("", parameters_); }
+
 XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
-  XmlRpc::XmlRpcValue at = parameters_;
+  const XmlRpc::XmlRpcValue* at = &parameters_;
   std::istringstream names(path);
   for (std::string name; std::getline(names, name, '/');) {
-    if (at.getType() != XmlRpc::XmlRpcValue::TypeStruct || !at.hasMember(name)) return {};
-    const XmlRpc::XmlRpcValue next = at[name];
-    at = next;
+    if (at->getType() != XmlRpc::XmlRpcValue::TypeStruct || !at->hasMember(name)) return {};
+    at = &(*at)[name];
   }
-  return at;
+  return *at;
 }
 
 bool ParameterReader::has(const std::string& path) const { return find(path).valid(); }
@@ -45,6 +49,14 @@ double ParameterReader::number(const std::string& path, double min, double max) 
     throw ParameterError(text.str());
   }
   return result;
+}
+
+int ParameterReader::whole(const std::string& path, int min, int max) const {
+  const double value = number(path, min, max);
+  if (value == std::floor(value)) return static_cast<int>(value);
+  std::ostringstream text;
+  text << "parameter " << name(path) << " = " << value << "; allowed: a whole number";
+  throw ParameterError(text.str());
 }
 
 bool ParameterReader::flag(const std::string& path) const {

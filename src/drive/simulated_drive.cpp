@@ -2,7 +2,6 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/drive/export_drive.h"
-#include "flute_grinder/drive/parameters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,11 +57,9 @@ SimulatedDrive::Blank readBlank(const ParameterReader& root, const ParameterRead
 
 }  // namespace
 
-bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
-  XmlRpc::XmlRpcValue parameters;
-  robot_hw_nh.getParam("", parameters);
-  const ParameterReader p(parameters, robot_hw_nh.getNamespace());
-  Model model;
+SimulatedDrive::Simulation SimulatedDrive::readSimulation(const ParameterReader& root, const ParameterReader& p) {
+  Simulation simulation;
+  Model& model = simulation.model;
   for (std::size_t i = 0; i < model.size(); ++i) {
     const std::string joint = std::string(kJointNames[i]) + "/";
     model[i].time_constant = p.number(joint + "time_constant", 0, 10);
@@ -71,15 +68,19 @@ bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh
     model[i].home_position = p.number(joint + "home_position", -1e6, 1e6);
     model[i].homing_velocity = p.number(joint + "homing_velocity", 1e-6, 1e3);
   }
-  Equipment equipment{p.flag("absolute_encoders"), p.number("spindle_run_up_time", 0, 600)};
+  Equipment& equipment = simulation.equipment;
+  equipment.absolute_encoders = p.flag("absolute_encoders");
+  equipment.spindle_run_up_time = p.number("spindle_run_up_time", 0, 600);
   if (p.has("pace")) equipment.pace = p.number("pace", 1, 100);
   if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
-  init(model, equipment);
-  if (p.has("blank")) {
-    XmlRpc::XmlRpcValue root;
-    root_nh.getParam("", root);
-    clamp(readBlank(ParameterReader(root, root_nh.getNamespace()), p));
-  }
+  if (p.has("blank")) simulation.blank = readBlank(root, p);
+  return simulation;
+}
+
+bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
+  const Simulation simulation = readSimulation(ParameterReader(root_nh), ParameterReader(robot_hw_nh));
+  init(simulation.model, simulation.equipment);
+  blank_ = simulation.blank;
   inject_service_ = robot_hw_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
   return true;
 }

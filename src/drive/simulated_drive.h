@@ -2,6 +2,7 @@
 
 #include "flute_grinder/InjectFault.h"
 #include "flute_grinder/drive/axes_hw.h"
+#include "flute_grinder/drive/parameters.h"
 
 #include <atomic>
 #include <limits>
@@ -55,6 +56,16 @@ class SimulatedDrive : public AxesHW {
     double ball_diameter = 0;             ///< of the probe [m]
     std::array<double, 3> ball_centre{};  ///< X in machine coordinates, Y and Z from the axis, the axes at zero [m]
   };
+
+  /// What the parameters describe.
+  struct Simulation {
+    Model model;
+    Equipment equipment;
+    std::optional<Blank> blank;
+  };
+  /// @param root,parameters those of the machine and of the drive.
+  /// @throw ParameterError
+  static Simulation readSimulation(const ParameterReader& root, const ParameterReader& parameters);
 
   enum class Fault : std::uint8_t {
     kNone,

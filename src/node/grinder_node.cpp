@@ -3,6 +3,7 @@
 #include "flute_grinder/drive/export_drive.h"
 #include "node/crash_guard.h"
 #include "node/machine_topic.h"
+#include "node/node_parameters.h"
 #include "node/plugin_abi.h"
 
 #include <chrono>
@@ -43,12 +44,6 @@ void checkAbi(const std::string& parameter, const std::string& library) {
 }
 
 const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
-constexpr double kMaxHistory = 1e12;  ///< [bytes]
-
-/// A kept file; if the parameter is a folder, the file in it named after the node.
-std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
-  return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
-}
 
 }  // namespace
 
@@ -58,39 +53,31 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!nh_.getParam("robot_description", urdf)) {
     throw ParameterError("parameter " + nh_.resolveName("robot_description") + " is missing; allowed: a URDF");
   }
-  XmlRpc::XmlRpcValue values;
-  private_nh_.getParam("", values);
-  const ParameterReader parameters(values, private_nh_.getNamespace());
+  const ParameterReader parameters(private_nh_);
   const LoopConfig config = readMachineConfig(urdf, parameters);
-  const DiagnosticThresholds thresholds = readDiagnosticThresholds(parameters);
   const std::string name = private_nh_.getNamespace();
-  journal_ = std::make_unique<JournalWriter>(filePath(parameters.text("journal"), name, ".journal"), name);
-  offsets_ = std::make_unique<OffsetStore>(filePath(parameters.text("offsets"), name, ".offsets"), name);
+  const NodeParameters own = readNodeParameters(parameters, name);
+  journal_ = std::make_unique<JournalWriter>(own.journal, name);
+  offsets_ = std::make_unique<OffsetStore>(own.offsets, name);
   const std::string unknown = offsets_->unknown();
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
-  const auto history_limit = static_cast<std::uint64_t>(parameters.number("history_limit", 0, kMaxHistory));
-  history_ = std::make_unique<History>(filePath(parameters.text("history"), name, "/"), history_limit);
-  Axes offset_change_limit;
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
-    offset_change_limit[axis] = parameters.number("offset_change_limit/" + joint, 0, 2 * kMaxOffset);
-  }
-  loadDrive(parameters);
-  const MachineInfo machine = machineInfo(config, parameters.text("hardware/type"));
+  history_ = std::make_unique<History>(own.history, own.history_limit);
+  loadDrive(own.drive, parameters);
+  const MachineInfo machine = machineInfo(config, own.drive);
   machine_ = publishMachine(private_nh_, machine);
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
-  telemetry_ =
-      std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine, thresholds, urdf);
+  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
+                                           own.thresholds, urdf);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
   telemetry_->start();
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
   offset_desk_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
-                                                offsetLimits(config.machine.limits, offset_change_limit));
+                                                offsetLimits(config.machine.limits, own.offset_change_limit));
   probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_desk_);
   plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
   goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
@@ -98,8 +85,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }
 
-void GrinderNode::loadDrive(const ParameterReader& parameters) {
-  const std::string type = parameters.text("hardware/type");
+void GrinderNode::loadDrive(const std::string& type, const ParameterReader& parameters) {
   if (type != kSimulatedDrive && parameters.has("hardware/pace")) {
     throw ParameterError("parameter " + parameters.name("hardware/pace") +
                          "; allowed: for flute_grinder/SimulatedDrive alone");

@@ -40,7 +40,8 @@ class GrinderNode {
   void shutDown();
 
  private:
-  void loadDrive(const ParameterReader& parameters);
+  /// @param type the plugin's.
+  void loadDrive(const std::string& type, const ParameterReader& parameters);
 
   ros::NodeHandle nh_, private_nh_;
   std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;

@@ -1,7 +1,8 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "yaml_parameters.h"
+
 #include <gtest/gtest.h>
-#include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <fstream>
@@ -33,32 +34,6 @@ std::string fileText(const std::string& path) {
   return text.str();
 }
 
-XmlRpcValue toXmlRpc(const YAML::Node& node) {
-  XmlRpcValue value;
-  if (node.IsMap()) {
-    for (const auto& item : node) value[item.first.as<std::string>()] = toXmlRpc(item.second);
-    return value;
-  }
-  const std::string text = node.as<std::string>();
-  bool flag;
-  int whole;
-  double number;
-  if (text == "true" || text == "false") {
-    YAML::convert<bool>::decode(node, flag);
-    value = XmlRpcValue(flag);
-  } else if (YAML::convert<int>::decode(node, whole)) {
-    value = XmlRpcValue(whole);
-  } else if (YAML::convert<double>::decode(node, number)) {
-    value = XmlRpcValue(number);
-  } else {
-    value = XmlRpcValue(text);
-  }
-  return value;
-}
-
-std::string packageUrdf() { return fileText("urdf/grinder.urdf"); }
-XmlRpcValue packageParameters() { return toXmlRpc(YAML::Load(fileText("config/grinder.yaml"))); }
-
 LoopConfig read(const std::string& urdf, const XmlRpcValue& parameters) {
   return readMachineConfig(urdf, ParameterReader(parameters, "/grinder"));
 }
@@ -67,69 +42,15 @@ void expectAxes(const Axes& axes, const Axes& expected) {
   EXPECT_TRUE((axes == expected).all()) << axes.transpose() << ", not " << expected.transpose();
 }
 
-class PackageMachine : public ::testing::Test {
- protected:
-  LoopConfig config_ = read(packageUrdf(), packageParameters());
-  AxisLimits& limits_ = config_.machine.limits;
-};
-
-TEST_F(PackageMachine, HasPositionLimitsFromTheUrdf) {
-  expectAxes(limits_.min_position, {-0.1, -0.02, -0.05, -125.663706});
-  expectAxes(limits_.max_position, {0.3, 0.15, 0.1, 125.663706});
-}
-
-TEST_F(PackageMachine, HasVelocityLimitsFromTheUrdf) { expectAxes(limits_.max_velocity, {0.2, 0.1, 0.1, 12.566}); }
-
-TEST_F(PackageMachine, HasAccelerationAndJerkLimitsFromTheParameters) {
-  expectAxes(limits_.max_acceleration, {0.5, 0.5, 0.5, 62.83});
-  expectAxes(limits_.max_jerk, {10, 10, 10, 1257});
-}
-
-TEST_F(PackageMachine, HasFollowingErrorsFromTheConstraints) {
-  expectAxes(config_.following_error, {0.001, 0.001, 0.001, 0.05});
-}
-
-TEST_F(PackageMachine, RunsAtOneKilohertz) { EXPECT_DOUBLE_EQ(config_.machine.period, 0.001); }
-
-TEST_F(PackageMachine, HasJogVelocities) { expectAxes(config_.jog_velocity, {0.01, 0.01, 0.01, 0.5}); }
-
-TEST_F(PackageMachine, HasAParkPosition) { expectAxes(config_.machine.park, {-0.05, 0.05, 0, 0}); }
-
-TEST_F(PackageMachine, SwivelsSixtyDegreesToEitherSide) {
+TEST(MachineConfig, TakesTheShippedMachineWithTheLimitsOfItsUrdf) {
+  const LoopConfig config =
+      read(fileText("urdf/grinder.urdf"), test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")));
+  expectAxes(config.machine.limits.min_position, {-0.1, -0.02, -0.05, -125.663706});
+  expectAxes(config.machine.limits.max_position, {0.3, 0.15, 0.1, 125.663706});
+  expectAxes(config.machine.limits.max_velocity, {0.2, 0.1, 0.1, 12.566});
   constexpr double kSixtyDegrees = 1.04719755;
-  EXPECT_NEAR(config_.machine.swivel.from, -kSixtyDegrees, 1e-7);
-  EXPECT_NEAR(config_.machine.swivel.to, kSixtyDegrees, 1e-7);
-}
-
-TEST_F(PackageMachine, HasTimeouts) {
-  EXPECT_EQ(config_.feedback_timeout, 0.002);
-  EXPECT_EQ(config_.enable_timeout, 2);
-  EXPECT_EQ(config_.homing_timeout, 60);
-  EXPECT_EQ(config_.spindle_timeout, 10);
-  EXPECT_EQ(config_.jog_timeout, 0.2);
-  EXPECT_EQ(config_.machine.max_job_duration, 24 * 3600);
-  EXPECT_EQ(config_.machine.collision_clearance, 0.001);
-  EXPECT_EQ(config_.late_slow_down, 2);
-  EXPECT_EQ(config_.late_fault, 10);
-}
-
-TEST_F(PackageMachine, HasAGeometry) {
-  EXPECT_EQ(config_.geometry.work_axis_y, 0);
-  EXPECT_EQ(config_.geometry.work_axis_z, 0);
-  EXPECT_EQ(config_.geometry.collet_face, 0.062);
-  EXPECT_EQ(config_.geometry.swivel_centre, Eigen::Vector3d(0, 0.055, 0));
-  EXPECT_EQ(config_.geometry.flange, 0.0035);
-  ASSERT_TRUE(config_.geometry.probe);
-  EXPECT_EQ(config_.geometry.probe->centre, Eigen::Vector3d(0.06, -0.02, 0.03));
-  EXPECT_EQ(config_.geometry.probe->diameter, 0.001);
-}
-
-TEST_F(PackageMachine, ProbesSlowlyThreeTimes) {
-  expectAxes(config_.probing.velocity, {0.002, 0.002, 0.002, 0.1});
-  expectAxes(config_.probing.back_off, {0.0005, 0.0005, 0.0005, 0.02});
-  expectAxes(config_.probing.largest_spread, {5e-6, 5e-6, 5e-6, 5e-4});
-  EXPECT_EQ(config_.probing.slow, 0.1);
-  EXPECT_EQ(config_.probing.touches, 3);
+  EXPECT_NEAR(config.machine.swivel.from, -kSixtyDegrees, 1e-7);
+  EXPECT_NEAR(config.machine.swivel.to, kSixtyDegrees, 1e-7);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -297,231 +218,66 @@ TEST(MachineConfig, AMachineNeedsNoProbe) {
   EXPECT_FALSE(read(Description().urdf(), p).geometry.probe);
 }
 
-TEST(MachineConfig, TakesAParkPositionAtTheLimits) {
-  XmlRpcValue p = parameters();
-  at(p, "park_position/axis_x") = -0.11;
-  at(p, "park_position/axis_y") = 0.32;
-  expectAxes(read(Description().urdf(), p).machine.park, {-0.11, 0.32, 0.01 * 3, 0.01 * 4});
-}
-
-TEST(MachineConfig, TakesTheEndsOfTheRanges) {
-  XmlRpcValue p = parameters();
-  for (const double rate : {10.0, 20000.0}) {
-    at(p, "control_rate") = rate;
-    EXPECT_EQ(read(Description().urdf(), p).machine.period, 1 / rate);
-  }
-  at(p, "feedback_timeout") = 0.0;
-  at(p, "enable_timeout") = 60.0;
-  at(p, "homing_timeout") = 3600.0;
-  at(p, "spindle_timeout") = 600.0;
-  at(p, "jog_timeout") = 1.0;
-  at(p, "jog_velocity/axis_x") = 0.21;
-  const LoopConfig longest = read(Description().urdf(), p);
-  EXPECT_EQ(longest.feedback_timeout, 0);
-  EXPECT_EQ(longest.enable_timeout, 60);
-  EXPECT_EQ(longest.homing_timeout, 3600);
-  EXPECT_EQ(longest.spindle_timeout, 600);
-  EXPECT_EQ(longest.jog_timeout, 1);
-  EXPECT_EQ(longest.jog_velocity[kX], 0.21);
-  at(p, "homing_timeout") = 0;
-  at(p, "spindle_timeout") = 0;
-  at(p, "jog_timeout") = 0.05;
-  const LoopConfig shortest = read(Description().urdf(), p);
-  EXPECT_EQ(shortest.homing_timeout, 0);
-  EXPECT_EQ(shortest.spindle_timeout, 0);
-  EXPECT_EQ(shortest.jog_timeout, 0.05);
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
-// Refused parameters: the error gives the full name and what is allowed
+// Refused parameters: what the schema does not say of each by itself
 
-struct BadParameter {
-  std::string name;
-  std::function<void(XmlRpcValue&)> spoil;
-  std::vector<std::string> words;
-};
-std::ostream& operator<<(std::ostream& out, const BadParameter& bad) { return out << bad.name; }
+std::string errorWithout(const std::string& path) { return errorOf(without(parameters(), path)); }
 
-/// A required parameter.
-struct Number {
-  std::string path;
-  std::string range;  ///< as a message states it
-  bool zero_allowed;
-  bool negative_allowed;
-};
-
-constexpr std::size_t kNumbersPerAxis = 8;
-constexpr std::size_t kMachineNumbers = 23;  ///< that are no axis' own; they come first
-
-std::vector<Number> numbers() {
-  std::vector<Number> all{{"control_rate", "10 to 20000", false, false},
-                          {"feedback_timeout", "0 to 10", true, false},
-                          {"enable_timeout", "0 to 60", true, false},
-                          {"homing_timeout", "0 to 3600", true, false},
-                          {"spindle_timeout", "0 to 600", true, false},
-                          {"max_job_duration", "1 to 1e+09", false, false},
-                          {"collision_clearance", "0 to 1", true, false},
-                          {"late_cycle/slow_down", "2 to 1e+09", false, false},
-                          {"late_cycle/fault", "3 to 1e+09", false, false},
-                          {"jog_timeout", "0.05 to 1", false, false},
-                          {"probing/slow", "1e-09 to 1", false, false},
-                          {"probing/touches", "2 to 100", false, false},
-                          {"geometry/probe/diameter", "0.0001 to 0.02", false, false}};
-  for (const char* place : {"work_axis/y", "work_axis/z", "collet_face/x", "swivel_centre/x", "swivel_centre/y",
-                            "swivel_centre/z", "flange", "probe/x", "probe/y", "probe/z"}) {
-    all.push_back({std::string("geometry/") + place, "-10 to 10", true, true});
-  }
-  const char* park[]{"-0.11 to 0.31", "-0.12 to 0.32", "-0.13 to 0.33", "-114 to 134"};
-  const char* fastest[]{"0.21", "0.22", "0.23", "24"};
-  for (std::size_t i = 0; i < kJointNames.size(); ++i) {
-    const std::string name = kJointNames[i];
-    all.push_back({"joint_limits/" + name + "/max_acceleration", "1e-09 to 1e+09", false, false});
-    all.push_back({"joint_limits/" + name + "/max_jerk", "1e-09 to 1e+09", false, false});
-    all.push_back({"constraints/" + name + "/trajectory", "1e-09 to 1e+09", false, false});
-    all.push_back({"park_position/" + name, park[i], true, true});
-    all.push_back({"jog_velocity/" + name, std::string("1e-09 to ") + fastest[i], false, false});
-    all.push_back({"probing/velocity/" + name, std::string("1e-09 to ") + fastest[i], false, false});
-    all.push_back({"probing/back_off/" + name, "1e-09 to 1", false, false});
-    all.push_back({"probing/largest_spread/" + name, "1e-09 to 1", false, false});
-  }
-  return all;
-}
-
-std::string camel(const std::string& path) {
-  std::string text;
-  for (const char c : path) text += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return text;
-}
-
-std::vector<BadParameter> badParameters() {
-  std::vector<BadParameter> rows;
-  const auto add = [&](const std::string& what, const std::string& path, const XmlRpcValue& value,
-                       std::vector<std::string> words) {
-    rows.push_back({camel(path) + "_" + what, [=](XmlRpcValue& p) { at(p, path) = value; }, std::move(words)});
-  };
-  const auto remove = [&](const std::string& path, std::vector<std::string> words) {
-    rows.push_back({camel(path) + "_missing", [=](XmlRpcValue& p) { p = without(p, path); }, std::move(words)});
-  };
-
-  for (const Number& n : numbers()) {
-    const std::string full = "/grinder/" + n.path;
-    const std::string range = "allowed: " + n.range;
-    remove(n.path, {full + " is missing", "allowed: a number"});
-    add("text", n.path, XmlRpcValue("0.1"), {full + " = ", "0.1", "allowed: a number"});
-    add("bool", n.path, XmlRpcValue(true), {full + " = ", "allowed: a number"});
-    add("nan", n.path, XmlRpcValue(kNan), {full + " = nan", range});
-    add("infinite", n.path, XmlRpcValue(kInfinity), {full + " = inf", range});
-    add("minus_infinite", n.path, XmlRpcValue(-kInfinity), {full + " = -inf", range});
-    if (!n.zero_allowed) add("zero", n.path, XmlRpcValue(0.0), {full + " = 0", range});
-    if (!n.negative_allowed) add("negative", n.path, XmlRpcValue(-0.5), {full + " = -0.5", range});
-  }
-  add("too_slow", "control_rate", XmlRpcValue(9.5), {"/grinder/control_rate = 9.5", "allowed: 10 to 20000"});
-  add("too_fast", "control_rate", XmlRpcValue(20001), {"/grinder/control_rate = 20001", "allowed: 10 to 20000"});
-  add("too_long", "feedback_timeout", XmlRpcValue(10.5), {"/grinder/feedback_timeout = 10.5", "allowed: 0 to 10"});
-  add("too_long", "enable_timeout", XmlRpcValue(61), {"/grinder/enable_timeout = 61", "allowed: 0 to 60"});
-  add("too_long", "homing_timeout", XmlRpcValue(3601), {"/grinder/homing_timeout = 3601", "allowed: 0 to 3600"});
-  add("too_long", "spindle_timeout", XmlRpcValue(601), {"/grinder/spindle_timeout = 601", "allowed: 0 to 600"});
-  add("too_short", "jog_timeout", XmlRpcValue(0.049), {"/grinder/jog_timeout = 0.049", "allowed: 0.05 to 1"});
-  add("fraction", "probing/touches", XmlRpcValue(2.5), {"/grinder/probing/touches = 2.5", "allowed: a whole number"});
-  add("beyond_the_limit", "jog_velocity/axis_a", XmlRpcValue(24.5),
-      {"/grinder/jog_velocity/axis_a = 24.5", "allowed: 1e-09 to 24"});
-
-  for (std::size_t i = 0; i < kJointNames.size(); ++i) {
-    const std::string name = kJointNames[i];
-    const std::string ns = "joint_limits/" + name + "/";
-    const std::string full = "/grinder/" + ns;
-    const std::string park = "park_position/" + name;
-    const Number allowed = numbers()[kMachineNumbers + kNumbersPerAxis * i + 3];
-    add("beyond", park, XmlRpcValue(135.0), {"/grinder/" + park + " = 135", "allowed: " + allowed.range});
-    add("short_of", park, XmlRpcValue(-115.0), {"/grinder/" + park + " = -115", "allowed: " + allowed.range});
-
-    for (const std::string kind : {"velocity", "acceleration", "jerk"}) {
-      const std::string flag = ns + "has_" + kind + "_limits";
-      const std::string value = ns + "max_" + kind;
-      add("false", flag, XmlRpcValue(false), {"/grinder/" + flag + " = false", "allowed: true"});
-      add("whole", flag, XmlRpcValue(1), {"/grinder/" + flag + " = ", "allowed: true or false"});
-      add("text", flag, XmlRpcValue("true"), {"/grinder/" + flag + " = ", "allowed: true or false"});
-      rows.push_back({camel(value) + "_without_flag",
-                      [=](XmlRpcValue& p) {
-                        p = without(p, flag);
-                        at(p, value) = 1.0;
-                      },
-                      {"/grinder/" + flag + " is missing", "/grinder/" + value, "allowed: true"}});
-      rows.push_back({camel(flag) + "_without_value",
-                      [=](XmlRpcValue& p) {
-                        p = without(p, value);
-                        at(p, flag) = true;
-                      },
-                      {"/grinder/" + value + " is missing", "allowed: a number"}});
-    }
-    // The URDF has no such limits to fall back to.
-    for (const std::string kind : {"acceleration", "jerk"}) {
-      rows.push_back(
-          {camel(ns + kind) + "_nowhere",
-           [=](XmlRpcValue& p) { p = without(without(p, ns + "has_" + kind + "_limits"), ns + "max_" + kind); },
-           {full + "has_" + kind + "_limits is missing", "robot_description", "allowed: true, with max_" + kind}});
-    }
-    rows.push_back({camel(ns) + "velocity_zero",
-                    [=](XmlRpcValue& p) {
-                      at(p, ns + "has_velocity_limits") = true;
-                      at(p, ns + "max_velocity") = 0;
-                    },
-                    {full + "max_velocity = 0", "allowed: 1e-09 to 1e+09"}});
-
-    const auto position = [=](double min, double max) {
-      return [=](XmlRpcValue& p) {
-        at(p, ns + "has_position_limits") = true;
-        at(p, ns + "min_position") = min;
-        at(p, ns + "max_position") = max;
-      };
-    };
-    rows.push_back({camel(ns) + "min_above_max",
-                    position(0.2, 0.1),
-                    {"joint_limits/" + name + "/min_position", ": 0.2 to 0.1", "allowed: the lower below the upper"}});
-    rows.push_back({camel(ns) + "min_is_max",
-                    position(0.1, 0.1),
-                    {"joint_limits/" + name + "/min_position", ": 0.1 to 0.1", "allowed: the lower below the upper"}});
-    rows.push_back(
-        {camel(ns) + "min_nan", position(kNan, 0.1), {full + "min_position = nan", "allowed: -1e+09 to 1e+09"}});
-    rows.push_back({camel(ns) + "max_infinite",
-                    position(-0.1, kInfinity),
-                    {full + "max_position = inf", "allowed: -1e+09 to 1e+09"}});
-    add("false", ns + "has_position_limits", XmlRpcValue(false),
-        {full + "has_position_limits = false", "allowed: true"});
-    for (const std::string bound : {"min_position", "max_position"}) {
-      add("without_flag", ns + bound, XmlRpcValue(0.1),
-          {full + "has_position_limits is missing", full + bound, "allowed: true"});
-      rows.push_back({camel(ns) + "only_" + bound,
-                      [=](XmlRpcValue& p) {
-                        at(p, ns + "has_position_limits") = true;
-                        at(p, ns + bound) = 0.1;
-                      },
-                      {full + (bound[1] == 'i' ? "max" : "min") + "_position is missing", "allowed: a number"}});
-    }
-  }
-  remove("joint_limits", {"/grinder/joint_limits/axis_x/has_acceleration_limits is missing"});
-  add("number", "joint_limits", XmlRpcValue(1), {"/grinder/joint_limits/axis_x/has_acceleration_limits is missing"});
-  remove("constraints", {"/grinder/constraints/axis_x/trajectory is missing"});
-  add("number", "constraints/axis_x", XmlRpcValue(0.001), {"/grinder/constraints/axis_x/trajectory is missing"});
-  remove("park_position", {"/grinder/park_position/axis_x is missing"});
-  remove("jog_velocity", {"/grinder/jog_velocity/axis_x is missing"});
-  rows.push_back({"Nothing", [](XmlRpcValue& p) { p = XmlRpcValue(); }, {"/grinder/control_rate is missing"}});
-  return rows;
-}
-
-class RefusedParameters : public TestWithParam<BadParameter> {};
-
-TEST_P(RefusedParameters, AreNamedInFullWithWhatIsAllowed) {
+template <typename Value>
+std::string errorWith(const std::string& path, const Value& value) {
   XmlRpcValue p = parameters();
-  GetParam().spoil(p);
-  const std::string error = errorOf(p);
-  ASSERT_FALSE(error.empty()) << "taken";
-  for (const std::string& word : GetParam().words)
-    EXPECT_NE(error.find(word), std::string::npos) << error << "\n" << word;
+  at(p, path) = value;
+  return errorOf(p);
 }
 
-INSTANTIATE_TEST_SUITE_P(, RefusedParameters, ValuesIn(badParameters()),
-                         [](const TestParamInfo<BadParameter>& info) { return info.param.name; });
+TEST(MachineConfig, RefusesALimitWithoutItsFlag) {
+  EXPECT_EQ(errorWith("joint_limits/axis_y/max_velocity", 1.0),
+            "parameter /grinder/joint_limits/axis_y/has_velocity_limits is missing, though "
+            "/grinder/joint_limits/axis_y/max_velocity is there; allowed: true beside it");
+  EXPECT_EQ(errorWith("joint_limits/axis_y/max_position", 0.1),
+            "parameter /grinder/joint_limits/axis_y/has_position_limits is missing, though "
+            "/grinder/joint_limits/axis_y/max_position is there; allowed: true beside it");
+}
+
+TEST(MachineConfig, NeedsLimitsThatAUrdfHasNot) {
+  for (const std::string kind : {"acceleration", "jerk"}) {
+    const std::string flag = "joint_limits/axis_a/has_" + kind + "_limits", value = "joint_limits/axis_a/max_" + kind;
+    EXPECT_EQ(errorOf(without(without(parameters(), flag), value)),
+              "parameter /grinder/" + flag +
+                  " is missing, and robot_description has no such limit; allowed: true, with max_" + kind);
+  }
+}
+
+TEST(MachineConfig, RefusesPositionLimitsThatLeaveNoWay) {
+  for (const double min : {0.1, 0.2}) {
+    XmlRpcValue p = parameters();
+    at(p, "joint_limits/axis_z/has_position_limits") = true;
+    at(p, "joint_limits/axis_z/min_position") = min;
+    at(p, "joint_limits/axis_z/max_position") = 0.1;
+    std::ostringstream limits;
+    limits << min << " to 0.1 m";
+    EXPECT_EQ(errorOf(p),
+              "parameters /grinder/joint_limits/axis_z/min_position, max_position (or the limits of "
+              "robot_description): " +
+                  limits.str() + "; allowed: the lower below the upper");
+  }
+}
+
+TEST(MachineConfig, KeepsToTheLimitsOfTheUrdf) {
+  EXPECT_EQ(errorWith("park_position/axis_y", 0.33),
+            "parameter /grinder/park_position/axis_y = 0.33; allowed: -0.12 to 0.32");
+  EXPECT_EQ(errorWith("jog_velocity/axis_a", 24.5),
+            "parameter /grinder/jog_velocity/axis_a = 24.5; allowed: 1e-09 to 24");
+  EXPECT_EQ(errorWith("park_position/axis_y", 0.32), "");
+  EXPECT_EQ(errorWith("jog_velocity/axis_a", 24), "");
+}
+
+TEST(MachineConfig, NamesTheFirstParameterOfAGroupThatIsMissing) {
+  const std::string missing = " is missing; allowed: a number";
+  EXPECT_EQ(errorOf(XmlRpcValue()), "parameter /grinder/control_rate" + missing);
+  EXPECT_EQ(errorWithout("constraints"), "parameter /grinder/constraints/axis_x/trajectory" + missing);
+  EXPECT_EQ(errorWith("constraints/axis_x", 0.001), "parameter /grinder/constraints/axis_x/trajectory" + missing);
+}
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Refused robot descriptions
@@ -554,6 +310,9 @@ std::vector<BadDescription> badDescriptions() {
       {"ContinuousSwivel",
        with(&Description::swivel, joint("wheel_swivel", "continuous", "")),
        {"wheel_swivel", "revolute, with limits"}},
+      {"SwivelWithoutLimits",
+       with(&Description::swivel, joint("wheel_swivel", "revolute", "")),
+       {"robot_description is not a URDF"}},
       {"SwivelReversed",
        with(&Description::swivel, joint("wheel_swivel", "revolute", limitOf("0.5", "-0.5", "0"))),
        {"wheel_swivel", "0.5 to -0.5 rad", "the lower below the upper"}},
@@ -662,33 +421,21 @@ TEST(ParameterReader, LeavesTheParametersAsTheyAre) {
   EXPECT_FALSE(reader.has("a/b/other")) << "made by looking for it";
 }
 
-TEST(ParameterReader, TakesBothEndsOfTheRange) {
-  const ParameterReader reader(nested(), "/ns");
-  EXPECT_EQ(reader.number("a/b/number", 2.5, 3), 2.5);
-  EXPECT_EQ(reader.number("a/b/number", 2, 2.5), 2.5);
-}
-
-TEST(ParameterReader, TellsTheNameTheValueAndTheRange) {
-  EXPECT_EQ(readerError([](const ParameterReader& r) { r.number("a/b/number", 3, 4); }),
-            "parameter /ns/a/b/number = 2.5; allowed: 3 to 4");
+TEST(ParameterReader, TakesNothingElseForANumber) {
+  for (const double value : {kNan, kInfinity, -kInfinity}) {
+    XmlRpcValue p;
+    p["number"] = value;
+    EXPECT_THROW(ParameterReader(p, "/ns").number("number", -1e9, 1e9), ParameterError) << value;
+  }
+  for (const char* path : {"a/flag", "a/text", "a/b"}) {
+    const std::string error = readerError([&](const ParameterReader& r) { r.number(path, 0, 1); });
+    EXPECT_EQ(error.find(std::string("parameter /ns/") + path + " = "), 0U) << error;
+    EXPECT_NE(error.find("; allowed: a number"), std::string::npos) << error;
+  }
 }
 
 TEST(ParameterReader, RefusesAnEmptyText) {
   EXPECT_NE(readerError([](const ParameterReader& r) { r.text("a/empty"); }).find("/ns/a/empty"), std::string::npos);
-}
-
-TEST(ParameterReader, RefusesANumberForAText) {
-  EXPECT_NE(readerError([](const ParameterReader& r) { r.text("a/b/number"); }).find("/ns/a/b/number = "),
-            std::string::npos);
-}
-
-TEST(ParameterReader, RefusesAMissingText) {
-  EXPECT_EQ(readerError([](const ParameterReader& r) { r.text("a/other"); }),
-            "parameter /ns/a/other is missing; allowed: a text");
-}
-
-TEST(ParameterReader, RefusesAStructForANumber) {
-  EXPECT_NE(readerError([](const ParameterReader& r) { r.number("a/b", 0, 1); }).find("/ns/a/b = "), std::string::npos);
 }
 
 }  // namespace test_machine_config

@@ -5,6 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+namespace ros {
+class NodeHandle;
+}
+
 namespace flute_grinder {
 
 /// A parameter that is missing or not allowed; what() gives its name, its value and the allowed values.
@@ -19,10 +23,14 @@ class ParameterReader {
   /// @param parameters all parameters of the namespace, as a struct.
   /// @param ns the namespace, for messages, e.g. "/grinder".
   ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns);
+  /// Of all parameters that the master has of the handle's namespace.
+  explicit ParameterReader(const ros::NodeHandle& nh);
 
   bool has(const std::string& path) const;
   /// @throw ParameterError unless the parameter is a finite number from `min` to `max`.
   double number(const std::string& path, double min, double max) const;
+  /// @throw ParameterError unless the parameter is a whole number from `min` to `max`.
+  int whole(const std::string& path, int min, int max) const;
   /// @throw ParameterError unless the parameter is a bool.
   bool flag(const std::string& path) const;
   /// @throw ParameterError unless the parameter is a non-empty string.

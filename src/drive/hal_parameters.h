@@ -1,0 +1,22 @@
+#pragma once
+
+#include "flute_grinder/drive/parameters.h"
+
+#include <cstdint>
+#include <string>
+
+namespace flute_grinder {
+
+/// The parameters of HalHardware.
+struct HalParameters {
+  std::string component;     ///< name of the HAL component
+  int streamer = 0;          ///< number of the HAL streamer
+  std::uint32_t buffer = 0;  ///< commands to keep in its FIFO
+  double control_rate = 0;   ///< the machine's [Hz]
+};
+
+/// @param root,parameters those of the machine and of the drive.
+/// @throw ParameterError
+HalParameters readHalParameters(const ParameterReader& root, const ParameterReader& parameters);
+
+}  // namespace flute_grinder

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flute_grinder/drive/parameters.h"
+#include "flute_grinder/job/axes.h"
+#include "node/diagnostics.h"
+
+#include <cstdint>
+#include <string>
+
+namespace flute_grinder {
+
+/// The node's own parameters.
+struct NodeParameters {
+  std::string journal, offsets;     ///< the kept files
+  std::string history;              ///< the folder of records
+  std::uint64_t history_limit = 0;  ///< [bytes]
+  Axes offset_change_limit;         ///< [m], A [rad]
+  DiagnosticThresholds thresholds;
+  std::string drive;  ///< type of the plugin
+};
+
+/// Reads journal, offsets, history, history_limit, offset_change_limit/<joint>, diagnostics/... and hardware/type.
+/// @param node the node's full name, after which files are named where only their folder is given.
+/// @throw ParameterError
+NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node);
+
+}  // namespace flute_grinder

@@ -1,0 +1,428 @@
+#include "drive/hal_parameters.h"
+#include "drive/simulated_drive.h"
+#include "flute_grinder/control/machine_config.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/wheel_file.h"
+#include "node/node_parameters.h"
+
+#include "yaml_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+/// @file
+/// Holds docs/schema.yaml against what reads job files, wheel files and parameters: each key is refused where it is
+/// missing, of the wrong type or beyond its range, in the very words that the schema's figures make; each end of a
+/// range is taken; and there is no key that the schema does not know.
+
+namespace flute_grinder {
+namespace test_schema {
+
+using Names = std::set<std::string>;
+
+YAML::Node schema(const std::string& section) {
+  static const YAML::Node all = YAML::LoadFile("docs/schema.yaml");
+  return all[section];
+}
+
+/// The way to a key: 'process.overtravel_mm[0]' or 'joint_limits/axis_x/max_jerk' as a list.
+std::vector<std::string> steps(const std::string& path) {
+  std::vector<std::string> list;
+  std::istringstream words(std::regex_replace(path, std::regex(R"([./\[\]]+)"), " "));
+  for (std::string word; words >> word;) list.push_back(word);
+  return list;
+}
+
+YAML::Node child(YAML::Node tree, const std::string& step) {
+  return tree.IsSequence() ? tree[std::stoul(step)] : tree[step];
+}
+
+/// The node of a key, made if it is missing.
+YAML::Node at(YAML::Node tree, const std::string& path) {
+  for (const std::string& step : steps(path)) tree.reset(child(tree, step));
+  return tree;
+}
+
+template <typename Value>
+YAML::Node with(const YAML::Node& tree, const std::string& path, const Value& value) {
+  YAML::Node copy = YAML::Clone(tree);
+  at(copy, path) = value;
+  return copy;
+}
+
+YAML::Node without(const YAML::Node& tree, const std::string& path) {
+  YAML::Node copy = YAML::Clone(tree), parent = copy;
+  std::vector<std::string> way = steps(path);
+  const std::string last = way.back();
+  way.pop_back();
+  for (const std::string& step : way) parent.reset(child(parent, step));
+  if (parent.IsSequence() ? parent.remove(std::stoul(last)) : parent.remove(last)) return copy;
+  throw std::out_of_range(path);
+}
+
+std::string text(double value, int digits) {
+  std::ostringstream stream;
+  stream.precision(digits);
+  stream << value;
+  return stream.str();
+}
+
+bool begins(const std::string& text, const std::string& with) { return text.compare(0, with.size(), with) == 0; }
+bool ends(const std::string& text, const std::string& with) {
+  return text.size() >= with.size() && text.compare(text.size() - with.size(), with.size(), with) == 0;
+}
+
+struct Range {
+  double low, high;
+  /// A number below and one above, short ones, since they are read again in the refusal.
+  std::vector<double> beyond() const { return {low > 0 ? low / 2 : low < 0 ? low * 2 : -1, high * 2}; }
+};
+
+/// @param tree has the figure of an end that is the name of another key.
+Range rangeOf(const YAML::Node& entry, const YAML::Node& tree, const std::string& joint = "") {
+  const auto end = [&](const YAML::Node& node) {
+    double number = 0;
+    if (YAML::convert<double>::decode(node, number)) return number;
+    return at(tree, std::regex_replace(node.as<std::string>(), std::regex("<joint>"), joint)).as<double>();
+  };
+  return {end(entry["range"][0]), end(entry["range"][1])};
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Files
+
+struct File {
+  const char* section;
+  YAML::Node (*good)();  ///< with every key but the lists
+  void (*parse)(const std::string& text);
+};
+
+YAML::Node goodJob() {
+  YAML::Node job = YAML::LoadFile("jobs/paper.yaml");
+  YAML::Node process = job["process"], wheel = process["wheel"];
+  process["depth_end_mm"] = 1.6;
+  process["incomplete_ok"] = false;
+  wheel["profile"] = "angled";
+  wheel["angle_deg"] = 20;
+  wheel["side"] = "upper";
+  wheel["wear_per_pass_mm"] = 0;
+  return job;
+}
+
+YAML::Node goodWheel() {
+  YAML::Node wheel = YAML::LoadFile("wheels/angled_d100_w10.yaml");
+  wheel["measured"] = YAML::Load("{date: 2026-11-20, diameter_mm: 99, width_mm: 9, by: anna}");
+  return wheel;
+}
+
+const File kJobFile{"job", goodJob, [](const std::string& text) { parseJob(text, "file"); }};
+const File kWheelFile{"wheel", goodWheel, [](const std::string& text) { parseWheel(text, "file"); }};
+
+using Lines = std::vector<std::string>;
+
+class SchemaOfFile : public ::testing::TestWithParam<const File*> {
+ protected:
+  /// What is said of a file, without its name and line.
+  Lines refusal(const YAML::Node& tree) const {
+    Lines all;
+    try {
+      GetParam()->parse(YAML::Dump(tree));
+    } catch (const JobFileError& error) {
+      std::istringstream lines(error.what());
+      for (std::string line; std::getline(lines, line);) all.push_back(line.substr(line.find(": ") + 2));
+    }
+    return all;
+  }
+
+  std::string number(double value, const YAML::Node& entry) const {
+    return text(value, 10) + (entry["unit"] ? " " + entry["unit"].as<std::string>() : "");
+  }
+
+  std::string allowed(const std::string& key, const YAML::Node& entry) const {
+    if (key == "measured.diameter_mm") return "1 to 100 mm, the diameter to which Y = 0 is set";
+    if (entry["range"]) {
+      const Range range = rangeOf(entry, good_);
+      return text(range.low, 10) + " to " + number(range.high, entry);
+    }
+    std::string choices;
+    for (const auto& choice : entry["choices"]) choices += (choices.empty() ? "" : ", ") + choice.as<std::string>();
+    return choices.empty() ? entry["allowed"].as<std::string>() : choices;
+  }
+
+  /// What is said of a word in the place of a value; nothing where it might be a choice or a date.
+  static std::string wrong(const YAML::Node& entry) {
+    if (entry["range"]) return entry["integer"] ? " is not a whole number" : " is not a number";
+    return entry["choices"] && entry["choices"][0].as<std::string>() == "true" ? " is neither true nor false" : "";
+  }
+
+  static bool isList(const YAML::Node& entry) { return entry["type"] && entry["type"].as<std::string>() == "list"; }
+
+  template <typename Use>
+  void forEach(const Use& use) const {
+    for (const auto& item : schema(GetParam()->section)) {
+      SCOPED_TRACE(item.first);
+      if (!isList(item.second)) use(item.first.as<std::string>(), item.second);
+    }
+  }
+
+  const YAML::Node good_ = GetParam()->good();
+};
+
+INSTANTIATE_TEST_SUITE_P(, SchemaOfFile, ::testing::Values(&kJobFile, &kWheelFile),
+                         [](const auto& info) { return std::string(info.param->section); });
+
+TEST_P(SchemaOfFile, TheGoodOneIsTaken) { EXPECT_EQ(refusal(good_), Lines{}); }
+
+TEST_P(SchemaOfFile, EveryKeyButTheOptionalIsMissed) {
+  forEach([&](std::string key, const YAML::Node& entry) {
+    if (entry["default"]) return;
+    // A list is shorter then, so that of its keys the last is missed.
+    key = std::regex_replace(key, std::regex(R"(\[0\])"), "[1]");
+    const std::string remedy = entry["remedy"] ? "; " + entry["remedy"].as<std::string>() : "";
+    EXPECT_EQ(refusal(without(good_, key)), Lines{key + " is missing; allowed: " + allowed(key, entry) + remedy});
+  });
+}
+
+TEST_P(SchemaOfFile, NoWordIsTakenForANumberOrAChoice) {
+  forEach([&](const std::string& key, const YAML::Node& entry) {
+    if (entry["type"] && entry["default"]) return;
+    EXPECT_EQ(refusal(with(good_, key, "fast")),
+              Lines{key + " = fast" + wrong(entry) + "; allowed: " + allowed(key, entry)});
+  });
+}
+
+TEST_P(SchemaOfFile, NumbersAreTakenUpToTheEndsOfTheRange) {
+  forEach([&](const std::string& key, const YAML::Node& entry) {
+    if (!entry["range"]) return;
+    const Range range = rangeOf(entry, good_);
+    for (const double value : {range.low, range.high}) {
+      // It may contradict other figures.
+      for (const std::string& line : refusal(with(good_, key, value))) {
+        EXPECT_FALSE(begins(line, key + " = ") && ends(line, "; allowed: " + allowed(key, entry))) << line;
+      }
+    }
+    for (double value : range.beyond()) {
+      if (entry["integer"]) value = std::trunc(value);
+      const std::string expected = key + " = " + number(value, entry) + "; allowed: " + allowed(key, entry);
+      const Lines lines = refusal(with(good_, key, value));
+      EXPECT_EQ(std::count(lines.begin(), lines.end(), expected), 1) << expected;
+    }
+  });
+}
+
+TEST_P(SchemaOfFile, ChoicesAreTaken) {
+  forEach([&](const std::string& key, const YAML::Node& entry) {
+    for (const auto& choice : entry["choices"]) {
+      for (const std::string& line : refusal(with(good_, key, choice.Scalar())))
+        EXPECT_FALSE(begins(line, key + " = ")) << line;
+    }
+  });
+}
+
+TEST(Schema, SaysWhichToothAnglesAreAllowed) {
+  const YAML::Node entry = schema("job")["cutter.tooth_angles_deg"];
+  const YAML::Node job =
+      with(without(goodJob(), "cutter.teeth"), "cutter.tooth_angles_deg", std::vector<int>{0, 90, 90});
+  try {
+    parseJob(YAML::Dump(job), "file");
+    FAIL();
+  } catch (const JobFileError& error) {
+    const std::string allowed = entry["allowed"].as<std::string>() + " " + entry["unit"].as<std::string>();
+    EXPECT_TRUE(ends(error.what(), ": cutter.tooth_angles_deg = 90 deg; allowed: " + allowed)) << error.what();
+  }
+}
+
+TEST_P(SchemaOfFile, ThereAreNoOtherKeys) {
+  const Lines lines = refusal(with(good_, "strange", 1));
+  ASSERT_EQ(lines.size(), 1U);
+  const std::string refused = std::string("strange is not a key of a ") + GetParam()->section + " file; allowed: ";
+  ASSERT_TRUE(begins(lines[0], refused)) << lines[0];
+  std::istringstream words(std::regex_replace(lines[0].substr(refused.size()), std::regex(","), ""));
+  Names allowed, known;
+  for (std::string word; words >> word;) allowed.insert(word);
+  forEach([&](const std::string& key, const YAML::Node&) { known.insert(key); });
+  EXPECT_EQ(allowed, known);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Parameters
+
+struct Section {
+  const char* name;
+  /// @param root,hardware all parameters, and those of the drive.
+  void (*read)(const ParameterReader& root, const ParameterReader& hardware);
+};
+
+const Section kSections[]{
+    {"machine",
+     [](const ParameterReader& p, const ParameterReader&) {
+       static const std::string urdf = readTextFile("urdf/grinder.urdf", 1'000'000);
+       readMachineConfig(urdf, p);
+     }},
+    {"node", [](const ParameterReader& p, const ParameterReader&) { readNodeParameters(p, "/grinder"); }},
+    {"simulated_drive",
+     [](const ParameterReader& p, const ParameterReader& hardware) { SimulatedDrive::readSimulation(p, hardware); }},
+    {"hal", [](const ParameterReader& p, const ParameterReader& hardware) { readHalParameters(p, hardware); }},
+};
+
+/// The shipped parameters, and those that may be left out.
+YAML::Node goodParameters() {
+  YAML::Node p = YAML::LoadFile("config/grinder.yaml");
+  for (const auto& item : YAML::LoadFile("config/hal.yaml")["hardware"])
+    p["hardware"][item.first.Scalar()] = item.second;
+  for (const char* file : {"journal", "offsets", "history"}) p[file] = "/tmp/";
+  for (const char* joint : kJointNames) {
+    YAML::Node limits = p["joint_limits"][joint];
+    limits["has_position_limits"] = true;
+    limits["has_velocity_limits"] = true;
+    limits["min_position"] = -2;
+    limits["max_position"] = 2;
+    limits["max_velocity"] = 1;
+  }
+  p["hardware"]["blank"] = YAML::Load("{end_face: 0, diameter: 0.01, run_out: 0, rake_face: {height: 0, angle: 0}}");
+  p["hardware"]["swivel"] = 0;
+  return p;
+}
+
+class SchemaOfParameters : public ::testing::TestWithParam<Section> {
+ protected:
+  std::string refusal(const YAML::Node& tree) const {
+    const XmlRpc::XmlRpcValue p = test_support::toXmlRpc(tree);
+    try {
+      GetParam().read(ParameterReader(p, "/grinder"), ParameterReader(p["hardware"], "/grinder/hardware"));
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// @param use called with a parameter's name, where each joint is one of the axes', its full name in a refusal, its
+  ///        entry and its range.
+  template <typename Use>
+  void forEach(const Use& use) const {
+    for (const auto& item : schema(GetParam().name)) {
+      const std::string name = item.first.as<std::string>();
+      const std::regex placeholder("<joint>");
+      for (const std::string joint : kJointNames) {
+        const std::string path = std::regex_replace(name, placeholder, joint);
+        SCOPED_TRACE(path);
+        use(path, "parameter /grinder/" + path, item.second,
+            item.second["range"] ? rangeOf(item.second, good_, joint) : Range{});
+        if (path == name) break;
+      }
+    }
+  }
+
+  static std::string type(const YAML::Node& entry) { return entry["type"] ? entry["type"].as<std::string>() : ""; }
+
+  /// Whether the range of another parameter ends at this one.
+  static bool isLimit(const std::string& path) {
+    const std::string name = std::regex_replace(path, std::regex("axis_[xyza]"), "<joint>");
+    for (const Section& section : kSections) {
+      for (const auto& item : schema(section.name)) {
+        for (const auto& end : item.second["range"]) {
+          if (end.as<std::string>() == name) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  const YAML::Node good_ = goodParameters();
+};
+
+INSTANTIATE_TEST_SUITE_P(, SchemaOfParameters, ::testing::ValuesIn(kSections),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(SchemaOfParameters, TheGoodOnesAreTaken) { EXPECT_EQ(refusal(good_), ""); }
+
+TEST_P(SchemaOfParameters, EachIsMissed) {
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
+    // The others may be left out with what belongs to them alone.
+    if (path == "hardware/swivel") return;
+    const std::string missing = full + " is missing";
+    const std::string error = refusal(without(good_, path));
+    if (type(entry) == "flag") {
+      EXPECT_TRUE(begins(error, missing)) << error;
+    } else {
+      EXPECT_EQ(error, missing + "; allowed: " + (type(entry) == "text" ? "a text" : "a number"));
+    }
+  });
+}
+
+TEST_P(SchemaOfParameters, TheWrongTypeIsRefused) {
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
+    const std::string wrong = type(entry).empty() ? "fast" : "7";
+    const std::string allowed = type(entry).empty() ? "a number" : type(entry) == "text" ? "a text" : "true or false";
+    const std::string error = refusal(with(good_, path, wrong));
+    EXPECT_TRUE(begins(error, full + " = ") && error.find(wrong) != std::string::npos) << error;
+    EXPECT_TRUE(ends(error, "; allowed: " + allowed)) << error;
+  });
+}
+
+TEST_P(SchemaOfParameters, NumbersAreTakenUpToTheEndsOfTheRange) {
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, const Range& range) {
+    if (!type(entry).empty()) return;
+    for (const double value : {range.low, range.high}) {
+      const std::string error = refusal(with(good_, path, value));
+      EXPECT_TRUE(isLimit(path) ? !begins(error, full + " = ") : error.empty()) << error;
+    }
+    const std::string allowed = "; allowed: " + text(range.low, 6) + " to " + text(range.high, 6);
+    for (const double value : range.beyond()) {
+      EXPECT_EQ(refusal(with(good_, path, value)), full + " = " + text(value, 6) + allowed);
+    }
+    if (!entry["integer"]) return;
+    const double broken = range.low + 0.5;
+    EXPECT_EQ(refusal(with(good_, path, broken)), full + " = " + text(broken, 6) + "; allowed: a whole number");
+  });
+}
+
+TEST_P(SchemaOfParameters, AFlagOfALimitIsTrue) {
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
+    if (type(entry) != "flag") return;
+    const std::string error = refusal(with(good_, path, false));
+    if (entry["allowed"]) {
+      EXPECT_EQ(entry["allowed"].as<std::string>(), "true");
+      EXPECT_TRUE(begins(error, full + " = false; allowed: true")) << error;
+    } else {
+      EXPECT_EQ(error, "");
+    }
+  });
+}
+
+/// The parameters of a file, with <joint> for each axis.
+void addLeaves(const YAML::Node& tree, const std::string& path, Names& names) {
+  for (const auto& item : tree) {
+    const std::string name = path + item.first.as<std::string>();
+    if (item.second.IsMap()) {
+      addLeaves(item.second, name + "/", names);
+    } else {
+      names.insert(std::regex_replace(name, std::regex("/axis_[xyza](?=/|$)"), "/<joint>"));
+    }
+  }
+}
+
+TEST(Schema, KnowsEveryParameterOfTheShippedFilesWhichLackNone) {
+  Names shipped, known, needed;
+  for (const char* file : {"config/grinder.yaml", "config/hal.yaml"}) addLeaves(YAML::LoadFile(file), "", shipped);
+  for (const Section& section : kSections) {
+    for (const auto& item : schema(section.name)) {
+      known.insert(item.first.as<std::string>());
+      if (!item.second["default"]) needed.insert(item.first.as<std::string>());
+    }
+  }
+  for (const std::string& name : shipped) EXPECT_TRUE(known.count(name)) << name;
+  // The launch file sets these.
+  for (const char* name : {"journal", "offsets", "history"}) EXPECT_EQ(needed.erase(name), 1U) << name;
+  for (const std::string& name : needed) EXPECT_TRUE(shipped.count(name)) << name;
+}
+
+}  // namespace test_schema
+}  // namespace flute_grinder

@@ -143,7 +143,7 @@ class TestCycles(ProbeTest):
         before = self.offset(X)['offset_mm']
         refused = self.grind(*end_face, '50')
         self.assertEqual(refused.returncode, 1)
-        self.assertRegex(refused.stderr, 'work offset of X would change by .* allowed without a confirmation: 5 mm')
+        self.assertRegex(refused.stderr, 'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
         self.assertEqual(self.offset(X)['offset_mm'], before)
         self.assertEqual(self.grind(*end_face, '50', '--yes').returncode, 0)
         self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)

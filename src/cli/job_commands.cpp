@@ -87,7 +87,7 @@ void addRun(Commands& commands) {
       command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
   command
       .add_flag("--discard", options->discard,
-                "start even if the grinder's journal holds another, unfinished job, and discard that job")
+                "start even if the grinder's journal is damaged or holds another, unfinished job, and discard that job")
       ->excludes(go_on);
   command.add_flag("--offsets-are-right", options->offsets_are_right,
                    "start even if a work offset was never set, or was set for another tool, wheel or set-up");

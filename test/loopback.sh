@@ -99,6 +99,7 @@ refused "$own"
 refused 127.0.0.1 loopback_only:=false
 refused '' loopback_only:=true
 ROS_HOSTNAME='' refused 127.0.0.1
+for every in 0.0.0.0 ::; do refused "$every" loopback_only:=false; done
 
 launch_grinder --
 nothing_reached 'as README says'

@@ -97,18 +97,9 @@ class TestNodeWithoutMaster(unittest.TestCase):
             self.check_signals()
 
     def test_address_that_would_open_all_ports_is_refused(self):
-        own = socket.gethostname()
-        for name, why in (('', 'is empty'), ('LOCALHOST', '= LOCALHOST is loopback in words that ROS does not know'),
-                          ('no_such.invalid', '= no_such.invalid has no address: '), ('0x7f.1', '= 0x7f.1 is loopback')):
-            with self.subTest(name):
-                self.environment['ROS_HOSTNAME'] = name
-                self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
-                self.assertIn('ROS_HOSTNAME ' + why, self.output())
-        for name in ('localhost', '127.0.0.1', '::1', own, '0.0.0.0'):
-            with self.subTest(name):
-                self.log.truncate(0)
-                self.environment['ROS_HOSTNAME'] = name
-                self.end(self.start_waiting(), signal.SIGTERM)
+        self.environment['ROS_HOSTNAME'] = '0.0.0.0'
+        self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
+        self.assertIn('ROS_HOSTNAME = 0.0.0.0 is every address; allowed: ', self.output())
 
     def test_goes_on_with_the_master(self):
         node = self.start_waiting()

@@ -70,10 +70,7 @@ launch_grinder() {
   with_hosts env "${variables[@]}" roslaunch -p "$port" flute_grinder grinder.launch record:=true bag:="$folder/bag.bag" \
     journal:="$folder/journal" "$@" >"$folder/log" 2>&1 &
   launch=$!
-  local deadline=$((SECONDS + 60))
-  until (with_hosts env "${variables[@]}" rosrun flute_grinder grind status) >/dev/null 2>&1; do
-    kill -0 "$launch" && [ $SECONDS -lt $deadline ] || { cat "$folder/log"; exit 1; }
-  done
+  await_grinder with_hosts env "${variables[@]}"
   # The master, roslaunch itself, the log's collector, the grinder, its joint states' publisher, the recorder.
   [ "$(ports | wc -l)" -ge 9 ] || { echo "listening only on $(ports | tr '\n' ' ')"; exit 1; }
 }

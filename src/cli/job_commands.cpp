@@ -80,7 +80,7 @@ void addRun(Commands& commands) {
   const auto options = std::make_shared<RunOptions>();
   auto& command = commands.add("run", "grind the job; Ctrl-C cancels it and waits until it has ended, Ctrl-Z holds it",
                                "jobs/paper.yaml --csv streamed.csv",
-                               Commands::online([&commands, options] { return runJob(commands.node, *options); }));
+                               commands.online([&commands, options] { return runJob(commands.node, *options); }));
   addJob(command, options->job);
   command.add_flag("--dry-run", options->dry_run, "plan, check and show the path, but move nothing");
   auto* go_on =

@@ -123,6 +123,7 @@ class TestWithoutMaster(RunTest):
                               robot_description=urdf.read(), **parameters)
         node = self.master.start([gc.program('grinder')])
         self.addCleanup(self.master.end, node)
+        gc.poll(lambda: self.master.grind('status').returncode == 0, 'the grinder')
 
     def start_run(self):
         self.start_grinder()
@@ -160,7 +161,11 @@ class TestWithoutMaster(RunTest):
         left = rosgraph.Master('/left/grinder', self.master.environment['ROS_MASTER_URI'])
         for topic, kind in (('state', 'GrinderState'), ('offsets', 'WorkOffsets')):
             left.registerPublisher('/left/grinder/' + topic, 'flute_grinder/' + kind, 'http://127.0.0.1:1')
+        hung = self.grind('--node', 'left/grinder', 'status', environment=self.master.environment)
         self.check_all_say('^no grinder answers as /grinder; the ROS master knows /left/grinder: name one with --node\n$')
+        self.assertIsNone(hung.process.poll(), 'only a grinder that the master knows is waited for')
+        self.assertEqual(hung.end(), 1)
+        self.assertEqual(hung.text, 'no grinder answers as /left/grinder\n')
 
     def check_all_say(self, text):
         commands = [self.grind(*words.split(), environment=self.master.environment)

@@ -71,6 +71,7 @@ void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
     addLength(command, "--at", options->at_mm, "sets the work offset of Y so that the diameter is this one", false);
     command.add_option("--job", options->job, "with --at: job to be ground")->type_name(kYamlFile);
   }
+  addYes(command, options->yes);
 }
 
 void addProbe(Commands& commands) {

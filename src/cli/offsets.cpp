@@ -131,22 +131,32 @@ int show(ros::NodeHandle& nh, bool json) {
   return 0;
 }
 
-/// Fits the offsets to a job that can be computed from what they were set for.
+/// Computes the offsets of Y and Z that do not fit a job, from what they were set for: all of them, or none.
 /// @return the exit status; 1 if an offset must be set anew.
 int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
   const GrindGoal goal = goalFromFile(job);
   const std::optional<WorkOffsets> message = workOffsets(nh);
   if (!message) return noGrinder(nh);
   const core::WorkOffsets offsets = fromMessage(*message);
+  const auto was = [&](int axis) -> const core::WorkOffset& { return offsets.axes[static_cast<std::size_t>(axis)]; };
   int status = 0;
-  for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
-    const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
-    if (!misfit.change) {
-      status = fail(misfit.reason + "; set it anew");
-    } else if (const int refused = setWorkOffset(nh, misfit.axis, was.value + *misfit.change,
-                                                 basisOf(goal, was.basis.method), large_change_ok)) {
+  bool all = true;
+  const std::vector<core::OffsetMisfit> found = misfits(offsets, goal);
+  for (const core::OffsetMisfit& misfit : found) {
+    if (misfit.change) continue;
+    status = fail(misfit.reason + "; set it anew");
+    all = all && misfit.axis == kX;
+  }
+  std::vector<int> set;
+  for (const core::OffsetMisfit& misfit : found) {
+    if (!all || !misfit.change) continue;
+    const core::OffsetBasis basis = basisOf(goal, OffsetMethod::kComputed);
+    if (const int refused =
+            setWorkOffset(nh, misfit.axis, was(misfit.axis).value + *misfit.change, basis, large_change_ok)) {
+      for (const int axis : set) setWorkOffset(nh, axis, was(axis).value, was(axis).basis, true);
       return refused;
     }
+    set.push_back(misfit.axis);
   }
   return status;
 }

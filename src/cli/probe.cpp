@@ -1,6 +1,7 @@
 #include "cli/probe.h"
 
 #include "cli/interrupt.h"
+#include "cli/offsets.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
 #include "cli/zeros.h"
@@ -43,6 +44,7 @@ ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
   }
   if (options.job.empty()) return goal;
   goal.set_offset = 1;
+  goal.large_change_ok = static_cast<std::uint8_t>(options.yes);
   goal.set_by = userAtHost();
   goal.job = goalFromFile(options.job);
   if (row.always_for_job) {
@@ -67,18 +69,25 @@ bool awaitCycle(ProbeClient::GoalHandle& cycle, const StateWatch& watch) {
   return true;
 }
 
-/// @return the exit status.
-int printResult(const ProbeResult& result, int axis) {
+void printFigures(const ProbeResult& result) {
   for (const ProbedFigure& figure : result.figures) {
     const bool angle = figure.angle != 0;
     std::printf("%-15s %s", figure.name.c_str(), shown(figure.value, angle).c_str());
     if (!std::isnan(figure.spread)) std::printf(", spread %s", shown(figure.spread, angle).c_str());
     std::printf("\n");
   }
-  if (!result.message.empty()) return fail(result.message);
-  if (result.offset_set)
+}
+
+/// Of the offset, which the grinder has set, or which is set now if a large change is confirmed. @return the exit
+/// status.
+int settleOffset(ros::NodeHandle& nh, int axis, const ProbeGoal& goal, const ProbeResult& result) {
+  const int status = result.large_change
+                         ? setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), false)
+                     : result.message.empty() ? 0
+                                              : fail(result.message);
+  if (status == 0 && goal.set_offset)
     std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis], shown(result.offset, axis == kA).c_str());
-  return 0;
+  return status;
 }
 
 }  // namespace
@@ -105,7 +114,8 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
   if (!awaitCycle(running, watch)) return fail(kLinkLost);
   const ProbeResultConstPtr result = running.getResult();
   if (!result) return fail("probing: no result from the grinder " + nh.getNamespace());
-  return printResult(*result, row.axis);
+  printFigures(*result);
+  return settleOffset(nh, row.axis, goal, *result);
 }
 
 }  // namespace flute_grinder

@@ -13,6 +13,7 @@ struct ProbeOptions {
   double within = 0;                ///< the farthest way to a touch [mm], of A [deg]
   std::optional<double> at_mm;      ///< the diameter of the blank, if it is known
   std::optional<double> flange_mm;  ///< instead of the wheel file's
+  bool yes = false;                 ///< sets an offset even if it changes by much, without a question
 };
 
 /// Has the grinder run a probing cycle, and prints what it measured and the work offset that it set.

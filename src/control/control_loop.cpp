@@ -19,8 +19,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   trackMotion();
   moving_unbuffered_ = moving && record_.drive.commands_waiting == 0;
   if (isPowered(state_)) checkDrive();
-  dead_man_.wait(record_.period);
-  watchClient();
+  watchClients();
   executeRequests();
   awaitPower();
   if (state_ == MachineState::kHoming) awaitHoming();

@@ -49,7 +49,7 @@ Refusal ControlLoop::execute(MachineEvent event) {
     case MachineEvent::kRetract: return retract();
     case MachineEvent::kLift: return lift();
     case MachineEvent::kReset: return reset();
-    case MachineEvent::kSpindleOn: return record_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
+    case MachineEvent::kSpindleOn: return spindleOn();
     case MachineEvent::kSpindleOff: spindle_by_hand_ = false; return Refusal::kNone;
     case MachineEvent::kCoolantOn: return switchOn(coolant_by_hand_);
     case MachineEvent::kCoolantOff: coolant_by_hand_ = false; return Refusal::kNone;
@@ -94,6 +94,11 @@ Refusal ControlLoop::enable() {
 }
 
 /// @param commanded by hand. A wheel that starts in the work breaks.
+Refusal ControlLoop::spindleOn() {
+  if (jogging_ && for_client_) return Refusal::kProbing;
+  return record_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
+}
+
 Refusal ControlLoop::switchOn(bool& commanded) {
   if (wheel_.wheel().in_work) return Refusal::kInWork;
   commanded = true;

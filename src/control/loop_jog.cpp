@@ -10,6 +10,8 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// As silence of a client, a cycle counts at most so many periods.
+constexpr double kMostPeriods = 2;
 
 }  // namespace
 
@@ -45,6 +47,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
   if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
+  if (jog.for_client && (record_.spindle_commanded || record_.drive.spindle_at_speed)) return Refusal::kWheelTurns;
   if (jog.to_touch && record_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
   if (!record_.drive.homed) return Refusal::kInterlock;
@@ -102,8 +105,11 @@ double ControlLoop::lowestJog(int axis) const {
   return axis == kY && stream_ ? std::max(lowest, wheel_.wheel().clear_y) : lowest;
 }
 
-void ControlLoop::watchClient() {
-  client_.wait(record_.period);
+void ControlLoop::watchClients() {
+  // A loop that comes late has not heard them meanwhile.
+  const double unheard = std::min(record_.period, kMostPeriods * config_.machine.period);
+  dead_man_.wait(unheard);
+  client_.wait(unheard);
   const std::uint32_t keep_alives = keepAlives();
   if (keep_alives != keep_alives_seen_) client_.press();
   keep_alives_seen_ = keep_alives;

@@ -112,16 +112,15 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   response.large_change = static_cast<std::uint8_t>(large_change);
 }
 
-std::string OffsetServer::setProbed(int axis, double value, const std::string& set_by, const GrindGoal& goal) {
+std::string OffsetServer::setProbed(int axis, double value, const ProbeGoal& goal, bool& large_change) {
   core::WorkOffset offset;
-  offset.set_by = set_by;
-  offset.basis = basisOf(goal, OffsetMethod::kProbe);
+  offset.set_by = goal.set_by;
+  offset.basis = basisOf(goal.job, OffsetMethod::kProbe);
   const auto answer = std::make_shared<std::promise<std::string>>();
   std::future<std::string> answered = answer->get_future();
-  thread_.post([=] {
-    bool large_change = false;
+  thread_.post([=, &large_change, large_change_ok = goal.large_change_ok != 0] {
     answer->set_value(setWithoutJob(
-        axis, offset, [=](double) { return value; }, true, large_change));
+        axis, offset, [=](double) { return value; }, large_change_ok, large_change));
   });
   return answered.get();
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/ProbeGoal.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/control/control_loop.h"
@@ -29,10 +29,11 @@ class OffsetServer {
   /// The work offsets. Thread safe; never waits for the disk.
   core::WorkOffsets offsets() const { return store_.offsets(); }
 
-  /// Sets a work offset that was probed while the caller shuts jobs out, by any amount. For another thread than the
-  /// one here, for which it waits. @param value [m], A [rad]. @param goal what it is set for.
+  /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
+  /// which it waits. @param value [m], A [rad]. @param goal by whom and for what it is set.
+  /// @param large_change whether it was not set only because it would change by too much.
   /// @return why it was not set; empty if it was.
-  std::string setProbed(int axis, double value, const std::string& set_by, const GrindGoal& goal);
+  std::string setProbed(int axis, double value, const ProbeGoal& goal, bool& large_change);
 
  private:
   /// The offset of an axis whose position is as given [m or rad].

@@ -106,9 +106,11 @@ void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, ProbeRes
   if (!goal.set_offset) return;
   prober.checkStop();
   const int axis = rowOf(static_cast<ProbingCycle>(goal.cycle)).axis;
-  const std::string refused = offsets_.setProbed(axis, offset, goal.set_by, goal.job);
-  if (!refused.empty()) throw ProbingError(refused);
+  bool large_change = false;
+  const std::string refused = offsets_.setProbed(axis, offset, goal, large_change);
+  result.large_change = static_cast<std::uint8_t>(large_change);
   result.offset = offset;
+  if (!refused.empty()) throw ProbingError(refused);
   result.offset_set = 1;
 }
 

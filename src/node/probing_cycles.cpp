@@ -17,6 +17,8 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+/// Largest difference of a measured diameter from the known one [m]; with more, they are not of the same cylinder.
+constexpr double kMostOff = 1 * units::kMillimetre;
 
 /// What a cycle works with.
 struct Cycle {
@@ -80,6 +82,10 @@ double diameter(const Cycle& cycle) {
   cycle.add("diameter", diameter, spread);
   cycle.add("run-out", std::hypot(sides[0] - sides[2], sides[1] - sides[3]) / 2);
   if (!cycle.goal.set_offset) return kNone;
+  if (!(std::abs(diameter - cycle.goal.diameter) <= kMostOff)) {
+    throw ProbingError("diameter = " + millimetres(diameter) + ", known as " + millimetres(cycle.goal.diameter) +
+                       "; allowed: up to " + millimetres(kMostOff) + " apart");
+  }
   // By how much the machine's Y is off, as this diameter shows.
   const double off = (diameter - cycle.goal.diameter) / 2;
   return workZero(cycle.geometry, jobFromGoal(cycle.goal.job), {}).y() + off;

@@ -127,16 +127,25 @@ TEST_P(ProbeFrom, AStepOfASeriesIsRefusedAfterAnyStop) {
   EXPECT_TRUE(rig_.jog(step(0.001)).accepted) << "by hand";
 }
 
-TEST_P(ProbeFrom, AStepForAClientEndsWithIt) {
-  JogRequest next = step(0.01);
-  next.stops = rig_.loop->status().stops;
-  next.for_client = true;
-  const auto alive = [&](int cycles) {
+/// Steps of a probing cycle, which lasts as long as its client does.
+class ProbeForClient : public ProbeFrom {
+ protected:
+  JogRequest next() const {
+    JogRequest next = step(0.01);
+    next.stops = rig_.loop->status().stops;
+    next.for_client = true;
+    return next;
+  }
+  void alive(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       if (i % 20 == 0) rig_.loop->keepAlive();
       rig_.cycle();
     }
-  };
+  }
+};
+
+TEST_P(ProbeForClient, AStepEndsWithIt) {
+  const JogRequest next = this->next();
   alive(1);
   ASSERT_TRUE(rig_.jog(next).accepted);
   alive(200);
@@ -154,10 +163,39 @@ TEST_P(ProbeFrom, AStepForAClientEndsWithIt) {
   EXPECT_TRUE(smooth(rig_.log));
 }
 
-TEST_P(ProbeFrom, AStepForAClientThatIsGoneMovesNothing) {
-  JogRequest next = step(0.01);
-  next.stops = rig_.loop->status().stops;
-  next.for_client = true;
+TEST_P(ProbeForClient, ALateHostIsNotItsSilence) {
+  alive(1);
+  ASSERT_TRUE(rig_.jog(next()).accepted);
+  for (int i = 0; i < 7; ++i) rig_.cycle(9);  // 63 ms
+  EXPECT_FALSE(rig_.loop->status().client_lost);
+  for (int i = 0; i < 19; ++i) rig_.cycle(9);
+  EXPECT_TRUE(rig_.loop->status().client_lost) << "after 26 cycles, of which each counts 2 ms";
+}
+
+TEST_P(ProbeForClient, NoStepBeginsWhileTheWheelTurns) {
+  alive(1);
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = true; };  // commanded by whatever else
+  EXPECT_EQ(rig_.jog(next()).text, "jog refused: the wheel turns; switch the spindle off first");
+  rig_.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
+  ASSERT_TRUE(rig_.ask(E::kSpindleOn).accepted);
+  EXPECT_EQ(rig_.jog(next()).text, "jog refused: the wheel turns; switch the spindle off first");
+  EXPECT_TRUE((rig_.last().command == at_).all());
+  ASSERT_TRUE(rig_.ask(E::kSpindleOff).accepted);
+  rig_.cycle();
+  EXPECT_TRUE(rig_.jog(next()).accepted);
+}
+
+TEST_P(ProbeForClient, TheSpindleIsNotSwitchedOnInAStep) {
+  alive(1);
+  ASSERT_TRUE(rig_.jog(next()).accepted);
+  alive(20);
+  EXPECT_EQ(rig_.ask(E::kSpindleOn).text,
+            "spindle on refused: a probing cycle is in progress; wait for its end, or cancel it");
+  EXPECT_FALSE(rig_.drive.written_drive.spindle);
+}
+
+TEST_P(ProbeForClient, AStepForOneThatIsGoneMovesNothing) {
+  const JogRequest next = this->next();
   rig_.run(100);
   const std::size_t rest = rig_.log.size() - 1;
   ASSERT_TRUE(rig_.jog(next).accepted);
@@ -177,6 +215,7 @@ TEST_P(ProbeFrom, AFaultEndsTheJog) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted), stateName);
+INSTANTIATE_TEST_SUITE_P(, ProbeForClient, testing::Values(S::kReady), stateName);
 
 }  // namespace test_probe_contact
 }  // namespace flute_grinder::test_support

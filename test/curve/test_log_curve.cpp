@@ -61,7 +61,9 @@ TEST(LogCurve, WithALeadItIsTheCurveThere) {
         EXPECT_NEAR(ahead.a(x), curve.a(x - lead), 4e-15) << lead << ' ' << x;
         EXPECT_NEAR(ahead.slope(x), curve.slope(x - lead), 1e-12) << lead << ' ' << x;
       }
-      if (lead == 0) EXPECT_EQ(ahead.a(12e-3), curve.a(12e-3));
+      if (lead == 0) {
+        EXPECT_EQ(ahead.a(12e-3), curve.a(12e-3));
+      }
     }
   }
 }

@@ -201,7 +201,7 @@ def job_file(path, **changes):
         changes = dict({'rake_tolerance_deg': 180, 'shank_diameter_mm': 1, 'depth_mm': 0.5, 'infeed_mm': 0.5, 'overtravel_mm': '[1, 1]'}, **changes)
         text = text.replace('  direction:', '  incomplete_ok: true\n  direction:')
     for key, value in changes.items():
-        text, count = re.subn(r'(?m)^( +%s:) *(\[.*?\]|[^ #\n]+)' % key, r'\g<1> %s' % value, text)
+        text, count = re.subn(r'(?m)^( +%s:) *(\[.*?\]|\{.*?\}|[^ #\n]+)' % key, r'\g<1> %s' % value, text)
         assert count == 1, key
     with open(path, 'w') as changed:
         changed.write(text)

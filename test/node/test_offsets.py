@@ -356,22 +356,29 @@ class TestZeroPoints(OffsetsTest):
 
         done = self.grind('offsets', '--fit', d10)
         self.assertEqual((done.returncode, done.stderr), (0, ''))
-        self.assertRegex(done.stdout, r'(?m)^Y +3\.0000 .*; set by hand for D 10 mm, wheel D 100 mm \(d10\.yaml\)$')
+        self.assertRegex(done.stdout, r'(?m)^Y +3\.0000 .*; computed for D 10 mm, wheel D 100 mm \(d10\.yaml\)$')
         for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
             self.assertAlmostEqual(got, expected, delta=1e-15)
         self.check_told()
         run = self.client.send(gc.SHORT, offsets_are_right=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    set by hand for D 10 mm, wheel')
+        self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    computed for D 10 mm, wheel')
         told = json.loads(self.grind('status', '--json').stdout)['zero_points']
-        self.assertEqual((told['a'], told['y']['method'], told['y']['job']), (None, 'by_hand', 'd10.yaml'))
+        self.assertEqual((told['a'], told['y']['method'], told['y']['job']), (None, 'computed', 'd10.yaml'))
 
-        # Of a wheel that has become thinner Y alone can be computed.
+        # Of a wheel that has become thinner Y alone could be computed: nothing is.
         other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
         done = self.grind('offsets', '--fit', other)
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r'(?m)^X was set by hand for .*; this job has width of the wheel 2 mm; set it anew$')
-        self.assertAlmostEqual(self.offsets().values[Y], 4 * MM, delta=1e-15)
+        self.assertAlmostEqual(self.offsets().values[Y], 3 * MM, delta=1e-15)
+
+        # The question for the second is answered by no: the first is as it was.
+        both = gc.job_file(os.path.join(self.folder, 'both.yaml'), end_diameter_mm=12,
+                           setup='{swivel_deg: 31.769, height_mm: 30}')
+        before = self.offsets()
+        self.assertEqual(self.grind('offsets', '--fit', both).returncode, 1)
+        self.assertEqual((self.offsets().values, self.offsets().basis), (before.values, before.basis))
 
     def test_computed_ones_fit_their_job(self):
         job = gc.package_file('jobs/paper.yaml')
@@ -434,10 +441,9 @@ class TestCommandLine(OffsetsTest):
         job = gc.package_file('jobs/paper.yaml')
         zeros = ('zeros', job, '--stickout', '62', '--flange', '2', '--set')
         fit = ('offsets', '--fit', gc.job_file(os.path.join(self.folder, 'd40.yaml'), end_diameter_mm=40))
-        self.assertEqual(self.grind('offsets', '--set', 'x=0', '--set', 'y=4', '--job', job).returncode, 0)
-        # X, set for no job, remains to be set after the fit.
+        self.assertEqual(self.grind('offsets', '--set', 'x=0', '--set', 'y=4', '--set', 'z=0', '--job', job).returncode, 0)
         for command, axis, status in ((('offsets', '--set', 'x=12.3'), X, 0), (('touch-off', 'x', '--at', '30'), X, 0),
-                                      (fit, Y, 1), (zeros, X, 0)):
+                                      (fit, Y, 0), (zeros, X, 0)):
             before = self.offsets()
             refused = self.grind(*command)
             self.assertEqual(refused.returncode, 1, command)

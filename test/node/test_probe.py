@@ -135,6 +135,19 @@ class TestCycles(ProbeTest):
         zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
         self.assertAlmostEqual(self.offset(Y)['offset_mm'], zeros['y_mm'] - 0.015, delta=2 * TOUCH / MM)
 
+    def test_a_flange_mistyped_changes_x_only_if_confirmed(self):
+        self.start()
+        self.bring_ball(12 * MM, 0)
+        end_face = 'probe', 'end-face', '--job', JOB, '--flange'
+        self.assertEqual(self.grind(*end_face, '2').returncode, 0)
+        before = self.offset(X)['offset_mm']
+        refused = self.grind(*end_face, '50')
+        self.assertEqual(refused.returncode, 1)
+        self.assertRegex(refused.stderr, 'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
+        self.assertEqual(self.offset(X)['offset_mm'], before)
+        self.assertEqual(self.grind(*end_face, '50', '--yes').returncode, 0)
+        self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
+
     def test_the_first_tooth_gives_the_offset_of_a(self):
         """A straight flute: its rake face is a plane, at the height of the wheel's upper face."""
         job = yaml.safe_load(open(JOB))

@@ -126,6 +126,20 @@ TEST_F(ProbingCycles, DiameterIsTheMeanOfFourSidesAndTheRunOutTheirWay) {
   EXPECT_NEAR(loop_->status().command[kA], 0, 1e-9);
 }
 
+TEST_F(ProbingCycles, ADiameterFarFromTheKnownOneSetsNothing) {
+  start(config(), [](const FakeDrive& drive) { return std::abs(drive.position[kY] - 0.01) <= 0.006 + kBall; });
+  ProbeGoal probe = goal(ProbeGoal::DIAMETER, 0.035);
+  probe.set_offset = 1;
+  probe.job = goalFromJob(readJobFile("jobs/paper.yaml"));
+  for (const double known : {0.0109, 0.0131, 0.006, 0.022}) {
+    probe.diameter = known;
+    EXPECT_CONTAINS(refusal(probe), "diameter = 11.9999 mm, known as ");
+    EXPECT_CONTAINS(refusal(probe), "; allowed: up to 1.0000 mm apart");
+  }
+  probe.diameter = 0.0111;
+  EXPECT_EQ(refusal(probe), "");
+}
+
 TEST_F(ProbingCycles, NothingThereGoesBack) {
   start(config(), [](const FakeDrive&) { return false; });
   const double before = loop_->status().command[kX];

@@ -88,6 +88,7 @@ class ControlLoop : public RequestBox {
   Refusal lift();
   double liftTarget() const;
   Refusal setSwivel(double angle);
+  Refusal spindleOn();
   Refusal switchOn(bool& commanded);
   Axes distanceToGo() const;
   Interlock openInterlock() const;
@@ -105,7 +106,7 @@ class ControlLoop : public RequestBox {
   void advanceJob();
   void advanceLift();
   void advanceJog();
-  void watchClient();
+  void watchClients();
   void stopJogWithoutClient();
   void stopJogOnContact();
   void endJog();

@@ -22,7 +22,7 @@ struct JogRequest {
 
 /// The dead man's switch of a continuous jog, or of a series, whose messages must come again and again. Once the jog
 /// was stopped or refused, a switch that is still pressed moves nothing: it must first be released, by a message that
-/// stops or by none until the time-out. Counts the cycles' time, so that no other thread can keep an axis moving.
+/// stops or by none until the time-out. Counts the cycles, so that no other thread can keep an axis moving.
 /// Real-time safe.
 class DeadMansSwitch {
  public:

@@ -42,6 +42,8 @@ enum class Refusal : std::uint8_t {
   kJobOver,         ///< a jog in a job that was held at the very end of its path
   kStopped,         ///< a continuous jog that was stopped or refused, and not released since
   kTouches,         ///< a jog to touch, while the probe touches already
+  kWheelTurns,      ///< a jog of a probing cycle, while the spindle is commanded or at speed
+  kProbing,         ///< the spindle, while the probe is being moved
   kStopCameFirst,   ///< a jog of a sequence that was stopped before it
 };
 

@@ -6,6 +6,7 @@
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
+#include "panel/click_guard.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -17,6 +18,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <exception>
+#include <set>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -80,6 +82,12 @@ GrindPanel::GrindPanel(QWidget* parent)
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
   guardFromWheel(*this);
+  // A stop is a stop, however often it is pressed.
+  std::set<QWidget*> stops;
+  for (const auto& [event, button] : buttons_) {
+    if (isStop(event)) stops.insert(button);
+  }
+  guardFromDoubleClicks(*this, stops);
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
@@ -92,7 +100,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::touchOff);
+  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) { touchOff(axis, at, false); });
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
@@ -421,14 +429,14 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
   link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis, UnitSystem::kShop) + " by " + way));
 }
 
-void GrindPanel::touchOff(int axis, double at, bool confirmed) {
+void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
   try {
     const core::OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
     const auto answered = reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set");
-    link_->touchOff(axis, position, basis, confirmed, [this, answered](const std::string& refusal, bool large_change) {
+    link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
       answered(refusal);
-      if (large_change) touch_off_->askToConfirm();
+      if (large_change) touch_off_->ask(capitalized(refusal), [=] { touchOff(axis, at, true); });
     });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());

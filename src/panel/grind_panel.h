@@ -73,7 +73,7 @@ class GrindPanel : public rviz::Panel {
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
-  void touchOff(int axis, double at, bool confirmed);
+  void touchOff(int axis, double at, bool large_change_ok);
   core::OffsetBasis touchedFor(int axis) const;
   void fitOffsets(const GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.

@@ -206,8 +206,8 @@ QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   button->setEnabled(false);
   button->setMinimumWidth(10);
   // Space must not press what the focus has only come to.
-  if (request.value == MachineEvent::kCancel || request.value == MachineEvent::kDisable) {
-    button->setFocusPolicy(Qt::NoFocus);
+  for (const MachineEvent kept : {MachineEvent::kStart, MachineEvent::kCancel, MachineEvent::kDisable}) {
+    if (request.value == kept) button->setFocusPolicy(Qt::NoFocus);
   }
   if (large) {
     QFont bold = font();
@@ -293,6 +293,9 @@ void GrindPanel::refresh() {
   // Hold before the others are disabled, of which one may have the focus.
   const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
   enable(MachineEvent::kHold);
+  const bool begun = job_runs || (state && sent_ && !sent_->goal.dry_run);
+  if (begun && !begun_) buttons_.at(MachineEvent::kHold)->setFocus();
+  begun_ = begun;
   for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, master == Master::kAnswers);

@@ -20,10 +20,14 @@ Question::Question(const QString& name, int lines)
   layout_->setRowStretch(0, 1);
   for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);
   auto* decline = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1);
+  decline->setFocusPolicy(Qt::StrongFocus);
   connect(decline, &QPushButton::clicked, this, &Question::declined);
   appearing_.setSingleShot(true);
   appearing_.setInterval(kAppearing);
-  connect(&appearing_, &QTimer::timeout, this, [this] { enableAnswers(true); });
+  connect(&appearing_, &QTimer::timeout, this, [this, decline] {
+    enableAnswers(true);
+    decline->setFocus();
+  });
 }
 
 QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column) {
@@ -31,6 +35,7 @@ QPushButton* Question::addAnswer(const char* name, const QString& text, const QS
   button->setObjectName(name);
   button->setToolTip(hint);
   button->setEnabled(false);
+  button->setFocusPolicy(Qt::NoFocus);
   button->setMinimumWidth(10);  // so that the columns are alike
   // One that is not offered must not move the others.
   QSizePolicy policy = button->sizePolicy();

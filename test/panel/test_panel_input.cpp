@@ -308,6 +308,57 @@ TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
   for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
 }
 
+TEST_F(Asked, NoKeyStartsAnything) {
+  const auto press_keys = [&] {
+    for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter, Qt::Key_Space}) {
+      QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
+    }
+  };
+  const std::vector<std::pair<const char*, std::string>> ways{
+      {"discard", "unfinished"}, {"offsets_are_right", "offsets"}, {"confirm_swivel", "swivel"}};
+  for (std::size_t asked = 0; asked < ways.size(); ++asked) {
+    SCOPED_TRACE(ways[asked].second);
+    for (std::size_t before = 0; before < asked; ++before) panel.answer(ways[before].first);
+    press_keys();
+    const std::string decline = "decline_" + ways[asked].second;
+    WAIT_FOR(panel.the<QWidget>(decline.c_str()).hasFocus());
+    for (int i = 0; i < 40; ++i) {
+      QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+      ASSERT_TRUE(QApplication::focusWidget());
+      EXPECT_NE(QApplication::focusWidget()->objectName().toStdString(), ways[asked].first);
+      EXPECT_NE(QApplication::focusWidget()->objectName(), "start");
+    }
+    panel.the<QWidget>(decline.c_str()).setFocus();
+    press_keys();
+    EXPECT_FALSE(shown(ways[asked].second)) << "Space answers Not yet";
+    panel.click("start");
+  }
+  EXPECT_EQ(goals(), 0U);
+  EXPECT_TRUE(stage.get([&] { return stage.swivels; }).empty());
+}
+
+TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
+  for (const char* answer : {"discard", "offsets_are_right", "confirm_swivel"}) panel.answer(answer);
+  WAIT_FOR(goals() == 1);
+  // From the goal on: a job that is still planned begins held.
+  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
+  be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.state() == "Running");
+  QTest::keyClick(QApplication::focusWidget(), Qt::Key_Space);
+  WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+}
+
+TEST_F(Input, SpaceHoldsAJobOfSomebodyElse) {
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  panel.widget().activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
+  panel.openTab("Jog");
+  panel.the<QWidget>("jog_speed").setFocus();
+  WAIT_FOR(panel.state() == "Ready");
+  be(GrinderState::STARTING, "starting");
+  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
+}
+
 /// How often the buttons of a panel are clicked, the stops aside, since they may well be sent twice.
 class Clicks {
  public:

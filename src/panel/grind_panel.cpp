@@ -348,7 +348,7 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   if (master_watch_->master() == Master::kMissing) return false;
   switch (event) {
     case MachineEvent::kHome: return !view.state->wheel_in_work;
-    case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
+    case MachineEvent::kStart: return !view.state->wheel_in_work && !view.planned && job_->planned();
     case MachineEvent::kLift: return view.state->wheel_in_work != 0;
     case MachineEvent::kSpindleOn: return !view.state->wheel_in_work && !view.state->spindle_commanded;
     case MachineEvent::kCoolantOn: return !view.state->wheel_in_work && !view.state->coolant_commanded;

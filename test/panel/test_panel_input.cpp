@@ -243,8 +243,11 @@ class Asked : public Input {
       stage.state.swivel = 0;
       stage.state.progress.job_digest = std::string(64, 'a');
       stage.state.progress.cutter.tooth_angles = {0};
+      // Later than anything before, so that the panel knows the rest once it shows this.
+      stage.state.override = 0.5;
     });
     stage.tellOffsets({});
+    WAIT_FOR(panel.label("override_value") == "50 %");
     WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z" && panel.enabled("plan"));
     panel.click("plan");
     WAIT_FOR(panel.enabled("start"));

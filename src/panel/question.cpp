@@ -15,7 +15,7 @@ constexpr int kAppearing = 1000;  ///< [ms]
 Question::Question(const QString& name, int lines)
     : text_(textView((name + "_question").toLatin1(), lines)), layout_(new QGridLayout(this)) {
   layout_->setContentsMargins(0, 0, 0, 0);
-  layout_->setVerticalSpacing(4);
+  layout_->setVerticalSpacing(2);
   layout_->addWidget(text_, 0, 0, 1, 2);
   layout_->setRowStretch(0, 1);
   for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);

@@ -23,7 +23,7 @@ def seconds(command):
 
 def main():
     runs = int(sys.argv[1])
-    seconds('status')  # waits for the grinder
+    gc.poll(lambda: gc.grind('status').returncode == 0, 'the grinder')
     print('%-10s %8s %8s   s, of %d runs' % ('', 'median', 'longest', runs))
     for command in COMMANDS:
         times = [seconds(command) for _ in range(runs)]

@@ -2,7 +2,6 @@
 # The installed package works without the source and the build: programs, launch file, plugin.
 set -euo pipefail
 source "$(dirname "$0")/launched.sh"
-log=$folder/roslaunch.log
 
 DESTDIR=$folder cmake --install "$root/build" >/dev/null
 space=$folder$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
@@ -19,7 +18,7 @@ done
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
 
 port=${ROS_MASTER_URI##*:}
-roslaunch -p "$port" flute_grinder grinder.launch journal:="$folder/journal" >"$log" 2>&1 &
+roslaunch -p "$port" flute_grinder grinder.launch journal:="$folder/journal" >"$folder/log" 2>&1 &
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
@@ -28,7 +27,8 @@ rosrun flute_grinder grind table share/flute_grinder/jobs/unequal_d12_t4.yaml --
 rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$folder/table.csv" >/dev/null
 rosrun flute_grinder grind report "$folder/table.csv" -o "$folder/table.html"
 grep -q '3\.9785e-05 rad' "$folder/table.html"
-rosrun flute_grinder grind enable || { cat "$log"; exit 1; }
+await_grinder env
+rosrun flute_grinder grind enable
 rosrun flute_grinder grind run "$job" --dry-run
 rosrun flute_grinder grind status | grep -q '^state *ready'
 # It does not start without parameters.

@@ -9,6 +9,15 @@ end_launch() {
   launch=
 }
 
+# await_grinder COMMAND...: waits until the launched grinder says its state; the command runs what follows it. Where it has ended, or
+# after a minute, the check fails with roslaunch's log.
+await_grinder() {
+  local deadline=$((SECONDS + 60))
+  until ("$@" rosrun flute_grinder grind status) </dev/null >/dev/null 2>&1; do
+    kill -0 "$launch" && [ $SECONDS -lt $deadline ] || { cat "$folder/log"; exit 1; }
+  done
+}
+
 cleanup() {
   end_launch
   rm -rf "$folder"

@@ -70,10 +70,7 @@ launch_grinder() {
   with_hosts env "${variables[@]}" roslaunch -p "$port" flute_grinder grinder.launch record:=true bag:="$folder/bag.bag" \
     journal:="$folder/journal" "$@" >"$folder/log" 2>&1 &
   launch=$!
-  local deadline=$((SECONDS + 60))
-  until (with_hosts env "${variables[@]}" rosrun flute_grinder grind status) >/dev/null 2>&1; do
-    kill -0 "$launch" && [ $SECONDS -lt $deadline ] || { cat "$folder/log"; exit 1; }
-  done
+  await_grinder with_hosts env "${variables[@]}"
   # The master, roslaunch itself, the log's collector, the grinder, its joint states' publisher, the recorder.
   [ "$(ports | wc -l)" -ge 9 ] || { echo "listening only on $(ports | tr '\n' ' ')"; exit 1; }
 }
@@ -99,6 +96,7 @@ refused "$own"
 refused 127.0.0.1 loopback_only:=false
 refused '' loopback_only:=true
 ROS_HOSTNAME='' refused 127.0.0.1
+for every in 0.0.0.0 ::; do refused "$every" loopback_only:=false; done
 
 launch_grinder --
 nothing_reached 'as README says'

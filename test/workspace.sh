@@ -54,7 +54,8 @@ check_space() (
     journal:="$folder/journal" >"$folder/log" 2>&1 &
   launch=$!
   trap end_launch EXIT
-  rosrun flute_grinder grind enable </dev/null || { cat "$folder/log"; exit 1; }
+  await_grinder env
+  rosrun flute_grinder grind enable </dev/null
   ps -o args= --ppid "$launch" | grep -q "^$1/lib/flute_grinder/grinder "
   # Without parameters it does not start, and says so.
   { ! rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'parameter /second/'

@@ -24,8 +24,8 @@ CLI::App& Commands::addTo(CLI::App& command, const std::string& name, const std:
   return added;
 }
 
-Action Commands::online(Action action) {
-  return [action = std::move(action)] { return joinRos() ? action() : 1; };
+Action Commands::online(Action action) const {
+  return [this, action = std::move(action)] { return joinRos(node) ? action() : 1; };
 }
 
 int Commands::carryOut() const {

@@ -25,8 +25,8 @@ class Commands {
   CLI::App& addTo(CLI::App& command, const std::string& name, const std::string& description,
                   const std::string& example, Action action);
 
-  /// The same action for what needs the ROS master: waits for it first.
-  static Action online(Action action);
+  /// The same action for what needs the grinder's node: makes sure first that the ROS master knows it.
+  Action online(Action action) const;
 
   /// Carries out the command that was parsed. @return the exit status.
   int carryOut() const;

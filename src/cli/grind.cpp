@@ -24,7 +24,7 @@ int run(int argc, char** argv) {
       initRos(argc, argv, "grind",
               ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
   // If the master goes away during a call, wait for it as long as for one that is missing.
-  ros::master::setRetryTimeout(kPatience);
+  ros::master::setRetryTimeout(kMasterPatience);
   CommandLine line;
   const std::optional<int> refused = line.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
   return refused ? *refused : line.carryOut();

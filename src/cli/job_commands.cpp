@@ -80,14 +80,14 @@ void addRun(Commands& commands) {
   const auto options = std::make_shared<RunOptions>();
   auto& command = commands.add("run", "grind the job; Ctrl-C cancels it and waits until it has ended, Ctrl-Z holds it",
                                "jobs/paper.yaml --csv streamed.csv",
-                               Commands::online([&commands, options] { return runJob(commands.node, *options); }));
+                               commands.online([&commands, options] { return runJob(commands.node, *options); }));
   addJob(command, options->job);
   command.add_flag("--dry-run", options->dry_run, "plan, check and show the path, but move nothing");
   auto* go_on =
       command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
   command
       .add_flag("--discard", options->discard,
-                "start even if the grinder's journal holds another, unfinished job, and discard that job")
+                "start even if the grinder's journal is damaged or holds another, unfinished job, and discard that job")
       ->excludes(go_on);
   command.add_flag("--offsets-are-right", options->offsets_are_right,
                    "start even if a work offset was never set, or was set for another tool, wheel or set-up");

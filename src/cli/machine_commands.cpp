@@ -16,7 +16,7 @@ void addOverride(Commands& commands) {
   const auto percent = std::make_shared<double>(100);
   auto& command =
       commands.add("override", "set the feed override; 0 stops the feed, rapids keep their speed", "50",
-                   Commands::online([&commands, percent] { return setFeedOverride(commands.node, *percent); }));
+                   commands.online([&commands, percent] { return setFeedOverride(commands.node, *percent); }));
   command.add_option("PERCENT", *percent, "of the job's feed, 0 to 120")
       ->required()
       ->check([](const std::string& text) {
@@ -29,7 +29,7 @@ void addConfirmSwivel(Commands& commands) {
   const auto degrees = std::make_shared<double>(0);
   auto& command =
       commands.add("confirm-swivel", "tell the grinder at which angle the swivel has been set and clamped by hand",
-                   "31.769", Commands::online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
+                   "31.769", commands.online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
   command.add_option("DEG", *degrees, "as setup.swivel_deg of the job, -90 to 90")
       ->required()
       ->check([](const std::string& text) {
@@ -48,7 +48,7 @@ struct JogOptions {
 void addJog(Commands& commands) {
   const auto options = std::make_shared<JogOptions>();
   auto& command = commands.add("jog", "move an axis by hand; waits until it rests, and Ctrl-C and Ctrl-Z stop it",
-                               "y 0.5 --feed 100", Commands::online([&commands, options] {
+                               "y 0.5 --feed 100", commands.online([&commands, options] {
                                  const auto axis = std::string(kAxisLetters).find(options->axis);
                                  return jog(commands.node, static_cast<int>(axis), options->distance, options->feed);
                                }));
@@ -63,7 +63,7 @@ void addJog(Commands& commands) {
 void addStatus(Commands& commands) {
   const auto json = std::make_shared<bool>(false);
   addJson(commands.add("status", "print what the grinder is doing", "",
-                       Commands::online([&commands, json] { return printStatus(commands.node, *json); })),
+                       commands.online([&commands, json] { return printStatus(commands.node, *json); })),
           *json);
 }
 
@@ -82,7 +82,7 @@ void addRequests(Commands& commands) {
   for (const EventRow& row : kMachineEvents) {
     if (isSwitch(row.value) || (!isTrigger(row.value) && !isStop(row.value))) continue;
     commands.add(row.name, row.help + waiting(row.value), "",
-                 Commands::online([&commands, event = row.value] { return request(commands.node, event); }));
+                 commands.online([&commands, event = row.value] { return request(commands.node, event); }));
   }
 }
 
@@ -96,7 +96,7 @@ void addSwitches(Commands& commands) {
     CLI::App*& parent = parents[part];
     if (!parent) parent = &commands.add(part, "switch the " + part + " by hand, without a job", "on", nullptr);
     commands.addTo(*parent, name.substr(part.size() + 1), row.help, "",
-                   Commands::online([&commands, event = row.value] { return request(commands.node, event); }));
+                   commands.online([&commands, event = row.value] { return request(commands.node, event); }));
   }
 }
 

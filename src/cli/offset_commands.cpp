@@ -17,7 +17,7 @@ void addOffsets(Commands& commands) {
   auto& command = commands.add(
       "offsets", "print the work offsets, with who set them and when, and the positions of the axes; or set them",
       "--set y=45.2 --job jobs/paper.yaml",
-      Commands::online([&commands, options] { return runOffsets(commands.node, *options); }));
+      commands.online([&commands, options] { return runOffsets(commands.node, *options); }));
   command.add_option("--set", options->set, "set the offset of an axis, in mm or deg")
       ->type_name("AXIS=VALUE")
       ->check(offsetRefusal);
@@ -35,7 +35,7 @@ void addTouchOff(Commands& commands) {
   const auto options = std::make_shared<TouchOffOptions>();
   auto& command = commands.add("touch-off", "set the work offset of an axis from where it stands now",
                                "y --at 12.02 --job jobs/paper.yaml",
-                               Commands::online([&commands, options] { return runTouchOff(commands.node, *options); }));
+                               commands.online([&commands, options] { return runTouchOff(commands.node, *options); }));
   addAxis(command, options->axis);
   command
       .add_option(
@@ -55,7 +55,7 @@ void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
   std::replace(name.begin(), name.end(), '_', '-');
   auto& command = commands.addTo(
       probe, name, row.help, row.always_for_job ? "--job jobs/unequal_d12_t4.yaml" : "--within 2",
-      Commands::online([&commands, options, cycle = row.value] { return runProbe(commands.node, cycle, *options); }));
+      commands.online([&commands, options, cycle = row.value] { return runProbe(commands.node, cycle, *options); }));
   if (row.axis == kA) {
     command.add_option("--within", options->within, "the farthest turn to the touch")
         ->type_name("DEG")

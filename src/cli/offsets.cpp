@@ -97,11 +97,12 @@ void printTable(const std::string& node, const WorkOffsets& offsets, const Grind
     const auto i = static_cast<std::size_t>(axis);
     std::printf("%c     %12.4f  %12.4f  %12.4f %-4s", "XYZA"[i], toShop(axis, offsets.values[i]),
                 toShop(axis, state.position[i]), toShop(axis, state.work_position[i]), axis == kA ? "deg" : "mm");
+    const std::string basis = core::basisText(axis, all.axes[i]);
     if (offsets.set_at[i].isZero()) {
-      std::printf("  never set\n");
+      std::printf("  %s\n", basis.c_str());
     } else {
       std::printf("  set by %s, %s; %s\n", offsets.set_by[i].c_str(),
-                  timeText(offsets.set_at[i].toSec(), false).c_str(), core::basisText(axis, all.axes[i]).c_str());
+                  timeText(offsets.set_at[i].toSec(), false).c_str(), basis.c_str());
     }
   }
   if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");

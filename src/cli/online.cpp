@@ -61,6 +61,20 @@ std::string otherGrinders(const std::string& node) {
   return others.empty() ? "" : "; the ROS master knows " + others + ": name one with --node";
 }
 
+int noNode(const std::string& node) { return fail("no grinder answers as " + node + otherGrinders(node)); }
+
+/// Whether the ROS master knows a grinder's node, which may still be starting, or what publishes a grinder's state.
+bool isKnown(const std::string& node) {
+  XmlRpc::XmlRpcValue arguments, response, payload;
+  arguments[0] = ros::this_node::getName();
+  arguments[1] = node;
+  if (ros::master::execute("lookupNode", arguments, response, payload, false)) return true;
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  const auto is_state = [&](const ros::master::TopicInfo& topic) { return topic.name == node + "/state"; };
+  return std::any_of(topics.begin(), topics.end(), is_state);
+}
+
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
   std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
               axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
@@ -131,16 +145,21 @@ int fail(const std::string& text) {
 
 int noGrinder(const ros::NodeHandle& nh) {
   if (!ros::master::check()) return noMaster();
-  return fail("no grinder answers as " + nh.getNamespace() + otherGrinders(nh.getNamespace()));
+  return noNode(nh.getNamespace());
 }
 
-bool joinRos() {
+bool joinRos(const std::string& node) {
   if (!await(kQuiet, ros::master::check)) {
     std::fprintf(stderr, "no ROS master answers at %s; waiting for one\n", ros::master::getURI().c_str());
-    if (!await(kPatience - kQuiet, ros::master::check)) {
+    if (!await(kMasterPatience - kQuiet, ros::master::check)) {
       noMaster();
       return false;
     }
+  }
+  const std::string name = ros::names::resolve(node);
+  if (!isKnown(name)) {
+    noNode(name);
+    return false;
   }
   // By itself, so that the last NodeHandle does not end with ros::shutdown(), which takes 0.1 to 0.3 s.
   ros::start();

@@ -18,9 +18,9 @@ struct RunOptions {
   std::string csv;                 ///< file for the streamed setpoints, or empty
 };
 
-/// Waits for the ROS master, which may still be starting, and makes this program a node, whose callbacks are
-/// called in a thread of their own. @return whether the master answers.
-bool joinRos();
+/// Waits for the ROS master, for kMasterPatience, and makes this program a node, whose callbacks are called in a thread
+/// of their own. @param node the grinder's. @return whether the master answers, and knows the grinder.
+bool joinRos(const std::string& node);
 
 /// Ends this program's part in ROS. To be called last: no thread of roscpp's is awaited, only the master, once for each
 /// service. From then on Ctrl-C ends the program.

@@ -101,7 +101,8 @@ ProgressBar::~ProgressBar() { end(); }
 void ProgressBar::show(const GrindFeedback& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (ended_) return;
-  const int tenths = static_cast<int>(fraction(feedback) * 10);
+  // Of the percentage as it is shown, rounded: no tenth has two lines.
+  const int tenths = static_cast<int>(std::nearbyint(fraction(feedback) * 100)) / 10;
   const bool changed = tenths != tenths_ || feedback.state != last_.state;
   tenths_ = tenths;
   last_ = feedback;

@@ -22,7 +22,8 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
   return condition();
 }
 
-const ros::WallDuration kPatience(10);  ///< with a node that is still starting
+const ros::WallDuration kPatience(10);       ///< with a node that is still starting
+const ros::WallDuration kMasterPatience(2);  ///< with a ROS master that does not answer
 
 /// Receives the grinder's state, 20 times a second, and 10 times while the machine is at rest.
 class StateWatch {

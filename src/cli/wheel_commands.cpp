@@ -34,7 +34,7 @@ void addWheel(Commands& commands) {
 
 void addZeros(Commands& commands) {
   const auto options = std::make_shared<ZerosOptions>();
-  const Action set = Commands::online([&commands, options] { return setZeros(commands.node, *options); });
+  const Action set = commands.online([&commands, options] { return setZeros(commands.node, *options); });
   auto& command = commands.add("zeros", "compute where the job's X, Y and Z are zero, in machine coordinates",
                                "jobs/unequal_d12_t4.yaml --stickout 62",
                                [options, set] { return options->set ? set() : printZeros(*options); });

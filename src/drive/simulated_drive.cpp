@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <utility>
 
@@ -33,6 +34,13 @@ std::string list(const std::array<const char*, N>& names) {
   std::string text;
   for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
   return text;
+}
+
+/// That this thread has used [ns].
+std::int64_t processorTime() {
+  timespec used;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  return used.tv_sec * 1000000000LL + used.tv_nsec;
 }
 
 /// @param root,p parameters of the node and of the drive.
@@ -199,7 +207,9 @@ void SimulatedDrive::write(const ros::Time&, const ros::Duration&) { sent_ = com
 
 ros::Duration SimulatedDrive::wait(const ros::Duration& period) {
   if (equipment_.pace == 1) return AxesHW::wait(period);
-  AxesHW::wait(period * (1 / equipment_.pace));
+  // At its priority a loop that never rests would leave the host's other programs no core.
+  const std::int64_t last_ns = std::exchange(processor_ns_, processorTime());
+  AxesHW::wait(std::max(period * (1 / equipment_.pace), ros::Duration().fromNSec(2 * (processor_ns_ - last_ns))));
   return period;
 }
 

@@ -38,7 +38,8 @@ class SimulatedDrive : public AxesHW {
     double spindle_run_up_time = 0;  ///< [s]
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
-    /// Simulated time over the clock's. Unless it is 1, every cycle takes exactly its period, however late it begins.
+    /// Simulated time over the clock's, as far as half a core allows. Unless it is 1, every cycle takes exactly its
+    /// period, however late it begins.
     double pace = 1;
   };
 
@@ -117,8 +118,9 @@ class SimulatedDrive : public AxesHW {
   Axes offset_ = Axes::Zero();           ///< of the encoders' readings
   bool probe_near_ = false;              ///< as near to the blank as a contact that flickers is made
   bool home_was_commanded_ = false;
-  double spindle_speed_ = 0;  ///< fraction of full speed
-  Buffer sent_{};             ///< commands at the last write()
+  double spindle_speed_ = 0;       ///< fraction of full speed
+  std::int64_t processor_ns_ = 0;  ///< time that the thread had used at the last wait()
+  Buffer sent_{};                  ///< commands at the last write()
 };
 
 }  // namespace flute_grinder

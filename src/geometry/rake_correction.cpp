@@ -121,8 +121,8 @@ std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const Whe
     right.spiral_angle *= -1;
     GrindStroke right_stroke = stroke;
     right_stroke.a *= -1;
-    auto result = correctRake(ConicalCutter(right), wheel.mirrored(), nominal_radius, {-setup.swivel, -setup.height},
-                              right_stroke, rake, watch);
+    auto result = correctRake(ConicalCutter(right), wheel.mirrored(), nominal_radius,
+                              {-setup.swivel, -setup.height, setup.lead}, right_stroke, rake, watch);
     if (result) {
       for (double& c : result->z.coefficients) c = -c;
     }

@@ -179,9 +179,11 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   checker.below("cutter.core_diameter", c.core_diameter, c.end_diameter, "the cutter's diameter at the small end");
   checker.below("cutter.core_diameter_end", c.core_diameter_end, 2 * radius(c.flute_length),
                 "the cutter's diameter at the flute's end");
-  if (c.core_diameter_end > 0 && !(c.core_diameter > 0)) {
-    checker.refuse(ReasonKind::kNotAllowed, "cutter.core_diameter_end", {c.core_diameter_end, Unit::kMetre},
-                   "0 without cutter.core_diameter");
+  // Alone, they would ask for nothing.
+  for (const auto& [name, value] : {std::pair("cutter.core_diameter_end", c.core_diameter_end),
+                                    std::pair("cutter.core_tolerance", c.core_tolerance)}) {
+    if (c.core_diameter > 0 || !(value > 0)) continue;
+    checker.refuse(ReasonKind::kNotAllowed, name, {value, Unit::kMetre}, "0 without cutter.core_diameter");
   }
   checkWheel(checker, p);
   const double deepest = p.deepest();

@@ -104,6 +104,7 @@ std::vector<OffsetMisfit> misfits(const WorkOffsets& offsets, const OffsetBasis&
 }
 
 std::string basisText(int axis, const WorkOffset& offset) {
+  if (std::isnan(offset.value)) return "cannot be read";
   if (!offset.wasSet()) return "never set";
   const OffsetBasis& basis = offset.basis;
   const std::string done = rowOf(basis.method).done;

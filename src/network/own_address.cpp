@@ -13,12 +13,28 @@ namespace flute_grinder {
 
 namespace {
 
+/// Of IPv4, in the host's byte order.
+in_addr_t addressOf(const addrinfo& found) {
+  return ntohl(reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr.s_addr);
+}
+
+const in6_addr& address6Of(const addrinfo& found) {
+  return reinterpret_cast<const sockaddr_in6*>(found.ai_addr)->sin6_addr;
+}
+
 bool isLoopback(const addrinfo& found) {
-  if (found.ai_family == AF_INET) {
-    return ntohl(reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr.s_addr) >> 24U == IN_LOOPBACKNET;
-  }
-  return found.ai_family == AF_INET6 &&
-         IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6*>(found.ai_addr)->sin6_addr);
+  return found.ai_family == AF_INET ? addressOf(found) >> 24U == IN_LOOPBACKNET
+                                    : IN6_IS_ADDR_LOOPBACK(&address6Of(found));
+}
+
+bool isEveryAddress(const addrinfo& found) {
+  return found.ai_family == AF_INET ? addressOf(found) == INADDR_ANY : IN6_IS_ADDR_UNSPECIFIED(&address6Of(found));
+}
+
+/// As roscpp decides it.
+bool usesIpv6() {
+  const char* value = std::getenv("ROS_IPV6");
+  return value && std::string(value) == "on";
 }
 
 std::string ownHostName() {
@@ -32,15 +48,21 @@ std::string ownHostName() {
 std::string ownAddressRefusal() {
   const char* variable = std::getenv("ROS_HOSTNAME") ? "ROS_HOSTNAME" : "ROS_IP";
   const char* value = std::getenv(variable);
-  if (!value || isLoopbackName(value)) return "";
+  if (!value) return "";
   const std::string name = value;
   const std::string allowed =
       "; allowed: 127.0.0.1 or localhost for this computer alone, or the address under which others reach it";
   if (name.empty()) return std::string(variable) + " is empty" + allowed;
+  if (name.find(':') != std::string::npos && !usesIpv6()) {
+    return std::string(variable) + " = " + name +
+           " is an address of IPv6; allowed: one of IPv4, or ROS_IPV6=on beside it";
+  }
+  if (isLoopbackName(name)) return "";
   addrinfo* list = nullptr;
   const int error = getaddrinfo(name.c_str(), nullptr, nullptr, &list);
   if (error != 0) return std::string(variable) + " = " + name + " has no address: " + gai_strerror(error) + allowed;
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(list, freeaddrinfo);
+  if (isEveryAddress(*found)) return std::string(variable) + " = " + name + " is every address" + allowed;
   // Many a computer has its own name for loopback in /etc/hosts, and others still reach it by that name.
   if (!isLoopback(*found) || name == ownHostName()) return "";
   return std::string(variable) + " = " + name + " is loopback in words that ROS does not know" + allowed;

@@ -23,8 +23,9 @@ const std::string kSealKey = "checksum: ";
 /// The last line of a file.
 std::string seal(const std::string& body) { return kSealKey + sha256Hex(body.data(), body.size()) + "\n"; }
 
-/// The text without its last line, which must be its seal.
+/// The text without its last line, which must be its seal. @throw std::runtime_error if it is damaged.
 std::string unsealed(const std::string& text) {
+  if (text.size() > kMaxFile) throw std::runtime_error("is longer than " + std::to_string(kMaxFile) + " bytes");
   const std::size_t seal_length = kSealKey.size() + 64 + 1;
   std::string body = text.substr(0, text.size() - std::min(text.size(), seal_length));
   if (text.compare(body.size(), kSealKey.size(), kSealKey) != 0) throw std::runtime_error("its checksum is missing");
@@ -53,6 +54,7 @@ class AtomicFile::File {
     if (!S_ISREG(about.st_mode)) throw std::runtime_error(path_ + " is not a regular file");
   }
 
+  /// At most one byte more than a kept file has.
   std::string read() const {
     std::string text(kMaxFile + 1, '\0');
     std::size_t done = 0;
@@ -62,7 +64,6 @@ class AtomicFile::File {
       } while (count < 0 && errno == EINTR);
       requireDone(count >= 0);
     }
-    if (done > kMaxFile) throw std::runtime_error("is longer than " + std::to_string(kMaxFile) + " bytes");
     text.resize(done);
     return text;
   }
@@ -134,7 +135,8 @@ std::optional<std::string> AtomicFile::read() const {
     if (!std::filesystem::exists(file_)) return std::nullopt;
     const File file(file_, O_RDONLY);
     file.requireRegular();
-    return unsealed(file.read());
+    const std::string text = file.read();
+    return named<KeptFileDamaged>([&] { return unsealed(text); });
   });
 }
 

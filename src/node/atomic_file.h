@@ -14,6 +14,12 @@ class KeptFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A kept file that was read, and is not as it was written.
+class KeptFileDamaged : public KeptFileError {
+ public:
+  using KeptFileError::KeptFileError;
+};
+
 /// A kept file in use by another process; what() names its node and process.
 class KeptFileOwned : public KeptFileError {
  public:
@@ -35,7 +41,8 @@ class AtomicFile {
   ~AtomicFile();
 
   /// The text written last; nothing if there is no file.
-  /// @throw KeptFileError if the file is not complete, as write() wrote it.
+  /// @throw KeptFileDamaged if the file is not complete, as write() wrote it. @throw KeptFileError if it cannot be
+  /// read.
   std::optional<std::string> read() const;
 
   /// Returns once the text is on the disk. After a power failure the file holds the new or the old text, and the new
@@ -46,15 +53,15 @@ class AtomicFile {
   /// @throw KeptFileError
   void settle() const;
 
-  /// Rethrows any other error of an action as a KeptFileError that names the file.
-  template <typename Action>
+  /// Rethrows any other error of an action as an Error that names the file.
+  template <typename Error = KeptFileError, typename Action>
   auto named(const Action& action) const {
     try {
       return action();
     } catch (const KeptFileError&) {
       throw;
     } catch (const std::exception& error) {
-      throw KeptFileError(kind_ + " " + path_ + ": " + error.what());
+      throw Error(kind_ + " " + path_ + ": " + error.what());
     }
   }
 

@@ -20,7 +20,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxWaiting = 16;  ///< records, while the disk does not answer
+constexpr int kMaxWaiting = 16;         ///< records, while the disk does not answer
+constexpr std::size_t kMostNamed = 10;  ///< of what is skipped
+
+/// @param others at least one path. @throw std::runtime_error
+[[noreturn]] void reportSkipped(const std::vector<std::string>& others) {
+  std::string names;
+  for (std::size_t i = 0; i < std::min(others.size(), kMostNamed); ++i) {
+    names += (i == 0 ? "" : ", ") + fs::path(others[i]).filename().string();
+  }
+  if (others.size() > kMostNamed) names += " and " + std::to_string(others.size() - kMostNamed) + " more";
+  throw std::runtime_error("named like records but no regular files, and skipped: " + names + "; move them elsewhere");
+}
 
 }  // namespace
 
@@ -66,10 +77,7 @@ void History::Folder::removeOldest(const fs::path& but) const {
     size -= fs::file_size(files[i]);
     fs::remove(files[i]);
   }
-  if (!found.others.empty()) {
-    throw std::runtime_error(fs::path(found.others.front()).filename().string() +
-                             " is named like a record but is not a regular file: skipped; move it elsewhere");
-  }
+  if (!found.others.empty()) reportSkipped(found.others);
 }
 
 History::History(const std::string& folder, std::uint64_t limit) : folder_(std::make_shared<Folder>(folder, limit)) {

@@ -72,11 +72,9 @@ Progress fromText(const std::string& text) {
 Journal::Journal(std::string path, std::string owner) : file_("journal", std::move(path), std::move(owner)) {}
 
 std::optional<Progress> Journal::read() const {
-  return file_.named([&]() -> std::optional<Progress> {
-    const std::optional<std::string> text = file_.read();
-    if (!text) return std::nullopt;
-    return fromText(*text);
-  });
+  const std::optional<std::string> text = file_.read();
+  if (!text) return std::nullopt;
+  return file_.named<JournalDamaged>([&] { return fromText(*text); });
 }
 
 void Journal::write(const Progress& progress) const {

@@ -13,6 +13,9 @@ namespace flute_grinder {
 /// A journal that cannot be read or written; what() names the file and the reason.
 using JournalError = KeptFileError;
 
+/// A journal that was read, and is not complete, or no journal.
+using JournalDamaged = KeptFileDamaged;
+
 /// A journal in use by another process; what() names its node and process.
 using JournalOwned = KeptFileOwned;
 
@@ -37,7 +40,7 @@ class Journal {
   Journal(std::string path, std::string owner);
 
   /// The last entry; nothing if there is no file.
-  /// @throw JournalError if the file is not a complete journal.
+  /// @throw JournalDamaged if the file is not a complete journal. @throw JournalError if it cannot be read.
   std::optional<Progress> read() const;
 
   /// As AtomicFile::write(). @throw JournalError also if a value is not finite or out of range.

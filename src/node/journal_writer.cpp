@@ -26,15 +26,19 @@ struct JournalWriter::Work {
   Work(std::string path, const std::string& owner) : journal(std::move(path), owner) {
     try {
       status.on_disk = journal.read().value_or(Progress{});
+    } catch (const JournalDamaged& error) {
+      status.error = status.damage = error.what();
     } catch (const JournalError& error) {
-      status.error = error.what();
+      status.error = unread = error.what();
     }
   }
 
+  void requireNothingUnread();
   void storePending();
   void settle();
 
   const Journal journal;  ///< used by the thread only
+  std::string unread;     ///< why the file could not be read at the start; used by the thread only
 
   std::mutex mutex;  ///< guards everything below; held only to copy
   Status status;
@@ -42,15 +46,28 @@ struct JournalWriter::Work {
   std::optional<Progress> pending;
 };
 
+/// @throw JournalError as long as the file holds what was not read at the start.
+void JournalWriter::Work::requireNothingUnread() {
+  if (unread.empty()) return;
+  if (journal.read()) throw JournalError(unread + "; it can be read now: start the grinder again");
+  unread.clear();
+}
+
 void JournalWriter::Work::storePending() {
   std::unique_lock<std::mutex> lock(mutex);
   const Progress progress = std::move(*pending);
   pending.reset();
   const std::uint64_t number = writes;
   lock.unlock();
-  const std::string error = errorOf([&] { journal.write(progress); });
+  const std::string error = errorOf([&] {
+    requireNothingUnread();
+    journal.write(progress);
+  });
   lock.lock();
-  if (error.empty()) status.on_disk = progress;
+  if (error.empty()) {
+    status.on_disk = progress;
+    status.damage.clear();
+  }
   status.number = number;
   status.error = error;
   lock.unlock();

@@ -18,6 +18,7 @@ class JournalWriter {
     Progress on_disk;          ///< what a restart would find
     std::uint64_t number = 0;  ///< of the last write that succeeded or failed; 0 before the first
     std::string error;         ///< of the last write or its settling, or of the initial read; empty if none
+    std::string damage;        ///< of the file as it was read, until it is replaced; empty if none
   };
 
   /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,
@@ -28,7 +29,7 @@ class JournalWriter {
   JournalWriter(std::string path, const std::string& owner);
 
   /// Queues the progress to be written, and returns at once. While the disk is busy, a new write replaces the pending
-  /// one.
+  /// one. If the file could not be read, no write succeeds as long as there may be one: it may hold an unfinished job.
   /// @return the number of this write, from 1.
   std::uint64_t write(const Progress& progress);
 

@@ -30,6 +30,8 @@ std::string describe(const Progress& p) {
 ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progress_(writer.status().on_disk) {}
 
 std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first) const {
+  const std::string damage = writer_.status().damage;
+  if (!damage.empty()) return damage + "; what job it kept is unknown; restore the file, or discard it";
   if (progress_.job_digest.empty() || progress_.finished) return "";
   const bool from_the_beginning = first == ToothPass{};
   if (digest == progress_.job_digest && (!from_the_beginning || first == progress_.next)) return "";

@@ -19,7 +19,7 @@ class ProgressTracker {
   /// @param writer must outlive this object.
   explicit ProgressTracker(JournalWriter& writer);
 
-  /// Why a job must not overwrite the journal: it holds another, unfinished one. Empty if it may.
+  /// Why a job must not overwrite the journal: it holds another, unfinished one, or is damaged. Empty if it may.
   /// @param first pass to grind.
   std::string refusal(const std::string& digest, const ToothPass& first) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of

@@ -6,6 +6,7 @@
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
+#include "panel/click_guard.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -17,6 +18,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <exception>
+#include <set>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -80,6 +82,12 @@ GrindPanel::GrindPanel(QWidget* parent)
   node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
   guardFromWheel(*this);
+  // A stop is a stop, however often it is pressed.
+  std::set<QWidget*> stops;
+  for (const auto& [event, button] : buttons_) {
+    if (isStop(event)) stops.insert(button);
+  }
+  guardFromDoubleClicks(*this, stops);
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
@@ -92,7 +100,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::touchOff);
+  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) { touchOff(axis, at, false); });
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
@@ -198,8 +206,8 @@ QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
   button->setEnabled(false);
   button->setMinimumWidth(10);
   // Space must not press what the focus has only come to.
-  if (request.value == MachineEvent::kCancel || request.value == MachineEvent::kDisable) {
-    button->setFocusPolicy(Qt::NoFocus);
+  for (const MachineEvent kept : {MachineEvent::kStart, MachineEvent::kCancel, MachineEvent::kDisable}) {
+    if (request.value == kept) button->setFocusPolicy(Qt::NoFocus);
   }
   if (large) {
     QFont bold = font();
@@ -285,6 +293,9 @@ void GrindPanel::refresh() {
   // Hold before the others are disabled, of which one may have the focus.
   const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
   enable(MachineEvent::kHold);
+  const bool begun = job_runs || (state && sent_ && !sent_->goal.dry_run);
+  if (begun && !begun_) buttons_.at(MachineEvent::kHold)->setFocus();
+  begun_ = begun;
   for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, master == Master::kAnswers);
@@ -337,7 +348,7 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   if (master_watch_->master() == Master::kMissing) return false;
   switch (event) {
     case MachineEvent::kHome: return !view.state->wheel_in_work;
-    case MachineEvent::kStart: return !view.state->wheel_in_work && job_->planned();
+    case MachineEvent::kStart: return !view.state->wheel_in_work && !view.planned && job_->planned();
     case MachineEvent::kLift: return view.state->wheel_in_work != 0;
     case MachineEvent::kSpindleOn: return !view.state->wheel_in_work && !view.state->spindle_commanded;
     case MachineEvent::kCoolantOn: return !view.state->wheel_in_work && !view.state->coolant_commanded;
@@ -421,14 +432,14 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
   link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis, UnitSystem::kShop) + " by " + way));
 }
 
-void GrindPanel::touchOff(int axis, double at, bool confirmed) {
+void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
   try {
     const core::OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
     const auto answered = reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set");
-    link_->touchOff(axis, position, basis, confirmed, [this, answered](const std::string& refusal, bool large_change) {
+    link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
       answered(refusal);
-      if (large_change) touch_off_->askToConfirm();
+      if (large_change) touch_off_->ask(capitalized(refusal), [=] { touchOff(axis, at, true); });
     });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());

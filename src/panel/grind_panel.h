@@ -27,7 +27,7 @@ namespace flute_grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
 /// if the state table allows its request and it would change something; Hold wherever it is allowed, since it keeps the
-/// focus, and Start only with a plan without violations. No key cancels or disables. No window is ever modal.
+/// focus, and Start only with a plan without violations. No key starts, cancels or disables. No window is ever modal.
 /// Without messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the
 /// grinder or the master, and both are found again when they come back.
 ///
@@ -73,7 +73,7 @@ class GrindPanel : public rviz::Panel {
   void onResult(const std::string& id, const GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
-  void touchOff(int axis, double at, bool confirmed);
+  void touchOff(int axis, double at, bool large_change_ok);
   core::OffsetBasis touchedFor(int axis) const;
   void fitOffsets(const GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
@@ -92,6 +92,7 @@ class GrindPanel : public rviz::Panel {
   bool planning_ = false;
   std::optional<Sent> sent_;
   std::string last_sent_;  ///< id of the last goal from here
+  bool begun_ = false;     ///< a job runs or was sent, whoever sent it: the focus has gone to Hold
 
   StateBox* state_;
   JobBox* job_;

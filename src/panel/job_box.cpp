@@ -1,6 +1,7 @@
 #include "panel/job_box.h"
 
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -21,6 +22,22 @@ namespace flute_grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
+constexpr int kQuestionLines = 4;
+constexpr int kAngleDigits = 10;  ///< so that the angle appears as in the job file
+
+/// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
+/// same one.
+bool discardsUnfinished(const GrindGoal& goal, const JobProgress& progress) {
+  if (progress.job_digest.empty() || progress.finished) return false;
+  const bool goes_on = goal.first_tooth == progress.tooth && goal.first_pass == progress.pass;
+  return !(goes_on && progress.job_digest == jobDigest(jobFromGoal(goal)));
+}
+
+/// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: if it does
+/// not stand where it should, the grinder refuses the goal.
+bool needsConfirmation(const GrindGoal& goal, const Swivel& swivel) {
+  return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
+}
 
 QPushButton* button(const char* name, const QString& text, const QString& hint) {
   auto* made = new QPushButton(text);
@@ -42,11 +59,28 @@ JobBox::JobBox(QWidget* parent)
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
       verdict_(textView("verdict", 4)),
-      question_(new DiscardQuestion),
-      offset_question_(new OffsetQuestion),
-      swivel_question_(new SwivelQuestion),
       other_job_(textView("other_job", 4)),
-      answer_(new QStackedWidget) {
+      answer_(new QStackedWidget),
+      form_(new QWidget),
+      discard_question_(new Question("unfinished", kQuestionLines)),
+      offset_question_(new Question("offsets", kQuestionLines)),
+      swivel_question_(new Question("swivel", kQuestionLines)),
+      pages_(new QStackedWidget) {
+  layOut();
+  makeQuestions();
+  connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
+  connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
+  connect(continue_, &QCheckBox::clicked, this, &JobBox::discardPlan);
+  connect(plan_, &QPushButton::clicked, this, [this] {
+    if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
+  });
+  connect(dry_run_, &QPushButton::clicked, this, [this] {
+    if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
+  });
+  setFile("");
+}
+
+void JobBox::layOut() {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
@@ -59,45 +93,53 @@ JobBox::JobBox(QWidget* parent)
   auto* plan = new QHBoxLayout;
   plan->addWidget(plan_, 1);
   plan->addWidget(dry_run_, 1);
-  auto* layout = new QVBoxLayout(this);
-  layout->setContentsMargins(6, 6, 6, 6);
+  auto* layout = new QVBoxLayout(form_);
+  layout->setContentsMargins(0, 0, 0, 0);
   layout->addLayout(file);
   layout->addWidget(continue_);
   layout->addLayout(plan);
   layout->addWidget(zeros_);
   answer_->addWidget(verdict_);
-  answer_->addWidget(question_);
-  answer_->addWidget(offset_question_);
-  answer_->addWidget(swivel_question_);
   answer_->addWidget(other_job_);
   layout->addWidget(answer_);
+  for (QWidget* page : {form_, static_cast<QWidget*>(discard_question_), static_cast<QWidget*>(offset_question_),
+                        static_cast<QWidget*>(swivel_question_)}) {
+    pages_->addWidget(page);
+  }
+  auto* pages = new QVBoxLayout(this);
+  pages->setContentsMargins(6, 6, 6, 6);
+  pages->addWidget(pages_);
+}
 
-  connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
-  connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
-  connect(continue_, &QCheckBox::clicked, this, &JobBox::discardPlan);
-  connect(plan_, &QPushButton::clicked, this, [this] {
-    if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
-  });
-  connect(dry_run_, &QPushButton::clicked, this, [this] {
-    if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
-  });
-  connect(question_, &DiscardQuestion::discarded, this, [this] { askForOffsets(true); });
-  connect(question_, &DiscardQuestion::kept, this, &JobBox::keepUnfinished);
-  connect(offset_question_, &OffsetQuestion::fitted, this, [this] {
-    answer_->setCurrentWidget(verdict_);
+void JobBox::makeQuestions() {
+  const auto* discard = discard_question_->addAnswer("discard", "Discard and start",
+                                                     "Start this job; the other cannot be continued any more", 0, 0);
+  keep_ = discard_question_->addAnswer("keep", "Continue it", "Plan the job from where it was left", 0, 1);
+  fit_ = offset_question_->addAnswer("fit_offsets", "",
+                                     "Computed from what they were set for: the wheel and the swivel are the same. "
+                                     "Plans the job again",
+                                     0, 1);
+  const auto* right = offset_question_->addAnswer("offsets_are_right", "Start with these",
+                                                  "Start the job with the work offsets as they are", 1, 0);
+  const auto* confirm = swivel_question_->addAnswer("confirm_swivel", "Confirm and start",
+                                                    "The swivel is set and clamped: start the job", 0, 1);
+  connect(discard, &QPushButton::clicked, this, [this] { askForOffsets(true); });
+  connect(keep_, &QPushButton::clicked, this, &JobBox::continueUnfinished);
+  connect(fit_, &QPushButton::clicked, this, [this] {
+    closeQuestion();
     if (planned_) Q_EMIT offsetFitWanted(*planned_);
   });
-  connect(offset_question_, &OffsetQuestion::foundRight, this, [this] {
+  connect(right, &QPushButton::clicked, this, [this] {
     offsets_are_right_ = true;
     askForSwivel();
   });
-  connect(offset_question_, &OffsetQuestion::declined, this, [this] { answer_->setCurrentWidget(verdict_); });
-  connect(swivel_question_, &SwivelQuestion::confirmed, this, [this](double angle) {
-    answer_->setCurrentWidget(verdict_);
-    Q_EMIT swivelConfirmed(angle);
+  connect(confirm, &QPushButton::clicked, this, [this] {
+    closeQuestion();
+    if (planned_) Q_EMIT swivelConfirmed(planned_->process.setup_swivel);
   });
-  connect(swivel_question_, &SwivelQuestion::declined, this, [this] { answer_->setCurrentWidget(verdict_); });
-  setFile("");
+  for (const Question* question : {discard_question_, offset_question_, swivel_question_}) {
+    connect(question, &Question::declined, this, &JobBox::closeQuestion);
+  }
 }
 
 /// Not modal, since the buttons that stop the grinder must work meanwhile.
@@ -193,8 +235,14 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
 void JobBox::start() {
   if (!planned_) return;
   if (!discardsUnfinished(*planned_, progress_)) return askForOffsets(false);
-  question_->ask(progress_, where_left_.has_value());
-  answer_->setCurrentWidget(question_);
+  keep_->setVisible(where_left_.has_value());
+  ask(discard_question_, "Not finished: " + QString::fromStdString(describe(progress_)) +
+                             ". Once this job starts it cannot be continued.");
+}
+
+void JobBox::ask(Question* question, const QString& text) {
+  question->ask(text);
+  pages_->setCurrentWidget(question);
   Q_EMIT startDelayed();
 }
 
@@ -203,9 +251,12 @@ void JobBox::askForOffsets(bool discard) {
   offsets_are_right_ = false;
   const auto misfits = offsetMisfits();
   if (misfits.empty()) return askForSwivel();
-  offset_question_->ask(misfits);
-  answer_->setCurrentWidget(offset_question_);
-  Q_EMIT startDelayed();
+  QString text;
+  for (const core::OffsetMisfit& misfit : misfits) text += QString::fromStdString(misfit.reason) + ".\n";
+  const QString axes = QString::fromStdString(computable(misfits));
+  fit_->setText("Fit " + axes);
+  fit_->setVisible(!axes.isEmpty());
+  ask(offset_question_, text + "Start with these?");
 }
 
 /// Those of the job as it would be started now. One that is continued needs those with which it began, which the
@@ -217,13 +268,13 @@ std::vector<core::OffsetMisfit> JobBox::offsetMisfits() const {
 
 void JobBox::askForSwivel() {
   if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
-  swivel_question_->ask(planned_->process.setup_swivel);
-  answer_->setCurrentWidget(swivel_question_);
-  Q_EMIT startDelayed();
+  const Quantity angle{planned_->process.setup_swivel, Unit::kRadian};
+  ask(swivel_question_, QString::fromStdString("Set the swivel to " + text(angle, UnitSystem::kShop, kAngleDigits) +
+                                               ". Is it set and clamped?"));
 }
 
 void JobBox::startConfirmed() {
-  answer_->setCurrentWidget(verdict_);
+  closeQuestion();
   auto goal = takePlanned();
   if (!goal) {
     Q_EMIT startDelayed();
@@ -234,8 +285,8 @@ void JobBox::startConfirmed() {
   Q_EMIT startWanted(*goal);
 }
 
-void JobBox::keepUnfinished() {
-  answer_->setCurrentWidget(verdict_);
+void JobBox::continueUnfinished() {
+  closeQuestion();
   if (!where_left_) return;
   continue_->setChecked(true);
   planAnew();
@@ -256,11 +307,7 @@ std::optional<GrindGoal> JobBox::takePlanned() {
 
 void JobBox::showOtherJob(const QString& text) {
   if (text != other_job_->toPlainText()) other_job_->setPlainText(text);
-  if (!text.isEmpty()) {
-    answer_->setCurrentWidget(other_job_);
-  } else if (answer_->currentWidget() == other_job_) {
-    answer_->setCurrentWidget(verdict_);
-  }
+  answer_->setCurrentWidget(text.isEmpty() ? verdict_ : other_job_);
 }
 
 void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
@@ -269,8 +316,7 @@ void JobBox::refresh(const std::optional<GrinderState>& state, const std::option
   showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
-  const bool asks = idle && asksWithReason();
-  if (answer_->currentWidget() != other_job_ && !asks) answer_->setCurrentWidget(verdict_);
+  if (!idle || !asksWithReason()) closeQuestion();
   choose_->setEnabled(idle);
   setup_->setEnabled(!file_.isEmpty());
   continue_->setEnabled(idle && where_left_);
@@ -281,8 +327,8 @@ void JobBox::refresh(const std::optional<GrinderState>& state, const std::option
 /// Whether the question shown, if there is one, still has to be answered.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
-  if (answer_->currentWidget() == offset_question_) return !offsetMisfits().empty();
-  if (answer_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
+  if (pages_->currentWidget() == offset_question_) return !offsetMisfits().empty();
+  if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
   return discardsUnfinished(*planned_, progress_);
 }
 
@@ -327,7 +373,7 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
 
 void JobBox::showVerdict(const QString& text, bool good) {
   showText(*verdict_, text, good);
-  answer_->setCurrentWidget(verdict_);
+  closeQuestion();
 }
 
 }  // namespace flute_grinder

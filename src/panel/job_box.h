@@ -4,10 +4,10 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/machine/offset_fit.h"
+#include "flute_grinder/machine/swivel.h"
 #include "flute_grinder/motion/work_offsets.h"
-#include "panel/discard_question.h"
-#include "panel/offset_question.h"
-#include "panel/swivel_question.h"
+#include "panel/question.h"
 
 #include <QCheckBox>
 #include <QFileDialog>
@@ -84,12 +84,16 @@ class JobBox : public QWidget {
   void openSetup();
   void read();
   std::optional<GrindGoal> takePlanned();
+  void layOut();
+  void makeQuestions();
+  void ask(Question* question, const QString& text);
+  void closeQuestion() { pages_->setCurrentWidget(form_); }
   void askForOffsets(bool discard);
   void askForSwivel();
   std::vector<core::OffsetMisfit> offsetMisfits() const;
   void showZeroPoints();
   bool asksWithReason() const;
-  void keepUnfinished();
+  void continueUnfinished();
   GrindGoal goal() const;
   std::optional<GrindGoal> goalNow();
   std::optional<GrindGoal> beginPlan();
@@ -115,11 +119,15 @@ class JobBox : public QWidget {
   QPushButton* plan_;
   QPushButton* dry_run_;
   QPlainTextEdit* verdict_;
-  DiscardQuestion* question_;
-  OffsetQuestion* offset_question_;
-  SwivelQuestion* swivel_question_;
   QPlainTextEdit* other_job_;
-  QStackedWidget* answer_;  ///< verdict, a question, or the job of somebody else
+  QStackedWidget* answer_;  ///< verdict, or the job of somebody else
+  QWidget* form_;           ///< all of the above
+  Question* discard_question_;
+  QPushButton* keep_;
+  Question* offset_question_;
+  QPushButton* fit_;
+  Question* swivel_question_;
+  QStackedWidget* pages_;  ///< form or a question
   QPointer<QFileDialog> file_dialog_;
 };
 

@@ -12,6 +12,7 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
   view->setReadOnly(true);
   view->setTabChangesFocus(true);
   view->setWordWrapMode(QTextOption::WrapAtWordBoundaryOrAnywhere);
+  view->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   view->setMinimumHeight(lines * view->fontMetrics().lineSpacing() + 12);
   return view;
 }

@@ -6,12 +6,12 @@
 #include <QGridLayout>
 
 #include <cmath>
+#include <utility>
 
 namespace flute_grinder {
 
 namespace {
 
-constexpr const char* kTouchOff = "Touch off";
 constexpr double kMoved = 10e-6;    ///< by which an axis at rest does not move [m], A [rad]
 constexpr int kDecimals = 4;        ///< of positions and offsets
 constexpr double kFarthest = 9999;  ///< [mm or deg]
@@ -30,8 +30,10 @@ TouchOffBox::TouchOffBox(QWidget* parent)
     : QWidget(parent),
       axis_(new QComboBox),
       at_(new NumberBox("touch_at", kDecimals)),
-      touch_(new QPushButton(kTouchOff)),
-      offset_(new QLabel) {
+      touch_(new QPushButton("Touch off")),
+      offset_(new QLabel),
+      question_(new Question("touch", 2)),
+      pages_(new QStackedLayout(this)) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
   touch_->setObjectName("touch_off");
@@ -42,7 +44,8 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   // A long text must not make the panel grow.
   offset_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
   offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
-  auto* layout = new QGridLayout(this);
+  auto* form = new QWidget;
+  auto* layout = new QGridLayout(form);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(2);
   layout->addWidget(axis_, 0, 0);
@@ -51,29 +54,27 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(offset_, 1, 0, 1, 3);
   layout->setColumnStretch(1, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
-  connect(touch_, &QPushButton::clicked, this, &TouchOffBox::touch);
-  connect(at_, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &TouchOffBox::forgetQuestion);
+  connect(touch_, &QPushButton::clicked, this, [this] { Q_EMIT wanted(axis(), at_->value() * scaleOf(axis())); });
+  const auto* set =
+      question_->addAnswer("touch_off_anyway", "Set it all the same", "Set the work offset; nothing moves", 1, 0);
+  connect(set, &QPushButton::clicked, this, [this] {
+    pages_->setCurrentIndex(0);
+    all_the_same_();
+  });
+  connect(question_, &Question::declined, this, [this] { pages_->setCurrentIndex(0); });
+  pages_->addWidget(form);
+  pages_->addWidget(question_);
   chooseAxis();
 }
 
-void TouchOffBox::touch() {
-  const bool confirmed = asked_at_.has_value();
-  forgetQuestion();
-  Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()), confirmed);
-}
-
-void TouchOffBox::askToConfirm() {
+void TouchOffBox::ask(const QString& why_not, std::function<void()> all_the_same) {
+  all_the_same_ = std::move(all_the_same);
   asked_at_ = position_;
-  touch_->setText("All the same");
-}
-
-void TouchOffBox::forgetQuestion() {
-  asked_at_.reset();
-  touch_->setText(kTouchOff);
+  question_->ask(why_not);
+  pages_->setCurrentWidget(question_);
 }
 
 void TouchOffBox::chooseAxis() {
-  forgetQuestion();
   const bool diameter = axis() == kY;
   at_->setRange(diameter ? 0 : -kFarthest, kFarthest);
   at_->setValue(0);
@@ -85,7 +86,7 @@ void TouchOffBox::chooseAxis() {
 
 void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
   if (view.state) position_ = view.state->position[static_cast<std::size_t>(axis())];
-  if (asked_at_ && !(std::abs(position_ - *asked_at_) <= kMoved)) forgetQuestion();
+  if (!view.state || !(std::abs(position_ - asked_at_) <= kMoved)) pages_->setCurrentIndex(0);
   const bool given = axis() != kY || at_->value() > 0;
   touch_->setEnabled(has_services && given && view.state && mayTouchOff(*view.state));
   const QString text = offsetText(view);

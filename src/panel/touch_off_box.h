@@ -2,13 +2,15 @@
 
 #include "panel/grinder_link.h"
 #include "panel/number_box.h"
+#include "panel/question.h"
 
 #include <QComboBox>
 #include <QLabel>
 #include <QPushButton>
+#include <QStackedLayout>
 #include <QWidget>
 
-#include <optional>
+#include <functional>
 
 namespace flute_grinder {
 
@@ -22,28 +24,27 @@ class TouchOffBox : public QWidget {
   /// @param has_services whether requests with an answer can be sent.
   void refresh(const GrinderView& view, bool has_services);
 
-  /// Asks whether to set the offset although it changes by much; the next press of the button says so, unless the axis,
-  /// its position or the value changes before.
-  void askToConfirm();
+  /// Asks whether to set the offset all the same; the question goes when the axis moves.
+  void ask(const QString& why_not, std::function<void()> all_the_same);
 
  Q_SIGNALS:
   /// @param at the axis' work position; of Y the diameter of the blank that the wheel touches [m], of A [rad].
-  /// @param confirmed the offset may change by any amount.
-  void wanted(int axis, double at, bool confirmed);
+  void wanted(int axis, double at);
 
  private:
   int axis() const { return axis_->currentIndex(); }
   void chooseAxis();
-  void touch();
-  void forgetQuestion();
   QString offsetText(const GrinderView& view) const;
 
   QComboBox* axis_;
   NumberBox* at_;  ///< [mm or deg]
   QPushButton* touch_;
-  std::optional<double> asked_at_;  ///< machine position for which askToConfirm() asks [m], A [rad]
-  double position_ = 0;             ///< of the axis, as last received [m], A [rad]
   QLabel* offset_;
+  Question* question_;
+  QStackedLayout* pages_;               ///< all of the above or the question
+  double position_ = 0;                 ///< of the axis, as last received [m], A [rad]
+  double asked_at_ = 0;                 ///< of the axis, when the question was asked [m], A [rad]
+  std::function<void()> all_the_same_;  ///< the answer to the question
 };
 
 }  // namespace flute_grinder

@@ -1,5 +1,6 @@
 """Reads the bags that `roslaunch flute_grinder grinder.launch record:=true` writes."""
 
+import io
 import struct
 from datetime import datetime, timezone
 
@@ -45,6 +46,23 @@ def string_of(data, offset):
     """A string and the offset behind it."""
     length, = struct.unpack_from('<I', data, offset)
     return data[offset + 4:offset + 4 + length].decode(errors='replace'), offset + 4 + length
+
+
+def behind_names(data):
+    """Offsets in a GrinderState on the wire: of the state, and behind the state's name."""
+    _, state = string_of(data, 12)
+    return state, string_of(data, state + 1)[1]
+
+
+def distance_of_override():
+    """From behind the state's name, by the message's definition [bytes]."""
+    mark, wire = 8 * b'\x01', io.BytesIO()
+    GrinderState(override=struct.unpack('<d', mark)[0]).serialize(wire)
+    data = wire.getvalue()
+    return data.index(mark) - behind_names(data)[1]
+
+
+OVERRIDE = distance_of_override()
 
 
 def iso(seconds):
@@ -125,10 +143,9 @@ class BagReader:
         self._record.append(rows, np.repeat(begin - self._start, counts) + place * np.repeat(step, counts))
 
     def _take_state(self, data):
-        _, offset = string_of(data, 12)
-        _, behind = string_of(data, offset + 1)
-        # state; override, behind 6 flags, the swivel, 2 flags, 8 positions and the feed
-        key = data[offset], data[behind + 88:behind + 96]
+        state, behind = behind_names(data)
+        # Decoded only where one of these has changed: genpy takes its time.
+        key = data[state], data[behind + OVERRIDE:behind + OVERRIDE + 8]
         if key == self._last_state:
             return
         self._last_state = key

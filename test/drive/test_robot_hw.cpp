@@ -5,6 +5,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
 #include <string>
@@ -16,6 +17,7 @@ namespace {
 
 bool fake_clock = false;
 std::int64_t clock_ns = 0;
+std::int64_t processor_ns = 0;        ///< that the thread has used
 int interruptions = 0;                ///< of the next sleeps
 std::vector<std::int64_t> sleeps_ns;  ///< until when was slept
 
@@ -24,8 +26,11 @@ std::vector<std::int64_t> sleeps_ns;  ///< until when was slept
 extern "C" {
 
 int clock_gettime(clockid_t id, timespec* time) noexcept {
-  if (!fake_clock || id != CLOCK_MONOTONIC) return static_cast<int>(syscall(SYS_clock_gettime, id, time));
-  *time = {static_cast<time_t>(clock_ns / 1000000000), static_cast<long>(clock_ns % 1000000000)};
+  if (!fake_clock || (id != CLOCK_MONOTONIC && id != CLOCK_THREAD_CPUTIME_ID)) {
+    return static_cast<int>(syscall(SYS_clock_gettime, id, time));
+  }
+  const std::int64_t now_ns = id == CLOCK_MONOTONIC ? clock_ns : processor_ns;
+  *time = {static_cast<time_t>(now_ns / 1000000000), static_cast<long>(now_ns % 1000000000)};
   return 0;
 }
 
@@ -215,7 +220,7 @@ TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Pacing
 
-constexpr std::int64_t kMillisecond = 1000000;
+constexpr std::int64_t kMillisecond = 1000000, kMicrosecond = 1000;
 constexpr std::int64_t kStart = 5000 * 1000 * kMillisecond + 999 * kMillisecond;  ///< just before a full second
 
 class Pacing : public testing::Test {
@@ -310,6 +315,21 @@ TEST_F(Pacing, ASimulationMayRunFasterThanTheClock) {
   }
   clock_ns += 25 * kMillisecond;
   EXPECT_EQ(drive.wait(ros::Duration(0.001)).toNSec(), kMillisecond) << "a stall of the host is in the simulated time";
+}
+
+TEST_F(Pacing, AFastSimulationTakesHalfACore) {
+  SimulatedDrive drive;
+  SimulatedDrive::Equipment equipment;
+  equipment.pace = 100;
+  drive.init(driveModel(), equipment);
+  drive.wait(ros::Duration(0.001));
+  for (const std::int64_t used : {3, 30, 500}) {
+    const std::int64_t before = clock_ns;
+    clock_ns += used * kMicrosecond;
+    processor_ns += used * kMicrosecond;
+    EXPECT_EQ(drive.wait(ros::Duration(0.001)).toNSec(), kMillisecond);
+    EXPECT_EQ(clock_ns - before, std::max(10 * kMicrosecond, 2 * used * kMicrosecond));
+  }
 }
 
 // With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them

@@ -182,12 +182,16 @@ TEST(Mirror, UnequalTeethHaveTheirLandsInTheMirror) {
 TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
   GrindJob job = jobOf("paper");
   job.process.z_law = ZLaw::kConstantRake;
-  const GrindJob right = withZLaw(job), left = withZLaw(mirrored(job));
-  for (std::size_t i = 0; i < right.z_corrections[0].coefficients.size(); ++i) {
-    EXPECT_NEAR(left.z_corrections[0].coefficients[i], -right.z_corrections[0].coefficients[i], kRounding) << i;
+  for (const double lead : {0.0, 0.5e-3, -2e-3}) {
+    SCOPED_TRACE(lead);
+    job.process.setup_lead = lead;
+    const GrindJob right = withZLaw(job), left = withZLaw(mirrored(job));
+    for (std::size_t i = 0; i < right.z_corrections[0].coefficients.size(); ++i) {
+      EXPECT_NEAR(left.z_corrections[0].coefficients[i], -right.z_corrections[0].coefficients[i], kRounding) << i;
+    }
+    expectMirrored(groundCutterOf(right), groundCutterOf(left));
+    expectMirroredPlans(right, left);
   }
-  expectMirrored(groundCutterOf(right), groundCutterOf(left));
-  expectMirroredPlans(right, left);
 }
 
 TEST(Mirror, TheSetUpIsMirrored) {

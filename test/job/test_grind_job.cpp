@@ -226,6 +226,19 @@ TEST(GrindJob, TakesAsMuchWearAsTheWheelHas) {
   EXPECT_TRUE(validate(job).empty());
 }
 
+TEST(GrindJob, RefusesFiguresOfACoreThatIsNotAsked) {
+  GrindJob job = paperJob();
+  job.cutter.core_diameter_end = 4e-3;
+  job.cutter.core_tolerance = 0.02e-3;
+  const auto errors = refusals(job);
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].field, "cutter.core_diameter_end");
+  EXPECT_EQ(errors[1].field, "cutter.core_tolerance");
+  EXPECT_EQ(errors[1].allowed, "0 without cutter.core_diameter");
+  job.cutter.core_diameter = 3e-3;
+  EXPECT_TRUE(validate(job).empty());
+}
+
 TEST(GrindJob, RefusesTooManyTeeth) {
   GrindJob job = paperJob();
   job.tooth_angles.clear();

@@ -145,6 +145,7 @@ GrindJob allowedJob(Dice& dice) {
   const double close = 1 - dice.scaled(1e-15, 1);
   g.core_diameter = dice.once(2) ? g.end_diameter * dice.within(0, 0.99) : 0;
   g.core_diameter_end = 0;
+  if (!(g.core_diameter > 0)) g.core_tolerance = 0;
   g.flute_length = dice.scaled(0.1e-3, 3e-3);
   p.overtravel_shank = dice.within(0, 1e-3);
   p.overtravel_end = dice.within(0, 1e-3);

@@ -174,6 +174,9 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
   EXPECT_EQ(core::basisText(kY, WorkOffset{}), "never set");
+  WorkOffset unknown;
+  unknown.value = std::nan("");
+  EXPECT_EQ(core::basisText(kY, unknown), "cannot be read");
   EXPECT_EQ(core::basisText(kX, offsetFor(basisOf(OffsetMethod::kProbe))),
             "probed for swivel 30 deg, wheel a.yaml, D 100 mm, width of the wheel 3 mm (d6.yaml)");
   EXPECT_EQ(core::basisText(kA, offsetFor(basisOf())), "touched off (d6.yaml)");

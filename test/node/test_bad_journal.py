@@ -39,6 +39,7 @@ class TestUnreadableJournal(JournalTest):
         self.check(b'nothing of a journal')
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
+        self.assertRegex(self.client.send(self.job, discard=False).wait().text, 'its checksum is missing; .*, or discard it$')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
         self.check_told(self.wait_finished())
 

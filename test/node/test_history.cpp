@@ -113,12 +113,26 @@ TEST_F(HistoryTest, SkipsWhatIsNamedLikeARecordButIsNoFile) {
   for (int i = 0; i < 4; ++i) keep(nameOf(i), std::string(100, 'x'));
   waitForError(true);
   EXPECT_EQ(history_->error(), "history " + folder.string() +
-                                   ": 20201122T170413.000Z.json is named like a record but is not a regular file: "
-                                   "skipped; move it elsewhere");
+                                   ": named like records but no regular files, and skipped: 20201122T170413.000Z.json, "
+                                   "20201122T170413.001Z.json, 20201122T170413.002Z.json, "
+                                   "20201122T170413.003Z.json.aB3xY9; move them elsewhere");
   close();
   std::vector<std::string> left = others;
   left.insert(left.end(), {nameOf(2), nameOf(3)});
   EXPECT_EQ(files(), left);
+}
+
+TEST_F(HistoryTest, NamesTenOfWhatItSkips) {
+  std::string names;
+  for (int i = 0; i < 12; ++i) {
+    fs::create_directories(folder_ / "a" / "b" / nameOf(i));
+    if (i < 10) names += (i == 0 ? "" : ", ") + nameOf(i);
+  }
+  open(kPlenty);
+  keep(nameOf(20), "x");
+  waitForError(true);
+  EXPECT_NE(history_->error().find("skipped: " + names + " and 2 more; move them elsewhere"), std::string::npos)
+      << history_->error();
 }
 
 TEST_F(HistoryTest, IsNeverReadHalf) {

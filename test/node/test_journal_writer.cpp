@@ -2,10 +2,13 @@
 
 #include "journal_fixture.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <thread>
 
 namespace flute_grinder {
@@ -68,6 +71,69 @@ TEST_F(JournalWriterTest, ReportsAnUnreadableJournalUntilOneIsWritten) {
   JournalWriter writer(path_, "/grinder");
   expectSame(writer.status().on_disk, Progress());
   EXPECT_EQ(writer.status().error, "journal " + path_ + ": its checksum is missing");
+  waitForWrite(writer, writer.write(someProgress()));
+  EXPECT_EQ(writer.status().error, "");
+  expectSame(writer.status().on_disk, someProgress());
+}
+
+TEST_F(JournalWriterTest, SaysOfADamagedOneThatItIsDamagedUntilOneIsWritten) {
+  fill(path_, "nothing of a journal");
+  JournalWriter writer(path_, "/grinder");
+  EXPECT_EQ(writer.status().damage, writer.status().error);
+  std::filesystem::create_directory(path_ + ".new");
+  waitForWrite(writer, writer.write(someProgress()));
+  EXPECT_EQ(writer.status().damage, "journal " + path_ + ": its checksum is missing");
+  std::filesystem::remove(path_ + ".new");
+  waitForWrite(writer, writer.write(someProgress()));
+  EXPECT_EQ(writer.status().damage, "");
+}
+
+/// Nobody may read the journal while this lives; root, who may always, is nobody meanwhile.
+class Forbidden {
+ public:
+  explicit Forbidden(const std::string& path) : path_(path) {
+    permit(std::filesystem::perms::none);
+    EXPECT_EQ(seteuid(user_ == 0 ? 65534 : user_), 0);
+  }
+  ~Forbidden() {
+    EXPECT_EQ(seteuid(user_), 0);
+    permit(std::filesystem::perms::owner_all);
+  }
+
+ private:
+  void permit(std::filesystem::perms permissions) { std::filesystem::permissions(path_, permissions); }
+
+  const std::string path_;
+  const uid_t user_ = geteuid();
+};
+
+// As after a start as root, which leaves its files to root.
+TEST_F(JournalWriterTest, WhatCouldNotBeReadIsNotWrittenOver) {
+  Journal(path_, "/grinder").write(someProgress());
+  const std::string before = contentOf(path_);
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  std::filesystem::permissions(path_ + ".lock", std::filesystem::perms::all);
+  std::optional<JournalWriter> writer;
+  const std::string error = "journal " + path_ + ": " + path_ + ": Permission denied";
+  {
+    const Forbidden forbidden(path_);
+    writer.emplace(path_, "/grinder");
+    EXPECT_EQ(writer->status().error, error);
+    EXPECT_EQ(writer->status().damage, "");
+    waitForWrite(*writer, writer->write(Progress()));
+    EXPECT_EQ(writer->status().error, error);
+  }
+  EXPECT_EQ(contentOf(path_), before);
+  waitForWrite(*writer, writer->write(Progress()));
+  EXPECT_EQ(writer->status().error, error + "; it can be read now: start the grinder again");
+  EXPECT_EQ(contentOf(path_), before);
+}
+
+TEST_F(JournalWriterTest, AFolderThatIsThereLaterIsUsed) {
+  fill(folder_ + "/file", "");
+  JournalWriter writer(folder_ + "/file/journal", "/grinder");
+  EXPECT_NE(writer.status().error, "");
+  std::filesystem::remove(folder_ + "/file");
   waitForWrite(writer, writer.write(someProgress()));
   EXPECT_EQ(writer.status().error, "");
   expectSame(writer.status().on_disk, someProgress());

@@ -280,6 +280,7 @@ class TestRestart(OffsetsTest):
         self.assertTrue(all(math.isnan(v) for v in offsets.values))
         self.assertIn(told, offsets.error)
         self.assertTrue(all(math.isnan(v) for v in self.client.fresh_state().work_position))
+        self.assertEqual(self.grind('offsets').stdout.count(' cannot be read\n'), 4)
         self.assertIn(told, self.client.plan(gc.goal_of(gc.SHORT)).reasons[0])
         for fields in ({}, {'dry_run': True}):
             run = self.client.send(gc.SHORT, **fields).wait()

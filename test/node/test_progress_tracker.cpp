@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 namespace flute_grinder {
@@ -116,6 +117,15 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
             std::string::npos)
       << other;
   EXPECT_NE(other.find("discard"), std::string::npos);
+}
+
+TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
+  const std::string path = folder_.path() / "damaged";
+  std::ofstream(path) << "nothing of a journal";
+  JournalWriter writer(path, "/test");
+  EXPECT_EQ(
+      ProgressTracker(writer).refusal("job", kFirst),
+      "journal " + path + ": its checksum is missing; what job it kept is unknown; restore the file, or discard it");
 }
 
 TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {

@@ -535,6 +535,26 @@ class TestBag(ReportCase):
         self.assertEqual([o['percent'] for o in self.found['overrides']], [50, 100])
         self.assertRegex(self.page.rows['1, 1'][-1], r'^held .* \(operator\); override 50 % at .*; override 100 % at ')
 
+    def test_every_change_of_the_override_on_a_cylinder(self):
+        # There the axes that rest have no distance to go, and nothing else in a state need change with the override.
+        factors, asked, last = (1.0, 0.0, 0.3, 0.0, 1.2), [], 1.0
+        end = self.batches[-1].end_stamp.to_sec()
+        with rosbag.Bag(self.recording.bag) as whole, rosbag.Bag(self.path('cylinder.bag'), 'w') as bag:
+            for topic, message, stamp in whole.read_messages():
+                if topic.endswith('/state'):
+                    at = message.header.stamp.to_sec()
+                    message.override = factors[int((at - self.start) / 0.5) % 5] if at > self.start else 1.0
+                    message.distance_to_go = [0, 0, 0, 0]
+                    if self.start < at < end and message.override != last:
+                        asked.append((100 * message.override, at - self.start))
+                        last = message.override
+                bag.write(topic, message, stamp)
+        found = [(o['percent'], o['at_s']) for o in self.data(self.path('cylinder.bag'), '--job', '1')['overrides']]
+        self.assertGreater(len(asked), 8)
+        self.assertEqual([percent for percent, _ in found], [round(percent, 6) for percent, _ in asked])
+        for (_, at), (_, asked_at) in zip(found, asked):
+            self.assertAlmostEqual(at, asked_at, delta=1.1e-3)
+
     def test_one_time_axis(self):
         last = self.batches[-1].end_stamp.to_sec() - self.start
         for name in ['feed'] + FOLLOWING + COMMANDED:

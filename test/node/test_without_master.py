@@ -97,18 +97,9 @@ class TestNodeWithoutMaster(unittest.TestCase):
             self.check_signals()
 
     def test_address_that_would_open_all_ports_is_refused(self):
-        own = socket.gethostname()
-        for name, why in (('', 'is empty'), ('LOCALHOST', '= LOCALHOST is loopback in words that ROS does not know'),
-                          ('no_such.invalid', '= no_such.invalid has no address: '), ('0x7f.1', '= 0x7f.1 is loopback')):
-            with self.subTest(name):
-                self.environment['ROS_HOSTNAME'] = name
-                self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
-                self.assertIn('ROS_HOSTNAME ' + why, self.output())
-        for name in ('localhost', '127.0.0.1', '::1', own, '0.0.0.0'):
-            with self.subTest(name):
-                self.log.truncate(0)
-                self.environment['ROS_HOSTNAME'] = name
-                self.end(self.start_waiting(), signal.SIGTERM)
+        self.environment['ROS_HOSTNAME'] = '0.0.0.0'
+        self.assertEqual(self.start([gc.program('grinder')]).wait(gc.PATIENCE), 1)
+        self.assertIn('ROS_HOSTNAME = 0.0.0.0 is every address; allowed: ', self.output())
 
     def test_goes_on_with_the_master(self):
         node = self.start_waiting()
@@ -132,6 +123,7 @@ class TestWithoutMaster(RunTest):
                               robot_description=urdf.read(), **parameters)
         node = self.master.start([gc.program('grinder')])
         self.addCleanup(self.master.end, node)
+        gc.poll(lambda: self.master.grind('status').returncode == 0, 'the grinder')
 
     def start_run(self):
         self.start_grinder()
@@ -169,7 +161,11 @@ class TestWithoutMaster(RunTest):
         left = rosgraph.Master('/left/grinder', self.master.environment['ROS_MASTER_URI'])
         for topic, kind in (('state', 'GrinderState'), ('offsets', 'WorkOffsets')):
             left.registerPublisher('/left/grinder/' + topic, 'flute_grinder/' + kind, 'http://127.0.0.1:1')
+        hung = self.grind('--node', 'left/grinder', 'status', environment=self.master.environment)
         self.check_all_say('^no grinder answers as /grinder; the ROS master knows /left/grinder: name one with --node\n$')
+        self.assertIsNone(hung.process.poll(), 'only a grinder that the master knows is waited for')
+        self.assertEqual(hung.end(), 1)
+        self.assertEqual(hung.text, 'no grinder answers as /left/grinder\n')
 
     def check_all_say(self, text):
         commands = [self.grind(*words.split(), environment=self.master.environment)

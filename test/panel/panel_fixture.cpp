@@ -2,9 +2,11 @@
 
 #include <QAbstractButton>
 #include <QAbstractSpinBox>
+#include <QApplication>
 #include <QDir>
 #include <QFile>
 #include <QLayout>
+#include <QMouseEvent>
 #include <QProgressBar>
 #include <QTabBar>
 #include <QTabWidget>
@@ -102,6 +104,33 @@ Panel::Panel(const QString& node, const QString& job)
   panel_->resize(kWidth, kHeight);
   panel_->show();
   EXPECT_TRUE(QTest::qWaitForWindowExposed(panel_.get(), kPatience));
+}
+
+void Panel::answer(const char* name) {
+  EXPECT_TRUE(QTest::qWaitFor([&] { return the<QPushButton>(name).isVisible() && enabled(name); }, kPatience)) << name;
+  click(name);
+}
+
+void Panel::doubleClick(QAbstractButton& button, int pause, const std::function<void()>& between) {
+  constexpr int kDesktopsDoubleClick = 400;
+  const QPoint place = button.mapTo(panel_.get(), button.rect().center());
+  const int begun = ++QTest::lastMouseTimestamp;
+  clickAt(place, QEvent::MouseButtonPress);
+  between();
+  QTest::lastMouseTimestamp = begun + pause;
+  clickAt(place, pause <= kDesktopsDoubleClick ? QEvent::MouseButtonDblClick : QEvent::MouseButtonPress);
+  QTest::lastMouseTimestamp += 1000;
+}
+
+void Panel::clickAt(QPoint place, QEvent::Type press) {
+  QWidget* widget = panel_->childAt(place);
+  ASSERT_TRUE(widget);
+  for (const QEvent::Type type : {press, QEvent::MouseButtonRelease}) {
+    QMouseEvent event(type, widget->mapFrom(panel_.get(), place), panel_->mapToGlobal(place), Qt::LeftButton,
+                      type == press ? Qt::LeftButton : Qt::NoButton, Qt::NoModifier);
+    event.setTimestamp(static_cast<ulong>(QTest::lastMouseTimestamp));
+    QApplication::sendEvent(widget, &event);
+  }
 }
 
 Names Panel::enabledRequests() {

@@ -44,6 +44,16 @@ class Panel {
     return *found;
   }
   void click(const char* name) { QTest::mouseClick(&the<QPushButton>(name), Qt::LeftButton); }
+  /// Answers a question, once it takes answers.
+  void answer(const char* name);
+  /// Clicks a button, and once more at the same place, whatever is there by then. @param pause between them, as the
+  /// events have it [ms]. @param between what happens meanwhile.
+  void doubleClick(
+      QAbstractButton& button, int pause, const std::function<void()>& between = [] {});
+  void doubleClick(
+      const char* name, int pause, const std::function<void()>& between = [] {}) {
+    doubleClick(the<QPushButton>(name), pause, between);
+  }
   std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
   std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
@@ -58,6 +68,8 @@ class Panel {
   void picture(const std::string& name);
 
  private:
+  void clickAt(QPoint place, QEvent::Type press);
+
   std::unique_ptr<rviz::Panel> panel_;
 };
 

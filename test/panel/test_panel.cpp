@@ -526,9 +526,9 @@ class BeforeTheSwivelIsSet : public OnStage {
 
 TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
   start();
-  EXPECT_EQ(panel.label("swivel_to_set"), "Set the swivel to 31.769 deg. Is it set and clamped?");
+  EXPECT_EQ(panel.text("swivel_question"), "Set the swivel to 31.769 deg. Is it set and clamped?");
   panel.picture("swivel_question");
-  panel.click("confirm_swivel");
+  panel.answer("confirm_swivel");
   WAIT_FOR(goals() == 1);
   EXPECT_FALSE(asks());
   ASSERT_EQ(swivels().size(), 1U);
@@ -538,12 +538,12 @@ TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
 
 TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
   start();
-  panel.click("decline_swivel");
+  panel.answer("decline_swivel");
   WAIT_FOR(!asks());
   EXPECT_TRUE(panel.enabled("start")) << "the plan is still good";
   start();
   stage.change([&] { stage.swivel_refusal = "confirm-swivel refused: for a test"; });
-  panel.click("confirm_swivel");
+  panel.answer("confirm_swivel");
   WAIT_FOR(panel.text("messages").find("Confirm-swivel refused: for a test") != std::string::npos);
   EXPECT_FALSE(asks());
   EXPECT_EQ(goals(), 0U);
@@ -613,17 +613,17 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
   planAndStart(panel);
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
   EXPECT_EQ(
-      panel.label("unfinished_job"),
+      panel.text("unfinished_question"),
       "Not finished: published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), at tooth 2, pass 3. "
       "Once this job starts it cannot be continued.");
-  EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Keep it");
+  EXPECT_FALSE(panel.the<QPushButton>("keep").isVisible()) << "the chosen file is another job";
   panel.picture("discard_question");
-  panel.click("keep");
+  panel.answer("decline_unfinished");
   WAIT_FOR(!panel.the<QPushButton>("discard").isVisible());
   panel.click("start");
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
   EXPECT_EQ(goals(), 0U);
-  panel.click("discard");
+  panel.answer("discard");
   WAIT_FOR(goals() == 1);
   EXPECT_TRUE(goal().discard);
   EXPECT_EQ(goal().job_name, "paper.yaml");
@@ -635,10 +635,10 @@ TEST_F(AfterAJobWasLeft, TheSwivelIsAskedForOnceItIsDiscarded) {
   Panel panel("cell/stage", kPaper);
   planAndStart(panel);
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
-  panel.click("discard");
+  panel.answer("discard");
   WAIT_FOR(panel.the<QPushButton>("confirm_swivel").isVisible());
   EXPECT_EQ(goals(), 0U);
-  panel.click("confirm_swivel");
+  panel.answer("confirm_swivel");
   WAIT_FOR(goals() == 1);
   EXPECT_TRUE(goal().discard);
 }
@@ -649,7 +649,7 @@ TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
   planAndStart(panel);
   WAIT_FOR(panel.the<QPushButton>("keep").isVisible());
   EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Continue it");
-  panel.click("keep");
+  panel.answer("keep");
   WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
   EXPECT_EQ(goals(), 0U);
   panel.click("start");

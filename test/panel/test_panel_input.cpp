@@ -4,6 +4,7 @@
 #include "stage.h"
 
 #include <ros/package.h>
+#include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
@@ -21,7 +22,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -224,6 +227,212 @@ TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheUnfinishedJob) {
   panel.click("start");
   WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
   expectHoldWorks();
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+/// With a job that is planned, and three questions before its start: an unfinished job, zero points that were never
+/// set, and the swivel.
+class Asked : public Input {
+ protected:
+  void SetUp() override {
+    panel.widget().activateWindow();
+    ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
+    stage.change([&] {
+      stage.plan.valid = 1;
+      stage.state.swivel = 0;
+      stage.state.progress.job_digest = std::string(64, 'a');
+      stage.state.progress.cutter.tooth_angles = {0};
+      // Later than anything before, so that the panel knows the rest once it shows this.
+      stage.state.override = 0.5;
+    });
+    stage.tellOffsets({});
+    WAIT_FOR(panel.label("override_value") == "50 %");
+    WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z" && panel.enabled("plan"));
+    panel.click("plan");
+    WAIT_FOR(panel.enabled("start"));
+    panel.click("start");
+    WAIT_FOR(shown("unfinished"));
+  }
+  bool shown(const std::string& question) {
+    return panel.the<QPlainTextEdit>((question + "_question").c_str()).isVisible();
+  }
+  /// Double clicks an answer, once it is taken. @param next question.
+  void answerTwice(const char* answer, int pause, const std::string& next) {
+    WAIT_FOR(panel.enabled(answer));
+    panel.doubleClick(answer, pause, [&] { EXPECT_TRUE(shown(next)); });
+    EXPECT_TRUE(shown(next));
+  }
+  std::size_t goals() {
+    return stage.get([&] { return stage.goals.size(); });
+  }
+
+  Panel panel{"cell/stage", kJobs + "paper.yaml"};
+};
+
+TEST_F(Asked, ADoubleClickAnswersOneQuestion) {
+  for (const int pause : {100, 250, 400, 500}) {
+    SCOPED_TRACE(pause);
+    panel.doubleClick("start", pause);
+    ASSERT_NO_FATAL_FAILURE(answerTwice("discard", pause, "offsets"));
+    ASSERT_NO_FATAL_FAILURE(answerTwice("offsets_are_right", pause, "swivel"));
+    panel.answer("decline_swivel");
+  }
+  EXPECT_EQ(goals(), 0U);
+  EXPECT_TRUE(stage.get([&] { return stage.swivels; }).empty());
+}
+
+TEST_F(Asked, AQuestionTakesNoClickAtFirst) {
+  // Far from the button that asks, long after it in the events' time, but not in the operator's.
+  WAIT_FOR(panel.enabled("discard"));
+  panel.click("discard");
+  for (const char* answer : {"offsets_are_right", "decline_offsets"}) panel.click(answer);
+  EXPECT_TRUE(shown("offsets"));
+  WAIT_FOR(panel.enabled("decline_offsets"));
+  panel.openTab("Section");
+  panel.openTab("Job");
+  EXPECT_FALSE(panel.enabled("offsets_are_right")) << "it appears again";
+}
+
+TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
+  const auto place = [&](const char* name) {
+    auto& button = panel.the<QPushButton>(name);
+    return QRect(button.mapTo(&panel.widget(), QPoint()), button.size());
+  };
+  const QRect discard = place("discard"), not_yet = place("decline_unfinished");
+  panel.answer("discard");
+  WAIT_FOR(panel.enabled("offsets_are_right"));
+  const QRect right = place("offsets_are_right");
+  EXPECT_EQ(place("decline_offsets"), not_yet);
+  EXPECT_FALSE(right.intersects(discard));
+  panel.answer("offsets_are_right");
+  WAIT_FOR(panel.enabled("confirm_swivel"));
+  EXPECT_EQ(place("decline_swivel"), not_yet);
+  for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
+}
+
+TEST_F(Asked, NoKeyStartsAnything) {
+  const auto press_keys = [&] {
+    for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter, Qt::Key_Space}) {
+      QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
+    }
+  };
+  const std::vector<std::pair<const char*, std::string>> ways{
+      {"discard", "unfinished"}, {"offsets_are_right", "offsets"}, {"confirm_swivel", "swivel"}};
+  for (std::size_t asked = 0; asked < ways.size(); ++asked) {
+    SCOPED_TRACE(ways[asked].second);
+    for (std::size_t before = 0; before < asked; ++before) panel.answer(ways[before].first);
+    press_keys();
+    const std::string decline = "decline_" + ways[asked].second;
+    WAIT_FOR(panel.the<QWidget>(decline.c_str()).hasFocus());
+    for (int i = 0; i < 40; ++i) {
+      QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
+      ASSERT_TRUE(QApplication::focusWidget());
+      EXPECT_NE(QApplication::focusWidget()->objectName().toStdString(), ways[asked].first);
+      EXPECT_NE(QApplication::focusWidget()->objectName(), "start");
+    }
+    panel.the<QWidget>(decline.c_str()).setFocus();
+    press_keys();
+    EXPECT_FALSE(shown(ways[asked].second)) << "Space answers Not yet";
+    panel.click("start");
+  }
+  EXPECT_EQ(goals(), 0U);
+  EXPECT_TRUE(stage.get([&] { return stage.swivels; }).empty());
+}
+
+TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
+  for (const char* answer : {"discard", "offsets_are_right", "confirm_swivel"}) panel.answer(answer);
+  WAIT_FOR(goals() == 1);
+  // From the goal on: a job that is still planned begins held.
+  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
+  be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.state() == "Running");
+  QTest::keyClick(QApplication::focusWidget(), Qt::Key_Space);
+  WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+}
+
+TEST_F(Input, SpaceHoldsAJobOfSomebodyElse) {
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  panel.widget().activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
+  panel.openTab("Jog");
+  panel.the<QWidget>("jog_speed").setFocus();
+  WAIT_FOR(panel.state() == "Ready");
+  be(GrinderState::STARTING, "starting");
+  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
+}
+
+/// How often the buttons of a panel are clicked, the stops aside, since they may well be sent twice.
+class Clicks {
+ public:
+  explicit Clicks(Panel& panel) {
+    for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
+      const std::string name = button->objectName().toStdString();
+      if (name == "hold" || name == "cancel" || name == "disable") continue;
+      QObject::connect(button, &QAbstractButton::clicked, &receiver_, [this] { ++count_; });
+    }
+  }
+  int count() const { return count_; }
+
+ private:
+  QObject receiver_;
+  int count_ = 0;
+};
+
+TEST_F(Input, ADoubleClickPressesAButtonOnce) {
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  std::set<std::string> clicked;
+  for (const auto& [state, name] : {std::pair{GrinderState::DISABLED, "disabled"},
+                                    {GrinderState::READY, "ready"},
+                                    {GrinderState::HELD, "held"},
+                                    {GrinderState::RETRACTED, "retracted"},
+                                    {GrinderState::FAULT, "fault"}}) {
+    be(state, name);
+    WAIT_FOR(QString::fromStdString(panel.state()).toLower() == name);
+    for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+      panel.openTab(tab);
+      for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
+        for (const int pause : {100, 250, 400, 500}) {
+          const QString name = button->objectName();
+          const bool opens_a_dialog = name == "choose" || name == "setup";
+          if (!button->isVisible() || !button->isEnabled() || opens_a_dialog) continue;
+          SCOPED_TRACE(std::to_string(pause) + " ms on " + button->objectName().toStdString());
+          const Clicks clicks(panel);
+          panel.doubleClick(*button, pause);
+          EXPECT_LE(clicks.count(), 1);
+          clicked.insert(button->objectName().toStdString());
+        }
+      }
+    }
+  }
+  for (const char* name :
+       {"enable", "reset", "home", "resume", "retract", "jog_x_plus", "touch_off", "spindle_on", "plan"}) {
+    EXPECT_TRUE(clicked.count(name)) << name;
+  }
+}
+
+TEST_F(Input, ADoubleClickOnWhatClosesADialogPressesNothingBelow) {
+  stage.change([&] { stage.plan.valid = 1; });
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.enabled("start"));
+  QDialog dialog(&panel.widget());
+  QPushButton close("Close", &dialog);
+  QObject::connect(&close, &QPushButton::clicked, &dialog, &QDialog::close);
+  auto& start = panel.the<QPushButton>("start");
+  const QPoint at = start.mapToGlobal(start.rect().center());
+  dialog.show();
+  dialog.move(at - close.rect().center());
+  WAIT_FOR(close.mapToGlobal(close.rect().center()) == at);
+  QTest::mouseClick(&close, Qt::LeftButton);
+  WAIT_FOR(!dialog.isVisible());
+  // 300 ms after the press.
+  QTest::lastMouseTimestamp -= 200;
+  panel.click("start");
+  EXPECT_TRUE(panel.enabled("start"));
+  panel.click("start");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -71,17 +71,17 @@ TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
   panel.click("start");
   WAIT_FOR(asks());
-  EXPECT_NE(panel.text("offsets_to_set")
+  EXPECT_NE(panel.text("offsets_question")
                 .find("Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"),
             std::string::npos)
-      << panel.text("offsets_to_set");
+      << panel.text("offsets_question");
   panel.picture("offset_question");
-  panel.click("decline_offsets");
+  panel.answer("decline_offsets");
   WAIT_FOR(!asks());
   EXPECT_TRUE(goals().empty());
   panel.click("start");
   WAIT_FOR(asks());
-  panel.click("offsets_are_right");
+  panel.answer("offsets_are_right");
   WAIT_FOR(goals().size() == 1);
   EXPECT_TRUE(goals()[0].goal.offsets_are_right);
   EXPECT_TRUE(offsetsSet().empty());
@@ -93,7 +93,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   panel.click("start");
   WAIT_FOR(asks());
   EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
-  panel.click("fit_offsets");
+  panel.answer("fit_offsets");
   WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
   const SetOffset::Request set = offsetsSet()[0];
   EXPECT_EQ(set.axis, "axis_y");
@@ -110,7 +110,7 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   panel.click("start");
   WAIT_FOR(asks());
   EXPECT_FALSE(panel.the<QPushButton>("fit_offsets").isVisible());
-  EXPECT_NE(panel.text("offsets_to_set").find("Y was never set"), std::string::npos);
+  EXPECT_NE(panel.text("offsets_question").find("Y was never set"), std::string::npos);
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!asks());
@@ -118,30 +118,36 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
 
 TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
-  auto& touch = panel.the<QPushButton>("touch_off");
+  const auto large = [&](bool is) {
+    stage.change([&] { stage.touch_refusal = is ? "it would change by much" : "", stage.large_change = is; });
+  };
+  const auto asks = [&] { return panel.the<QPushButton>("touch_off_anyway").isVisible(); };
+  panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
-  auto& at = panel.the<QDoubleSpinBox>("touch_at");
-  WAIT_FOR(touch.isEnabled());
-  stage.change([&] { stage.touch_refusal = "it would change by much", stage.large_change = true; });
-  panel.click("touch_off");
-  WAIT_FOR(touch.text() == "All the same");
-  ASSERT_EQ(touches().size(), 1U);
+  WAIT_FOR(panel.enabled("touch_off"));
+  large(true);
+  for (const int pause : {100, 250, 400, 500}) {
+    panel.doubleClick("touch_off", pause, [&] { WAIT_FOR(asks()); });
+    EXPECT_TRUE(asks());
+    EXPECT_EQ(panel.text("touch_question"), "Touch-off: it would change by much");
+    panel.answer("decline_touch");
+  }
+  ASSERT_EQ(touches().size(), 4U);
   EXPECT_EQ(touches()[0].basis.job_name, "paper.yaml");
   EXPECT_NEAR(touches()[0].basis.height, 0.002788, 1e-12);
-  EXPECT_FALSE(touches()[0].large_change_ok);
-  at.setValue(1);
-  EXPECT_EQ(touch.text(), "Touch off") << "another value is another question";
   panel.click("touch_off");
-  WAIT_FOR(touch.text() == "All the same");
+  WAIT_FOR(asks());
+  panel.picture("touch_off_question");
   stage.change([&] { stage.state.position[kZ] += 0.001; });
-  WAIT_FOR(touch.text() == "Touch off");
+  WAIT_FOR(!asks());
   panel.click("touch_off");
-  WAIT_FOR(touch.text() == "All the same");
-  stage.change([&] { stage.touch_refusal = "", stage.large_change = false; });
-  panel.click("touch_off");
-  WAIT_FOR(touches().size() == 4);
-  EXPECT_TRUE(touches()[3].large_change_ok);
-  EXPECT_EQ(touch.text(), "Touch off");
+  WAIT_FOR(panel.enabled("touch_off_anyway"));
+  for (const TouchOff::Request& touch : touches()) EXPECT_FALSE(touch.large_change_ok);
+  large(false);
+  panel.answer("touch_off_anyway");
+  WAIT_FOR(touches().size() == 7);
+  EXPECT_TRUE(touches()[6].large_change_ok);
+  EXPECT_FALSE(asks());
 }
 
 TEST_F(ZeroPoints, OfYAndZNeedAJob) {

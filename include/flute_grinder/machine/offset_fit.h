@@ -26,7 +26,8 @@ struct OffsetMisfit {
 std::vector<OffsetMisfit> misfits(const WorkOffsets& offsets, const OffsetBasis& job);
 
 /// What a work offset was set for, for the operator, e.g. "touched off for D 6 mm, wheel straight_d100_w3.yaml
-/// (taper.yaml)"; only the figures that the axis depends on. "never set" if it was not.
+/// (taper.yaml)"; only the figures that the axis depends on. "never set" if it was not, "cannot be read" if
+/// it is unknown.
 std::string basisText(int axis, const WorkOffset& offset);
 
 }  // namespace flute_grinder::core

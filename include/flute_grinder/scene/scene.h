@@ -2,6 +2,7 @@
 
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/scene/first_view.h"
 #include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
 
@@ -15,11 +16,12 @@ namespace flute_grinder {
 
 /// The job in rviz: ground cutter, wheel, flutes, executed path and path errors, on `~ground_cutter`, `~scene`,
 /// `~tool_path`, `~executed_path` and `~path_error`, and what they mean in figures on `~legend`; each latched, every
-/// message complete. Shows nothing until there is a job. Not thread safe; not for the control thread.
+/// message complete. Until there is a job only wheel and blank of a first view are shown. Not thread safe; not for the
+/// control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
-  explicit Scene(ros::NodeHandle private_nh);
+  Scene(ros::NodeHandle private_nh, const FirstView& first_view);
 
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
   /// measurements are kept.

@@ -1,0 +1,64 @@
+#include "panel/question.h"
+
+#include "panel/text_view.h"
+
+#include <QGridLayout>
+
+namespace flute_grinder {
+
+namespace {
+
+constexpr int kAppearing = 1000;  ///< [ms]
+
+}  // namespace
+
+Question::Question(const QString& name, int lines)
+    : text_(textView((name + "_question").toLatin1(), lines)), layout_(new QGridLayout(this)) {
+  layout_->setContentsMargins(0, 0, 0, 0);
+  layout_->setVerticalSpacing(2);
+  layout_->addWidget(text_, 0, 0, 1, 2);
+  layout_->setRowStretch(0, 1);
+  for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);
+  auto* decline = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1);
+  decline->setFocusPolicy(Qt::StrongFocus);
+  connect(decline, &QPushButton::clicked, this, &Question::declined);
+  appearing_.setSingleShot(true);
+  appearing_.setInterval(kAppearing);
+  connect(&appearing_, &QTimer::timeout, this, [this, decline] {
+    enableAnswers(true);
+    decline->setFocus();
+  });
+}
+
+QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column) {
+  auto* button = new QPushButton(text);
+  button->setObjectName(name);
+  button->setToolTip(hint);
+  button->setEnabled(false);
+  button->setFocusPolicy(Qt::NoFocus);
+  button->setMinimumWidth(10);  // so that the columns are alike
+  // One that is not offered must not move the others.
+  QSizePolicy policy = button->sizePolicy();
+  policy.setRetainSizeWhenHidden(true);
+  button->setSizePolicy(policy);
+  layout_->addWidget(button, 1 + row, column);
+  return button;
+}
+
+void Question::ask(const QString& text) {
+  showText(*text_, text, true);
+  enableAnswers(false);
+  appearing_.start();
+}
+
+void Question::showEvent(QShowEvent* event) {
+  QWidget::showEvent(event);
+  enableAnswers(false);
+  appearing_.start();
+}
+
+void Question::enableAnswers(bool enabled) {
+  for (auto* answer : findChildren<QPushButton*>()) answer->setEnabled(enabled);
+}
+
+}  // namespace flute_grinder

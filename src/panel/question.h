@@ -1,0 +1,43 @@
+#pragma once
+
+#include <QPlainTextEdit>
+#include <QPushButton>
+#include <QTimer>
+#include <QWidget>
+
+class QGridLayout;
+
+namespace flute_grinder {
+
+/// Asks before something is done that the operator may not want: a text, and the answers below it in two columns, with
+/// *Not yet*, which does nothing, in the same place in each. For a second after it has appeared it takes no answer,
+/// since the click may be meant for what was there before; then *Not yet* has the focus, and no key gives another
+/// answer.
+class Question : public QWidget {
+  Q_OBJECT
+
+ public:
+  /// @param name of the text is NAME_question, and of *Not yet* decline_NAME. @param lines of the text that have room.
+  Question(const QString& name, int lines);
+
+  /// @param row 0 or 1, column 0 or 1: not where the answer to a question that comes before this one lies. *Not yet*
+  /// has (1, 1).
+  QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column);
+
+  void ask(const QString& text);
+
+ Q_SIGNALS:
+  void declined();
+
+ protected:
+  void showEvent(QShowEvent* event) override;
+
+ private:
+  void enableAnswers(bool enabled);
+
+  QPlainTextEdit* text_;
+  QGridLayout* layout_;
+  QTimer appearing_;
+};
+
+}  // namespace flute_grinder

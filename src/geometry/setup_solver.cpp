@@ -29,6 +29,7 @@ constexpr int kMinColumns = 4;
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
 constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
+constexpr double kNearApex = 0.8;   ///< of the way there, beyond which a stroke is long
 constexpr double kBeyond = 1e-5;    ///< added to the overtravel, for the precision of an extremum's place [m]
 constexpr double kBesideSpiral = 4 * units::kDegree;  ///< the swivel from which fits start
 constexpr int kStartHeights = 4;                      ///< from which they start, on either side of the axis
@@ -56,6 +57,13 @@ class Search {
     std::vector<SetupPoint> points;
     if (!unknowns.u) {
       for (const LineRoot& root : line(unknowns, 0)) points.push_back(unknowns.point(0, root.at));
+      // A wheel in the plane of the helix may give the largest rake, and that be the asked one.
+      const SetupPoint along = unknowns.point(0, request_.cutter.spiral_angle);
+      const bool allowed = along.swivel >= least_swivel && along.swivel <= largest_swivel;
+      const double error = std::abs(rakeError(along, 0));
+      if (points.empty() && allowed && error <= std::max(kTolerance, request_.cutter.rake_tolerance)) {
+        points.push_back(along);
+      }
       return points;
     }
     const auto first = [&](double u, double v) { return rakeError(unknowns.point(u, v), 0); };
@@ -244,7 +252,7 @@ double leastPitch(const std::vector<double>& angles) {
 struct Judged {
   SolvedSetup solved;
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
-  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete
+  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
   std::optional<SetupProblem> problem;
 };
 
@@ -312,7 +320,9 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   s.core_diameter = 2 * trial.coreRadius(sweep, 0);
   s.core_diameter_end = 2 * trial.coreRadius(sweep, request.cutter.flute_length);
   measureReach(trial, sweep, s);
-  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length;
+  const double tan_cone = trial.cutter().tanCone(), toward_apex = s.overtravel[tan_cone >= 0 ? 0 : 1];
+  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length ||
+                     toward_apex * std::abs(tan_cone) > kNearApex * trial.cutter().radius(0);
   findLimit(request, pitch, s);
   if (!(judged.formed_by_face >= kFormedByFace)) {
     judged.problem = SetupProblem::kWall;
@@ -405,8 +415,7 @@ Fitted fitAll(const SetupTrial& trial, const SetupRequest& request) {
     if (fit && !(has_tolerances && worst(*fit) > 1)) fits.push_back(*fit);
   }
   fitted.best = best(trial, request, fits);
-  if (fitted.best && !fitted.best->problem) return fitted;
-  fits.clear();
+  if (fitted.best && !fitted.best->problem && !fitted.best->cut_short) return fitted;
   double least = std::numeric_limits<double>::infinity();
   for (const SetupPoint& start : starts) {
     const auto fit = nearestSetup(trial, request, start);
@@ -418,7 +427,7 @@ Fitted fitAll(const SetupTrial& trial, const SetupRequest& request) {
     }
     if (here <= 1) fits.push_back(*fit);
   }
-  if (!fits.empty()) fitted.best = best(trial, request, fits);
+  fitted.best = best(trial, request, fits);
   return fitted;
 }
 

@@ -358,6 +358,35 @@ TEST(SetupSolver, AStraightFluteOnACylinderIsSetSquare) {
   EXPECT_EQ(s.overtravel[1], 0);
 }
 
+// The rake over the swivel is a tent whose peak, at the spiral angle, is the asked rake.
+TEST(SetupSolver, ARakeThatIsJustTheLargestIsFound) {
+  for (const double spiral : {0.0, 0.02}) {
+    for (const double rake : {5.0, 8.0}) {
+      SetupRequest request = requestFor({12, 0, spiral, rake, 20, 2, 100, 4});
+      request.cutter.rake_tolerance = 0.5 * kDegree;
+      request.least_swivel = -35.3 * kDegree;
+      const SolvedSetup s = solved(request);
+      EXPECT_NEAR(s.setup.swivel / kDegree, spiral, 1e-9);
+      EXPECT_NEAR(s.least_rake / kDegree, rake, 0.05);
+    }
+  }
+}
+
+TEST(SetupSolver, AStraightFluteOnAConeTakesNoLeadAndANearlyStraightOneALimitedLead) {
+  for (const double spiral : {0.0, 0.02, -0.02}) {
+    const SetupRequest request = requestWithin({12, 6, spiral, 5, 20, 2, 8.2, 12.404, 100, 4, 0, 0});
+    const SolvedSetup s = solved(request);
+    if (spiral == 0) {
+      EXPECT_EQ(s.setup.lead, 0);
+    }
+    EXPECT_LT(std::abs(s.setup.lead), 50 * kMillimetre);
+    const ErrorsOverFlute errors = errorsOf(request, s);
+    EXPECT_LT(errors.rake, 0.5) << spiral;
+    EXPECT_LT(errors.edge, 0.5) << spiral;
+    EXPECT_LT(errors.core, 0.05) << spiral;
+  }
+}
+
 TEST(SetupSolver, ABackTaperAndEveryProfileAreSet) {
   SetupRequest request = requestFor({16, -1, 35, 8, 30, 2, 100, 3});
   EXPECT_NEAR(rakeAt(ground(request, solved(request)), 15), 8, 0.01);

@@ -466,14 +466,10 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
   for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
     if (!misfit.change) continue;
     const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
-    const double value = was.value + *misfit.change;
-    const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
-    const std::string done = axisName(misfit.axis, UnitSystem::kShop) + ": work offset " + shown(value) + ", was " +
-                             shown(was.value) + "; computed";
     ++*left;
-    link_->setOffset(misfit.axis, value, basisOf(goal, OffsetMethod::kComputed),
-                     [this, left, done](const std::string& refusal) {
-                       showMessage(refusal.empty() ? done : refusal);
+    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, OffsetMethod::kComputed),
+                     [this, left](const std::string& refusal) {
+                       if (!refusal.empty()) showMessage(refusal);
                        if (--*left == 0) job_->planAnew();
                      });
   }

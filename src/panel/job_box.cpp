@@ -336,15 +336,13 @@ void JobBox::showZeroPoints() {
   QString text = "Zero points: not known";
   QString hint;
   if (offsets_) {
-    QString axes;
-    for (const core::OffsetMisfit& misfit : job_ ? misfits(*offsets_, goal()) : std::vector<core::OffsetMisfit>{}) {
-      axes += (axes.isEmpty() ? "not of this job: " : ", ") + QString("XYZA"[misfit.axis]);
+    std::string axes;
+    for (const core::OffsetMisfit& misfit : offsetMisfits()) {
+      axes += (axes.empty() ? "" : ", ") + std::string(1, "XYZA"[misfit.axis]);
     }
-    const bool continues = continue_->isChecked();
-    if (axes.isEmpty() && !continues) axes = "set for this job";
-    text = "Zero points";
-    if (job_) text += continues ? ": as when the job began" : ": ";
-    if (job_ && !axes.isEmpty()) text += (continues ? "; " : "") + axes;
+    text = !job_          ? "Zero points"
+           : axes.empty() ? "Zero points: set for this job"
+                          : "Zero points: not of this job: " + QString::fromStdString(axes);
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
       hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);

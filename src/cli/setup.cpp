@@ -65,12 +65,11 @@ int runSetup(const SetupOptions& options) {
   }
   const std::string refusal = planRefusal(setup);
   std::fputs(refusal.c_str(), stderr);
-  if (!options.write) return 0;
   if (!refusal.empty()) {
-    std::fprintf(stderr, "%s: nothing was written\n", options.job.c_str());
+    if (options.write) std::fprintf(stderr, "%s: nothing was written\n", options.job.c_str());
     return 1;
   }
-  writeSetup(options.job, setup);
+  if (options.write) writeSetup(options.job, setup);
   return 0;
 }
 

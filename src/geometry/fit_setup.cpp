@@ -6,146 +6,104 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <functional>
+#include <limits>
 #include <vector>
 
 namespace flute_grinder {
 
 namespace {
 
-/// Newton's method on as many figures of a set-up as the tool has figures that are asked.
+constexpr double kExact = 1e-6;  ///< of the angles [rad], and of the cores by the asked ones
+constexpr double kEven = 0.001 * units::kDegree;
+constexpr int kShifts = 4;                ///< of the rake at the ends
+constexpr double kNearEnough = 5;         ///< by the tolerances: an error that more weight may bring within them
+constexpr int kFitSteps = 40;             ///< of a fit
+constexpr int kStepsBetweenSections = 4;  ///< where errors are weighed by their tolerances
+constexpr double kNoGain = 1e-2;          ///< of a step, of the errors, that ends a fit
+constexpr double kFigureStep = 1e-6;      ///< [rad], of the taper, and of the small end's radius
+constexpr double kLeastSpiral = 1e-3;     ///< below whose tangent a lead has no effect
+constexpr double kLeastDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
+
+/// What a figure may differ by: a tolerance of 0 asks for it exactly.
+double allowed(double tolerance) { return std::max(tolerance, kExact); }
+
+double largest(const Eigen::ArrayXd& errors) {
+  if (errors.size() == 0) return 0;
+  return errors.allFinite() ? errors.abs().maxCoeff() : std::numeric_limits<double>::infinity();
+}
+
+/// A damped fit (Levenberg, Marquardt) of the figures of a set-up that are free.
 class Fit {
  public:
-  /// @param cores whether the asked cores count.
-  Fit(const SetupTrial& trial, const SetupRequest& request, bool cores)
-      : trial_(trial),
-        request_(request),
-        asks_core_(cores && request.core_diameter),
-        asks_core_end_(cores && request.core_diameter_end) {
-    if (!isKept(SetupFigure::kSwivel)) figures_.push_back(&SetupPoint::swivel);
-    if (!isKept(SetupFigure::kHeight)) figures_.push_back(&SetupPoint::height);
-    if (asks_core_ || isKept(SetupFigure::kSwivel) || isKept(SetupFigure::kHeight)) {
-      figures_.push_back(&SetupPoint::depth);
-    }
-    if (request.asks_spiral) figures_.push_back(&SetupPoint::lead);
-    if (asks_core_end_) figures_.push_back(&SetupPoint::taper);
+  using Errors = std::function<Eigen::ArrayXd(const SetupPoint&)>;
+
+  Fit(const SetupTrial& trial, const SetupRequest& request) : trial_(trial), request_(request) {
+    const bool keeps_swivel = request.keep == SetupFigure::kSwivel, keeps_height = request.keep == SetupFigure::kHeight;
+    if (!keeps_swivel) figures_.push_back(&SetupPoint::swivel);
+    if (!keeps_height) figures_.push_back(&SetupPoint::height);
+    if (request.core_diameter || keeps_swivel || keeps_height) figures_.push_back(&SetupPoint::depth);
+    if (hasLead(request)) figures_.push_back(&SetupPoint::lead);
+    if (request.core_diameter_end) figures_.push_back(&SetupPoint::taper);
   }
 
-  /// The set-up that is exact at both ends. What is asked is approached from what the start gives, in steps from which
-  /// Newton's method converges; nothing if the way ends before.
-  std::optional<SetupPoint> exact(SetupPoint point) const {
-    const Eigen::VectorXd from = tool(point), to = asked(request_.rake);
-    double reached = 0;
-    for (double step = 1; reached < 1 && step >= kMinStep;) {
-      const double next = std::min(1.0, reached + step);
-      const auto there = solve(point, next < 1 ? Eigen::VectorXd(from + next * (to - from)) : to);
-      if (there) {
-        point = *there;
-        reached = next;
-      } else {
-        step /= 2;
-      }
-    }
-    const bool good = reached == 1 && point.swivel >= request_.least_swivel && point.swivel <= request_.largest_swivel;
-    return good ? std::optional(point) : std::nullopt;
+  static bool hasLead(const SetupRequest& request) {
+    return request.asks_spiral && std::abs(std::tan(request.cutter.spiral_angle)) > kLeastSpiral;
   }
 
-  /// From an exact one, that with the least largest error of the rake.
-  SetupPoint even(SetupPoint point) const {
-    double rake = request_.rake;
-    std::optional<Errors> here = errorsOverFlute(point);
-    for (int i = 0; i < kShifts && here && std::abs(here->middle()) > kEven; ++i) {
-      rake -= here->middle();
-      const auto next = solve(point, asked(rake));
-      const bool allowed = next && next->swivel >= request_.least_swivel && next->swivel <= request_.largest_swivel;
-      const auto there = allowed ? errorsOverFlute(*next) : std::nullopt;
-      if (!there || !(there->largest() < here->largest())) break;
-      point = *next;
-      here = there;
+  /// @param enough the largest error at which the fit may end. @return nothing if the start gives no tool.
+  std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough) const {
+    Eigen::VectorXd errors = at(point, errors_of);
+    if (!errors.allFinite()) return std::nullopt;
+    double damping = kLeastDamping;
+    for (int i = 0; i < kFitSteps && largest(errors) > enough; ++i) {
+      const double before = errors.norm();
+      if (!step(point, errors, damping, errors_of) || errors.norm() > (1 - kNoGain) * before) break;
     }
     return point;
   }
 
  private:
-  static constexpr double kTolerance = 1e-6;  ///< of the angles [rad], and of the cores by the asked ones
-  static constexpr double kEven = 0.001 * units::kDegree;
-  static constexpr double kMinStep = 1.0 / 64;  ///< of the way to what is asked
-  static constexpr int kShifts = 4;             ///< of the rake at the ends
-  static constexpr int kSteps = 12;             ///< of Newton's method
-  static constexpr int kHalvings = 6;  ///< of a step, where another part of the wheel begins to form the rake face
-  static constexpr double kDerivativeStep = 1e-6;  ///< [rad], of the taper, and of the small end's radius
-
-  /// Of the rake over the flute [rad].
-  struct Errors {
-    double least = 0, most = 0;
-    double middle() const { return (least + most) / 2; }
-    double largest() const { return std::max(std::abs(least), std::abs(most)); }
-  };
-
-  bool isKept(SetupFigure figure) const { return request_.keep == figure; }
-
-  std::optional<Errors> errorsOverFlute(const SetupPoint& point) const {
-    Eigen::ArrayXd errors(SetupTrial::kSections + 1);
-    for (int i = 0; i <= SetupTrial::kSections; ++i) errors[i] = trial_.rake(point, trial_.section(i)) - request_.rake;
-    if (!errors.allFinite()) return std::nullopt;
-    return Errors{errors.minCoeff(), errors.maxCoeff()};
+  Eigen::VectorXd at(const SetupPoint& p, const Errors& errors_of) const {
+    const bool is_setup = p.swivel >= request_.least_swivel && p.swivel <= request_.largest_swivel &&
+                          std::abs(p.lead) < trial_.wheel().largestRadius() && trial_.cutter().radius(-p.lead) > 0 &&
+                          trial_.isSound(p);
+    return is_setup ? Eigen::VectorXd(errors_of(p)) : Eigen::VectorXd::Constant(1, std::nan(""));
   }
 
-  /// The figures of the tool, as many as those of the set-up: the rake at both ends [rad], then what else is asked: the
-  /// error of the edge's turn [rad], the cores by the asked ones. NaN where there is none.
-  Eigen::VectorXd tool(const SetupPoint& point) const {
-    Eigen::VectorXd tool(static_cast<Eigen::Index>(figures_.size()));
-    const bool is_setup = std::abs(point.swivel) < units::kPi / 2 && trial_.cutter().radius(-point.lead) > 0;
-    if (!is_setup) return tool.setConstant(std::nan(""));
-    const double length = request_.cutter.flute_length;
-    tool[0] = trial_.rake(point, 0);
-    tool[1] = trial_.rake(point, length);
-    Eigen::Index next = 2;
-    if (request_.asks_spiral) tool[next++] = trial_.turnError(point);
-    if (asks_core_) tool[next++] = 2 * trial_.coreRadius(point, 0) / *request_.core_diameter;
-    if (asks_core_end_) tool[next++] = 2 * trial_.coreRadius(point, length) / *request_.core_diameter_end;
-    return tool;
+  double unit(std::size_t k) const {
+    const bool number = figures_[k] == &SetupPoint::swivel || figures_[k] == &SetupPoint::taper;
+    return number ? 1 : trial_.cutter().radius(0);
   }
 
-  /// What is asked of them. @param rake that both ends shall have.
-  Eigen::VectorXd asked(double rake) const {
-    Eigen::VectorXd asked = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(figures_.size()));
-    asked[0] = asked[1] = rake;
-    if (request_.asks_spiral) asked[2] = 0;
-    return asked;
+  SetupPoint moved(SetupPoint point, const Eigen::VectorXd& step) const {
+    for (std::size_t k = 0; k < figures_.size(); ++k)
+      point.*figures_[k] += step[static_cast<Eigen::Index>(k)] * unit(k);
+    return point;
   }
 
-  std::optional<SetupPoint> solve(SetupPoint point, const Eigen::VectorXd& asked) const {
-    Eigen::VectorXd errors = tool(point) - asked;
-    for (int i = 0; i < kSteps && !(errors.cwiseAbs().maxCoeff() <= kTolerance); ++i) {
-      const Eigen::VectorXd step = derivatives(point, errors + asked).fullPivLu().solve(-errors);
-      if (!descend(point, errors, step, asked)) return std::nullopt;
+  /// Goes a step that makes the errors smaller. @return false if there is none.
+  bool step(SetupPoint& point, Eigen::VectorXd& errors, double& damping, const Errors& errors_of) const {
+    const auto count = static_cast<Eigen::Index>(figures_.size());
+    Eigen::MatrixXd by_figure(errors.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::VectorXd there = at(moved(point, kFigureStep * Eigen::VectorXd::Unit(count, k)), errors_of);
+      if (!there.allFinite()) return false;
+      by_figure.col(k) = (there - errors) / kFigureStep;
     }
-    const bool good = errors.cwiseAbs().maxCoeff() <= kTolerance && trial_.isSound(point);
-    return good ? std::optional(point) : std::nullopt;
-  }
-
-  Eigen::MatrixXd derivatives(const SetupPoint& point, const Eigen::VectorXd& here) const {
-    Eigen::MatrixXd by_figure(here.size(), here.size());
-    for (std::size_t k = 0; k < figures_.size(); ++k) {
-      const bool number = figures_[k] == &SetupPoint::swivel || figures_[k] == &SetupPoint::taper;
-      const double step = number ? kDerivativeStep : kDerivativeStep * trial_.cutter().radius(0);
-      SetupPoint moved = point;
-      moved.*figures_[k] += step;
-      by_figure.col(static_cast<Eigen::Index>(k)) = (tool(moved) - here) / step;
-    }
-    return by_figure;
-  }
-
-  /// Goes a step, or as much of it as makes the errors smaller. @return false if none does.
-  bool descend(SetupPoint& point, Eigen::VectorXd& errors, Eigen::VectorXd step, const Eigen::VectorXd& asked) const {
-    for (int i = 0; i < kHalvings; ++i, step /= 2) {
-      SetupPoint next = point;
-      for (std::size_t k = 0; k < figures_.size(); ++k) next.*figures_[k] += step[static_cast<Eigen::Index>(k)];
-      const Eigen::VectorXd there = tool(next) - asked;
-      if (!(there.norm() < errors.norm())) continue;
+    const Eigen::MatrixXd squares = by_figure.transpose() * by_figure;
+    for (; damping <= kMostDamping; damping *= kDampingFactor) {
+      Eigen::MatrixXd damped = squares;
+      damped.diagonal() *= 1 + damping;
+      const SetupPoint next = moved(point, damped.ldlt().solve(-by_figure.transpose() * errors));
+      const Eigen::VectorXd there = at(next, errors_of);
+      if (!(there.allFinite() && there.norm() < errors.norm())) {
+        damping = std::max(damping, 1e-4);
+        continue;
+      }
       point = next;
       errors = there;
+      damping = std::max(kLeastDamping, damping / (kDampingFactor * kDampingFactor));
       return true;
     }
     return false;
@@ -153,17 +111,96 @@ class Fit {
 
   const SetupTrial& trial_;
   const SetupRequest& request_;
-  bool asks_core_, asks_core_end_;
   std::vector<double SetupPoint::*> figures_;  ///< that are free
 };
 
+/// The errors at the ends of the flute, as many as figures are free, with a rake that both ends shall have.
+std::optional<SetupPoint> exact(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                                double rake) {
+  const auto errors_of = [&](const SetupPoint& point) {
+    const SetupErrors e = setupErrors(trial, request, point, 1);
+    const Eigen::ArrayXd spiral = Fit::hasLead(request) ? e.spiral : Eigen::ArrayXd();
+    Eigen::ArrayXd all(e.rake.size() + spiral.size() + e.core.size());
+    all << e.rake + request.rake - rake, spiral, e.core;
+    return all;
+  };
+  const auto found = Fit(trial, request).solve(start, errors_of, kExact);
+  return found && largest(errors_of(*found)) <= kExact ? found : std::nullopt;
+}
+
 }  // namespace
 
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
-                                   bool cores) {
-  const Fit fit(trial, request, cores);
-  const auto exact = fit.exact(start);
-  return exact && request.z_law == ZLaw::kPublished ? fit.even(*exact) : exact;
+double SetupErrors::worst(const SetupRequest& request) const {
+  const CutterGeometry& c = request.cutter;
+  return std::max({largest(rake) / allowed(c.rake_tolerance), largest(spiral) / allowed(c.spiral_tolerance),
+                   largest(core) / allowed(c.core_tolerance / c.end_diameter)});
+}
+
+SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps) {
+  const WheelSweep sweep = trial.sweep(point);
+  const double length = request.cutter.flute_length, diameter = request.cutter.end_diameter;
+  const LogCurve travel(2 * trial.cutter().tanCone() / diameter, 2 / diameter);  // of an edge at 45 deg
+  SetupErrors errors;
+  errors.rake.resize(steps + 1);
+  errors.spiral.resize(request.asks_spiral ? steps : 0);
+  double before = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double x = length * i / steps;
+    const SetupTrial::Edge edge = trial.edge(sweep, x);
+    errors.rake[i] = edge.rake - request.rake;
+    if (i > 0 && request.asks_spiral) {
+      const double turn = (edge.angle - before) / (travel.a(x) - travel.a(length * (i - 1) / steps));
+      errors.spiral[i - 1] = std::atan(turn) - request.cutter.spiral_angle;
+    }
+    before = edge.angle;
+  }
+  std::vector<double> cores;
+  if (request.core_diameter) cores.push_back((2 * trial.coreRadius(sweep, 0) - *request.core_diameter) / diameter);
+  if (request.core_diameter_end) {
+    cores.push_back((2 * trial.coreRadius(sweep, length) - *request.core_diameter_end) / diameter);
+  }
+  errors.core = Eigen::Map<Eigen::ArrayXd>(cores.data(), static_cast<Eigen::Index>(cores.size()));
+  return errors;
+}
+
+std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
+  auto best = exact(trial, request, start, request.rake);
+  if (!best || request.z_law != ZLaw::kPublished) return best;
+  const auto rakeErrors = [&](const SetupPoint& p) {
+    return setupErrors(trial, request, p, SetupTrial::kSections).rake;
+  };
+  double rake = request.rake;
+  Eigen::ArrayXd here = rakeErrors(*best);
+  for (int i = 0; i < kShifts && here.allFinite(); ++i) {
+    const double middle = (here.minCoeff() + here.maxCoeff()) / 2;
+    if (std::abs(middle) <= kEven) break;
+    rake -= middle;
+    const auto next = exact(trial, request, *best, rake);
+    if (!next) break;
+    const Eigen::ArrayXd there = rakeErrors(*next);
+    if (!(largest(there) < largest(here))) break;
+    best = next;
+    here = there;
+  }
+  return best;
+}
+
+std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
+  const CutterGeometry& c = request.cutter;
+  const auto errors_of = [&](const SetupPoint& point) {
+    const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
+    Eigen::ArrayXd all(e.rake.size() + e.spiral.size() + e.core.size());
+    all << e.rake / allowed(c.rake_tolerance), e.spiral / allowed(c.spiral_tolerance),
+        e.core / allowed(c.core_tolerance / c.end_diameter);
+    return all;
+  };
+  const Fit fit(trial, request);
+  const auto found = fit.solve(start, errors_of, 0);
+  const double error = found ? largest(errors_of(*found)) : 0;
+  if (!(error > 1 && error < kNearEnough)) return found;
+  // Cubed, the largest error counts most.
+  const auto cubed = [&](const SetupPoint& point) -> Eigen::ArrayXd { return errors_of(point).cube(); };
+  return fit.solve(*found, cubed, 1);
 }
 
 }  // namespace flute_grinder

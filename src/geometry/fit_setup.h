@@ -3,18 +3,35 @@
 #include "flute_grinder/geometry/setup_solver.h"
 #include "geometry/setup_trial.h"
 
+#include <Eigen/Core>
+
 #include <optional>
 
 namespace flute_grinder {
 
+/// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
+struct SetupErrors {
+  Eigen::ArrayXd rake;    ///< in sections at equal distances, the flute's ends among them [rad]
+  Eigen::ArrayXd spiral;  ///< of the edge, from each section to the next [rad]
+  Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end
+
+  /// The largest error by its tolerance: 1 or less is within them; infinite if there is none.
+  double worst(const SetupRequest& request) const;
+};
+
+/// @param trial of a right-hand cutter. @param request of the same, not of a cylinder. @param steps between sections.
+SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps);
+
 /// The set-up of a cone that gives all that is asked: the rake at both ends, the angle of the edge between them, and
 /// the cores. By the published law of Z the rake rises or falls between the ends, so the same error of the other sign
-/// is given to both: the set-up with the least largest error over the flute. Found by Newton's method.
-/// @param trial of a right-hand cutter. @param request of the same, not of a cylinder.
-/// @param start from which the way to what is asked begins.
-/// @param cores whether the asked cores count; else the depth and taper of the start stay.
+/// is given to both: the set-up with the least largest error over the flute.
+/// @param trial, request as of setupErrors(). @param start from which it is looked for.
 /// @return nothing if none is found from there.
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
-                                   bool cores);
+std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+
+/// The set-up near a start with the least sum of squares of all errors over the flute, each by its tolerance; or
+/// of higher powers, where one error is beyond its tolerance.
+/// @return nothing if the start gives no tool.
+std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
 }  // namespace flute_grinder

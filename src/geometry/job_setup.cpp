@@ -60,7 +60,25 @@ std::string range(const SetupRefusal& r, Unit unit) {
   return text(Quantity{r.least, unit}, Quantity{r.largest, unit}, UnitSystem::kShop, 5);
 }
 
-std::string textOf(const SetupRefusal& r, std::optional<SetupFigure> keep) {
+std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const auto line = [](const char* path, double value, const Range& had, double tolerance, Unit unit) {
+    const auto shown = [&](double si) { return text({si, unit}, UnitSystem::kShop, 3); };
+    return "\n  " + asked(path, value, unit) + " within " + shown(tolerance) + ": " + shown(had.from) +
+           (had.to == had.from ? "" : " to " + shown(had.to));
+  };
+  const auto& [core, core_end] = nearest.core_diameter;
+  std::string all = line("cutter.rake_angle", c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian);
+  if (nearest.spiral.from != nearest.spiral.to)
+    all += line("cutter.spiral_angle", c.spiral_angle, nearest.spiral, c.spiral_tolerance, Unit::kRadian);
+  if (c.core_diameter > 0)
+    all += line("cutter.core_diameter", c.core_diameter, {core, core}, c.core_tolerance, Unit::kMetre);
+  if (c.core_diameter_end > 0)
+    all += line("cutter.core_diameter_end", c.core_diameter_end, {core_end, core_end}, c.core_tolerance, Unit::kMetre);
+  return all;
+}
+
+std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
   const std::string change = "; change " + fieldName(rowOf(r.problem).change, UnitSystem::kShop);
   switch (r.problem) {
     case SetupProblem::kOverdetermined:
@@ -85,6 +103,9 @@ std::string textOf(const SetupRefusal& r, std::optional<SetupFigure> keep) {
       return "the wheel's circumference would form the rake face, not its face or edge; it can in no set-up with this "
              "depth" +
              change;
+    case SetupProblem::kTolerance:
+      return "no set-up gives all that is asked within its tolerance" + change + "; the nearest one gives for" +
+             textOf(r.nearest, job);
     case SetupProblem::kLand:
       return "no land is left: the flutes overlap by " + text(Quantity{-r.least, Unit::kMetre}, UnitSystem::kShop, 3) +
              " along the circle" + change;
@@ -159,7 +180,7 @@ std::variant<SolvedSetup, std::string> solved(const GrindJob& job, const SetupRe
     return "no depth agrees with " + fieldName("process.depth_end", UnitSystem::kShop) + "; change it, or keep " +
            fieldName("process.depth", UnitSystem::kShop);
   }
-  if (const auto* refusal = std::get_if<SetupRefusal>(&*result)) return textOf(*refusal, request.keep);
+  if (const auto* refusal = std::get_if<SetupRefusal>(&*result)) return textOf(*refusal, job, request.keep);
   return std::get<SolvedSetup>(*result);
 }
 

@@ -133,10 +133,12 @@ class PlaneSearch {
 
 std::vector<LineRoot> lineRoots(const LineFunction& f, const SearchRange& range, double tolerance) {
   std::vector<LineRoot> roots;
-  double before = range.from, f_before = f(before);
-  for (int i = 1; i <= range.steps; ++i) {
+  double before = range.from, f_before = std::numeric_limits<double>::quiet_NaN();
+  for (int i = 0; i <= range.steps; ++i) {
     const double here = range.at(i), f_here = f(here);
-    if ((f_before < 0 && f_here >= 0) || (f_before > 0 && f_here <= 0)) {
+    if (std::abs(f_here) <= tolerance) {
+      roots.push_back({here, f_before < 0});
+    } else if (std::abs(f_before) > tolerance && (f_before < 0) != (f_here < 0) && !std::isnan(f_here)) {
       const double at = rootBetween(f, before, f_before, here, f_here, tolerance);
       if (!std::isnan(at)) roots.push_back({at, f_before < 0});
     }

@@ -29,7 +29,10 @@ constexpr int kMinColumns = 4;
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
 constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
+constexpr double kNearApex = 0.8;   ///< of the way there, beyond which a stroke is long
 constexpr double kBeyond = 1e-5;    ///< added to the overtravel, for the precision of an extremum's place [m]
+constexpr double kBesideSpiral = 4 * units::kDegree;  ///< the swivel from which fits start
+constexpr int kStartHeights = 4;                      ///< from which they start, on either side of the axis
 constexpr double kCylinder = 1e-6;  ///< a cone whose radius changes less than this over its length is a cylinder
 
 /// What is looked for: two unknowns, or v alone.
@@ -54,6 +57,13 @@ class Search {
     std::vector<SetupPoint> points;
     if (!unknowns.u) {
       for (const LineRoot& root : line(unknowns, 0)) points.push_back(unknowns.point(0, root.at));
+      // A wheel in the plane of the helix may give the largest rake, and that be the asked one.
+      const SetupPoint along = unknowns.point(0, request_.cutter.spiral_angle);
+      const bool allowed = along.swivel >= least_swivel && along.swivel <= largest_swivel;
+      const double error = std::abs(rakeError(along, 0));
+      if (points.empty() && allowed && error <= std::max(kTolerance, request_.cutter.rake_tolerance)) {
+        points.push_back(along);
+      }
       return points;
     }
     const auto first = [&](double u, double v) { return rakeError(unknowns.point(u, v), 0); };
@@ -75,7 +85,7 @@ class Search {
         rakes.add(trial_.rake(point, 0));
         if (!request_.core_diameter) continue;
         point.depth = trial_.deepest();
-        cores.add(2 * trial_.coreRadius(point, 0));
+        cores.add(2 * trial_.coreRadius(trial_.sweep(point), 0));
       }
       if (!unknowns.u) continue;
       for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
@@ -184,7 +194,7 @@ class Search {
 
   double secondError(const SetupPoint& point) const {
     if (!isCylinder()) return rakeError(point, request_.cutter.flute_length);
-    return 2 * trial_.coreRadius(point, 0) / *request_.core_diameter - 1;
+    return 2 * trial_.coreRadius(trial_.sweep(point), 0) / *request_.core_diameter - 1;
   }
 
   const SetupTrial& trial_;
@@ -242,7 +252,7 @@ double leastPitch(const std::vector<double>& angles) {
 struct Judged {
   SolvedSetup solved;
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
-  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete
+  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
   std::optional<SetupProblem> problem;
 };
 
@@ -307,10 +317,12 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
     judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
   }
-  s.core_diameter = 2 * trial.coreRadius(point, 0);
-  s.core_diameter_end = 2 * trial.coreRadius(point, request.cutter.flute_length);
+  s.core_diameter = 2 * trial.coreRadius(sweep, 0);
+  s.core_diameter_end = 2 * trial.coreRadius(sweep, request.cutter.flute_length);
   measureReach(trial, sweep, s);
-  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length;
+  const double tan_cone = trial.cutter().tanCone(), toward_apex = s.overtravel[tan_cone >= 0 ? 0 : 1];
+  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length ||
+                     toward_apex * std::abs(tan_cone) > kNearApex * trial.cutter().radius(0);
   findLimit(request, pitch, s);
   if (!(judged.formed_by_face >= kFormedByFace)) {
     judged.problem = SetupProblem::kWall;
@@ -353,44 +365,84 @@ std::optional<SetupPoint> withLead(const SetupTrial& trial, SetupPoint point) {
   return trial.cutter().radius(-point.lead) > 0 ? std::optional(point) : std::nullopt;
 }
 
-/// The set-ups of the cylinder that a cone is amid its flute.
-std::vector<SetupPoint> setupsAmid(const SetupRequest& request) {
-  const ConicalCutter cone(request.cutter);
-  const double x = request.cutter.flute_length / 2;
-  SetupRequest cylinder = request;
-  cylinder.cutter.end_diameter = 2 * cone.radius(x);
-  cylinder.cutter.cone_angle = cylinder.y_per_x = 0;
-  cylinder.keep.reset();
-  if (request.core_diameter) {
-    const double at_end = request.core_diameter_end.value_or(*request.core_diameter + 4 * cone.y(x));
-    cylinder.core_diameter = (*request.core_diameter + at_end) / 2;
+bool asksEdge(const SetupRequest& request) { return request.asks_spiral || request.core_diameter_end; }
+
+/// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a lead.
+std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request) {
+  const double radius = request.cutter.end_diameter / 2;
+  const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : request.depth;
+  SetupPoint p;
+  p.swivel = std::clamp(request.cutter.spiral_angle + kBesideSpiral, request.least_swivel, request.largest_swivel);
+  if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
+  const double highest = radius + std::sqrt(2 * trial.wheel().largestRadius() * depth) * std::abs(std::sin(p.swivel));
+  std::vector<SetupPoint> starts;
+  for (int i = -kStartHeights; i <= kStartHeights; ++i) {
+    p.height = highest * i / kStartHeights - trial.wheel().upperFace() / std::cos(p.swivel);
+    if (request.keep == SetupFigure::kHeight) p.height = request.kept.height;
+    p.depth = request.core_diameter ? trial.depthFor(p.swivel, p.height, *request.core_diameter / 2) : depth;
+    if (!std::isfinite(p.depth)) continue;
+    starts.push_back(p);
+    if (const auto ahead = withLead(trial, p)) starts.push_back(*ahead);
   }
-  const SetupTrial trial(ConicalCutter(cylinder.cutter), cylinder.wheel, cylinder.nominal_radius, 0);
-  std::vector<SetupPoint> points = Search(trial, cylinder).solutions(request.least_swivel, request.largest_swivel);
-  for (SetupPoint& point : points) point.height -= cone.z(x);
-  return points;
+  return starts;
 }
 
-/// The best set-up with all that is asked, or if it cannot be had, without the cores.
-std::optional<Judged> bestFit(const SetupTrial& trial, const SetupRequest& request, std::vector<SetupPoint> starts) {
-  const bool asks_edge = request.asks_spiral || request.core_diameter_end;
-  if (asks_edge) {
-    const std::vector<SetupPoint> amid = setupsAmid(request);
-    starts.insert(starts.end(), amid.begin(), amid.end());
-    for (std::size_t i = 0, n = starts.size(); i < n; ++i) {
-      if (const auto ahead = withLead(trial, starts[i])) starts.push_back(*ahead);
-    }
+/// Whether an exact set-up is judged over the flute, too. A law that corrects Z makes the rake between its ends.
+bool hasTolerances(const SetupRequest& request) {
+  const CutterGeometry& c = request.cutter;
+  const bool asks_core = request.core_diameter || request.core_diameter_end;
+  return request.z_law == ZLaw::kPublished && c.rake_tolerance > 0 &&
+         (c.spiral_tolerance > 0 || !request.asks_spiral) && (c.core_tolerance > 0 || !asks_core);
+}
+
+/// The best set-up of a cone with all that is asked: exact, or else within the tolerances. If there is none, the
+/// nearest.
+struct Fitted {
+  std::optional<Judged> best;
+  std::optional<SetupPoint> nearest;
+};
+
+Fitted fitAll(const SetupTrial& trial, const SetupRequest& request) {
+  const std::vector<SetupPoint> starts = startsOf(trial, request);
+  const bool has_tolerances = hasTolerances(request);
+  const auto worst = [&](const SetupPoint& p) {
+    return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
+  };
+  Fitted fitted;
+  std::vector<SetupPoint> fits;
+  for (const SetupPoint& start : starts) {
+    const auto fit = fitSetup(trial, request, start);
+    if (fit && !(has_tolerances && worst(*fit) > 1)) fits.push_back(*fit);
   }
-  for (const bool cores : {true, false}) {
-    std::vector<SetupPoint> fits;
-    for (const SetupPoint& start : starts) {
-      if (const auto fit = fitSetup(trial, request, start, cores)) fits.push_back(*fit);
+  fitted.best = best(trial, request, fits);
+  if (fitted.best && !fitted.best->problem && !fitted.best->cut_short) return fitted;
+  double least = std::numeric_limits<double>::infinity();
+  for (const SetupPoint& start : starts) {
+    const auto fit = nearestSetup(trial, request, start);
+    if (!fit) continue;
+    const double here = worst(*fit);
+    if (here < least) {
+      least = here;
+      fitted.nearest = fit;
     }
-    auto found = best(trial, request, fits);
-    if (found && !found->problem) return found;
-    if (!asks_edge) return std::nullopt;
+    if (here <= 1) fits.push_back(*fit);
   }
-  return std::nullopt;
+  fitted.best = best(trial, request, fits);
+  return fitted;
+}
+
+/// That what is asked cannot be had within its tolerances.
+SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
+  const SetupErrors errors = setupErrors(trial, request, nearest, SetupTrial::kSections);
+  const auto range = [](const Eigen::ArrayXd& error, double asked) {
+    return error.size() == 0 ? Range{} : Range{asked + error.minCoeff(), asked + error.maxCoeff()};
+  };
+  const WheelSweep sweep = trial.sweep(nearest);
+  SetupRefusal refusal{SetupProblem::kTolerance};
+  refusal.nearest = {range(errors.rake, request.rake),
+                     range(errors.spiral, request.cutter.spiral_angle),
+                     {2 * trial.coreRadius(sweep, 0), 2 * trial.coreRadius(sweep, request.cutter.flute_length)}};
+  return refusal;
 }
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
@@ -411,6 +463,8 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
       solved->setup = {-solved->setup.swivel, -solved->setup.height, solved->setup.lead};
     } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
       refusal = {refusal.problem, -refusal.asked, -refusal.largest, -refusal.least};
+    } else {
+      refusal.nearest.spiral = {-refusal.nearest.spiral.to, -refusal.nearest.spiral.from};
     }
     return result;
   }
@@ -424,15 +478,19 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
       !(request.kept.swivel >= request.least_swivel && request.kept.swivel <= request.largest_swivel)) {
     return beyond(request.kept.swivel);
   }
+  const bool asks_edge = !search.isCylinder() && asksEdge(request);
+  const Fitted all = asks_edge ? fitAll(trial, request) : Fitted{};
+  if (all.best && !all.best->problem) return all.best->solved;
+  if (all.best) return refusal(request, *all.best);
   const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
   const bool good = here && !here->problem;
-  if (good && search.isCylinder()) return here->solved;
-  if (!search.isCylinder()) {
-    std::vector<SetupPoint> starts;
-    if (good) starts.push_back({here->solved.setup.swivel, here->solved.setup.height, here->solved.depth});
-    const auto fit = bestFit(trial, request, starts);
-    if (fit && !(good && fit->cut_short > here->cut_short)) return fit->solved;
-    if (good) return here->solved;
+  if (good && asks_edge && all.nearest) return refusal(trial, request, *all.nearest);
+  if (good) {
+    const SolvedSetup& s = here->solved;
+    const auto even =
+        search.isCylinder() ? std::nullopt : fitSetup(trial, request, {s.setup.swivel, s.setup.height, s.depth});
+    const auto fit = even ? std::optional(judge(trial, request, *even)) : std::nullopt;
+    return fit && !fit->problem && !(fit->cut_short && !here->cut_short) ? fit->solved : s;
   }
   for (const auto& [least, largest] :
        {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
@@ -440,6 +498,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     const auto there = best(trial, request, search.solutions(least, largest));
     if (there && !there->problem) return beyond(there->solved.setup.swivel);
   }
+  if (all.nearest) return refusal(trial, request, *all.nearest);
   return here ? refusal(request, *here) : search.unreachable();
 }
 

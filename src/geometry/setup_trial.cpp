@@ -42,9 +42,9 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
             {p.swivel, p.height, p.lead},
             {ends[0], ends[1], -p.depth, y_per_x_ + p.taper, 0}};
   };
-  // The cone of the stroke's curve is the cutter's, moved by the lead.
-  const double apex = -cutter_.radius(0) / cutter_.tanCone() + p.lead;
+  // A stroke ends before the cutter's apex, and before that of the stroke's curve, which is moved by the lead.
   const bool opens = cutter_.tanCone() >= 0;
+  const double apex = -cutter_.radius(0) / cutter_.tanCone() + (opens ? std::max(0.0, p.lead) : std::min(0.0, p.lead));
   std::array<double, 2> ends{-far_, far_};
   if (cutter_.tanCone() > 0) ends[0] = std::max(-far_, kOfApex * apex);
   if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
@@ -56,22 +56,18 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
   return over(ends);
 }
 
-double SetupTrial::rake(const SetupPoint& point, double x) const {
-  if (std::isnan(point.depth)) return kNowhere;
+SetupTrial::Edge SetupTrial::edge(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x);
-  const auto wall = sweep(point).wall(x, r, true);
-  return wall ? std::atan(-r * wall->slope) : kNowhere;
+  const auto wall = sweep.wall(x, r, true);
+  return wall ? Edge{wall->angle, std::atan(-r * wall->slope)} : Edge{kNowhere, kNowhere};
 }
 
-double SetupTrial::turnError(const SetupPoint& point) const {
-  const double length = cutter_.geometry().flute_length;
-  const WheelSweep sweep = this->sweep(point);
-  const auto from = sweep.wall(0, cutter_.radius(0), true), to = sweep.wall(length, cutter_.radius(length), true);
-  return from && to ? to->angle - from->angle - LogCurve(cutter_).a(length) : kNowhere;
+double SetupTrial::rake(const SetupPoint& point, double x) const {
+  return std::isnan(point.depth) ? kNowhere : edge(sweep(point), x).rake;
 }
 
-double SetupTrial::coreRadius(const SetupPoint& point, double x) const {
-  const double radius = sweep(point).leastRadius(x, std::numeric_limits<double>::max());
+double SetupTrial::coreRadius(const WheelSweep& sweep, double x) const {
+  const double radius = sweep.leastRadius(x, std::numeric_limits<double>::max());
   return std::isfinite(radius) ? radius : kNowhere;
 }
 

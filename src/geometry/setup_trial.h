@@ -36,15 +36,17 @@ class SetupTrial {
 
   WheelSweep sweep(const SetupPoint& point) const;
 
+  /// The edge that a wheel leaves, NaN where it does not reach the outer circle.
+  struct Edge {
+    double angle, rake;  ///< [rad]; the rake is radial
+  };
+  Edge edge(const WheelSweep& sweep, double x) const;
+
   /// Radial, at the edge; NaN where the wheel does not reach the outer circle, or the point is none [rad].
   double rake(const SetupPoint& point, double x) const;
 
   /// Of a section; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
-  double coreRadius(const SetupPoint& point, double x) const;
-
-  /// The angle that the ground edge turns through over the flute, less that of the asked helix; NaN where there is no
-  /// edge [rad].
-  double turnError(const SetupPoint& point) const;
+  double coreRadius(const WheelSweep& sweep, double x) const;
 
   /// The depth that leaves a core at X = 0; NaN if no sound one does [m].
   double depthFor(double swivel, double height, double core_radius) const;

@@ -467,7 +467,7 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
     if (!misfit.change) continue;
     const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
     ++*left;
-    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, was.basis.method),
+    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, OffsetMethod::kComputed),
                      [this, left](const std::string& refusal) {
                        if (!refusal.empty()) showMessage(refusal);
                        if (--*left == 0) job_->planAnew();

@@ -32,12 +32,12 @@ class OwnAddress : public testing::Test {
 
 TEST_F(OwnAddress, WhatOpensAllPortsIsRefused) {
   EXPECT_EQ(refusalOf("ROS_HOSTNAME", ""), "ROS_HOSTNAME is empty" + kAllowed);
-  for (const std::string& name : {"LOCALHOST", "0x7f.1"}) {
+  for (const std::string name : {"LOCALHOST", "0x7f.1"}) {
     EXPECT_EQ(refusalOf("ROS_HOSTNAME", name),
               "ROS_HOSTNAME = " + name + " is loopback in words that ROS does not know" + kAllowed);
   }
-  for (const std::string& name : {"0.0.0.0", "0", "0x0"}) {
-    for (const std::string& variable : {"ROS_HOSTNAME", "ROS_IP"}) {
+  for (const std::string name : {"0.0.0.0", "0", "0x0"}) {
+    for (const std::string variable : {"ROS_HOSTNAME", "ROS_IP"}) {
       EXPECT_EQ(refusalOf(variable.c_str(), name), variable + " = " + name + " is every address" + kAllowed);
     }
   }
@@ -46,7 +46,7 @@ TEST_F(OwnAddress, WhatOpensAllPortsIsRefused) {
 }
 
 TEST_F(OwnAddress, OneOfIpv6NeedsIt) {
-  for (const std::string& name : {"::1", "::", "fd9e::1"}) {
+  for (const std::string name : {"::1", "::", "fd9e::1"}) {
     EXPECT_EQ(refusalOf("ROS_IP", name),
               "ROS_IP = " + name + " is an address of IPv6; allowed: one of IPv4, or ROS_IPV6=on beside it");
   }

@@ -75,12 +75,13 @@ struct Bench {
 
   /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
   End wall(double x, double r, int side) const {
-    const double reach = 1.1 * std::sqrt(2 * request.wheel.largestRadius() * std::max(depth, r - radius(0) + depth)) +
+    const double large = request.wheel.largestRadius(), rise = large * std::abs(std::tan(request.cutter.cone_angle));
+    const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
                          (request.wheel.upperFace() - request.wheel.lowerFace());
     double from = x - 1.5 * reach, to = x + 1.5 * reach;
     const double apex = -request.cutter.end_diameter / 2 / std::tan(request.cutter.cone_angle);
-    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + lead));
-    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + lead));
+    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, lead)));
+    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, lead)));
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
@@ -112,10 +113,10 @@ struct Bench {
   /// The angle of the edge at X [rad].
   double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
 
-  /// The least radius that the wheel reaches at X, by halving, to a nanometre [m].
+  /// The least radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
   double core(double x) const {
     double out = 0, in = radius(x);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 20; ++i) {
       const double middle = (out + in) / 2;
       (std::isfinite(wall(x, middle, 1).angle) ? in : out) = middle;
     }

@@ -269,6 +269,21 @@ TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
   expectContains(refused(job), "process.finish_infeed_mm = 3 mm");
 }
 
+TEST(JobSetup, EdgeAndCoresThatCannotBeHadAreRefusedWithHowNearTheyCome) {
+  GrindJob job = shipped("left_hand_d8_t3");
+  job.cutter.core_diameter = 5.6 * kMillimetre;
+  job.cutter.core_diameter_end = 7 * kMillimetre;
+  job.cutter.core_tolerance = 0.02 * kMillimetre;
+  job.cutter.spiral_tolerance = 0.3 * kDegree;
+  const std::string text = refused(job);
+  for (const char* part :
+       {"within its tolerance; change process.wheel.diameter_mm; the nearest one gives for",
+        "cutter.rake_angle_deg = 6 deg within 0.5 deg: ", "cutter.spiral_angle_deg = -30 deg within 0.3 deg: -",
+        "cutter.core_diameter_mm = 5.6 mm", "cutter.core_diameter_end_mm = 7 mm within 0.02 mm: "}) {
+    expectContains(text, part);
+  }
+}
+
 TEST(SetupSheet, TellsHowHighTheWheelStands) {
   const GrindJob job = shipped("paper");
   EXPECT_NEAR(upperFaceHeight(job) / kMillimetre, 4.552, 1e-3);

@@ -108,8 +108,8 @@ struct ErrorsOverFlute {
   double rake = 0, edge = 0, core = 0;
 };
 ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
-  const double length = r.cutter.flute_length, tan_cone = std::tan(r.cutter.cone_angle);
-  brute::Bench bench{r, s.setup.swivel, s.setup.height, s.depth, 400, 400};
+  const double length = r.cutter.flute_length, wider = *r.core_diameter_end - *r.core_diameter;
+  brute::Bench bench{r, s.setup.swivel, s.setup.height, s.depth, 200, 100};
   bench.lead = s.setup.lead;
   bench.taper = (s.depth - s.depth_end) / length - r.y_per_x;
   ErrorsOverFlute errors;
@@ -118,7 +118,7 @@ ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
     const auto take = [](double& largest, double error) { largest = std::max(largest, std::abs(error)); };
     take(errors.rake, (bench.rake(x) - r.rake) / kDegree);
     take(errors.edge, (bench.edge(x) - bench.edge(0) - bench.turned(x)) / kDegree);
-    take(errors.core, (2 * bench.core(x) - *r.core_diameter - 2 * x * tan_cone) / kMillimetre);
+    take(errors.core, (2 * bench.core(x) - *r.core_diameter - x / length * wider) / kMillimetre);
   }
   return errors;
 }
@@ -156,6 +156,57 @@ TEST(SetupSolver, ConesOfBothHandsGetTheAskedEdgeAndCore) {
       EXPECT_LT(errors.edge, 0.06);
       EXPECT_LT(errors.core, 0.005);
     }
+  }
+}
+
+/// A tool whose rake, edge and cores are asked, within 0.5 deg and 0.05 mm, in the shop's units; a spiral below 0 is
+/// left hand.
+struct Asked {
+  double diameter, cone, spiral, rake, length;
+  int teeth;
+  double core, core_end, wheel, width, wear, corner;
+};
+
+SetupRequest requestWithin(const Asked& a) {
+  SetupRequest r = requestFor(Shop{a.diameter, a.cone, a.spiral, a.rake, a.length, 0, a.wheel, a.width});
+  r.cutter.cut = a.spiral < 0 ? CutDirection::kLeftHand : CutDirection::kRightHand;
+  r.cutter.rake_tolerance = r.cutter.spiral_tolerance = 0.5 * kDegree;
+  r.cutter.core_tolerance = 0.05 * kMillimetre;
+  r.asks_spiral = true;
+  r.tooth_angles = equalTeeth(a.teeth);
+  const double corner = a.corner * kMillimetre;
+  r.wheel =
+      WheelProfile::straight(a.wheel * kMillimetre, a.width * kMillimetre, {corner, corner}).worn(a.wear * kMillimetre);
+  r.nominal_radius = (a.wheel / 2 - a.wear) * kMillimetre;
+  r.core_diameter = a.core * kMillimetre;
+  r.core_diameter_end = a.core_end * kMillimetre;
+  return r;
+}
+
+// No set-up gives them exactly; another program found one within the tolerances for each.
+TEST(SetupSolver, WhatCanBeHadWithinTheTolerancesIsFound) {
+  for (const Asked& asked : {Asked{2.04, 5.2, -24.2, 6.5, 3.34, 1, 1.59, 2.007, 50, 0.73, 0, 0},
+                             Asked{1.77, 0.7, 39.2, 7, 4.42, 5, 1.427, 1.553, 75, 0.26, 0, 0.087},
+                             Asked{7.59, 4.9, 44.9, 0.4, 18.34, 2, 5.631, 8.029, 50, 1.14, 0.041, 0},
+                             Asked{4.25, 7.4, 41.3, 12.3, 9.29, 7, 3.504, 5.454, 100, 0.4, 0, 0},
+                             Asked{1.48, 7.8, 22.8, 9.2, 3.7, 5, 1.177, 1.957, 50, 0.21, 0, 0},
+                             Asked{5.08, 2.7, 36.3, 6.4, 6.8, 5, 3.751, 4.233, 50, 0.44, 0, 0},
+                             Asked{17.12, 8.7, 24.6, 7.3, 25.1, 7, 14.283, 20.713, 75, 1.34, 0, 0},
+                             Asked{1.05, 1.4, 42.6, 3.9, 1.53, 7, 0.831, 0.915, 50, 0.2, 0.048, 0},
+                             Asked{1.82, 4.8, 36.5, 1.6, 4.55, 8, 1.519, 2.142, 75, 0.2, 0, 0},
+                             Asked{3.04, 2.9, 11, 5.8, 7.35, 2, 2.183, 2.721, 75, 0.87, 0, 0},
+                             Asked{8.6, 10.3, -36.1, 13.4, 17.67, 5, 6.91, 12.233, 50, 0.71, 0, 0.078},
+                             Asked{16.61, 0.6, 24.7, 11.5, 32, 4, 12.87, 13.303, 75, 3.25, 0, 0.054},
+                             Asked{2.66, -1.4, -47.5, 9.6, 4.57, 2, 1.822, 1.651, 50, 0.51, 0, 0},
+                             Asked{12.1, 3.2, 24.3, 10.8, 20.92, 2, 8.067, 9.572, 75, 3.03, 0, 0}}) {
+    const SetupRequest request = requestWithin(asked);
+    SCOPED_TRACE(testing::Message() << "D " << asked.diameter << " mm, " << asked.spiral << " deg");
+    const SolvedSetup s = solved(request);
+    if (s.depth == 0) continue;
+    const ErrorsOverFlute errors = errorsOf(request, s);
+    EXPECT_LT(errors.rake, 0.5);
+    EXPECT_LT(errors.edge, 0.5);
+    EXPECT_LT(errors.core, 0.05);
   }
 }
 
@@ -305,6 +356,35 @@ TEST(SetupSolver, AStraightFluteOnACylinderIsSetSquare) {
   EXPECT_NEAR(s.core_diameter, 2 * (0.005 - 0.0016), 1e-9);
   EXPECT_EQ(s.overtravel[0], 0);
   EXPECT_EQ(s.overtravel[1], 0);
+}
+
+// The rake over the swivel is a tent whose peak, at the spiral angle, is the asked rake.
+TEST(SetupSolver, ARakeThatIsJustTheLargestIsFound) {
+  for (const double spiral : {0.0, 0.02}) {
+    for (const double rake : {5.0, 8.0}) {
+      SetupRequest request = requestFor({12, 0, spiral, rake, 20, 2, 100, 4});
+      request.cutter.rake_tolerance = 0.5 * kDegree;
+      request.least_swivel = -35.3 * kDegree;
+      const SolvedSetup s = solved(request);
+      EXPECT_NEAR(s.setup.swivel / kDegree, spiral, 1e-9);
+      EXPECT_NEAR(s.least_rake / kDegree, rake, 0.05);
+    }
+  }
+}
+
+TEST(SetupSolver, AStraightFluteOnAConeTakesNoLeadAndANearlyStraightOneALimitedLead) {
+  for (const double spiral : {0.0, 0.02, -0.02}) {
+    const SetupRequest request = requestWithin({12, 6, spiral, 5, 20, 2, 8.2, 12.404, 100, 4, 0, 0});
+    const SolvedSetup s = solved(request);
+    if (spiral == 0) {
+      EXPECT_EQ(s.setup.lead, 0);
+    }
+    EXPECT_LT(std::abs(s.setup.lead), 50 * kMillimetre);
+    const ErrorsOverFlute errors = errorsOf(request, s);
+    EXPECT_LT(errors.rake, 0.5) << spiral;
+    EXPECT_LT(errors.edge, 0.5) << spiral;
+    EXPECT_LT(errors.core, 0.05) << spiral;
+  }
 }
 
 TEST(SetupSolver, ABackTaperAndEveryProfileAreSet) {

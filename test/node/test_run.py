@@ -263,6 +263,7 @@ class TestRecord(RunTest):
         self.csv = os.path.join(self.folder, 'streamed.csv')
 
     def test_second_run_leaves_the_first_and_its_file_alone(self):
+        make_ready_for_a_slow_stroke()
         seen = len(grinder().batches)
         first = self.grind(*RUN, PAPER_JOB, '--csv', self.csv)
         self.wait_in_stroke(grinder(), seen)
@@ -273,6 +274,7 @@ class TestRecord(RunTest):
             self.assertEqual(second.end(), 1)
             self.assertRegex(second.text, r'\(code -12\)\n$')
             self.assertEqual(second.stdout, '')
+        self.assertTrue(grinder().set_feed_override(1).success)
         self.assertEqual(os.listdir(self.folder), ['streamed.csv'])
         self.assertGreaterEqual(os.stat(self.csv).st_size, written)
         self.assertEqual(first.end(), 0, first.text)
@@ -282,6 +284,7 @@ class TestRecord(RunTest):
         self.assertRegex(first.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
 
     def test_own_run_beside_another_waits_for_none_of_its_setpoints(self):
+        make_ready_for_a_slow_stroke()
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
         second = self.grind(*RUN, PAPER_JOB)
         self.assertEqual(second.end(), 1)

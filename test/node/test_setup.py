@@ -194,7 +194,7 @@ class TestRefusals(TestSetup):
         self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth 1 is ground with .*, or set '
                                r'process\.z_law: constant_rake\n.*job\.yaml: nothing was written\n$')
         self.assertEqual(self.text(job), before)
-        self.assertIn('a plan would refuse this tool', self.grind(0, 'setup', job).stderr)
+        self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)
         job = self.job('job.yaml', rake_tolerance_deg='0.01', depth_mm='1.6\n  z_law: constant_rake')
         self.setup(job, '--write')
         self.grind(0, 'plan', job)

@@ -100,7 +100,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   EXPECT_NEAR(set.value, 0.004, 1e-15);
   EXPECT_EQ(set.basis.job_name, "paper.yaml");
   EXPECT_EQ(set.basis.end_diameter, 0.01);
-  EXPECT_EQ(set.basis.method, OffsetBasis::TOUCH_OFF);
+  EXPECT_EQ(set.basis.method, OffsetBasis::COMPUTED);
   EXPECT_TRUE(goals().empty()) << "only planned";
 }
 

@@ -19,7 +19,8 @@ constexpr EnumRow<SetupFigure> kSetupFigures[] = {
     {SetupFigure::kSwivel, "swivel"}, {SetupFigure::kHeight, "height"}, {SetupFigure::kDepth, "depth"}};
 constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
 
-/// What the tool shall be, and what there is to grind it with.
+/// What the tool shall be, and what there is to grind it with. Of a cone whose edge or cores at both ends are asked,
+/// all may differ by the cutter's tolerances, and not at all where these are 0.
 struct SetupRequest {
   CutterGeometry cutter;                                    ///< its rake angle is the one in Z = X tan C sin r
   double rake = 0;                                          ///< radial, asked over the whole flute [rad]
@@ -69,6 +70,7 @@ enum class SetupProblem : std::uint8_t {
   kRake,            ///< asked is the rake at both ends, reachable what the far end gets with it at the small end
   kCore,            ///< asked is the core's diameter, reachable those with this wheel at a depth short of the axis
   kWall,            ///< the wheel's circumference forms the rake face, not its face or edge
+  kTolerance,       ///< not all that is asked can be had within its tolerance
   kLand,            ///< the flutes meet: asked is a land above 0, reachable what is left, negative
 };
 
@@ -82,6 +84,7 @@ constexpr SetupProblemRow kSetupProblems[] = {
     {{SetupProblem::kRake, "rake"}, "cutter.rake_angle"},
     {{SetupProblem::kCore, "core"}, "process.wheel_diameter"},
     {{SetupProblem::kWall, "wall"}, "process.depth"},
+    {{SetupProblem::kTolerance, "tolerance"}, "process.wheel_diameter"},
     {{SetupProblem::kLand, "land"}, "process.wheel_width"}};
 constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
 
@@ -91,9 +94,15 @@ struct SetupRefusal {
   SetupProblem problem = SetupProblem::kRake;
   double asked = 0;               ///< [rad] or [m]
   double least = 0, largest = 0;  ///< reachable [rad] or [m]
+  /// What the set-up gives that is nearest to the tolerances.
+  struct Nearest {
+    Range rake, spiral;                     ///< over the flute [rad]; the spiral angle only if it is asked
+    std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
+  };
+  Nearest nearest{};
 };
 
-/// Solves a set-up: the rake over the flute, as z_law says, and at X = 0 the core if it is asked. Of
+/// Solves a set-up: the rake over the flute, as z_law says, and edge and cores if they are asked. Of
 /// several solutions, that with the steadiest rake whose rake face the wheel's face or edge forms the deepest. A depth
 /// that is found lies above 0 and short of the cutter's axis. Takes some tenths of a second.
 /// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.

@@ -23,8 +23,8 @@ struct LineRoot {
   bool rising = false;
 };
 
-/// The roots of a function: steps of the range at which it counts as 0, and places between steps where its sign changes.
-/// A jump is none.
+/// The roots of a function: steps of the range at which it counts as 0, and places between steps where its sign
+/// changes. A jump is none.
 /// @param tolerance largest value that counts as 0.
 std::vector<LineRoot> lineRoots(const LineFunction& f, const SearchRange& range, double tolerance);
 

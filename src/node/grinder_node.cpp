@@ -70,7 +70,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
-                                           own.thresholds, urdf, own.first_view);
+                                           own.thresholds, urdf);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);

@@ -57,8 +57,7 @@ JobProgress toMessage(const Progress& progress) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
-                     const FirstView& first_view)
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
@@ -68,8 +67,8 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
                    }),
       diagnostic_updater_(nh, private_nh),
-      frames_(urdf, first_view),
-      scene_(private_nh, first_view),
+      frames_(urdf),
+      scene_(private_nh),
       recorder_(private_nh.getNamespace(), machine, history),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);

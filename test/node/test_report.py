@@ -584,7 +584,9 @@ class TestBag(ReportCase):
     def test_states_of_the_job(self):
         states = [(s['state'], s['at_s']) for s in self.found['states']]
         names = [name for name, _ in states]
-        self.assertEqual(names[:2] + names[-2:], ['starting', 'running', 'running', 'ready'])
+        # The first may pass between two messages of the state.
+        self.assertIn(names[0], ('starting', 'running'))
+        self.assertEqual(names[-2:], ['running', 'ready'])
         self.assertIn('held', names)
         self.assertEqual([at for _, at in states], sorted(at for _, at in states))
         # A loop that was late catches up, so that a job takes a few cycles more or less than it has.

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/motion/grind_program.h"
-#include "flute_grinder/scene/first_view.h"
 #include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
 
@@ -16,12 +15,11 @@ namespace flute_grinder {
 
 /// The job in rviz: ground cutter, wheel, flutes, executed path and path errors, on `~ground_cutter`, `~scene`,
 /// `~tool_path`, `~executed_path` and `~path_error`, and what they mean in figures on `~legend`; each latched, every
-/// message complete. Until there is a job only wheel and blank of a first view are shown. Not thread safe; not for the
-/// control thread.
+/// message complete. Shows nothing until there is a job. Not thread safe; not for the control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
-  Scene(ros::NodeHandle private_nh, const FirstView& first_view);
+  explicit Scene(ros::NodeHandle private_nh);
 
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
   /// measurements are kept.

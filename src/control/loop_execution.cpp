@@ -93,12 +93,12 @@ Refusal ControlLoop::enable() {
   return Refusal::kNone;
 }
 
-/// @param commanded by hand. A wheel that starts in the work breaks.
 Refusal ControlLoop::spindleOn() {
   if (jogging_ && for_client_) return Refusal::kProbing;
   return record_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
 }
 
+/// @param commanded by hand. A wheel that starts in the work breaks.
 Refusal ControlLoop::switchOn(bool& commanded) {
   if (wheel_.wheel().in_work) return Refusal::kInWork;
   commanded = true;

@@ -36,7 +36,8 @@ Json lastJobObject(const JobProgress& progress) {
           {"finished", progress.finished != 0},
           {"tooth", progress.tooth + 1},
           {"pass", progress.pass + 1},
-          {"x_mm", progress.x / kMillimetre}};
+          {"x_mm", progress.x / kMillimetre},
+          {"end", progress.end}};
 }
 
 /// What each was set for; null if it was never set.
@@ -57,7 +58,7 @@ Json toJson(const ClosestPlace& place) {
 
 }  // namespace
 
-Json toJson(const PlannedJob& plan) {
+Json toJson(const PlannedJob& plan, double shank_cut) {
   const core::PathStatistics& s = plan.statistics;
   Json reasons = Json::array();
   for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
@@ -66,6 +67,7 @@ Json toJson(const PlannedJob& plan) {
           {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", plan.complete ? Json(plan.complete->to / kMillimetre) : Json(nullptr)},
           {"closest", plan.closest ? toJson(*plan.closest) : Json(nullptr)},
+          {"shank_cut_mm", shank_cut / kMillimetre},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},

@@ -8,7 +8,8 @@
 namespace flute_grinder {
 
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
-Json toJson(const PlannedJob& plan);
+/// @param shank_cut see shankCut() [m].
+Json toJson(const PlannedJob& plan, double shank_cut);
 
 /// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
 /// @param offsets null if they are not known.

@@ -104,7 +104,8 @@ void printStatistics(const core::PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest) {
+void printChecks(const CutterGeometry& cutter, const std::optional<Range>& complete,
+                 const std::optional<ClosestPlace>& closest) {
   if (complete) {
     std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", complete->from / kMillimetre,
                 complete->to / kMillimetre);
@@ -112,6 +113,11 @@ void printChecks(const std::optional<Range>& complete, const std::optional<Close
   if (closest) {
     std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", closest->first.c_str(), closest->second.c_str(),
                 closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
+  }
+  const double cut = shankCut(cutter);
+  if (cut > 0) {
+    std::printf("%-20s %.3f mm more than the infeed, by the first pass from X %.3f mm on\n", "cut out of the shank",
+                cut / kMillimetre, cutter.flute_length / kMillimetre);
   }
 }
 
@@ -128,10 +134,10 @@ int runPlan(const PlanOptions& options) {
       planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
   if (csv) csv->close();
   if (options.json) {
-    print(toJson(plan));
+    print(toJson(plan, shankCut(job.cutter)));
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
-    printChecks(plan.complete, plan.closest);
+    printChecks(job.cutter, plan.complete, plan.closest);
   }
   for (const core::Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());

@@ -14,6 +14,7 @@
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
@@ -117,7 +118,9 @@ void printState(const std::string& node, const GrinderState& state, const WorkOf
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
   if (!state.hold_reason.empty()) std::printf("held because    %s\n", state.hold_reason.c_str());
   if (!state.fault.empty()) std::printf("fault           %s\n", faultText(state).c_str());
-  if (!state.progress.job_digest.empty()) std::printf("last job        %s\n", lastJob(state.progress).c_str());
+  if (state.progress.job_digest.empty()) return;
+  std::printf("last job        %s\n", lastJob(state.progress).c_str());
+  if (!inJob(state)) std::printf("it ended        %s\n", endText(state.progress).c_str());
 }
 
 /// Waits until the machine leaves the state of a motion that was started.

@@ -8,6 +8,7 @@
 #include "cli/stop_keys.h"
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -66,12 +67,16 @@ class GoalWatch {
   GrindResultConstPtr result_;
 };
 
-/// Prints a line when the operator presses a stop key, and when the grinder holds by itself.
-class StopMessages {
+/// Prints a line when a job begins with a feed override, when the operator presses a stop key, and when the grinder
+/// holds by itself.
+class RunMessages {
  public:
-  explicit StopMessages(ProgressBar& bar) : bar_(bar) {}
+  explicit RunMessages(ProgressBar& bar) : bar_(bar) {}
 
   void update(const GrinderState& state) {
+    if (!std::exchange(begun_, begun_ || inJob(state)) && begun_ && state.override != 1) {
+      bar_.printLine(format("the feed override is %.0f %%", state.override * 100));
+    }
     if (state.hold_reason != hold_reason_ && !state.hold_reason.empty()) {
       bar_.printLine("held: " + state.hold_reason + "; once cleared, 'grind resume' continues");
     }
@@ -87,13 +92,14 @@ class StopMessages {
 
  private:
   ProgressBar& bar_;
+  bool begun_ = false;
   std::string hold_reason_;
   int interrupts_seen_ = 0, holds_seen_ = 0;
 };
 
 /// Shows the progress of a goal to its end. @return false if the connection is lost.
 bool showProgress(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
-  StopMessages messages(bar);
+  RunMessages messages(bar);
   const auto show = [&] {
     if (const auto newest = goal.takeFeedback()) bar.show(*newest);
   };
@@ -156,7 +162,8 @@ int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal) {
     closest->axes[kX] = plan->closest_x;
   }
   const bool somewhere = plan->complete_from <= plan->complete_to;  // not so for NaN
-  printChecks(somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt, closest);
+  printChecks(jobFromGoal(goal).cutter,
+              somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt, closest);
   return 0;
 }
 

@@ -130,9 +130,10 @@ class SectionMesh {
 /// Joins layers to a solid.
 class Joiner {
  public:
+  /// @param turns_on whether the outlines turn toward higher indices from layer to layer.
   /// @param with_inside whether what lies within is divided into tetrahedra as well.
-  Joiner(const OutlineGrid& grid, CutDirection direction, bool with_inside)
-      : grid_(grid), direction_(direction), mesh_(grid, direction), with_inside_(with_inside) {}
+  Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, bool with_inside)
+      : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), with_inside_(with_inside) {}
 
   void add(const Layer& layer, bool is_end) {
     begin_ = end_;
@@ -151,8 +152,9 @@ class Joiner {
       const std::uint32_t next = (i + 1) % n;
       const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid_.kind(i, direction_);
       const auto tooth = static_cast<std::uint16_t>(grid_.tooth(i, direction_));
-      // The diagonal goes from the lower index to the higher, as in the tetrahedra.
-      const std::uint32_t from = std::min(i, next), to = std::max(i, next);
+      // The diagonal goes against the turn, as in the tetrahedra: the other one would make scales of a land.
+      const bool up = (i < next) != turns_on_;
+      const std::uint32_t from = up ? i : next, to = up ? next : i;
       addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
       addTriangle({begin_ + from, end_ + next, end_ + i}, kind, tooth);
     }
@@ -190,12 +192,14 @@ class Joiner {
 
  private:
   /// What is between a triangle of the last layer but one and that of the last. The diagonals of its sides go from the
-  /// lower index to the higher, so that they fit those of its neighbours.
+  /// lower index to the higher, or all the other way, so that they fit those of its neighbours.
   void addPrism(Triangle t) {
-    const auto tetrahedron = [&, odd = isOdd(t)](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    const auto tetrahedron = [&, odd = isOdd(t) != turns_on_](std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                                                              std::uint32_t d) {
       inside_.push_back(odd ? Tetrahedron{b, a, c, d} : Tetrahedron{a, b, c, d});
     };
     std::sort(t.begin(), t.end());
+    if (turns_on_) std::reverse(t.begin(), t.end());
     const auto [a, b, c] = t;
     tetrahedron(begin_ + a, begin_ + b, begin_ + c, end_ + c);
     tetrahedron(begin_ + a, begin_ + b, end_ + c, end_ + b);
@@ -225,6 +229,7 @@ class Joiner {
 
   OutlineGrid grid_;
   CutDirection direction_;
+  bool turns_on_;
   SectionMesh mesh_;
   bool with_inside_;
   CutterSolid solid_;
@@ -263,7 +268,8 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
   check(extent, resolution);
   const OutlineGrid grid = gridOf(cutter, resolution);
   const std::vector<Layer> layers = layersOf(cutter, extent, resolution, grid);
-  Joiner joiner(grid, cutter.direction(), cut_out.has_value());
+  const bool turns_on = layers.front().outline.front().turns < layers.back().outline.front().turns;
+  Joiner joiner(grid, cutter.direction(), turns_on, cut_out.has_value());
   joiner.add(layers.front(), true);
   joiner.close(false);
   for (std::size_t i = 1; i < layers.size(); ++i) {

@@ -264,6 +264,11 @@ std::vector<double> passDepths(const GrindProcess& process) {
   return depths;
 }
 
+double shankCut(const CutterGeometry& cutter) {
+  if (cutter.neck_length > 0) return 0;
+  return std::max(0.0, cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length));
+}
+
 std::vector<ToothPass> passOrder(const GrindJob& job) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(passDepths(job.process).size());

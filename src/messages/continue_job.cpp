@@ -15,4 +15,8 @@ std::string continueFrom(const JobProgress& progress, const GrindJob& job, Grind
   return "";
 }
 
+std::string endText(const JobProgress& progress) {
+  return progress.end.empty() ? "in the middle, with the grinder's program" : progress.end;
+}
+
 }  // namespace flute_grinder

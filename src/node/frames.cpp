@@ -40,7 +40,8 @@ bool Frames::SetUp::operator==(const SetUp& other) const {
   return wheel_y == other.wheel_y && height == other.height && swivel == other.swivel && (offset == other.offset).all();
 }
 
-Frames::Frames(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
+Frames::Frames(const std::string& urdf, const FirstView& first_view)
+    : model_(urdf::parseURDF(urdf)), first_view_(first_view) {
   if (!model_->getJoint("z_zero")) throw std::invalid_argument("robot_description: no joint z_zero");
   for (const char* frame : {kWork, kCutter, kContact}) {
     if (model_->getLink(frame)) {
@@ -62,6 +63,7 @@ void Frames::publish(const Axes& position, const Axes& offset, int tooth, const 
 Frames::SetUp Frames::setUpFor(const Axes& offset) const {
   SetUp set_up;
   set_up.offset = offset;
+  set_up.wheel_y = (first_view_.blank_diameter + first_view_.wheel_diameter) / 2;
   if (!program_) return set_up;
   const GrindJob& job = program_->job();
   set_up.wheel_y = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2;

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/scene/first_view.h"
 
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
@@ -27,11 +28,12 @@ namespace flute_grinder {
 class Frames {
  public:
   /// @param urdf the robot description in XML, good for MachineShapes.
+  /// @param first_view what is shown until there is a job.
   /// @throw std::invalid_argument if it has no joint z_zero, or a link by the name of a frame above.
-  explicit Frames(const std::string& urdf);
+  Frames(const std::string& urdf, const FirstView& first_view);
 
-  /// From now on the frames are those of this job. Without one they are those of a cutter of 10 mm with a wheel of
-  /// 100 mm, not swivelled, and there is no contact.
+  /// From now on the frames are those of this job. Without one they are those of the first view's blank and wheel, not
+  /// swivelled, and there is no contact.
   void show(std::shared_ptr<const GrindProgram> program) { program_ = std::move(program); }
 
   /// Publishes what has changed, and the contact.
@@ -44,9 +46,9 @@ class Frames {
  private:
   /// What the frames on `tf_static` depend on.
   struct SetUp {
-    double wheel_y = 0.055;  ///< of the wheel's centre in `work` at Y = 0 [m]
-    double height = 0;       ///< likewise, at Z = 0 [m]
-    double swivel = 0;       ///< [rad]
+    double wheel_y = 0;  ///< of the wheel's centre in `work` at Y = 0 [m]
+    double height = 0;   ///< likewise, at Z = 0 [m]
+    double swivel = 0;   ///< [rad]
     Axes offset = Axes::Zero();
 
     bool operator==(const SetUp& other) const;
@@ -57,6 +59,7 @@ class Frames {
   void publishContact(double x, int tooth, const ros::Time& stamp);
 
   urdf::ModelInterfaceSharedPtr model_;
+  const FirstView first_view_;
   tf2_ros::StaticTransformBroadcaster set_up_frames_;
   tf2_ros::TransformBroadcaster moving_frames_;
   std::shared_ptr<const GrindProgram> program_;

@@ -345,7 +345,8 @@ void GoalServer::endWhenPublished() {
   if (goal_->ended.isZero()) {
     goal_->ended = now;
     if (goal_->journal_error.empty()) {
-      tracker_.end(status);
+      const std::string how = resultText(resultOfJob(status));
+      tracker_.end(status, how.empty() ? outcomeOf(status.end) : how);
     } else {
       tracker_.revert();
     }

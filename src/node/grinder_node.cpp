@@ -70,10 +70,11 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
-                                           own.thresholds, urdf);
+                                           own.thresholds, urdf, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   stopAxesOnCrash(*loop_);
+  if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
   telemetry_->start();
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
   offset_desk_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,

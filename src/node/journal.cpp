@@ -1,5 +1,6 @@
 #include "node/journal.h"
 
+#include "flute_grinder/motion/feed_schedule.h"
 #include "node/yaml_fields.h"
 
 #include <cmath>
@@ -24,6 +25,8 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("tooth", progress.next.tooth);
   visit("pass", progress.next.pass);
   visit("x_m", progress.x);
+  visit("end", progress.end);
+  visit("feed_override", progress.feed_override);
   visit("wheel_in_work", progress.wheel.in_work);
   visit("clear_y_m", progress.wheel.clear_y);
   visit("lift_m", progress.wheel.lift);
@@ -52,6 +55,9 @@ void requireSound(const Progress& progress) {
   requireAllowed(next.tooth >= 0 && next.tooth <= last_tooth, "tooth", next.tooth,
                  "0 to " + std::to_string(last_tooth));
   requireAllowed(next.pass >= 0 && next.pass < kMaxPasses, "pass", next.pass, "0 to " + std::to_string(kMaxPasses - 1));
+  const double feed_override = progress.feed_override;
+  requireAllowed(feed_override >= 0 && feed_override <= kMaxFeedOverride, "feed_override", feed_override,
+                 "0 to " + std::to_string(kMaxFeedOverride));
 }
 
 std::string toText(const Progress& progress) {

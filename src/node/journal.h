@@ -28,8 +28,10 @@ struct Progress {
   bool finished = false;             ///< every pass is ground
   ToothPass next;                    ///< the first unfinished pass
   double x = 0;                      ///< reached in its stroke, or in the last one [m]
-  Wheel wheel;                       ///< as it was left
-  Axes offset = Axes::Zero();        ///< with which the job began, see Machine::work_offset [m], A [rad]
+  std::string end;             ///< how it ended, for display; empty while it runs, and if this process ended first
+  double feed_override = 1;    ///< at which it was left, fraction
+  Wheel wheel;                 ///< as it was left
+  Axes offset = Axes::Zero();  ///< with which the job began, see Machine::work_offset [m], A [rad]
 };
 
 /// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.

@@ -13,6 +13,15 @@ std::string filePath(const std::string& parameter, const std::string& node, cons
   return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
 }
 
+FirstView readFirstView(const ParameterReader& p) {
+  FirstView view;
+  view.wheel_diameter = p.number("first_view/wheel_diameter", 1e-3, 0.5);
+  view.wheel_width = p.number("first_view/wheel_width", 1e-4, 0.1);
+  view.blank_diameter = p.number("first_view/blank_diameter", 1e-4, 0.2);
+  view.blank_length = p.number("first_view/blank_length", 1e-4, 1);
+  return view;
+}
+
 }  // namespace
 
 NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node) {
@@ -26,6 +35,7 @@ NodeParameters readNodeParameters(const ParameterReader& parameters, const std::
     own.offset_change_limit[axis] = parameters.number("offset_change_limit/" + joint, 0, 2 * kMaxOffset);
   }
   own.thresholds = readDiagnosticThresholds(parameters);
+  own.first_view = readFirstView(parameters);
   own.drive = parameters.text("hardware/type");
   return own;
 }

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/drive/parameters.h"
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/scene/first_view.h"
 #include "node/diagnostics.h"
 
 #include <cstdint>
@@ -16,10 +17,12 @@ struct NodeParameters {
   std::uint64_t history_limit = 0;  ///< [bytes]
   Axes offset_change_limit;         ///< [m], A [rad]
   DiagnosticThresholds thresholds;
+  FirstView first_view;
   std::string drive;  ///< type of the plugin
 };
 
-/// Reads journal, offsets, history, history_limit, offset_change_limit/<joint>, diagnostics/... and hardware/type.
+/// Reads journal, offsets, history, history_limit, offset_change_limit/<joint>, diagnostics/..., first_view/... and
+/// hardware/type.
 /// @param node the node's full name, after which files are named where only their folder is given.
 /// @throw ParameterError
 NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node);

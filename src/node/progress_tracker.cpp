@@ -71,6 +71,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   strokes_ended_at_ = 0;
   running_ = true;
   progress_ = Progress();
+  progress_.feed_override = before_.feed_override;
   progress_.job_digest = digest;
   progress_.job_name = name;
   progress_.cutter = program.job().cutter;
@@ -90,21 +91,26 @@ void ProgressTracker::revert() {
   write();
 }
 
-void ProgressTracker::end(const LoopStatus& status) {
+void ProgressTracker::end(const LoopStatus& status, const std::string& how) {
   updatePlace(status);
   running_ = false;
+  progress_.end = how;
   progress_.wheel = status.wheel;
   write();
 }
 
 void ProgressTracker::update(const LoopStatus& status) {
+  if (status.feed_override != progress_.feed_override) {
+    progress_.feed_override = status.feed_override;
+    changed_ = running_;
+  }
   if (running_) updatePlace(status);
   if (!running_ && progress_.wheel.in_work != status.wheel.in_work) {
     progress_.wheel = status.wheel;
     write();
   }
   // Retry an entry that failed: the disk may have room again.
-  const bool due = place_changed_ || (request_ > 0 && upToDate() && !error().empty());
+  const bool due = changed_ || (request_ > 0 && upToDate() && !error().empty());
   if (due && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
 }
 
@@ -122,13 +128,13 @@ void ProgressTracker::updatePlace(const LoopStatus& status) {
   const Place& place = status.place;
   if (place.move == MoveKind::kStroke && place.move_index >= strokes_ended_at_ && place.x != progress_.x) {
     progress_.x = place.x;
-    place_changed_ = true;
+    changed_ = true;
   }
 }
 
 void ProgressTracker::write() {
   request_ = writer_.write(progress_);
-  place_changed_ = false;
+  changed_ = false;
   last_entry_ = ros::SteadyTime::now();
 }
 

@@ -13,7 +13,8 @@
 namespace flute_grinder {
 
 /// Turns the control loop's status into journal entries: at once when a pass ends or the wheel enters or leaves the
-/// work, and once a second within a stroke. Not thread safe; never waits for the disk.
+/// work, and at most once a second within a stroke or with the feed override. Not thread safe; never waits for the
+/// disk.
 class ProgressTracker {
  public:
   /// @param writer must outlive this object.
@@ -36,8 +37,8 @@ class ProgressTracker {
              std::uint64_t number);
   /// The job was not started: restores the previous entry.
   void revert();
-  /// The job has ended.
-  void end(const LoopStatus& status);
+  /// The job has ended. @param how for display, not empty.
+  void end(const LoopStatus& status, const std::string& how);
   /// Records the job's progress or, without a job, the wheel's position. To be called often.
   void update(const LoopStatus& status);
 
@@ -60,7 +61,7 @@ class ProgressTracker {
   std::uint32_t strokes_ended_at_ = 0;
   bool running_ = false;
   std::uint64_t request_ = 0;
-  bool place_changed_ = false;  ///< since the last entry
+  bool changed_ = false;  ///< since the last entry
   ros::SteadyTime last_entry_;
 };
 

@@ -50,6 +50,7 @@ JobProgress toMessage(const Progress& progress) {
   m.tooth = static_cast<std::uint16_t>(progress.next.tooth);
   m.pass = static_cast<std::uint16_t>(progress.next.pass);
   m.x = progress.x;
+  m.end = progress.end;
   return m;
 }
 
@@ -57,7 +58,8 @@ JobProgress toMessage(const Progress& progress) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf)
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
+                     const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
@@ -67,8 +69,8 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
                    }),
       diagnostic_updater_(nh, private_nh),
-      frames_(urdf),
-      scene_(private_nh),
+      frames_(urdf, first_view),
+      scene_(private_nh, first_view),
       recorder_(private_nh.getNamespace(), machine, history),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
@@ -142,7 +144,10 @@ void Telemetry::tick() {
     publishState();
     makeFeedback();
   }
-  if (ticks_ % kTicksPerScene == 0 && job && job->shown) scene_.update();
+  if (ticks_ % kTicksPerScene == 0 && !scene_cleared_) {
+    scene_.greet();
+    if (job && job->shown) scene_.update();
+  }
   publishDiagnostics();
 }
 

@@ -38,7 +38,7 @@ class Telemetry {
   /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
             const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
-            const DiagnosticThresholds& thresholds, const std::string& urdf);
+            const DiagnosticThresholds& thresholds, const std::string& urdf, const FirstView& first_view);
 
   /// Starts publishing.
   void start() { thread_.start(); }

@@ -17,7 +17,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
-constexpr double kMaxTriangles = 20000;   ///< of 72 bytes each, and what the cut adds
+constexpr double kMaxTriangles = 17000;   ///< of 72 bytes each, and what the cut adds
 constexpr double kLabelHeight = 0.03;     ///< of a text's letters, of the flute's length
 constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
 constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
@@ -66,13 +66,13 @@ std::optional<double> shankOf(const CutterGeometry& cutter) {
   return cutter.flute_length + cutter.neck_length;
 }
 
-/// Of what the wheel may touch. A neck behind it, and the shank, are round.
+/// Of what the wheel may touch. What is behind it is round.
 SolidExtent extentOf(const GrindJob& job) {
   const auto& p = job.process;
   const double stroke_end = job.cutter.flute_length + p.overtravel_shank;
   const auto shank = shankOf(job.cutter);
-  if (!shank) return {0, stroke_end, job.cutter.shank_diameter, std::max(kEnd, stroke_end)};
-  const double run_out = std::sqrt(p.wheel_diameter * std::max(p.depth, p.depth_end));
+  const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job.cutter)));
+  if (!shank) return {0, stroke_end, job.cutter.shank_diameter, stroke_end + run_out};
   return {0, std::min(*shank, stroke_end + run_out), job.cutter.shank_diameter, 0};
 }
 
@@ -86,7 +86,7 @@ SolidResolution resolutionOf(const GrindJob& job) {
   }
   const auto teeth = static_cast<double>(job.tooth_angles.size());
   // Rings are where flutes are; the facets around show on lands, neck and shank, which are round.
-  SolidResolution r{40, 16, 72};
+  SolidResolution r{40, 16, 120};
   const auto triangles = [&] {
     const auto rings = static_cast<double>(r.rings), around = std::max(teeth, static_cast<double>(r.around));
     const auto sections = static_cast<double>(r.sections);
@@ -95,6 +95,8 @@ SolidResolution resolutionOf(const GrindJob& job) {
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
   while (triangles() > kMaxTriangles && r.rings > 8) --r.rings;
+  while (triangles() > kMaxTriangles && r.around > 48) --r.around;
+  while (triangles() > kMaxTriangles && r.rings > 6) --r.rings;
   while (triangles() > kMaxTriangles && r.around > 24) --r.around;
   while (triangles() > kMaxTriangles && r.rings > 4) --r.rings;
   while (triangles() > kMaxTriangles && r.around > 6) --r.around;
@@ -171,22 +173,20 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
     case SurfaceKind::kShank: return colour(0.74, 0.75, 0.77);
     case SurfaceKind::kCut: break;
   }
-  return colour(0.80, 0.52, 0.30);
+  return colour(0.93, 0.89, 0.70);  // not the wheel's
 }
 
+/// The neck, if there is one, and the shank, as far as they are behind extentOf().
 void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
-  const auto shank = shankOf(job.cutter);
-  if (!shank) return;
   const ConicalCutter cutter(job.cutter);
-  const double from = extentOf(job).to, end = std::max(kEnd, *shank), radius = job.cutter.shank_diameter / 2;
-  appendSolid(array, ns, "cutter",
-              {{from, 0},
-               {from, cutter.radius(from)},
-               {*shank, cutter.radius(*shank)},
-               {*shank, radius},
-               {end, radius},
-               {end, 0}},
-              colourOf(SurfaceKind::kShank));
+  const SolidExtent extent = extentOf(job);
+  const auto neck_end = shankOf(job.cutter);
+  const double from = neck_end ? extent.to : extent.shank_to, shank = neck_end.value_or(from);
+  const double end = std::max(kEnd, shank), radius = job.cutter.shank_diameter / 2;
+  std::vector<OutlinePoint> outline{{from, 0}};
+  if (neck_end) outline.insert(outline.end(), {{from, cutter.radius(from)}, {shank, cutter.radius(shank)}});
+  outline.insert(outline.end(), {{shank, radius}, {end, radius}, {end, 0}});
+  appendSolid(array, ns, "cutter", outline, colourOf(SurfaceKind::kShank));
 }
 
 constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;

@@ -1,12 +1,10 @@
 #include "flute_grinder/scene/scene.h"
 
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace flute_grinder {
 
@@ -15,43 +13,8 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kHub = 0.84;                      ///< radius of the wheel's body, of the rim's
-constexpr double kStraight = 1e-7;                 ///< a point that is nearer to a line is on it [m]
-constexpr int kProfileSteps = 48;                  ///< of the rim's outline
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
-
-/// Appends a point to an outline. Where the outline goes straight on, the point before it is not needed: each costs
-/// time in every frame.
-void append(std::vector<OutlinePoint>& outline, const OutlinePoint& next) {
-  if (outline.size() >= 2) {
-    const OutlinePoint &a = outline[outline.size() - 2], &b = outline.back();
-    const double dx = next.x - a.x, dr = next.radius - a.radius;
-    const double off = std::abs((b.x - a.x) * dr - (b.radius - a.radius) * dx);
-    if (off <= kStraight * std::hypot(dx, dr)) outline.pop_back();
-  }
-  outline.push_back(next);
-}
-
-/// The wheel as it is at the start of the job; its axis is the frame's Z.
-void appendWheel(MarkerArray& array, const GrindJob& job) {
-  const WheelProfile wheel = wheelOf(job).worn(job.process.wheel_wear);
-  const double hub = kHub * wheel.largestRadius();
-  const double lower = wheel.lowerFace(), upper = wheel.upperFace();
-  const auto add = [&](const std::vector<OutlinePoint>& outline, const std_msgs::ColorRGBA& colour) {
-    Marker& m = appendSolid(array, "wheel", "wheel", outline, colour);
-    m.pose.orientation.y = -std::sqrt(0.5);
-    m.pose.orientation.w = std::sqrt(0.5);
-  };
-  std::vector<OutlinePoint> rim{{lower, hub}};
-  for (int i = 0; i <= kProfileSteps; ++i) {
-    const double w = lower + (upper - lower) * i / kProfileSteps;
-    append(rim, {w, std::max(hub, wheel.radius(w))});
-  }
-  rim.push_back({upper, hub});
-  add(rim, colour(0.66, 0.45, 0.30));
-  add({{lower, 0}, {lower, hub}}, colour(0.74, 0.75, 0.77));
-  add({{upper, hub}, {upper, 0}}, colour(0.74, 0.75, 0.77));
-}
+const ros::WallDuration kGreeting(1);              ///< within which a viewer that has come knows the frames
 
 /// All strokes of a job have the same errors.
 PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& program) {
@@ -67,18 +30,19 @@ PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& 
 
 MarkerArray sceneMarkers(const GrindJob& job) {
   MarkerArray array = clearedArray();
-  appendWheel(array, job);
+  appendWheel(array, wheelOf(job).worn(job.process.wheel_wear));
   return array;
 }
 
 }  // namespace
 
-Scene::Scene(ros::NodeHandle private_nh)
+Scene::Scene(ros::NodeHandle private_nh, const FirstView& first_view)
     : scene_(private_nh.advertise<MarkerArray>("scene", 1, true)),
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
       path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)),
       legend_(private_nh.advertise<Legend>("legend", 1, true)),
+      first_view_(first_view),
       ground_(private_nh) {
   publishCleared();
 }
@@ -100,8 +64,23 @@ void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::
                        errorsOfFirstStroke(program), Legend()});
   shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
   shown_->legend.tolerance = job.interpolation.tolerance;
-  scene_.publish(sceneMarkers(job));
-  ground_.show(shown_->job, std::nullopt);
+  publishAll();
+}
+
+void Scene::greet() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const std::uint32_t viewers = scene_.getNumSubscribers();
+  if (viewers > viewers_) greeting_due_ = now + kGreeting;
+  viewers_ = viewers;
+  if (greeting_due_.isZero() || now < greeting_due_) return;
+  greeting_due_ = {};
+  publishAll();
+}
+
+void Scene::publishAll() {
+  if (!shown_) return scene_.publish(firstViewMarkers(first_view_));
+  scene_.publish(sceneMarkers(*shown_->job));
+  ground_.show(shown_->job, shown_->reached == Reached{} ? std::nullopt : std::optional(shown_->reached));
   tool_path_.publish(shown_->tool_path.markers());
   publishPathError();
   publishExecuted();

@@ -24,7 +24,7 @@ MESSAGES = {
     'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'on, not at speed', 'work position', 'of the machine', 'to go',
                            'the power is on', 'the fault is reset; the power is off'),
     'src/cli/probe.cpp': ('work offset',),
-    'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in'),
+    'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
     'src/cli/state_watch.cpp': (),
     'src/collision/machine_shapes.cpp': (),
     'src/connection/master_watch.cpp': (),

@@ -5,6 +5,7 @@
 #include "geometry/solid_cases.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <array>
 #include <cmath>
@@ -85,6 +86,24 @@ TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
     EXPECT_GT(taken, -1e-3 * solid.volume());
     EXPECT_LT(taken, 0.1 * shank);
     EXPECT_EQ(solid.vertices.back().x(), 0.05);
+  }
+}
+
+/// A triangle across the turn of a land leans along X by several times as much, and looks like a scale.
+TEST(CutterSolid, OfACylinderHasLandsWithoutScales) {
+  for (const double spiral : {-30.0, 30.0}) {
+    Case c = cylinder();
+    c.spiral = spiral;
+    c.swivel = spiral;
+    const CutterSolid solid = cutterSolid(c.ground(3), {0, 0.02}, {40, 16, 72});
+    double leans = 0;
+    for (const SolidTriangle& t : solid.triangles) {
+      if (t.kind != SurfaceKind::kLand) continue;
+      const auto at = [&](std::size_t i) { return solid.vertices[t.vertices[i]]; };
+      leans = std::max(leans, std::abs((at(1) - at(0)).cross(at(2) - at(0)).normalized().x()));
+    }
+    EXPECT_GT(leans, 0) << spiral;
+    EXPECT_LT(leans, 0.02) << spiral;
   }
 }
 

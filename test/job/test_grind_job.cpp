@@ -349,6 +349,17 @@ TEST(PassOrder, IsThatOfTeethOrOfPasses) {
 }
 
 // The wheel may reach deeper than its depth, so that a set-up for a core of 3.9 mm may leave a depth of 1.058 mm.
+TEST(ShankCut, IsByHowMuchTheShankStandsOut) {
+  CutterGeometry cutter{10e-3, 5 * units::kDegree, 0.5, 0, 30e-3};
+  cutter.shank_diameter = 16e-3;
+  EXPECT_NEAR(shankCut(cutter), 8e-3 - 5e-3 - 30e-3 * std::tan(5 * units::kDegree), 1e-15);
+  cutter.shank_diameter = 15e-3;
+  EXPECT_EQ(shankCut(cutter), 0);
+  cutter.shank_diameter = 16e-3;
+  cutter.neck_length = 1e-3;
+  EXPECT_EQ(shankCut(cutter), 0);
+}
+
 TEST(AskedDepth, IsThatOfTheCoreWhereOneIsAsked) {
   GrindJob job = paperJob();
   job.cutter.end_diameter = 6e-3;

@@ -2,6 +2,7 @@
 """Shows what `grind table`, `grind plan` and wrong usage print, and every command's exit status: 0 done, 1 the machine or
 the job said no, 2 wrong usage or an unreadable file."""
 
+import math
 import os
 import re
 import subprocess
@@ -172,7 +173,10 @@ class TestPlan(CommandLine):
         bodies, distance, x = re.search(r'closest +(.+), (\S+) mm at X (\S+) mm', self.grind(0, 'plan', PAPER_JOB).stdout).groups()
         self.assertEqual(' and '.join(told['closest']['bodies']), bodies)
         self.assertEqual('%.3f' % told['closest']['distance_mm'], distance)
-        self.assertEqual(len(told), 18)
+        # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
+        self.assertAlmostEqual(told['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
+        self.assertRegex(self.grind(0, 'plan', PAPER_JOB).stdout, r'cut out of the shank 0\.375 mm more than the infeed, .* X 30\.000 mm')
+        self.assertEqual(len(told), 19)
 
     def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
         job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)

@@ -60,7 +60,7 @@ class TestMachine(CommandLine):
             'zero_points': dict.fromkeys('xyza'), 'coolant_on': False, 'spindle_commanded': False, 'coolant_commanded': False,
             'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
-            'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1}})
+            'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1, 'end': 'done'}})
 
     def test_disable_and_enable(self):
         self.grind(0, 'disable')
@@ -221,9 +221,9 @@ class TestMachine(CommandLine):
 
     def test_dry_run_tells_what_plan_tells(self):
         grinder().make_ready_at_park()
-        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match('flutes complete|closest', line)]
+        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match('flutes complete|closest|cut out', line)]
                  for words in (['run', PAPER_JOB, '--dry-run'], ['plan', PAPER_JOB])]
-        self.assertEqual(len(lines[0]), 2)
+        self.assertEqual(len(lines[0]), 3)
         self.assertEqual(*lines)
 
     def test_run_while_disabled(self):
@@ -292,6 +292,8 @@ class TestMachine(CommandLine):
         printed, reason = process.communicate(timeout=gc.PATIENCE)
         self.assertEqual(process.returncode, 1, reason)
         self.assertRegex(reason, r'canceled; stopped on the path \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -11\)')
+        self.assertIn('the feed override is 20 %\n', reason)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
         self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         setpoints = [s for batch in grinder().batches_of_goal(batches) for s in batch.setpoints]

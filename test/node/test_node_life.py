@@ -271,8 +271,10 @@ class TestMarkersDoNotOutliveTheNode(OwnNode):
         self.assertEqual(messages[-1].markers[0].action, Marker.DELETEALL)
         return messages[-1].markers[1:]
 
-    def check_taken_back(self):
-        gc.poll(lambda: not any(self.markers(topic) for topic in self.TOPICS), 'nothing in rviz')
+    def check_taken_back(self, *scene):
+        """Nothing is left but these in the scene."""
+        gc.poll(lambda: {m.ns for m in self.markers('scene')} == set(scene), 'the scene without a job')
+        gc.poll(lambda: not any(self.markers(topic) for topic in self.TOPICS[1:]), 'nothing else in rviz')
 
     def test_orderly_end(self):
         self.assertEqual(self.node.end(signal.SIGTERM), 0, self.node.output)
@@ -285,7 +287,7 @@ class TestMarkersDoNotOutliveTheNode(OwnNode):
         self.assertTrue(all(self.markers(topic) for topic in self.TOPICS))
         again = gc.NodeProcess(self.name, self.parameters())
         self.addCleanup(again.close)
-        self.check_taken_back()
+        self.check_taken_back('wheel', 'blank')  # the first view's
 
 
 class TestDriveFaultOutsideOfAJob(OwnNode):

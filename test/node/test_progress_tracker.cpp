@@ -71,15 +71,31 @@ TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
   endStroke(two, 1);
   EXPECT_TRUE(onDisk().finished);
   EXPECT_DOUBLE_EQ(onDisk().x, two.strokeTo());
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   EXPECT_FALSE(onDisk().wheel.in_work);
+}
+
+TEST_F(ProgressTrackerTest, EntersHowAJobEndedAndItsFeedOverride) {
+  const GrindProgram two = program(2);
+  status_.feed_override = 0.36;
+  tracker_.update(status_);
+  begin(two, "job");
+  EXPECT_EQ(onDisk().feed_override, 0.36) << "before its first stroke";
+  EXPECT_EQ(onDisk().end, "") << "as long as it runs";
+  status_.feed_override = 0.8;
+  endStroke(two, 0);
+  EXPECT_EQ(onDisk().feed_override, 0.8);
+  tracker_.end(status_, "canceled");
+  EXPECT_EQ(onDisk().end, "canceled");
+  begin(two, "next");
+  EXPECT_EQ(onDisk().end, "");
 }
 
 TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   const GrindProgram three = program(3);
   begin(three, "long");
   for (int pass = 0; pass < 3; ++pass) endStroke(three, pass);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
@@ -95,7 +111,7 @@ TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   const GrindProgram two = program(2);
   begin(two, "left");
   endStroke(two, 0);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   const Progress before = onDisk();
   tracker_.begin(two, "refused", "refused.yaml", kFirst, status_.jobs_started + 1);
   EXPECT_EQ(onDisk().job_digest, "refused");
@@ -109,7 +125,7 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
   EXPECT_EQ(tracker_.refusal("job", kFirst), "");
   begin(two, "job");
   endStroke(two, 0);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   EXPECT_EQ(tracker_.refusal("job", {0, 1}), "") << "it is continued";
   EXPECT_NE(tracker_.refusal("job", kFirst), "") << "from its beginning";
   const std::string other = tracker_.refusal("other", kFirst);
@@ -137,7 +153,7 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
   begin(two, "job");
   EXPECT_TRUE((onDisk().offset == machine.work_offset).all());
   endStroke(two, 0);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   EXPECT_EQ(tracker_.offsetRefusal("job", machine.work_offset), "");
   EXPECT_EQ(tracker_.offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
   EXPECT_EQ(tracker_.offsetRefusal("job", {0.1, 0.03125, 0, 0}),
@@ -151,7 +167,7 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
   begin(two, "job");
   endStroke(two, 0);
   endStroke(two, 1);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   EXPECT_EQ(tracker_.offsetRefusal("job", Axes::Zero()), "") << "it is finished";
   EXPECT_TRUE(onDisk().finished);
 }
@@ -160,7 +176,7 @@ TEST_F(ProgressTrackerTest, AFinishedOneIsNot) {
   const GrindProgram one = program(1);
   begin(one, "job");
   endStroke(one, 0);
-  tracker_.end(status_);
+  tracker_.end(status_, "canceled");
   EXPECT_EQ(tracker_.refusal("other", kFirst), "");
   EXPECT_EQ(tracker_.refusal("job", kFirst), "");
 }

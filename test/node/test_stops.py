@@ -351,13 +351,16 @@ class TestStates(NodeTest):
         self.addCleanup(shutil.rmtree, folder)
         parameters['journal'] = os.path.join(folder, 'journal')
         self.start(parameters).make_ready()
+        self.assertTrue(self.client.set_feed_override(0.36).success)
         self.send_into_stroke()
         self.node.end(signal.SIGKILL)
 
         for i, joint in enumerate(gc.JOINTS):
             parameters['hardware'][joint]['start_position'] = self.client.positions()[i]
         self.start(parameters)
-        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        left = self.client.fresh_state()
+        self.assertTrue(left.wheel_in_work)
+        self.assertEqual((left.override, left.progress.finished, left.progress.end), (0.36, False, ''))
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
         self.assertIn('lift', self.client.home().message)

@@ -219,8 +219,9 @@ class Story:
     def __init__(self):
         self.rviz, g = Rviz(), grinder()
         g.make_ready_at_park()
-        self.before_plan = {topic: sum(marker.action != Marker.DELETEALL for message in messages
-                                       for marker in message.markers)
+        gc.poll(lambda: of_namespace(self.rviz.last('scene'), 'blank'), 'the blank')
+        self.before_plan = {topic: {marker.ns for message in messages for marker in message.markers
+                                    if marker.action != Marker.DELETEALL}
                             for topic, messages in self.rviz.messages.items()}
         self.machine = self.rviz.picture('machine')
         self.at_rest = self.rviz.count_frames(5)
@@ -520,8 +521,14 @@ class TestPictures(unittest.TestCase):
             self.assertTrue(least_width <= 800 and least_height <= 760, picture.report['least'])
 
     def test_nothing_is_shown_of_a_job_before_a_plan(self):
-        self.assertEqual(story().before_plan, dict.fromkeys(TOPICS, 0))
+        self.assertEqual(story().before_plan, dict(dict.fromkeys(TOPICS, set()), scene={'wheel', 'blank'}))
         self.assertEqual(story().rviz.legends[0], Legend())
+
+    def test_the_blank_is_seen_before_a_plan(self):
+        camera = Camera(story().machine.report)
+        up = camera.toward[1:] / numpy.linalg.norm(camera.toward[1:])
+        places = camera.see(numpy.array([(x * MM, *(5 * MM * up)) for x in range(2, 31)]))
+        self.assertGreater(story().machine.share(places, light_grey), 0.9)
 
     def seen(self, moment, points, front_only=True):
         """Columns and rows of points of the frame `cutter`, and which of them are meant: those on the near side."""

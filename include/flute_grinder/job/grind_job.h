@@ -164,6 +164,10 @@ std::vector<double> wearOfPasses(const GrindJob& job);
 /// by its depths [m]. @param x from the small end [m].
 double askedDepth(const GrindJob& job, double x);
 
+/// How much more than its infeed the first pass of a flute cuts out of the shank: by how much the shank stands out from
+/// the cone into whose flutes it is ground. 0 if it does not, and behind a neck, where no wheel reaches it [m].
+double shankCut(const CutterGeometry& cutter);
+
 /// The depth of a pass over X.
 struct DepthLaw {
   double at_end = 0;  ///< at the small end, radial [m]

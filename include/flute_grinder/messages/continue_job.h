@@ -14,4 +14,7 @@ namespace flute_grinder {
 /// @return why this is not possible; empty if it is.
 std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal);
 
+/// How the last job ended, for display. @param progress of a job that no longer runs.
+std::string endText(const JobProgress& progress);
+
 }  // namespace flute_grinder

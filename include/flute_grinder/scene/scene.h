@@ -2,6 +2,7 @@
 
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/scene/first_view.h"
 #include "flute_grinder/scene/ground_view.h"
 #include "flute_grinder/scene/path_markers.h"
 
@@ -15,11 +16,12 @@ namespace flute_grinder {
 
 /// The job in rviz: ground cutter, wheel, flutes, executed path and path errors, on `~ground_cutter`, `~scene`,
 /// `~tool_path`, `~executed_path` and `~path_error`, and what they mean in figures on `~legend`; each latched, every
-/// message complete. Shows nothing until there is a job. Not thread safe; not for the control thread.
+/// message complete. Until there is a job only wheel and blank of a first view are shown. Not thread safe; not for the
+/// control thread.
 class Scene {
  public:
   /// @param private_nh the node's own namespace.
-  explicit Scene(ros::NodeHandle private_nh);
+  Scene(ros::NodeHandle private_nh, const FirstView& first_view);
 
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
   /// measurements are kept.
@@ -32,6 +34,10 @@ class Scene {
 
   /// Publishes what has changed; to be called at 10 Hz while the job runs.
   void update();
+
+  /// Publishes once more to a viewer that has come: rviz drops markers that it gets before it knows their frames. The
+  /// first view is published by this alone. To be called often, once the frames are published.
+  void greet();
 
   /// Ends the job: publishes the final picture.
   void end();
@@ -56,10 +62,14 @@ class Scene {
   void publishExecuted();
   void publishPathError();
 
+  void publishAll();
   void publishCleared();
 
   ros::Publisher scene_, tool_path_, executed_path_, path_error_, legend_;
+  const FirstView first_view_;
   std::optional<Shown> shown_;
+  std::uint32_t viewers_ = 0;
+  ros::SteadyTime greeting_due_;  ///< zero if none is
   GroundView ground_;
   bool flutes_changed_ = false;
   std::uint64_t updates_ = 0;

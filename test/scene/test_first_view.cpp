@@ -1,0 +1,60 @@
+#include "flute_grinder/scene/first_view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace flute_grinder {
+namespace test_first_view {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+/// Of the markers of a namespace: along the axis of revolution, and farthest from it.
+struct Size {
+  double from = 1e9, to = -1e9, radius = 0;
+};
+
+Size sizeOf(const MarkerArray& array, const std::string& ns, const std::string& frame) {
+  Size size;
+  for (const Marker& m : array.markers) {
+    if (m.ns != ns) continue;
+    EXPECT_EQ(m.header.frame_id, frame);
+    EXPECT_EQ(m.type, Marker::TRIANGLE_LIST);
+    for (const geometry_msgs::Point& p : m.points) {
+      size.from = std::min(size.from, p.x);
+      size.to = std::max(size.to, p.x);
+      size.radius = std::max(size.radius, std::hypot(p.y, p.z));
+    }
+  }
+  return size;
+}
+
+TEST(FirstView, HasWheelAndBlankOfTheirSizes) {
+  const MarkerArray array = firstViewMarkers({0.08, 0.006, 0.012, 0.05});
+  EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
+  const Size wheel = sizeOf(array, "wheel", "wheel"), blank = sizeOf(array, "blank", "cutter");
+  EXPECT_NEAR(wheel.from, -0.003, 1e-12);
+  EXPECT_NEAR(wheel.to, 0.003, 1e-12);
+  EXPECT_NEAR(wheel.radius, 0.04, 1e-12);
+  EXPECT_NEAR(blank.from, 0, 1e-12);
+  EXPECT_NEAR(blank.to, 0.05, 1e-12);
+  EXPECT_NEAR(blank.radius, 0.006, 1e-12);
+}
+
+/// Six times the volume of closed triangles that face outward is positive.
+TEST(FirstView, TheBlankIsClosedAndFacesOutward) {
+  double volume = 0;
+  for (const Marker& m : firstViewMarkers({0.08, 0.006, 0.012, 0.05}).markers) {
+    for (std::size_t i = 0; m.ns == "blank" && i + 2 < m.points.size(); i += 3) {
+      const auto &a = m.points[i], &b = m.points[i + 1], &c = m.points[i + 2];
+      volume += a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
+    }
+  }
+  EXPECT_NEAR(volume / 6, M_PI * 0.006 * 0.006 * 0.05, 1e-3 * M_PI * 0.006 * 0.006 * 0.05);
+}
+
+}  // namespace test_first_view
+}  // namespace flute_grinder

@@ -5,6 +5,7 @@
 #include "cli/machine_file.h"
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
@@ -104,7 +105,11 @@ void printStatistics(const core::PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest) {
+void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
+                 const std::optional<ClosestPlace>& closest) {
+  for (const AskedAndGround& figure : askedAndGround(job, ground)) {
+    std::printf("%-20s %s\n", figure.name, figure.text.c_str());
+  }
   if (complete) {
     std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", complete->from / kMillimetre,
                 complete->to / kMillimetre);
@@ -128,10 +133,12 @@ int runPlan(const PlanOptions& options) {
       planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
   if (csv) csv->close();
   if (options.json) {
-    print(toJson(plan));
+    Json json = toJson(plan);
+    json.update(toJson(job, plan.figures));
+    print(json);
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
-    printChecks(plan.complete, plan.closest);
+    printChecks(job, plan.figures, plan.complete, plan.closest);
   }
   for (const core::Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());

@@ -36,8 +36,9 @@ int runPlan(const PlanOptions& options);
 /// Prints a job's statistics in the operator's units.
 void printStatistics(const core::PathStatistics& statistics);
 
-/// Prints where along X the flutes are complete, and which two bodies come closest to each other, in the operator's
-/// units; what is not known is left out.
-void printChecks(const std::optional<Range>& complete, const std::optional<ClosestPlace>& closest);
+/// Prints what the tool gets beside what is asked, where along X the flutes are complete, and which two bodies come
+/// closest to each other, in the operator's units; what is not known is left out.
+void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
+                 const std::optional<ClosestPlace>& closest);
 
 }  // namespace flute_grinder

@@ -65,7 +65,7 @@ TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
     const double at_ends = rakeAt(setup.job, 0) - asked;
     EXPECT_NEAR(rakeAt(setup.job, length) - asked, at_ends, 0.005) << entry;
     EXPECT_LT(std::abs(at_ends) * kDegree, job.cutter.rake_tolerance) << entry;
-    EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, asked, 0.003) << entry;
+    EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, asked, 0.003) << entry;
     for (const double part : {0.1, 0.4, 0.55, 0.9}) {
       EXPECT_LE(std::abs(rakeAt(setup.job, part * length) - asked), std::abs(at_ends) + 0.005) << entry;
     }
@@ -192,9 +192,9 @@ TEST(JobSetup, TheCoreIsGroundToAMicrometre) {
     job.cutter.core_diameter = core - 0.05 * kMillimetre;
     const JobSetup setup = solved(job);
     EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6) << name;
-    EXPECT_NEAR(setup.core_diameter, job.cutter.core_diameter, 1e-6) << name;
-    EXPECT_NEAR(setup.least_rake / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
-    EXPECT_NEAR(setup.largest_rake / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
+    EXPECT_NEAR(setup.check.figures.core_diameter[0], job.cutter.core_diameter, 1e-6) << name;
+    EXPECT_NEAR(setup.check.figures.rake.from / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
+    EXPECT_NEAR(setup.check.figures.rake.to / kDegree, job.cutter.rake_angle / kDegree, 0.015) << name;
   }
 }
 
@@ -206,7 +206,7 @@ TEST(JobSetup, ADepthThatIsFoundAgreesWithTheTaperToTheFlutesEnd) {
   EXPECT_EQ(setup.job.process.depth_end, job.process.depth_end);
   EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
   EXPECT_NEAR(rakeAt(setup.job, 0), rakeAt(setup.job, job.cutter.flute_length), 0.01);
-  EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, 12, 0.01);
+  EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, 12, 0.01);
 }
 
 TEST(JobSetup, AWornWheelIsTakenAsItIs) {
@@ -215,7 +215,7 @@ TEST(JobSetup, AWornWheelIsTakenAsItIs) {
   const JobSetup setup = solved(job);
   EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.05);
   EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.05);
-  EXPECT_NEAR((setup.least_rake + setup.largest_rake) / 2 / kDegree, 8, 0.003);
+  EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, 8, 0.003);
   EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(shipped("paper")).job.process.setup_swivel),
             0.01 * kDegree);
 }
@@ -229,8 +229,8 @@ TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
   EXPECT_NEAR(setup.job.process.setup_swivel, equal.job.process.setup_swivel, 1e-4 * kDegree);
   const double low = rakeAt(setup.job, 0.011, 0), high = rakeAt(setup.job, 0.011, 1);
   EXPECT_NEAR((low + high) / 2, 8, 0.02);
-  EXPECT_NEAR(setup.least_rake / kDegree, std::min(low, high), 0.01);
-  EXPECT_NEAR(setup.largest_rake / kDegree, std::max(low, high), 0.01);
+  EXPECT_NEAR(setup.check.figures.rake.from / kDegree, std::min(low, high), 0.01);
+  EXPECT_NEAR(setup.check.figures.rake.to / kDegree, std::max(low, high), 0.01);
 }
 
 TEST(JobSetup, WhatIsKeptIsNotWritten) {

@@ -216,7 +216,8 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   if (keep != SetupFigure::kHeight) {
     take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
   }
-  if (setup.job.cutter.core_diameter_end > 0) {
+  // A flute of the same depth everywhere needs no other one at its end.
+  if (setup.job.cutter.core_diameter_end > 0 && (p.depth_end > 0 || solved.depth_end != solved.depth)) {
     take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
   }
   if (solved.setup.lead != p.setup_lead) {

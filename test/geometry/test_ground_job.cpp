@@ -77,8 +77,8 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
         largest_spiral = std::max(largest_spiral, tooth.spiral.value());
       }
     }
-    EXPECT_NEAR(check.figures.rake.from, least_rake, 1e-5);
-    EXPECT_NEAR(check.figures.spiral.to, largest_spiral, 1e-5);
+    EXPECT_NEAR(check.figures.rake.from, least_rake, 1e-4);  // with other wear
+    EXPECT_NEAR(check.figures.spiral.to, largest_spiral, 1e-4);
     EXPECT_NEAR(check.figures.core_diameter[0], 2 * cutter.section(0).core_radius, 1e-8);
     EXPECT_NEAR(check.figures.core_diameter[1], 2 * cutter.section(job.cutter.flute_length).core_radius, 1e-8);
     // Between the checked sections too.

@@ -58,7 +58,26 @@ Json toJson(const ClosestPlace& place) {
 
 }  // namespace
 
-Json toJson(const PlannedJob& plan, double shank_cut) {
+Json toJson(const GrindJob& job, const CutterFigures& ground) {
+  const CutterGeometry& c = job.cutter;
+  const auto ifAsked = [](double value, double unit) { return value > 0 ? Json(value / unit) : Json(nullptr); };
+  return {{"rake_min_deg", ground.rake.from / kDegree},
+          {"rake_max_deg", ground.rake.to / kDegree},
+          {"asked_rake_deg", c.rake_angle / kDegree},
+          {"rake_tolerance_deg", c.rake_tolerance / kDegree},
+          {"spiral_min_deg", ground.spiral.from / kDegree},
+          {"spiral_max_deg", ground.spiral.to / kDegree},
+          {"asked_spiral_min_deg", askedSpiral(job).from / kDegree},
+          {"asked_spiral_max_deg", askedSpiral(job).to / kDegree},
+          {"spiral_tolerance_deg", ifAsked(c.spiral_tolerance, kDegree)},
+          {"core_diameter_mm", ground.core_diameter[0] / kMillimetre},
+          {"core_diameter_end_mm", ground.core_diameter[1] / kMillimetre},
+          {"asked_core_diameter_mm", ifAsked(c.core_diameter, kMillimetre)},
+          {"asked_core_diameter_end_mm", ifAsked(c.core_diameter_end, kMillimetre)},
+          {"core_tolerance_mm", ifAsked(c.core_tolerance, kMillimetre)}};
+}
+
+Json toJson(const PlannedJob& plan) {
   const core::PathStatistics& s = plan.statistics;
   Json reasons = Json::array();
   for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
@@ -67,7 +86,6 @@ Json toJson(const PlannedJob& plan, double shank_cut) {
           {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", plan.complete ? Json(plan.complete->to / kMillimetre) : Json(nullptr)},
           {"closest", plan.closest ? toJson(*plan.closest) : Json(nullptr)},
-          {"shank_cut_mm", shank_cut / kMillimetre},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},

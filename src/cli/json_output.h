@@ -7,9 +7,11 @@
 
 namespace flute_grinder {
 
+/// What a tool gets, and what its job asks for; null where there is none, or nothing is asked.
+Json toJson(const GrindJob& job, const CutterFigures& ground);
+
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
-/// @param shank_cut see shankCut() [m].
-Json toJson(const PlannedJob& plan, double shank_cut);
+Json toJson(const PlannedJob& plan);
 
 /// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
 /// @param offsets null if they are not known.

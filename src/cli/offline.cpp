@@ -5,6 +5,7 @@
 #include "cli/machine_file.h"
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
@@ -104,8 +105,11 @@ void printStatistics(const core::PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-void printChecks(const CutterGeometry& cutter, const std::optional<Range>& complete,
+void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
                  const std::optional<ClosestPlace>& closest) {
+  for (const AskedAndGround& figure : askedAndGround(job, ground)) {
+    std::printf("%-20s %s\n", figure.name, figure.text.c_str());
+  }
   if (complete) {
     std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", complete->from / kMillimetre,
                 complete->to / kMillimetre);
@@ -114,10 +118,10 @@ void printChecks(const CutterGeometry& cutter, const std::optional<Range>& compl
     std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", closest->first.c_str(), closest->second.c_str(),
                 closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
   }
-  const double cut = shankCut(cutter);
+  const double cut = shankCut(job.cutter);
   if (cut > 0) {
     std::printf("%-20s %.3f mm more than the infeed, by the first pass from X %.3f mm on\n", "cut out of the shank",
-                cut / kMillimetre, cutter.flute_length / kMillimetre);
+                cut / kMillimetre, job.cutter.flute_length / kMillimetre);
   }
 }
 
@@ -134,10 +138,13 @@ int runPlan(const PlanOptions& options) {
       planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
   if (csv) csv->close();
   if (options.json) {
-    print(toJson(plan, shankCut(job.cutter)));
+    Json json = toJson(plan);
+    json.update(toJson(job, plan.figures));
+    json["shank_cut_mm"] = shankCut(job.cutter) / kMillimetre;
+    print(json);
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
-    printChecks(job.cutter, plan.complete, plan.closest);
+    printChecks(job, plan.figures, plan.complete, plan.closest);
   }
   for (const core::Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());

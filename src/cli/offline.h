@@ -36,9 +36,10 @@ int runPlan(const PlanOptions& options);
 /// Prints a job's statistics in the operator's units.
 void printStatistics(const core::PathStatistics& statistics);
 
-/// Prints where along X the flutes are complete, which two bodies come closest to each other, and what the first pass
-/// of a flute cuts out of the shank, in the operator's units; what is not known, or nothing, is left out.
-void printChecks(const CutterGeometry& cutter, const std::optional<Range>& complete,
+/// Prints what the tool gets beside what is asked, where along X the flutes are complete, which two bodies come closest
+/// to each other, and what the first pass of a flute cuts out of the shank, in the operator's units; what is not known,
+/// or nothing, is left out.
+void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
                  const std::optional<ClosestPlace>& closest);
 
 }  // namespace flute_grinder

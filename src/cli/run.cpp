@@ -146,7 +146,7 @@ int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder
 
 /// Prints what the grinder has found in a dry run beside the path; it has kept the plan.
 /// @return the exit status.
-int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal) {
+int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal, const GrindJob& job) {
   Plan::Request request;
   request.goal = goal;
   const auto plan = ask<Plan>(nh, "plan", request);
@@ -162,8 +162,11 @@ int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal) {
     closest->axes[kX] = plan->closest_x;
   }
   const bool somewhere = plan->complete_from <= plan->complete_to;  // not so for NaN
-  printChecks(jobFromGoal(goal).cutter,
-              somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt, closest);
+  const auto range = [](const auto& ends) { return Range{ends[0], ends[1]}; };
+  const CutterFigures ground{
+      range(plan->rake), range(plan->spiral_angle), {plan->core_diameter[0], plan->core_diameter[1]}};
+  printChecks(job, ground, somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt,
+              closest);
   return 0;
 }
 
@@ -219,7 +222,7 @@ int runJob(const std::string& node, const RunOptions& options) {
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
   int status = printOutcome(watched, connected, recorder);
-  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal);
+  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal, job);
   return closeRecord(recorder, options.csv, status);
 }
 

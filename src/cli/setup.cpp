@@ -20,29 +20,25 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   const GrindProcess& p = setup.job.process;
   const auto& complete = setup.check.complete;
   const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
-  return {{"swivel_deg", p.setup_swivel / kDegree},
-          {"height_mm", p.setup_height / kMillimetre},
-          {"lead_mm", p.setup_lead / kMillimetre},
-          {"depth_mm", p.depth / kMillimetre},
-          {"depth_end_mm", p.depthEnd() / kMillimetre},
-          {"rake_min_deg", setup.least_rake / kDegree},
-          {"rake_max_deg", setup.largest_rake / kDegree},
-          {"spiral_min_deg", setup.least_spiral / kDegree},
-          {"spiral_max_deg", setup.largest_spiral / kDegree},
-          {"core_diameter_mm", setup.core_diameter / kMillimetre},
-          {"core_diameter_end_mm", setup.core_diameter_end / kMillimetre},
-          {"overtravel_mm", {setup.overtravel[0] / kMillimetre, setup.overtravel[1] / kMillimetre}},
-          {"upper_face_mm", upperFaceHeight(setup.job) / kMillimetre},
-          {"lower_face_mm", lowerFaceHeight(setup.job) / kMillimetre},
-          {"touch_y_mm", touch.y / kMillimetre},
-          {"touch_y_at_z_mm", touch.z_for_y / kMillimetre},
-          {"touch_z_mm", touch.z / kMillimetre},
-          {"wheel_above_swivel_mm", above_swivel ? Json(*above_swivel / kMillimetre) : Json(nullptr)},
-          {"land_mm", setup.land / kMillimetre},
-          {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
-          {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
-          {"limit", toString(setup.limit)},
-          {"margin", setup.margin}};
+  Json json{{"swivel_deg", p.setup_swivel / kDegree},
+            {"height_mm", p.setup_height / kMillimetre},
+            {"lead_mm", p.setup_lead / kMillimetre},
+            {"depth_mm", p.depth / kMillimetre},
+            {"depth_end_mm", p.depthEnd() / kMillimetre},
+            {"overtravel_mm", {setup.overtravel[0] / kMillimetre, setup.overtravel[1] / kMillimetre}},
+            {"upper_face_mm", upperFaceHeight(setup.job) / kMillimetre},
+            {"lower_face_mm", lowerFaceHeight(setup.job) / kMillimetre},
+            {"touch_y_mm", touch.y / kMillimetre},
+            {"touch_y_at_z_mm", touch.z_for_y / kMillimetre},
+            {"touch_z_mm", touch.z / kMillimetre},
+            {"wheel_above_swivel_mm", above_swivel ? Json(*above_swivel / kMillimetre) : Json(nullptr)},
+            {"land_mm", setup.check.figures.land / kMillimetre},
+            {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
+            {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
+            {"limit", toString(setup.limit)},
+            {"margin", setup.margin}};
+  json.update(flute_grinder::toJson(setup.job, setup.check.figures));
+  return json;
 }
 
 }  // namespace

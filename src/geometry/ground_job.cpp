@@ -13,6 +13,7 @@ namespace {
 
 using core::ReasonKind;
 
+constexpr int kSections = 8;         ///< of the flute's length, between those that are measured
 constexpr int kRingsToSpoil = 6;     ///< of a section, at which a stroke may spoil it
 constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
 
@@ -44,6 +45,19 @@ std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, doubl
     if (here && std::abs(*here - x) < std::abs(*first - x)) first = here;
   }
   return first;
+}
+
+void widen(Range& range, double value) { range = {std::fmin(range.from, value), std::fmax(range.to, value)}; }
+
+/// @param section one of several, from X = 0 on.
+void add(CutterFigures& figures, const GroundSection& section) {
+  figures.core_diameter[section.x == 0 ? 0 : 1] = 2 * section.core_radius;
+  for (const ToothSection& tooth : section.teeth) {
+    figures.land = std::fmin(figures.land, tooth.land.value_or(0) * section.radius);
+    if (!tooth.complete) continue;
+    widen(figures.rake, *tooth.rake);
+    if (tooth.spiral) widen(figures.spiral, *tooth.spiral);
+  }
 }
 
 /// Collects what is wrong with a cutter.
@@ -208,23 +222,25 @@ GroundCutter groundCutterOf(const GrindJob& job) { return groundCutterOf(job, 0)
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
   const double length = job.cutter.flute_length;
   Checker checker(job);
+  CutterFigures figures;
   bool complete = true;
-  for (const double x : {0.0, length / 2, length}) {
-    const GroundSection section = cutter.section(x);
+  for (int i = 0; i <= kSections; ++i) {
+    const GroundSection section = cutter.section(length * i / kSections);
     checker.check(section);
+    add(figures, section);
     for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
   }
   const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
   checker.checkOvertravel(cutter);
   checker.checkRange(range);
-  return {range, checker.take()};
+  return {range, checker.take(), figures};
 }
 
 CutterCheck checkGroundCutter(const GrindJob& job) {
   try {
     return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {
-    return {std::nullopt, {core::otherReason(error.what())}};
+    return {std::nullopt, {core::otherReason(error.what())}, {}};
   }
 }
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -15,7 +14,6 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kSections = 8;
 constexpr int kMaxSolves = 16;                ///< for a depth with which the taper toward the flute's end agrees
 constexpr int kMaxLengthenings = 4;           ///< of the overtravel
 constexpr double kRoom = 0.02;                ///< of the flute's length, for a law of Z
@@ -117,10 +115,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   const GrindProcess& p = job.process;
   SetupRequest r;
   r.cutter = job.cutter;
-  if (!job.spiral_angles.empty()) {
-    const auto [least, largest] = std::minmax_element(job.spiral_angles.begin(), job.spiral_angles.end());
-    r.cutter.spiral_angle = (*least + *largest) / 2;
-  }
+  r.cutter.spiral_angle = (askedSpiral(job).from + askedSpiral(job).to) / 2;
   r.rake = job.cutter.rake_angle;
   r.tooth_angles = job.tooth_angles;
   r.wheel = wheelOf(job).worn(p.wheel_wear);
@@ -221,7 +216,8 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   if (keep != SetupFigure::kHeight) {
     take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
   }
-  if (setup.job.cutter.core_diameter_end > 0) {
+  // A flute of the same depth everywhere needs no other one at its end.
+  if (setup.job.cutter.core_diameter_end > 0 && (p.depth_end > 0 || solved.depth_end != solved.depth)) {
     take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
   }
   if (solved.setup.lead != p.setup_lead) {
@@ -249,31 +245,6 @@ void giveRoom(JobSetup& setup) {
     if (beyond > 0) beyond += kRoom * setup.job.cutter.flute_length;
   }
   takeOvertravel(setup);
-}
-
-/// @throw core::ReasonError as withZLaw().
-void measure(JobSetup& setup) {
-  const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
-  setup.land = setup.least_rake = std::numeric_limits<double>::infinity();
-  setup.largest_rake = -setup.least_rake;
-  setup.least_spiral = setup.least_rake;
-  setup.largest_spiral = setup.largest_rake;
-  for (int i = 0; i <= kSections; ++i) {
-    const GroundSection section = cutter.section(setup.job.cutter.flute_length * i / kSections);
-    if (i == 0) setup.core_diameter = 2 * section.core_radius;
-    if (i == kSections) setup.core_diameter_end = 2 * section.core_radius;
-    for (const ToothSection& tooth : section.teeth) {
-      setup.land = std::min(setup.land, tooth.land.value_or(0) * section.radius);
-      if (tooth.spiral) {
-        setup.least_spiral = std::min(setup.least_spiral, *tooth.spiral);
-        setup.largest_spiral = std::max(setup.largest_spiral, *tooth.spiral);
-      }
-      if (!tooth.rake) continue;
-      setup.least_rake = std::min(setup.least_rake, *tooth.rake);
-      setup.largest_rake = std::max(setup.largest_rake, *tooth.rake);
-    }
-  }
-  setup.check = checkGroundCutter(setup.job, cutter);
 }
 
 /// Lengthens the overtravel by what it lacks: the solver knows the published law of Z, and another one moves the places
@@ -315,7 +286,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
         giveRoom(setup);
         continue;
       }
-      measure(setup);
+      setup.check = checkGroundCutter(withZLaw(setup.job));
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
   } catch (const core::ReasonError& error) {

@@ -78,19 +78,33 @@ std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_
          reads(format("(D - %g)/2 ", mm(end)) + (touch.y == 0 ? "mm" : added(touch.y)), touch.y);
 }
 
+/// "; asked 6.8 mm and 12 mm within 0.02 mm"
+std::string askedText(double asked, const char* between, double other, double tolerance, const char* unit) {
+  std::string text = format("; asked %g %s", asked, unit);
+  if (other != asked) text += format(" %s %g %s", between, other, unit);
+  if (tolerance > 0) text += format(" within %g %s", tolerance, unit);
+  return text;
+}
+
+std::string angleText(const Range& ground, const Range& asked, double tolerance) {
+  return format("%.3f to %.3f deg", deg(ground.from), deg(ground.to)) +
+         askedText(deg(asked.from), "to", deg(asked.to), deg(tolerance), "deg");
+}
+
+std::string coreText(const std::array<double, 2>& ground, const CutterGeometry& c) {
+  const std::string text = format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(ground[0]), mm(ground[1]));
+  if (!(c.core_diameter > 0)) return text;
+  const double end = c.core_diameter_end > 0 ? c.core_diameter_end : c.core_diameter;
+  return text + askedText(mm(c.core_diameter), "and", mm(end), mm(c.core_tolerance), "mm");
+}
+
 std::string whatComesOut(const JobSetup& setup) {
-  const CutterGeometry& cutter = setup.job.cutter;
   const auto& complete = setup.check.complete;
-  std::string core = format("%.3f mm at X = 0", mm(setup.core_diameter));
-  core += format(", %.3f mm at the flute's end", mm(setup.core_diameter_end));
-  if (cutter.core_diameter > 0) core += format("; asked %g mm", mm(cutter.core_diameter));
-  if (cutter.core_diameter_end > 0) core += format(" and %g mm", mm(cutter.core_diameter_end));
-  return "comes out\n" +
-         line("rake", format("%.3f to %.3f deg; asked %g deg within %g deg", deg(setup.least_rake),
-                             deg(setup.largest_rake), deg(cutter.rake_angle), deg(cutter.rake_tolerance))) +
-         line("spiral angle", format("%.3f to %.3f deg; asked %g deg", deg(setup.least_spiral),
-                                     deg(setup.largest_spiral), deg(cutter.spiral_angle))) +
-         line("core", core) + line("land", format("%.3f mm or more", mm(setup.land))) +
+  std::string text = "comes out\n";
+  for (const AskedAndGround& figure : askedAndGround(setup.job, setup.check.figures)) {
+    text += line(figure.name, figure.text);
+  }
+  return text + line("land", format("%.3f mm or more", mm(setup.check.figures.land))) +
          line("flutes complete",
               complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to)) : std::string("nowhere"));
 }
@@ -115,6 +129,19 @@ double upperFaceHeight(const GrindJob& job) {
 
 double lowerFaceHeight(const GrindJob& job) {
   return job.process.setup_height + wheelOf(job).lowerFace() / std::cos(job.process.setup_swivel);
+}
+
+std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigures& ground) {
+  const CutterGeometry& c = job.cutter;
+  std::vector<AskedAndGround> all;
+  if (!std::isnan(ground.rake.from)) {
+    all.push_back({"rake", angleText(ground.rake, {c.rake_angle, c.rake_angle}, c.rake_tolerance)});
+  }
+  if (!std::isnan(ground.spiral.from)) {
+    all.push_back({"spiral angle", angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});
+  }
+  if (!std::isnan(ground.core_diameter[0])) all.push_back({"core", coreText(ground.core_diameter, c)});
+  return all;
 }
 
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel) {

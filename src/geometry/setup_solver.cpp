@@ -400,36 +400,38 @@ bool hasTolerances(const SetupRequest& request) {
 struct Fitted {
   std::optional<Judged> best;
   std::optional<SetupPoint> nearest;
+  double error = std::numeric_limits<double>::infinity();  ///< of the nearest one, by the tolerances
 };
 
-Fitted fitAll(const SetupTrial& trial, const SetupRequest& request) {
-  const std::vector<SetupPoint> starts = startsOf(trial, request);
+/// Fits all that is asked from some starts. @param fitted what others came to.
+void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vector<SetupPoint>& starts,
+            Fitted& fitted) {
   const bool has_tolerances = hasTolerances(request);
   const auto worst = [&](const SetupPoint& p) {
     return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
   };
-  Fitted fitted;
   std::vector<SetupPoint> fits;
   for (const SetupPoint& start : starts) {
     const auto fit = fitSetup(trial, request, start);
     if (fit && !(has_tolerances && worst(*fit) > 1)) fits.push_back(*fit);
   }
   fitted.best = best(trial, request, fits);
-  if (fitted.best && !fitted.best->problem && !fitted.best->cut_short) return fitted;
-  double least = std::numeric_limits<double>::infinity();
+  if (fitted.best && !fitted.best->problem && !fitted.best->cut_short) return;
   for (const SetupPoint& start : starts) {
     const auto fit = nearestSetup(trial, request, start);
     if (!fit) continue;
     const double here = worst(*fit);
-    if (here < least) {
-      least = here;
+    if (here < fitted.error || !fitted.nearest) {
+      fitted.error = here;
       fitted.nearest = fit;
     }
     if (here <= 1) fits.push_back(*fit);
   }
   fitted.best = best(trial, request, fits);
-  return fitted;
 }
+
+/// Without lead and taper.
+SetupPoint pointOf(const SolvedSetup& s) { return {s.setup.swivel, s.setup.height, s.depth}; }
 
 /// That what is asked cannot be had within its tolerances.
 SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
@@ -479,16 +481,20 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return beyond(request.kept.swivel);
   }
   const bool asks_edge = !search.isCylinder() && asksEdge(request);
-  const Fitted all = asks_edge ? fitAll(trial, request) : Fitted{};
+  Fitted all;
+  if (asks_edge) fitAll(trial, request, startsOf(trial, request), all);
+  std::vector<SetupPoint> solutions;
+  if (!all.best) solutions = search.solutions(request.least_swivel, request.largest_swivel);
+  // Where the other starts lead nowhere, a set-up without the edge may lead to one.
+  if (asks_edge && !all.best) fitAll(trial, request, solutions, all);
   if (all.best && !all.best->problem) return all.best->solved;
   if (all.best) return refusal(request, *all.best);
-  const auto here = best(trial, request, search.solutions(request.least_swivel, request.largest_swivel));
+  const auto here = best(trial, request, solutions);
   const bool good = here && !here->problem;
-  if (good && asks_edge && all.nearest) return refusal(trial, request, *all.nearest);
+  if (good && asks_edge) return refusal(trial, request, all.nearest.value_or(pointOf(here->solved)));
   if (good) {
     const SolvedSetup& s = here->solved;
-    const auto even =
-        search.isCylinder() ? std::nullopt : fitSetup(trial, request, {s.setup.swivel, s.setup.height, s.depth});
+    const auto even = search.isCylinder() ? std::nullopt : fitSetup(trial, request, pointOf(s));
     const auto fit = even ? std::optional(judge(trial, request, *even)) : std::nullopt;
     return fit && !fit->problem && !(fit->cut_short && !here->cut_short) ? fit->solved : s;
   }

@@ -216,6 +216,13 @@ CutterGeometry cutterOf(const GrindJob& job, int tooth) {
   return cutter;
 }
 
+Range askedSpiral(const GrindJob& job) {
+  const std::vector<double>& angles = job.spiral_angles;
+  if (angles.empty()) return {job.cutter.spiral_angle, job.cutter.spiral_angle};
+  const auto [least, largest] = std::minmax_element(angles.begin(), angles.end());
+  return {*least, *largest};
+}
+
 ZCorrection zCorrectionOf(const GrindJob& job, int tooth) {
   if (job.process.z_law == ZLaw::kPublished) return {};
   if (job.z_corrections.size() != job.tooth_angles.size()) {

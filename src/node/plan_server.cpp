@@ -65,6 +65,10 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   const Range complete = plan.complete.value_or(Range{nowhere, nowhere});
   response.complete_from = complete.from;
   response.complete_to = complete.to;
+  const CutterFigures& ground = plan.figures;
+  response.rake = {ground.rake.from, ground.rake.to};
+  response.spiral_angle = {ground.spiral.from, ground.spiral.to};
+  response.core_diameter = {ground.core_diameter[0], ground.core_diameter[1]};
   if (plan.closest) {
     response.closest_bodies = {plan.closest->first, plan.closest->second};
     response.closest_distance = plan.closest->distance;

@@ -1,6 +1,5 @@
 #include "flute_grinder/plan/planned_job.h"
 
-#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/z_law.h"
 
 #include <stdexcept>
@@ -43,10 +42,11 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<core::Reason>& rea
 PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
                         const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,
                         const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}};
+  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
   const CutterCheck cutter = checkGroundCutter(planned.program->job());
   planned.complete = cutter.complete;
+  planned.figures = cutter.figures;
   refuse(planned, PlanFault::kTool, cutter.reasons);
   const CollisionResult collision = checkCollision(*planned.program, shapes);
   planned.closest = collision.closest;

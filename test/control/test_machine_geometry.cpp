@@ -102,7 +102,7 @@ TEST(WorkZero, OfANarrowerWheelMovesByHalfOfWhatWasDressed) {
   job.process.wheel_width -= 0.0002;
   const Eigen::Vector3d after = workZero(machine, job, {0.002, 0.062});
   // Its middle has come up by 0.1 mm along the spindle, so the axes stand as much lower.
-  const double swivel = 38.734 * kDegree;
+  const double swivel = job.process.setup_swivel;
   EXPECT_NEAR((after - before).x(), 0.0001 * std::sin(swivel), 1e-15);
   EXPECT_NEAR((after - before).y(), 0, 1e-15);
   EXPECT_NEAR((after - before).z(), -0.0001 * std::cos(swivel), 1e-15);

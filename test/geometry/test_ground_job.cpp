@@ -69,8 +69,19 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
-    // Between the three checked sections too.
     const GroundCutter cutter = groundCutterOf(job);
+    double least_rake = 90 * kDegree, largest_spiral = -90 * kDegree;
+    for (int i = 0; i <= 8; ++i) {
+      for (const ToothSection& tooth : cutter.section(i / 8.0 * job.cutter.flute_length).teeth) {
+        least_rake = std::min(least_rake, tooth.rake.value());
+        largest_spiral = std::max(largest_spiral, tooth.spiral.value());
+      }
+    }
+    EXPECT_NEAR(check.figures.rake.from, least_rake, 1e-4);  // with other wear
+    EXPECT_NEAR(check.figures.spiral.to, largest_spiral, 1e-4);
+    EXPECT_NEAR(check.figures.core_diameter[0], 2 * cutter.section(0).core_radius, 1e-8);
+    EXPECT_NEAR(check.figures.core_diameter[1], 2 * cutter.section(job.cutter.flute_length).core_radius, 1e-8);
+    // Between the checked sections too.
     for (int i = 0; i <= 20; ++i) {
       for (const ToothSection& tooth : cutter.section(i / 20.0 * job.cutter.flute_length).teeth) {
         ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);

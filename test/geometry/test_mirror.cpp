@@ -208,8 +208,8 @@ TEST(Mirror, TheSetUpIsMirrored) {
     EXPECT_NEAR(other.job.process.setup_swivel, -one.job.process.setup_swivel, kRounding);
     EXPECT_NEAR(other.job.process.setup_height, -one.job.process.setup_height, kRounding);
     EXPECT_NEAR(other.job.process.depth, one.job.process.depth, kRounding);
-    EXPECT_NEAR(other.least_rake, one.least_rake, kRounding);
-    EXPECT_NEAR(other.largest_rake, one.largest_rake, kRounding);
+    EXPECT_NEAR(other.check.figures.rake.from, one.check.figures.rake.from, kRounding);
+    EXPECT_NEAR(other.check.figures.rake.to, one.check.figures.rake.to, kRounding);
     EXPECT_NEAR(other.overtravel[0], one.overtravel[0], kRounding);
     EXPECT_NEAR(other.overtravel[1], one.overtravel[1], kRounding);
     EXPECT_EQ(other.check.reasons.size(), one.check.reasons.size());

@@ -127,8 +127,10 @@ class Groove {
     const CutterGeometry& c = job_.cutter;
     const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
     const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
-    const double turned = std::abs(tan_cone) < 1e-9 ? std::tan(c.spiral_angle) * s / r0
-                                                    : std::tan(c.spiral_angle) / tan_cone * std::log(radius(s) / r0);
+    const double along = s - p.setup_lead;
+    const double turned = std::abs(tan_cone) < 1e-9
+                              ? std::tan(c.spiral_angle) * along / r0
+                              : std::tan(c.spiral_angle) / tan_cone * std::log(radius(along) / r0);
     const double depth = p.depth + (p.depthEnd() - p.depth) * s / c.flute_length;
     const double dx = x - s;
     const double dy = from_axis * std::cos(angle - turned) - (radius(s) + p.wheel_diameter / 2 - depth - p.wheel_wear);
@@ -230,7 +232,8 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
     SCOPED_TRACE(name);
     GrindJob job = jobOf(name);
     job.process.wheel_wear_per_pass = 0;
-    const double depth = job.process.depth, x = job.cutter.flute_length / 3;
+    const double x = job.cutter.flute_length / 3;
+    const double depth = ConicalCutter(job.cutter).radius(x) - groundCutterOf(job).section(x).core_radius;
     const Ball ball{x, Groove(job).radius(x) - 0.15 * depth, 0.3, 0.2 * depth};
     ASSERT_FALSE(refusal(job, ball)) << core::text(*refusal(job, ball), UnitSystem::kShop);
     expectTouch(job, ball, touch(job, ball));

@@ -210,6 +210,40 @@ TEST(SetupSolver, WhatCanBeHadWithinTheTolerancesIsFound) {
   }
 }
 
+/// The paper's cutter whose edge is asked within 0.3 deg, with the wheel at a height.
+SetupRequest requestAtHeight(double height, double depth, double width) {
+  SetupRequest request = requestFor({10, 5, 30, 8, 30, depth, 100, width});
+  request.asks_spiral = true;
+  request.cutter.rake_tolerance = 0.5 * kDegree;
+  request.cutter.spiral_tolerance = 0.3 * kDegree;
+  request.keep = SetupFigure::kHeight;
+  request.kept.height = height * kMillimetre;
+  return request;
+}
+
+TEST(SetupSolver, ADepthThatIsFoundDoesNotDependOnTheJobs) {
+  for (const double depth : {0.2, 0.5, 1.6}) {
+    const SolvedSetup s = solved(requestAtHeight(2.8, depth, 3));
+    EXPECT_NEAR(s.setup.lead / kMillimetre, 6.68, 0.01) << depth;
+    EXPECT_NEAR(s.depth / kMillimetre, 1.073, 0.002) << depth;
+  }
+}
+
+// With its edge the cutter takes a swivel of 33.8 deg, within the tolerances up to 34.3 deg. With its rake alone it
+// takes 34.8 deg; the edge then is at 23.6 to 25.6 deg.
+TEST(SetupSolver, AnEdgeThatCannotBeHadIsNotDropped) {
+  SetupRequest request = requestAtHeight(8.5, 0.02, 0.3);
+  EXPECT_NEAR(solved(request).setup.swivel / kDegree, 33.797, 0.005);
+  request.least_swivel = 34.3 * kDegree;
+  EXPECT_GT(solved(request).setup.lead / kMillimetre, 13);
+  request.least_swivel = 34.6 * kDegree;
+  const SetupRefusal r = refused(request);
+  EXPECT_EQ(r.problem, SetupProblem::kTolerance);
+  EXPECT_NEAR(r.nearest.spiral.from / kDegree, 30, 0.3);
+  EXPECT_LT(r.nearest.rake.from / kDegree, 7.5);
+  EXPECT_GT(r.nearest.rake.to / kDegree, 8.5);
+}
+
 /// A cutter's middle, from 7 to 93 % of its flute, as a cutter of its own.
 Shop middleOf(Shop s) {
   s.diameter += 2 * 0.07 * s.length * std::tan(s.cone * kDegree);

@@ -176,7 +176,28 @@ class TestPlan(CommandLine):
         # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
         self.assertAlmostEqual(told['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
         self.assertRegex(self.grind(0, 'plan', PAPER_JOB).stdout, r'cut out of the shank 0\.375 mm more than the infeed, .* X 30\.000 mm')
-        self.assertEqual(len(told), 19)
+        self.assertEqual(len(told), 33)
+
+    def test_what_is_asked_stands_beside_what_is_ground(self):
+        with open(PAPER_JOB) as file:
+            job = self.write('core.yaml', file.read().replace('  teeth: 1\n', (
+                '  teeth: 1\n  core_diameter_mm: 7\n  core_diameter_end_mm: 12.3\n  core_tolerance_mm: 0.1\n'
+                '  spiral_tolerance_deg: 4\n')))
+        told, printed = self.json(0, 'plan', job)[0], self.grind(0, 'plan', job).stdout
+        sections = self.json(0, 'simulate', job, '--sections', '9')[0]['sections']
+        for name, asked, tolerance in (('rake', 8, 0.5), ('spiral', 30, 4)):
+            ground = [tooth[name + '_deg'] for section in sections for tooth in section['teeth']]
+            self.assertEqual([told[name + end] for end in ('_min_deg', '_max_deg')], [min(ground), max(ground)])
+            self.assertEqual(told[name + '_tolerance_deg'], tolerance)
+            self.assertRegex(printed, r'(?m)^%s.* %.3f to %.3f deg; asked %g deg within %g deg$' % (
+                name, min(ground), max(ground), asked, tolerance))
+        ends = [sections[i]['core_diameter_mm'] for i in (0, -1)]
+        self.assertEqual([told['core_diameter_mm'], told['core_diameter_end_mm']], ends)
+        self.assertRegex(printed, r"(?m)^core  .* %.3f mm at X = 0, %.3f mm at the flute's end; "
+                                  r'asked 7 mm and 12\.3 mm within 0\.1 mm$' % tuple(ends))
+        for key, asked in (('asked_rake_deg', 8), ('asked_spiral_min_deg', 30), ('asked_spiral_max_deg', 30),
+                           ('asked_core_diameter_mm', 7), ('asked_core_diameter_end_mm', 12.3), ('core_tolerance_mm', 0.1)):
+            self.assertAlmostEqual(told[key], asked, delta=1e-9)
 
     def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
         job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)

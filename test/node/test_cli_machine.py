@@ -221,9 +221,10 @@ class TestMachine(CommandLine):
 
     def test_dry_run_tells_what_plan_tells(self):
         grinder().make_ready_at_park()
-        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match('flutes complete|closest|cut out', line)]
+        shown = 'rake|spiral angle|core|flutes complete|closest|cut out'
+        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match(shown, line)]
                  for words in (['run', PAPER_JOB, '--dry-run'], ['plan', PAPER_JOB])]
-        self.assertEqual(len(lines[0]), 3)
+        self.assertEqual(len(lines[0]), 6)
         self.assertEqual(*lines)
 
     def test_run_while_disabled(self):

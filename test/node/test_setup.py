@@ -119,7 +119,7 @@ class TestFigures(TestSetup):
         source = os.path.join(JOBS, 'roughing_d10_t4.yaml')
         for keep, setup in (('swivel', '{swivel_deg: 41}'), ('height', '{height_mm: -1.1}'), ('depth', None)):
             with self.subTest(keep):
-                job = self.job('job.yaml', source, setup=setup, cone_angle_deg='0\n  core_diameter_mm: 6.82')
+                job = self.job('job.yaml', source, setup=setup, core_diameter_mm=6.82, core_diameter_end_mm=6.82)
                 self.setup(job, '--keep', keep, '--write')
                 self.assertAlmostEqual(self.core(job), 6.82, delta=0.001)
                 self.check(job)

@@ -3,6 +3,7 @@
 long to plan, setpoints that were lost, those of others' jobs amid one's own, a wheel that is left in the work."""
 
 import json
+import math
 import signal
 import threading
 
@@ -18,6 +19,7 @@ import grinder_client as gc
 from grind_command import PAPER_JOB, RunTest
 
 DIGEST = '0123456789abcdef' * 4
+NONE = [math.nan] * 2
 
 
 class StandIn:
@@ -31,7 +33,8 @@ class StandIn:
         self.setpoints = rospy.Publisher('grinder/setpoints', SetpointBatch, queue_size=1000)
         rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
         rospy.Service('grinder/lift', Trigger, self.on_lift)
-        rospy.Service('grinder/plan', Plan, lambda _: PlanResponse(valid=True, complete_from=0, complete_to=0.03))
+        rospy.Service('grinder/plan', Plan, lambda _: PlanResponse(
+            valid=True, complete_from=0, complete_to=0.03, rake=NONE, spiral_angle=NONE, core_diameter=NONE))
         self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
         self.server.start()
         threading.Thread(target=self.tell, daemon=True).start()

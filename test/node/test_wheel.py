@@ -273,7 +273,7 @@ class TestZeros(WheelTest):
         before, _ = self.json(0, 'zeros', job, '--stickout', '62')
         self.grind(0, 'wheel', 'dress', path, '--face', '0.2', '--radial', '0.3')
         after, _ = self.json(0, 'zeros', job, '--stickout', '62')
-        swivel = math.radians(38.734)
+        swivel = math.radians(39.1889)
         for axis, moved in (('x_mm', 0.1 * math.sin(swivel)), ('y_mm', 0), ('z_mm', -0.1 * math.cos(swivel))):
             self.assertAlmostEqual(after[axis] - before[axis], moved, delta=1e-9)
 

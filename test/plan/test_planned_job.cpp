@@ -1,4 +1,5 @@
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/plan/planned_job.h"
@@ -7,6 +8,8 @@
 #include "motion/generators.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace flute_grinder {
 namespace test_planned_job {
@@ -42,6 +45,7 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   EXPECT_EQ(whole.program->job().z_corrections[0].coefficients, with_law.z_corrections[0].coefficients);
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
   EXPECT_EQ(whole.complete->to, job.cutter.flute_length);
+  EXPECT_EQ(whole.figures.rake.to, checkGroundCutter(with_law).figures.rake.to);
   const auto closest = checkCollision(*whole.program, MachineShapes(shippedUrdf())).closest;
   EXPECT_EQ(whole.closest->distance, closest->distance);
   EXPECT_EQ(whole.closest->leg, closest->leg);
@@ -65,6 +69,7 @@ TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {
   EXPECT_EQ(whole.program, nullptr);
   ASSERT_EQ(whole.reasons.size(), 1u);
   EXPECT_EQ(whole.reasons[0].kind, ReasonKind::kUnevenRake);
+  EXPECT_TRUE(std::isnan(whole.figures.core_diameter[0]));
 }
 
 TEST(PlannedJob, IsGivenUpByItsWatch) {

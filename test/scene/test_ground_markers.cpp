@@ -90,7 +90,7 @@ TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
       EXPECT_NEAR(a.core_radius, b.core_radius, 1e-7);
       for (std::size_t i = 0; i < a.teeth.size(); ++i) {
         ASSERT_EQ(a.teeth[i].rake.has_value(), b.teeth[i].rake.has_value());
-        EXPECT_NEAR(a.teeth[i].rake.value_or(0), b.teeth[i].rake.value_or(0), 1e-3 * kDegree);
+        EXPECT_NEAR(a.teeth[i].rake.value_or(0), b.teeth[i].rake.value_or(0), 5e-3 * kDegree);  // with other wear
       }
     }
   }
@@ -244,6 +244,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
       SCOPED_TRACE(::testing::Message() << shank << " " << neck);
       job.cutter.end_diameter = 0.2 * kMillimetre;
       job.process.depth = 0.04 * kMillimetre;
+      job.process.depth_end = job.process.setup_lead = 0;
       job.cutter.shank_diameter = shank * kMillimetre;
       job.cutter.neck_length = neck * kMillimetre;
       for (const bool ground : {false, true}) {

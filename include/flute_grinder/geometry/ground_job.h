@@ -3,6 +3,9 @@
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/job/grind_job.h"
 
+#include <array>
+#include <limits>
+
 namespace flute_grinder {
 
 /// The wheel of a job, when new.
@@ -26,15 +29,25 @@ WheelSweep sweepOf(const GrindJob& job, int tooth, double wear, const GrindStrok
 /// nothing more. @param job as for wheelOf(). @throw as wheelOf() and zCorrectionOf().
 GroundCutter groundCutterOf(const GrindJob& job);
 
+/// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
+struct CutterFigures {
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  Range rake{kNone, kNone};                           ///< least and largest, where the flutes are complete [rad]
+  Range spiral{kNone, kNone};                         ///< the same of the edge [rad]
+  std::array<double, 2> core_diameter{kNone, kNone};  ///< at X = 0 and at the flute's end [m]
+  double land = kNone;                                ///< least, along the circle; 0 if a tooth has none [m]
+};
+
 /// What a ground cutter was found to be.
 struct CutterCheck {
   std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
   std::vector<core::Reason> reasons;  ///< why it is refused
+  CutterFigures figures;
 };
 
-/// Measures the ground cutter at both ends and in the middle of the flute: every tooth has a land, the core is whole,
-/// the rake is within the job's tolerance, and the flutes are complete over their length unless the job allows
-/// otherwise. Takes a few milliseconds.
+/// Measures the ground cutter in nine sections, from one end of the flute to the other: every tooth has a land, the
+/// core is whole, rake, spiral angle and core are within the job's tolerances, and the flutes are complete over their
+/// length unless the job allows otherwise. Takes some milliseconds.
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 
 /// The same of the cutter that a job grinds; teeth share a flute where the wheel's wear between them does not count. A

@@ -16,18 +16,13 @@ namespace flute_grinder {
 
 /// The set-up for a job, and the tool that the job then grinds.
 struct JobSetup {
-  GrindJob job;                                 ///< with the set-up, as it would be read from its file
-  std::vector<JobEdit> edits;                   ///< what makes the file say so
-  std::array<double, 2> overtravel{};           ///< that the set-up needs, at the small end and at the shank [m]
-  std::array<double, 2> overtravel_before{};    ///< of the job as it was [m]
-  double least_rake = 0, largest_rake = 0;      ///< over the flute and the teeth [rad]
-  double least_spiral = 0, largest_spiral = 0;  ///< of the ground edges, over the flute and the teeth [rad]
-  double core_diameter = 0;                     ///< at X = 0 [m]
-  double core_diameter_end = 0;                 ///< at the flute's end [m]
-  double land = 0;                              ///< least over the flute and the teeth, along the circle [m]
-  CutterCheck check;                            ///< what a plan would find wrong with the tool; then it is not written
-  SetupLimit limit = SetupLimit::kSwivel;       ///< what comes nearest to its limit
-  double margin = 0;                            ///< as of SolvedSetup
+  GrindJob job;                               ///< with the set-up, as it would be read from its file
+  std::vector<JobEdit> edits;                 ///< what makes the file say so
+  std::array<double, 2> overtravel{};         ///< that the set-up needs, at the small end and at the shank [m]
+  std::array<double, 2> overtravel_before{};  ///< of the job as it was [m]
+  CutterCheck check;                          ///< as of a plan; with a reason the set-up is not written
+  SetupLimit limit = SetupLimit::kSwivel;     ///< what comes nearest to its limit
+  double margin = 0;                          ///< as of SolvedSetup
 };
 
 /// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.

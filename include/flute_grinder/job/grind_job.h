@@ -132,6 +132,9 @@ std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 /// The cutter with the spiral angle of one of its teeth.
 CutterGeometry cutterOf(const GrindJob& job, int tooth);
 
+/// The least and the largest spiral angle of the teeth [rad].
+Range askedSpiral(const GrindJob& job);
+
 /// What the strokes of a tooth add to the published law of Z.
 /// @throw std::invalid_argument if the job asks for kConstantRake, and withZLaw() has not been called.
 ZCorrection zCorrectionOf(const GrindJob& job, int tooth);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/collision/job_collision.h"
+#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/job_plan.h"
 
@@ -30,6 +31,7 @@ struct PlannedJob : JobPlan {
   std::string digest;                   ///< see jobDigest()
   ToothPass first;                      ///< to grind
   std::optional<Range> complete;        ///< where the flutes would be complete, if that was checked
+  CutterFigures figures;                ///< of the tool that it grinds, if that was checked
   std::optional<ClosestPlace> closest;  ///< of wheel, machine and cutter, if that was checked; its leg is a move
 };
 

@@ -58,17 +58,16 @@ std::string inLayout(std::string text, int layout) {
   const std::size_t at = text.find("  setup: {swivel_deg: ");
   const std::size_t end = text.find('}', at);
   const std::string inner = text.substr(at + 10, end - at - 10);
-  const std::string swivel = inner.substr(0, inner.find(',')), height = inner.substr(inner.find(',') + 2);
   switch (layout) {
     case 1:  // block style, with comments everywhere
       text.replace(at, end + 1 - at,
-                   "  setup: # \xC2\xB5m and \xC2\xB0, {braces}: [1]\n      " + swivel +
-                       "   # first\n\n  # between\n      " + height + "\n      # after");
+                   "  setup: # \xC2\xB5m and \xC2\xB0, {braces}: [1]\n      " +
+                       replaced(inner, ", ", "   # first\n\n  # between\n      ") + "\n      # after");
       break;
     case 2:  // quoted, with odd spaces
-      text.replace(at, end + 1 - at,
-                   "  'setup' :   {  \"swivel_deg\" : '" + swivel.substr(12) + "' ,\n      height_mm:    \"" +
-                       height.substr(11) + "\"  }");
+      text.replace(
+          at, end + 1 - at,
+          "  'setup' :   {  \"" + replaced(replaced(inner, ", ", "' ,\n      \""), ": ", "\" :    '") + "'  }");
       break;
     case 3: text = replaced(text, "\n", "\r\n"); break;
     case 4: text = "\xEF\xBB\xBF# \xC3\xA4\n" + text; break;

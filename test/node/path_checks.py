@@ -11,13 +11,14 @@ EPSILON = 2.0 ** -52
 
 
 class Helix:
-    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 X tan C / D1), kX for a cylinder."""
+    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 (X - lead) tan C / D1), k (X - lead) for a cylinder."""
 
     def __init__(self, job):
         self.diameter = job['cutter.end_diameter']
         self.tan_cone = math.tan(job['cutter.cone_angle'])
         self.tan_spiral = math.tan(job['cutter.spiral_angle'])
         self.z_per_y = math.sin(job['cutter.rake_angle']) * (-1 if job['cutter.cut'] == Cutter.LEFT_HAND else 1)
+        self.lead = job.get('process.setup_lead', 0)
         self.scale = job['interpolation.rotary_scale']
         self.b = 2 * self.tan_cone / self.diameter
         self.k = 2 * self.tan_spiral / self.diameter
@@ -29,6 +30,7 @@ class Helix:
         return self.diameter / 2 + x * self.tan_cone
 
     def a(self, x):
+        x -= self.lead
         return self.k * x if self.b == 0 else self.k / self.b * math.log1p(self.b * x)
 
     def y(self, x):
@@ -39,16 +41,16 @@ class Helix:
 
     def tangent_error(self, x, dx):
         """Theory - commanded of A at the end of a step along the tangent that starts on the curve at x."""
-        z = self.b * dx / (1 + self.b * x)
+        z = self.b * dx / (1 + self.b * (x - self.lead))
         return self.k / self.b * (math.log1p(z) - z)
 
     def tangent_bound(self, x, dx):
         """The leading order of that in size, |k b| dX^2 / (2 u^2)."""
-        return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * x) ** 2)
+        return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * (x - self.lead)) ** 2)
 
     def pair_unevenness(self, x, step_length):
         """How much longer in X the even step of a pair is than the odd one, relatively: 2 |kappa| dl tan(theta)."""
-        u = 1 + self.b * x
+        u = 1 + self.b * (x - self.lead)
         slope = self.scale * self.k
         curvature = abs(slope * self.b * u) / math.hypot(u, slope) ** 3
         return 2 * curvature * step_length * abs(slope) / u

@@ -22,8 +22,6 @@ struct CutterSection {
   bool hasLand(const ToothSection& tooth) const;       ///< or nothing is ground here
 };
 
-constexpr const char* kWrong = "#b00020";  ///< colour of a figure that is not as asked
-
 /// Takes milliseconds for each tooth with a flute of its own.
 /// @param job a job that validate() accepts, from withZLaw(). @param x within its flute's length [m].
 /// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.

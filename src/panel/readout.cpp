@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "panel/plain_words.h"
+#include "panel/text_view.h"
 
 #include <QFontDatabase>
 #include <QGridLayout>
@@ -21,7 +22,6 @@ constexpr const char* kGrey = "#5f6368";
 constexpr const char* kGreen = "#1e7d34";
 constexpr const char* kBlue = "#1a5fb4";
 constexpr const char* kAmber = "#9a5b00";
-constexpr const char* kRed = "#b00020";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
@@ -29,7 +29,7 @@ const char* colourOf(const GrinderState& grinder) {
     case StateGroup::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case StateGroup::kActive: return kBlue;
     case StateGroup::kPausing: return kAmber;
-    case StateGroup::kFault: return kRed;
+    case StateGroup::kFault: return kWrong;
     case StateGroup::kOff: break;
   }
   return kGrey;

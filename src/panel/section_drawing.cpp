@@ -1,5 +1,7 @@
 #include "panel/section_drawing.h"
 
+#include "panel/text_view.h"
+
 #include <QPainter>
 #include <QStringList>
 

@@ -5,6 +5,8 @@
 
 namespace flute_grinder {
 
+constexpr const char* kWrong = "#b00020";  ///< colour of what is not as it should be
+
 /// A read-only text field that scrolls if there are more lines than fit.
 inline QPlainTextEdit* textView(const char* name, int lines) {
   auto* view = new QPlainTextEdit;
@@ -19,7 +21,7 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
 
 /// @param good false shows it in red.
 inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
-  view.setStyleSheet(good ? "" : "color: #b00020;");
+  view.setStyleSheet(good ? "" : QString("color: %1;").arg(kWrong));
   view.setPlainText(text);
 }
 

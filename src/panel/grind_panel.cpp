@@ -17,6 +17,7 @@
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <algorithm>
 #include <exception>
 #include <set>
 #include <stdexcept>
@@ -28,8 +29,10 @@ namespace {
 constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
 constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
-constexpr int kSpacing = 4;  ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
-constexpr int kApart = 14;   ///< between the last column of buttons and the others [px]
+constexpr int kSpacing = 4;            ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
+constexpr int kApart = 14;             ///< between the last column of buttons and the others [px]
+constexpr double kLargerGauge = 1e-3;  ///< than blank and shank, with which Y may well be touched off [m]
+constexpr int kDiameterDigits = 5;
 
 QString capitalized(const std::string& text) {
   QString words = QString::fromStdString(text);
@@ -49,6 +52,16 @@ bool isDone(MachineState state, MachineEvent event) {
 /// Whether two cutters fill a view alike.
 bool isSameSize(const Cutter& a, const Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
+}
+
+/// Why Y is hardly touched off at a diameter for a job; empty if it may well be.
+std::string diameterDoubt(const GrindJob& job, double diameter) {
+  const CutterGeometry& cutter = job.cutter;
+  const double blank = std::max(cutter.end_diameter, 2 * ConicalCutter(cutter).radius(cutter.flute_length));
+  if (diameter <= std::max(blank, cutter.shank_diameter) + kLargerGauge) return "";
+  const auto shown = [](double d) { return "D " + text({d, Unit::kMetre}, UnitSystem::kShop, kDiameterDigits); };
+  return shown(diameter) + " was entered. The largest blank of this job has " + shown(blank) + ", its shank " +
+         shown(cutter.shank_diameter) + ".";
 }
 
 /// One for the process, however many panels there are.
@@ -100,7 +113,11 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) { touchOff(axis, at, false); });
+  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) {
+    const std::string doubt = axis == kY && job_->job() ? diameterDoubt(*job_->job(), at) : "";
+    if (doubt.empty()) return touchOff(axis, at, false);
+    touch_off_->ask(QString::fromStdString(doubt), [=] { touchOff(axis, at, false); });
+  });
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;

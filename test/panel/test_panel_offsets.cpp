@@ -150,6 +150,33 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   EXPECT_FALSE(asks());
 }
 
+TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
+  const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
+  // The wheel's middle at the height of the axis, where it touches.
+  stage.change([&] { stage.state.work_position[kZ] = -0.002788; });
+  panel.openTab("Jog");
+  panel.the<QComboBox>("touch_axis").setCurrentText("Y");
+  auto& at = panel.the<QDoubleSpinBox>("touch_at");
+  // The cone ends with D 15.249 mm; the shank has D 16 mm.
+  at.setValue(17);
+  WAIT_FOR(panel.enabled("touch_off"));
+  panel.click("touch_off");
+  WAIT_FOR(touches().size() == 1);
+  EXPECT_NEAR(touches()[0].position, 0.0035, 1e-12);
+  at.setValue(110);
+  panel.click("touch_off");
+  WAIT_FOR(panel.the<QWidget>("touch_off_anyway").isVisible());
+  EXPECT_EQ(panel.text("touch_question"),
+            "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm.");
+  panel.picture("touch_off_diameter");
+  panel.answer("decline_touch");
+  panel.click("touch_off");
+  panel.answer("touch_off_anyway");
+  WAIT_FOR(touches().size() == 2);
+  EXPECT_NEAR(touches()[1].position, 0.05, 1e-12);
+  EXPECT_FALSE(touches()[1].large_change_ok) << "the limit of a change is another question";
+}
+
 TEST_F(ZeroPoints, OfYAndZNeedAJob) {
   Panel without("cell/stage");
   without.the<QComboBox>("touch_axis").setCurrentText("Z");

@@ -12,6 +12,7 @@
 #include <ros/package.h>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QStringList>
 #include <QVBoxLayout>
 
 #include <exception>
@@ -85,7 +86,10 @@ void JobBox::layOut() {
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
   zeros_->setObjectName("zero_points");
-  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  zeros_->setWordWrap(true);
+  zeros_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+  zeros_->setFixedHeight(2 * zeros_->fontMetrics().lineSpacing() + 2);
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);
@@ -249,7 +253,7 @@ void JobBox::ask(Question* question, const QString& text) {
 void JobBox::askForOffsets(bool discard) {
   discard_ = discard;
   offsets_are_right_ = false;
-  const auto misfits = offsetMisfits();
+  const auto misfits = offsetsToAskFor();
   if (misfits.empty()) return askForSwivel();
   QString text;
   for (const core::OffsetMisfit& misfit : misfits) text += QString::fromStdString(misfit.reason) + ".\n";
@@ -259,11 +263,15 @@ void JobBox::askForOffsets(bool discard) {
   ask(offset_question_, text + "Start with these?");
 }
 
-/// Those of the job as it would be started now. One that is continued needs those with which it began, which the
-/// grinder knows.
+/// Those that do not fit the chosen job.
 std::vector<core::OffsetMisfit> JobBox::offsetMisfits() const {
-  if (!job_ || !offsets_ || continue_->isChecked()) return {};
+  if (!job_ || !offsets_) return {};
   return misfits(*offsets_, goal());
+}
+
+/// A job that is continued needs those with which it began, which the grinder knows.
+std::vector<core::OffsetMisfit> JobBox::offsetsToAskFor() const {
+  return continue_->isChecked() ? std::vector<core::OffsetMisfit>{} : offsetMisfits();
 }
 
 void JobBox::askForSwivel() {
@@ -327,7 +335,7 @@ void JobBox::refresh(const std::optional<GrinderState>& state, const std::option
 /// Whether the question shown, if there is one, still has to be answered.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
-  if (pages_->currentWidget() == offset_question_) return !offsetMisfits().empty();
+  if (pages_->currentWidget() == offset_question_) return !offsetsToAskFor().empty();
   if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
   return discardsUnfinished(*planned_, progress_);
 }
@@ -336,13 +344,12 @@ void JobBox::showZeroPoints() {
   QString text = "Zero points: not known";
   QString hint;
   if (offsets_) {
-    std::string axes;
-    for (const core::OffsetMisfit& misfit : offsetMisfits()) {
-      axes += (axes.empty() ? "" : ", ") + std::string(1, "XYZA"[misfit.axis]);
-    }
-    text = !job_          ? "Zero points"
-           : axes.empty() ? "Zero points: set for this job"
-                          : "Zero points: not of this job: " + QString::fromStdString(axes);
+    QStringList axes, said;
+    for (const core::OffsetMisfit& misfit : offsetMisfits()) axes << QString("XYZA"[misfit.axis]);
+    if (continue_->isChecked()) said << "as when the job began";
+    if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
+    if (said.isEmpty()) said << "set for this job";
+    text = job_ ? "Zero points: " + said.join("; ") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
       hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);

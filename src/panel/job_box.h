@@ -91,6 +91,7 @@ class JobBox : public QWidget {
   void askForOffsets(bool discard);
   void askForSwivel();
   std::vector<core::OffsetMisfit> offsetMisfits() const;
+  std::vector<core::OffsetMisfit> offsetsToAskFor() const;
   void showZeroPoints();
   bool asksWithReason() const;
   void continueUnfinished();

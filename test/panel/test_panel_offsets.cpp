@@ -1,14 +1,18 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 #include "stage.h"
 
 #include <ros/package.h>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -64,6 +68,26 @@ TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
   panel.click("start");
   WAIT_FOR(goals().size() == 1);
   EXPECT_FALSE(goals()[0].goal.offsets_are_right);
+}
+
+TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
+  setFor(0.006);
+  stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });
+  auto& go_on = panel.the<QCheckBox>("continue");
+  WAIT_FOR(go_on.isEnabled() && panel.label("zero_points") == "Zero points: not of this job: Y");
+  const auto& zeros = panel.the<QLabel>("zero_points");
+  const auto room = [&] { return std::pair(zeros.geometry(), panel.the<QWidget>("verdict").geometry()); };
+  const auto before = room();
+  QTest::mouseClick(&go_on, Qt::LeftButton, {}, QPoint(8, go_on.height() / 2));
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began; not of this job: Y");
+  EXPECT_EQ(room(), before) << "it moves";
+  panel.picture("zero_points_of_a_continued_job");
+  setFor(0.01);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began");
+  panel.widget().resize(1, panel.widget().height());
+  stage.tellOffsets({});
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began; not of this job: X, Y, Z");
+  EXPECT_LE(zeros.heightForWidth(zeros.width()), zeros.height()) << "it is clipped where the panel is narrow";
 }
 
 TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {

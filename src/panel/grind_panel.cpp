@@ -420,14 +420,14 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
     sent_.reset();
     if (goal.dry_run) {
       goal.dry_run = false;
-      Plan::Response plan;
-      plan.valid = static_cast<std::uint8_t>(good);
-      plan.statistics = result.statistics;
-      plan.duration = result.statistics.duration;
-      plan.reasons = {result.error_string};
-      plan.violations = result.reasons;
-      job_->setPlan(goal, plan);
-      if (good) showMessage(result.error_string);
+      if (good) {
+        showMessage(result.error_string);
+        return plan(goal);  // which the grinder has kept, and which tells more
+      }
+      Plan::Response refused;
+      refused.reasons = {result.error_string};
+      refused.violations = result.reasons;
+      job_->setPlan(goal, refused);
       return;
     }
   }

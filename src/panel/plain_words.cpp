@@ -96,7 +96,13 @@ std::string describe(const Plan::Response& plan) {
     for (const std::string& reason : planTexts(plan)) text += "\n" + reason;
     return text;
   }
-  text = "Takes " + duration(plan.duration) + ".\n" + feedText(plan.statistics);
+  text = "Takes " + duration(plan.duration) + ".\n";
+  if (plan.closest_bodies.size() == 2) {
+    text += "Closest: " + plan.closest_bodies[0] + " and " + plan.closest_bodies[1] +
+            format(", %.3f mm at X %.3f mm.\n", plan.closest_distance / kMillimetre, plan.closest_x / kMillimetre);
+  }
+  for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
+  text += feedText(plan.statistics);
   for (const FeedLimit& limit : plan.statistics.feed_limits) {
     text += "\n" + core::causeText(limit.cause, UnitSystem::kShop) +
             format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);

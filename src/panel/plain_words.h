@@ -24,7 +24,8 @@ std::string describe(const GrindGoal& goal);
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
 std::string describe(const JobProgress& progress);
 
-/// What came of a plan: how long the job takes, what cuts its feed, or its violations. A line for each.
+/// What came of a plan: how long the job takes, what comes closest, why zero points do not fit, what cuts its feed; or
+/// its violations. A line for each.
 std::string describe(const Plan::Response& plan);
 
 }  // namespace flute_grinder

@@ -487,6 +487,49 @@ TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
   WAIT_FOR(!panel.enabled("cancel"));
 }
 
+TEST_F(OnStage, PlanAndDryRunSayTheSame) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] {
+    stage.plan.valid = 1;
+    stage.plan.duration = 7.03;
+    stage.plan.closest_bodies = {"wheel", "collet"};
+    stage.plan.closest_distance = 1.4214e-3;
+    stage.plan.closest_x = 0.037;
+    stage.plan.warnings = {"X was never set; Y was never set"};
+  });
+  const std::string verdict =
+      "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
+      "Zero points: X was never set; Y was never set.\nThe feed is never reached.";
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.text("verdict") == verdict);
+  WAIT_FOR(panel.enabled("dry_run"));
+  panel.click("dry_run");
+  WAIT_FOR(panel.text("verdict") == "Planning ..." && stage.get([&] { return stage.goals.size(); }) == 1);
+  GrindResult good;
+  good.error_string = "planned and checked; nothing moved";
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), good);
+  WAIT_FOR(panel.text("verdict") == verdict && panel.enabled("start"));
+  EXPECT_EQ(said(panel), "Planned and checked; nothing moved");
+  panel.picture("dry_run");
+}
+
+TEST_F(OnStage, ADryRunThatIsRefusedSaysWhy) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("dry_run"));
+  panel.click("dry_run");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
+  GrindResult refused;
+  refused.error_code = GrindResult::LIMIT_VIOLATED;
+  refused.reasons = {feedOutOfRange()};
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), refused);
+  WAIT_FOR(panel.text("verdict") ==
+           "Cannot be ground:\nprocess.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min");
+  EXPECT_FALSE(panel.enabled("start"));
+}
+
 /// With a job that is planned, and a swivel that nobody has confirmed.
 class BeforeTheSwivelIsSet : public OnStage {
  protected:

@@ -479,15 +479,24 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
   const auto message = link_->view().offsets;
   if (!message) return;
   const core::WorkOffsets offsets = fromMessage(*message);
-  auto left = std::make_shared<int>(0);
+  struct Replies {
+    int missing = 0;
+    std::string lines;
+  };
+  auto replies = std::make_shared<Replies>();
   for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
     if (!misfit.change) continue;
-    const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
-    ++*left;
-    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, OffsetMethod::kComputed),
-                     [this, left](const std::string& refusal) {
-                       if (!refusal.empty()) showMessage(refusal);
-                       if (--*left == 0) job_->planAnew();
+    const double was = offsets.axes[static_cast<std::size_t>(misfit.axis)].value, is = was + *misfit.change;
+    const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
+    const std::string done = "work offset of " + axisName(misfit.axis, UnitSystem::kShop) + ": " + shown(is) +
+                             ", was " + shown(was) + "; computed";
+    ++replies->missing;
+    link_->setOffset(misfit.axis, is, basisOf(goal, OffsetMethod::kComputed),
+                     [this, replies, done](const std::string& refusal) {
+                       replies->lines += (replies->lines.empty() ? "" : "\n") + (refusal.empty() ? done : refusal);
+                       if (--replies->missing > 0) return;
+                       showMessage(replies->lines);
+                       job_->planAnew();
                      });
   }
 }

@@ -35,10 +35,11 @@ class ZeroPoints : public ::testing::Test {
     WAIT_FOR(panel.enabled("start"));
   }
 
-  /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter. @param diameter [m].
-  void setFor(double diameter) {
+  /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter and height [m].
+  void setFor(double diameter, double height = 0.002788) {
     GrindGoal goal = goalFromFile(kPaper.toStdString());
     goal.cutter.end_diameter = diameter;
+    goal.process.setup_height = height;
     goal.job_name = "other.yaml";
     WorkOffsets offsets;
     offsets.values = {0.001, 0.002, 0.003, 0};
@@ -126,6 +127,20 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   EXPECT_EQ(set.basis.end_diameter, 0.01);
   EXPECT_EQ(set.basis.method, OffsetBasis::COMPUTED);
   EXPECT_TRUE(goals().empty()) << "only planned";
+}
+
+TEST_F(ZeroPoints, ThatAreFittedAreToldWithWhatTheyWereBesideThePlan) {
+  setFor(0.006, 0.001788);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y, Z");
+  panel.click("start");
+  WAIT_FOR(asks());
+  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
+  panel.answer("fit_offsets");
+  WAIT_FOR(offsetsSet().size() == 2 && panel.enabled("start"));
+  EXPECT_EQ(panel.text("verdict").find("Takes 12.0 s."), 0U);
+  EXPECT_EQ(panel.text("messages").substr(9),
+            "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");
+  panel.picture("fitted");
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {

@@ -24,7 +24,9 @@ namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
 constexpr int kQuestionLines = 4;
-constexpr int kAngleDigits = 10;  ///< so that the angle appears as in the job file
+constexpr double kReasonLines = 2.6;  ///< of text for each axis, which takes three, since lines end with a word
+constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
+constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
 
 /// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
 /// same one.
@@ -255,8 +257,13 @@ void JobBox::askForOffsets(bool discard) {
   offsets_are_right_ = false;
   const auto misfits = offsetsToAskFor();
   if (misfits.empty()) return askForSwivel();
+  QStringList reasons;
+  for (const core::OffsetMisfit& misfit : misfits) reasons << QString::fromStdString(misfit.reason) + ".";
+  // So that each axis' is seen, however long they are.
+  const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
   QString text;
-  for (const core::OffsetMisfit& misfit : misfits) text += QString::fromStdString(misfit.reason) + ".\n";
+  for (const QString& reason : reasons) text += fontMetrics().elidedText(reason, Qt::ElideMiddle, room) + "\n";
+  offset_question_->setToolTip(reasons.join("\n"));
   const QString axes = QString::fromStdString(computable(misfits));
   fit_->setText("Fit " + axes);
   fit_->setVisible(!axes.isEmpty());

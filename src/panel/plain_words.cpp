@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
@@ -64,6 +65,12 @@ std::string describe(const GrinderState& state) {
     return text + "The feed override is 0 %: the axes rest.";
   const std::string sentence = rowOf(machine).sentence;
   return text + (sentence.empty() ? "This panel does not know the grinder's state." : sentence);
+}
+
+std::string swivelText(const GrinderState& state) {
+  if (!std::isfinite(state.swivel)) return state.swivel_measured ? "Swivel not known" : "Swivel not confirmed";
+  return (state.swivel_measured ? "Swivel at " : "Swivel set to ") +
+         text(Quantity{state.swivel, Unit::kRadian}, UnitSystem::kShop);
 }
 
 std::string done(MachineEvent event) {

@@ -15,6 +15,9 @@ std::string duration(double seconds);
 /// What the grinder is doing, why, and what to do about it.
 std::string describe(const GrinderState& state);
 
+/// Where the swivel stands, as the drive measures it or somebody has confirmed it.
+std::string swivelText(const GrinderState& state);
+
 /// The success of a request, in a line. @param event a request.
 std::string done(MachineEvent event);
 

@@ -59,10 +59,11 @@ QString feedText(double feed) {
 
 }  // namespace
 
-StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
+StateBox::StateBox(QWidget* parent)
+    : QWidget(parent), node_(new QLabel), swivel_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
   node_->setObjectName("grinder");
-  node_->setAlignment(Qt::AlignCenter);
   node_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  swivel_->setObjectName("swivel");
   name_->setObjectName("state");
   name_->setAlignment(Qt::AlignCenter);
   QFont font = name_->font();
@@ -77,7 +78,10 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(3);
-  layout->addWidget(node_);
+  auto* head = new QHBoxLayout;
+  head->addWidget(node_, 1);
+  head->addWidget(swivel_);
+  layout->addLayout(head);
   layout->addWidget(name_);
   layout->addWidget(meaning_);
 }
@@ -95,6 +99,7 @@ void StateBox::setName(const QString& name, const QString& colour) {
 
 void StateBox::show(const GrinderView& view, const QString& node, Master master) {
   setNode(node);
+  swivel_->setText(view.state ? QString::fromStdString(swivelText(*view.state)) : "");
   if (!view.state) {
     setName("No answer", kGrey);
     meaning_->setText(master == Master::kMissing

@@ -579,6 +579,22 @@ TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
   EXPECT_FALSE(stage.get([&] { return stage.goals[0].goal.discard; }));
 }
 
+TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
+  EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
+  tell(43.32 * M_PI / 180, false);
+  for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+    panel.openTab(tab);
+    EXPECT_TRUE(panel.the<QWidget>("swivel").isVisible());
+    EXPECT_EQ(panel.label("swivel"), "Swivel set to 43.32 deg");
+  }
+  tell(43.32 * M_PI / 180, true);
+  EXPECT_EQ(panel.label("swivel"), "Swivel at 43.32 deg");
+  tell(std::numeric_limits<double>::quiet_NaN(), true);
+  EXPECT_EQ(panel.label("swivel"), "Swivel not known");
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(panel.label("swivel").empty());
+}
+
 TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
   start();
   panel.answer("decline_swivel");

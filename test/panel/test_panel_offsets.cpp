@@ -10,6 +10,8 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QTextBlock>
+#include <QTextCursor>
 
 #include <string>
 #include <utility>
@@ -62,6 +64,38 @@ class ZeroPoints : public ::testing::Test {
   Stage stage;
   Panel panel{"cell/stage", kPaper};
 };
+
+TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
+  GrindGoal other = goalFromFile((QString(kPaper).replace("paper", "roughing_d10_t4")).toStdString());
+  other.cutter.end_diameter = 0.006123;
+  other.job_name = "a_roughing_cutter_of_last_week.yaml";
+  WorkOffsets offsets;
+  for (const int axis : {kX, kY, kZ}) {
+    const auto i = static_cast<std::size_t>(axis);
+    offsets.set_at[i] = ros::Time(1.7e9);
+    offsets.basis[i] = toMessage(basisOf(other, OffsetMethod::kTouchOff));
+    offsets.basis[i].wheel_diameter = 0.0751234;
+    offsets.basis[i].wheel_width = 0.0041234;
+  }
+  stage.tellOffsets(offsets);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+  panel.click("start");
+  WAIT_FOR(asks());
+  const auto& text = panel.the<QPlainTextEdit>("offsets_question");
+  std::string shown;
+  for (QTextBlock line = text.document()->begin(); line.isValid(); line = line.next()) {
+    QTextCursor end(line);
+    end.movePosition(QTextCursor::EndOfBlock);
+    EXPECT_TRUE(text.viewport()->rect().contains(text.cursorRect(end))) << line.text().toStdString();
+    shown += line.text()[0].toLatin1();
+  }
+  EXPECT_EQ(shown, "XYZS");
+  const std::string whole = panel.the<QPlainTextEdit>("offsets_question").parentWidget()->toolTip().toStdString();
+  EXPECT_NE(whole.find("(a_roughing_cutter_of_last_week.yaml); this job has height 2.788 mm, swivel 31.769 deg"),
+            std::string::npos)
+      << whole;
+  panel.picture("offset_question_long");
+}
 
 TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
   setFor(0.01);

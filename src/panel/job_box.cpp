@@ -5,6 +5,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "panel/beside.h"
 #include "panel/plain_words.h"
 #include "panel/setup_dialog.h"
 #include "panel/text_view.h"
@@ -167,6 +168,7 @@ void JobBox::choose() {
     setFile(file);
     Q_EMIT fileChosen();
   });
+  moveBeside(*file_dialog_, *this);
   file_dialog_->show();
 }
 
@@ -177,6 +179,7 @@ void JobBox::openSetup() {
     discardPlan();
     read();
   });
+  moveBeside(*dialog, *this);
   dialog->show();
 }
 

@@ -15,6 +15,7 @@
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QLocale>
+#include <QScreen>
 #include <QScrollBar>
 #include <QWheelEvent>
 #include <QWindow>
@@ -209,7 +210,13 @@ class BesideADialog : public Input {
   }
   void expectHoldWorks() {
     EXPECT_EQ(QGuiApplication::modalWindow(), nullptr);
-    for (const auto* dialog : panel.widget().findChildren<QDialog*>()) EXPECT_FALSE(dialog->isModal());
+    const auto& hold = panel.the<QPushButton>("hold");
+    const QRect place(hold.mapToGlobal(QPoint()), hold.size());
+    for (const auto* dialog : panel.widget().findChildren<QDialog*>()) {
+      EXPECT_FALSE(dialog->isModal());
+      EXPECT_FALSE(dialog->frameGeometry().intersects(place));
+      EXPECT_TRUE(QGuiApplication::primaryScreen()->geometry().contains(dialog->geometry()));
+    }
     be(GrinderState::RUNNING, "running");
     WAIT_FOR(panel.state() == "Running" && panel.enabled("hold"));
     clickInWindow(panel, "hold");
@@ -247,6 +254,15 @@ TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
   ASSERT_TRUE(dialog);
   enter(*dialog, "/nowhere/job.yaml");
   WAIT_FOR(panel.text("verdict").find("job.yaml") != std::string::npos);
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
+  // As rviz docks it.
+  panel.widget().move(940, 40);
+  WAIT_FOR(panel.widget().mapToGlobal(QPoint()).x() == 940);
+  panel.click("setup");
+  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
   expectHoldWorks();
 }
 

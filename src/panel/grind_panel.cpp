@@ -44,6 +44,7 @@ QString capitalized(const std::string& text) {
 bool isDone(MachineState state, MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return state == MachineState::kReady;
+    case MachineEvent::kDisable: return !isPowered(state);
     case MachineEvent::kCancel: return state == MachineState::kCanceling;
     default: return false;
   }

@@ -72,7 +72,7 @@ struct Row {
   const char* meaning;
 };
 const std::vector<Row> kStates{
-    {GrinderState::DISABLED, "disabled", {"enable", "disable", "reset"}, "power is off"},
+    {GrinderState::DISABLED, "disabled", {"enable", "reset"}, "power is off"},
     {GrinderState::READY, "ready", {"disable", "home", "start"}, "power is on"},
     {GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
     {GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
@@ -83,7 +83,7 @@ const std::vector<Row> kStates{
     {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
     {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
     {GrinderState::CANCELING, "canceling", {"disable", "hold"}, "the job ends"},
-    {GrinderState::FAULT, "fault", {"disable", "reset"}, "following error 1.2 mm"},
+    {GrinderState::FAULT, "fault", {"reset"}, "following error 1.2 mm"},
     {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
     {GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
     {GrinderState::JOGGING_RETRACTED, "jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
@@ -855,7 +855,7 @@ TEST_F(OnStage, TheNodeCanBeChosen) {
   QTest::keyClicks(&node, "cell/stage");
   QTest::keyClick(&node, Qt::Key_Return);
   WAIT_FOR(panel.state() == "Disabled");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "reset"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
 }
 
 TEST_F(OnStage, WhatHeldTheJobIsToldInPlainWords) {

@@ -188,12 +188,13 @@ void JobBox::setFile(const QString& file) {
   job_.reset();
   where_left_.reset();
   continue_->setChecked(false);
-  const QString name = file.isEmpty() ? "no job file" : QFileInfo(file).fileName();
-  name_->setText(name_->fontMetrics().elidedText(name, Qt::ElideMiddle, 180));
+  showFile();
   name_->setToolTip(file);
   discardPlan();
   if (!file.isEmpty()) read();
 }
+
+void JobBox::showFile() { showName(*name_, file_.isEmpty() ? "no job file" : QFileInfo(file_).fileName()); }
 
 void JobBox::read() {
   try {
@@ -331,6 +332,7 @@ void JobBox::showOtherJob(const QString& text) {
 void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
   offsets_.reset();
   if (offsets) offsets_ = fromMessage(*offsets);
+  showFile();
   showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);

@@ -82,6 +82,7 @@ class JobBox : public QWidget {
  private:
   void choose();
   void openSetup();
+  void showFile();
   void read();
   std::optional<GrindGoal> takePlanned();
   void layOut();

@@ -37,8 +37,7 @@ const char* colourOf(const GrinderState& grinder) {
 
 constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
-constexpr int kBarHeight = 8;   ///< [px]
-constexpr int kNameWidth = 96;  ///< of a job's name [px]
+constexpr int kBarHeight = 8;  ///< [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
@@ -72,6 +71,7 @@ StateBox::StateBox(QWidget* parent)
   name_->setFont(font);
   meaning_->setObjectName("meaning");
   meaning_->setWordWrap(true);
+  meaning_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   meaning_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // Reserve room for the usual texts, so that the buttons below do not move.
   meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);
@@ -87,7 +87,7 @@ StateBox::StateBox(QWidget* parent)
 }
 
 void StateBox::setNode(const QString& node) {
-  node_->setText(node_->fontMetrics().elidedText(node, Qt::ElideMiddle, node_->width()));
+  showName(*node_, node);
   node_->setToolTip(node);
 }
 
@@ -125,14 +125,17 @@ ProgressBox::ProgressBox(QWidget* parent)
   place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
+  feed_->setMinimumWidth(feed_->fontMetrics().horizontalAdvance("10000 mm/min"));
+  // What changes must not make the panel grow.
+  stroke_.text->setMinimumWidth(stroke_.text->fontMetrics().horizontalAdvance("Stroke 100 %") + 4);
+  job_.text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* place = new QHBoxLayout;
   place->addWidget(place_, 1);
   place->addWidget(feed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(3);
-  layout->setColumnStretch(0, 1);
-  layout->setColumnStretch(1, 2);
+  layout->setColumnStretch(1, 1);
   layout->addLayout(place, 0, 0, 1, 2);
   layout->addWidget(stroke_.text, 1, 0);
   layout->addWidget(job_.text, 1, 1);
@@ -171,17 +174,14 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   feed_->setText(feedText(f.feed));
   // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
-  const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 % feed");
+  const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 %");
   set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
 }
 
 void ProgressBox::showPlace(const GrinderView& view, const GrindFeedback& feedback) {
   const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
-  const QString job = place_->fontMetrics().elidedText(name, Qt::ElideMiddle, kNameWidth);
-  place_->setText(QString("%1ooth %2, pass %3")
-                      .arg(name.isEmpty() ? "T" : job + ", t")
-                      .arg(feedback.tooth + 1)
-                      .arg(feedback.pass + 1));
+  const QString first = name.isEmpty() ? "T" : ", t";
+  showName(*place_, name, first + QString("ooth %1, pass %2").arg(feedback.tooth + 1).arg(feedback.pass + 1));
   place_->setToolTip(name);
 }
 
@@ -202,6 +202,7 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
     auto* value = new QLabel;
     value->setObjectName(QString("position_%1").arg("xyza"[axis]));
     value->setFont(font);
+    value->setMinimumWidth(value->fontMetrics().horizontalAdvance("A -0000.0000 deg"));
     layout->addWidget(value, axis / 2, axis % 2);
     values_[static_cast<std::size_t>(axis)] = value;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <QLabel>
 #include <QPlainTextEdit>
 #include <QString>
 
@@ -23,6 +24,12 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
 inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
   view.setStyleSheet(good ? "" : QString("color: %1;").arg(kWrong));
   view.setPlainText(text);
+}
+
+/// Shows a name, shortened in its middle to what room the label has beside the rest.
+inline void showName(QLabel& label, const QString& name, const QString& rest = "") {
+  const QFontMetrics metrics = label.fontMetrics();
+  label.setText(metrics.elidedText(name, Qt::ElideMiddle, label.width() - metrics.horizontalAdvance(rest)) + rest);
 }
 
 }  // namespace flute_grinder

@@ -42,7 +42,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   offset_->setWordWrap(true);
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // A long text must not make the panel grow.
-  offset_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
+  offset_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
   offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
   auto* form = new QWidget;
   auto* layout = new QGridLayout(form);

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -379,6 +380,57 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.the<QWidget>("verdict").isVisible());
   EXPECT_EQ(panel.label("place"), "No job runs");
+}
+
+TEST_F(OnStage, NothingMovesAtAStart) {
+  Panel panel("cell/stage", kPaper);
+  panel.widget().resize(1, panel.widget().height());
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, stage.joints.position = {0, 0, 0, 0};
+  });
+  WAIT_FOR(panel.label("position_x") == "X     0.000 mm");
+  std::map<QWidget*, QRect> before;
+  for (const std::string& name : kRequests) {
+    auto& button = panel.the<QPushButton>(name.c_str());
+    before[&button] = button.geometry();
+  }
+  const int width = panel.widget().minimumSizeHint().width();
+  GrindActionGoal job;
+  job.goal_id.id = "of the night shift";
+  job.goal = goalFromJob(readJobFile(kPaper.toStdString()));
+  job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
+  stage.tellJob(job);
+  Legend legend = legendOf(kPaper);
+  legend.tolerance = 0.1e-6;
+  stage.tellLegend(legend);
+  stage.change([&] {
+    stage.joints.position = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
+    stage.state.distance_to_go = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
+    stage.state.override = 0.36;
+    stage.progress.stroke_fraction = stage.progress.job_fraction = 1;
+    stage.progress.remaining_time = 360000, stage.progress.tooth = 63, stage.progress.pass = 9999;
+    stage.progress.feed = 10.0 / 60;
+  });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("feed") == "10000 mm/min" && panel.label("position_a") == "A -3780.0000 deg");
+  WAIT_FOR(panel.label("to_go") == "To go" && panel.label("override_value") == "36 %");
+  EXPECT_EQ(panel.widget().minimumSizeHint().width(), width);
+  for (const auto& [button, place] : before) EXPECT_EQ(button->geometry(), place) << button->objectName().toStdString();
+  auto& place = panel.the<QLabel>("place");
+  WAIT_FOR(panel.label("place").find("yaml, tooth 64, pass 10000") != std::string::npos);
+  WAIT_FOR(place.fontMetrics().horizontalAdvance(place.text()) <= place.width());
+}
+
+TEST_F(OnStage, ALongNameIsShortenedToItsRoom) {
+  const QTemporaryDir folder;
+  const QString path = folder.filePath("four_teeth_of_the_night_shift_with_a_long_name.yaml");
+  ASSERT_TRUE(QFile::copy(kPaper, path));
+  Panel panel("cell/stage", path);
+  auto& name = panel.the<QLabel>("job_file");
+  WAIT_FOR(name.text().endsWith("name.yaml") && name.text().startsWith("four"));
+  WAIT_FOR(name.fontMetrics().horizontalAdvance(name.text()) <= name.width());
+  EXPECT_EQ(name.toolTip(), path);
 }
 
 TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
@@ -749,7 +801,7 @@ TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
   WAIT_FOR(stage.get([&] { return stage.overrides.size(); }) == 1);
   EXPECT_DOUBLE_EQ(stage.get([&] { return stage.overrides[0]; }), 0.35);
   // The grinder's own value again, and another one that it gets from elsewhere.
-  WAIT_FOR(panel.the<QProgressBar>("job").text().endsWith("left at 100 % feed"));
+  WAIT_FOR(panel.the<QProgressBar>("job").text().endsWith("left at 100 %"));
   stage.change([&] { stage.state.override = 1.2; });
   WAIT_FOR(panel.label("override_value") == "120 %");
   // By key: sent when it rests.

@@ -303,6 +303,7 @@ void GrindPanel::refresh() {
     sent_.reset();
     job_->discardPlan();
   }
+  dropPassedReply(state);
   nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -379,7 +380,24 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
 void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
   if (isStop(event)) return link_->stop(event, reply(done(event)));
-  link_->request(event, reply(done(event)));
+  const auto state = link_->view().state;
+  const auto next = state ? after(static_cast<MachineState>(state->state), event) : std::nullopt;
+  passing_.reset();
+  if (next) passing_ = Passing{*next};
+  link_->request(event, [this, event](const std::string& refusal) {
+    showMessage(refusal.empty() ? done(event) : refusal);
+    if (passing_ && refusal.empty()) passing_->reply = messages_->toPlainText();
+  });
+}
+
+/// What is true in a state is not to be read after it.
+void GrindPanel::dropPassedReply(std::optional<MachineState> state) {
+  if (!passing_) return;
+  const bool there = state == passing_->state;
+  passing_->seen = passing_->seen || there;
+  if (there || !passing_->seen || passing_->reply.isEmpty()) return;
+  if (messages_->toPlainText() == passing_->reply) messages_->clear();
+  passing_.reset();
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {

@@ -339,6 +339,31 @@ TEST_F(OnStage, ARequestThatIsDoneSaysSoInALine) {
   }
 }
 
+TEST_F(OnStage, AReplyGoesWithTheStateThatItIsAbout) {
+  Panel panel("cell/stage");
+  const auto lift = [&] {
+    stage.change([&] { stage.state.wheel_in_work = 1; });
+    stage.be(GrinderState::READY, "ready");
+    WAIT_FOR(panel.enabled("lift"));
+    panel.click("lift");
+    WAIT_FOR(said(panel) == "Lift: the wheel is being lifted");
+    stage.be(GrinderState::LIFTING, "lifting");
+    WAIT_FOR(panel.state() == "Lifting");
+    EXPECT_EQ(said(panel), "Lift: the wheel is being lifted");
+  };
+  ASSERT_NO_FATAL_FAILURE(lift());
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(panel.text("messages"), "");
+  // Not what was said since then.
+  ASSERT_NO_FATAL_FAILURE(lift());
+  panel.click("hold");
+  WAIT_FOR(said(panel) == "Hold was sent");
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(said(panel), "Hold was sent");
+}
+
 TEST_F(OnStage, AReplyReplacesTheOneBeforeAndBeginsWithItsFirstLine) {
   Panel panel("cell/stage");
   stage.be(GrinderState::DISABLED, "disabled");

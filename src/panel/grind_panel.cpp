@@ -383,7 +383,7 @@ void GrindPanel::request(MachineEvent event) {
   const auto state = link_->view().state;
   const auto next = state ? after(static_cast<MachineState>(state->state), event) : std::nullopt;
   passing_.reset();
-  if (next) passing_ = Passing{*next};
+  if (next) passing_ = Passing{*next, false, ""};
   link_->request(event, [this, event](const std::string& refusal) {
     showMessage(refusal.empty() ? done(event) : refusal);
     if (passing_ && refusal.empty()) passing_->reply = messages_->toPlainText();

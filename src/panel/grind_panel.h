@@ -57,7 +57,7 @@ class GrindPanel : public rviz::Panel {
   /// The state to which a request leads.
   struct Passing {
     MachineState state;
-    bool seen = false;
+    bool seen;
     QString reply;  ///< to the request, which is true in this state; empty until it has come
   };
 

@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
 constexpr int kQuestionLines = 4;
-constexpr double kReasonLines = 2.6;  ///< of text for each axis, which takes three, since lines end with a word
+constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
 constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
 constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
 
@@ -89,7 +89,6 @@ void JobBox::layOut() {
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
   zeros_->setObjectName("zero_points");
-  zeros_->setWordWrap(true);
   zeros_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
   zeros_->setFixedHeight(2 * zeros_->fontMetrics().lineSpacing() + 2);
@@ -265,13 +264,13 @@ void JobBox::askForOffsets(bool discard) {
   for (const core::OffsetMisfit& misfit : misfits) reasons << QString::fromStdString(misfit.reason) + ".";
   // So that each axis' is seen, however long they are.
   const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
-  QString text;
-  for (const QString& reason : reasons) text += fontMetrics().elidedText(reason, Qt::ElideMiddle, room) + "\n";
+  QString text = "Start with these zero points?";
+  for (const QString& reason : reasons) text += "\n" + fontMetrics().elidedText(reason, Qt::ElideRight, room);
   offset_question_->setToolTip(reasons.join("\n"));
   const QString axes = QString::fromStdString(computable(misfits));
   fit_->setText("Fit " + axes);
   fit_->setVisible(!axes.isEmpty());
-  ask(offset_question_, text + "Start with these?");
+  ask(offset_question_, text);
 }
 
 /// Those that do not fit the chosen job.
@@ -361,7 +360,7 @@ void JobBox::showZeroPoints() {
     if (continue_->isChecked()) said << "as when the job began";
     if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
     if (said.isEmpty()) said << "set for this job";
-    text = job_ ? "Zero points: " + said.join("; ") : "Zero points";
+    text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
       hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);

@@ -71,7 +71,6 @@ StateBox::StateBox(QWidget* parent)
   name_->setFont(font);
   meaning_->setObjectName("meaning");
   meaning_->setWordWrap(true);
-  meaning_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   meaning_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // Reserve room for the usual texts, so that the buttons below do not move.
   meaning_->setMinimumHeight(3 * meaning_->fontMetrics().lineSpacing() + 4);

@@ -43,7 +43,6 @@ SectionView::SectionView(QWidget* parent)
   drawing_->setObjectName("section");
   figures_->setObjectName("section_figures");
   figures_->setWordWrap(true);
-  figures_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   figures_->setMinimumHeight(4 * figures_->fontMetrics().lineSpacing() + 4);
   auto* choice = new QHBoxLayout;

@@ -161,6 +161,7 @@ TEST_F(Input, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   EXPECT_TRUE(panel.enabled("jog_a_plus")) << "A has a speed of its own";
   panel.picture("no_number");
   panel.openTab("Section");
+  WAIT_FOR(panel.label("section_figures").find("Rake ") == 0);
   enter("section_x", "500");
   WAIT_FOR(panel.label("section_figures") == "Allowed X: 0 to 30 mm, 2 decimals.");
   EXPECT_TRUE(red("section_x"));

@@ -160,6 +160,7 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
     // By the depth of 1.6 mm the core is 6.8 mm at the small end.
     Panel good("cell/stage", job("good.yaml", "6.8", "5"));
     openSection(good);
+    WAIT_FOR(shows(good, "Core "));
     good.the<QDoubleSpinBox>("section_x").setValue(0);
     WAIT_FOR(shows(good, "mm, asked 6.800 within 0.100 mm"));
     EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5.00 deg")) << good.label("section_figures");
@@ -168,6 +169,7 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
   }
   Panel off("cell/stage", job("off.yaml", "7.1", "0.0001"));
   openSection(off);
+  WAIT_FOR(shows(off, "Core "));
   off.the<QDoubleSpinBox>("section_x").setValue(0);
   WAIT_FOR(shows(off, "asked 7.100 within 0.100 mm"));
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 6.")) << off.label("section_figures");

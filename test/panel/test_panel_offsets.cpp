@@ -226,7 +226,8 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
 TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
   const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
   // The wheel's middle at the height of the axis, where it touches.
-  stage.change([&] { stage.state.work_position[kZ] = -0.002788; });
+  stage.change([&] { stage.state.work_position[kZ] = -0.002788, stage.state.override = 0.5; });
+  WAIT_FOR(panel.label("override_value") == "50 %");
   panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Y");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");

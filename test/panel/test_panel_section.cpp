@@ -157,22 +157,21 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
                                          "\n  core_tolerance_mm: 0.1\n  spiral_tolerance_deg: " + spiral}});
   };
   {
-    // By the depth of 1.6 mm the core is 6.8 mm at the small end.
-    Panel good("cell/stage", job("good.yaml", "6.8", "5"));
+    Panel good("cell/stage", job("good.yaml", "7.1", "5"));
     openSection(good);
     WAIT_FOR(shows(good, "Core "));
     good.the<QDoubleSpinBox>("section_x").setValue(0);
-    WAIT_FOR(shows(good, "mm, asked 6.800 within 0.100 mm"));
+    WAIT_FOR(shows(good, "mm, asked 7.100 within 0.100 mm"));
     EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5.00 deg")) << good.label("section_figures");
     EXPECT_FALSE(shows(good, kRed)) << good.label("section_figures");
     good.picture("section_with_tolerances");
   }
-  Panel off("cell/stage", job("off.yaml", "7.1", "0.0001"));
+  Panel off("cell/stage", job("off.yaml", "7.4", "0.0001"));
   openSection(off);
   WAIT_FOR(shows(off, "Core "));
   off.the<QDoubleSpinBox>("section_x").setValue(0);
-  WAIT_FOR(shows(off, "asked 7.100 within 0.100 mm"));
-  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 6.")) << off.label("section_figures");
+  WAIT_FOR(shows(off, "asked 7.400 within 0.100 mm"));
+  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 7.0")) << off.label("section_figures");
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Spiral ")) << off.label("section_figures");
   off.picture("section_core_off");
 }

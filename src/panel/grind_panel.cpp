@@ -500,7 +500,7 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
   const core::WorkOffsets offsets = fromMessage(*message);
   struct Replies {
     int missing = 0;
-    std::string lines;
+    std::map<int, std::string> lines;  ///< of the axes
   };
   auto replies = std::make_shared<Replies>();
   for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
@@ -511,10 +511,12 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
                              ", was " + shown(was) + "; computed";
     ++replies->missing;
     link_->setOffset(misfit.axis, is, basisOf(goal, OffsetMethod::kComputed),
-                     [this, replies, done](const std::string& refusal) {
-                       replies->lines += (replies->lines.empty() ? "" : "\n") + (refusal.empty() ? done : refusal);
+                     [this, replies, axis = misfit.axis, done](const std::string& refusal) {
+                       replies->lines[axis] = refusal.empty() ? done : refusal;
                        if (--replies->missing > 0) return;
-                       showMessage(replies->lines);
+                       std::string all;
+                       for (const auto& line : replies->lines) all += (all.empty() ? "" : "\n") + line.second;
+                       showMessage(all);
                        job_->planAnew();
                      });
   }

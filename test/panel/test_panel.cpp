@@ -440,6 +440,8 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   stage.be(GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("feed") == "10000 mm/min" && panel.label("position_a") == "A -3780.0000 deg");
   WAIT_FOR(panel.label("to_go") == "To go" && panel.label("override_value") == "36 %");
+  // It is laid out level by level.
+  for (int level = 0; level < 10; ++level) QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
   EXPECT_EQ(panel.widget().minimumSizeHint().width(), width);
   for (const auto& [button, place] : before) EXPECT_EQ(button->geometry(), place) << button->objectName().toStdString();
   auto& place = panel.the<QLabel>("place");

@@ -52,7 +52,7 @@ QString rakeLine(const CutterSection& section) {
 QString coreLine(const CutterSection& section) {
   const auto shown = [](double diameter) { return QString::number(diameter / kMillimetre, 'f', 3); };
   QString asked = ", asked " + shown(2 * section.asked_core);
-  if (section.core_tolerance > 0) asked += " within " + shown(section.core_tolerance);
+  if (section.core_tolerance > 0) asked += QString(" within %1").arg(section.core_tolerance / kMillimetre);
   return line(section.outline.empty() ? "Core cut through" : "Core " + shown(2 * section.ground.core_radius) + " mm",
               section.coreIsWithin()) +
          asked + " mm";
@@ -71,7 +71,7 @@ QString spiralLine(const CutterSection& section) {
   const auto spiral = rangeText(spirals);
   if (!spiral) return "";
   return line("Spiral " + *spiral + " deg", good) +
-         QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.spiral_tolerance / kDegree, 0, 'f', 2);
+         QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.spiral_tolerance / kDegree);
 }
 
 QString landLine(const CutterSection& section) {

@@ -161,8 +161,8 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
     openSection(good);
     WAIT_FOR(shows(good, "Core "));
     good.the<QDoubleSpinBox>("section_x").setValue(0);
-    WAIT_FOR(shows(good, "mm, asked 7.100 within 0.100 mm"));
-    EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5.00 deg")) << good.label("section_figures");
+    WAIT_FOR(shows(good, "mm, asked 7.100 within 0.1 mm"));
+    EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5 deg")) << good.label("section_figures");
     EXPECT_FALSE(shows(good, kRed)) << good.label("section_figures");
     good.picture("section_with_tolerances");
   }
@@ -170,7 +170,7 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
   openSection(off);
   WAIT_FOR(shows(off, "Core "));
   off.the<QDoubleSpinBox>("section_x").setValue(0);
-  WAIT_FOR(shows(off, "asked 7.400 within 0.100 mm"));
+  WAIT_FOR(shows(off, "asked 7.400 within 0.1 mm"));
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 7.0")) << off.label("section_figures");
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Spiral ")) << off.label("section_figures");
   off.picture("section_core_off");

@@ -61,8 +61,8 @@ std::string wheelsPlace(const GrindJob& job, const std::optional<double>& above_
   if (above_swivel)
     return line("", format("with the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));
   const double lowered = 1 - std::cos(job.process.setup_swivel);
-  return line("",
-              format("less %.4f L with the wheel's middle L above the swivel's centre, along the spindle", lowered));
+  return line(
+      "", format("%.4f mm less per mm of the wheel's middle above the swivel's centre, along the spindle", lowered));
 }
 
 std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_swivel) {

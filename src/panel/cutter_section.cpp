@@ -1,6 +1,7 @@
 #include "panel/cutter_section.h"
 
 #include "flute_grinder/geometry/ground_job.h"
+#include "panel/text_view.h"
 
 #include <QStringList>
 
@@ -49,11 +50,28 @@ QString rakeLine(const CutterSection& section) {
 }
 
 QString coreLine(const CutterSection& section) {
-  const bool whole = !section.outline.empty();
-  return line(whole ? QString("Core %1 mm").arg(2 * section.ground.core_radius / kMillimetre, 0, 'f', 3)
-                    : QString("Core cut through"),
-              whole) +
-         QString(", asked %1 mm").arg(2 * section.asked_core / kMillimetre, 0, 'f', 3);
+  const auto shown = [](double diameter) { return QString::number(diameter / kMillimetre, 'f', 3); };
+  QString asked = ", asked " + shown(2 * section.asked_core);
+  if (section.core_tolerance > 0) asked += QString(" within %1").arg(section.core_tolerance / kMillimetre);
+  return line(section.outline.empty() ? "Core cut through" : "Core " + shown(2 * section.ground.core_radius) + " mm",
+              section.coreIsWithin()) +
+         asked + " mm";
+}
+
+/// Nothing where the job asks for no spiral angle.
+QString spiralLine(const CutterSection& section) {
+  if (!(section.spiral_tolerance > 0)) return "";
+  std::vector<double> spirals, asked;
+  bool good = true;
+  for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
+    good = good && section.spiralIsWithin(i);
+    asked.push_back(section.asked_spirals[i] / kDegree);
+    if (section.ground.teeth[i].spiral) spirals.push_back(*section.ground.teeth[i].spiral / kDegree);
+  }
+  const auto spiral = rangeText(spirals);
+  if (!spiral) return "";
+  return line("Spiral " + *spiral + " deg", good) +
+         QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.spiral_tolerance / kDegree);
 }
 
 QString landLine(const CutterSection& section) {
@@ -72,6 +90,17 @@ QString landLine(const CutterSection& section) {
 
 }  // namespace
 
+bool CutterSection::coreIsWithin() const {
+  const double off = 2 * std::abs(ground.core_radius - asked_core);
+  return !outline.empty() && (core_tolerance == 0 || off <= core_tolerance);
+}
+
+bool CutterSection::spiralIsWithin(std::size_t tooth) const {
+  const ToothSection& measured = ground.teeth[tooth];
+  if (!measured.complete || !measured.spiral || spiral_tolerance == 0) return true;
+  return std::abs(*measured.spiral - asked_spirals[tooth]) <= spiral_tolerance;
+}
+
 bool CutterSection::rakeIsWithin(const ToothSection& tooth) const {
   return !tooth.rake || std::abs(*tooth.rake - asked_rake) <= rake_tolerance;
 }
@@ -86,14 +115,21 @@ CutterSection cutterSection(const GrindJob& job, double x) {
   made.asked_rake = job.cutter.rake_angle;
   made.rake_tolerance = job.cutter.rake_tolerance;
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(job, x));
-  if (!(made.ground.core_radius >= kMinCore)) return made;
+  made.core_tolerance = job.cutter.core_tolerance;
+  made.spiral_tolerance = job.cutter.spiral_tolerance;
   const std::size_t teeth = job.tooth_angles.size();
+  for (std::size_t i = 0; i < teeth; ++i) {
+    made.asked_spirals.push_back(cutterOf(job, static_cast<int>(i)).spiral_angle);
+  }
+  if (!(made.ground.core_radius >= kMinCore)) return made;
   made.outline = sectionOutline(cutter, x, made.ground.radius, {teeth, kRings, kColumns / teeth + 1});
   return made;
 }
 
 QString figuresText(const CutterSection& section) {
-  return QStringList{rakeLine(section), coreLine(section), landLine(section)}.join("<br>");
+  QStringList lines{rakeLine(section), coreLine(section), spiralLine(section), landLine(section)};
+  lines.removeAll("");
+  return lines.join("<br>");
 }
 
 }  // namespace flute_grinder

@@ -14,15 +14,18 @@ struct CutterSection {
   GroundSection ground;
   std::vector<PolarPoint> outline;  ///< at A = 0; empty if the core is cut through
   CutDirection cut = CutDirection::kRightHand;
-  double asked_rake = 0;      ///< [rad]
-  double rake_tolerance = 0;  ///< [rad]
-  double asked_core = 0;      ///< radius [m]
+  double asked_rake = 0;              ///< [rad]
+  double rake_tolerance = 0;          ///< [rad]
+  double asked_core = 0;              ///< radius [m]
+  double core_tolerance = 0;          ///< of the diameter; 0: any core [m]
+  std::vector<double> asked_spirals;  ///< of every tooth [rad]
+  double spiral_tolerance = 0;        ///< 0: any spiral angle [rad]
 
+  bool coreIsWithin() const;
   bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here
+  bool spiralIsWithin(std::size_t tooth) const;        ///< or the tooth's flute is not complete here
   bool hasLand(const ToothSection& tooth) const;       ///< or nothing is ground here
 };
-
-constexpr const char* kWrong = "#b00020";  ///< colour of a figure that is not as asked
 
 /// Takes milliseconds for each tooth with a flute of its own.
 /// @param job a job that validate() accepts, from withZLaw(). @param x within its flute's length [m].

@@ -17,6 +17,7 @@
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <algorithm>
 #include <exception>
 #include <set>
 #include <stdexcept>
@@ -28,8 +29,10 @@ namespace {
 constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
 constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
-constexpr int kSpacing = 4;  ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
-constexpr int kApart = 14;   ///< between the last column of buttons and the others [px]
+constexpr int kSpacing = 4;            ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
+constexpr int kApart = 14;             ///< between the last column of buttons and the others [px]
+constexpr double kLargerGauge = 1e-3;  ///< than blank and shank, with which Y may well be touched off [m]
+constexpr int kDiameterDigits = 5;
 
 QString capitalized(const std::string& text) {
   QString words = QString::fromStdString(text);
@@ -41,6 +44,7 @@ QString capitalized(const std::string& text) {
 bool isDone(MachineState state, MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return state == MachineState::kReady;
+    case MachineEvent::kDisable: return !isPowered(state);
     case MachineEvent::kCancel: return state == MachineState::kCanceling;
     default: return false;
   }
@@ -49,6 +53,16 @@ bool isDone(MachineState state, MachineEvent event) {
 /// Whether two cutters fill a view alike.
 bool isSameSize(const Cutter& a, const Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
+}
+
+/// Why Y is hardly touched off at a diameter for a job; empty if it may well be.
+std::string diameterDoubt(const GrindJob& job, double diameter) {
+  const CutterGeometry& cutter = job.cutter;
+  const double blank = std::max(cutter.end_diameter, 2 * ConicalCutter(cutter).radius(cutter.flute_length));
+  if (diameter <= std::max(blank, cutter.shank_diameter) + kLargerGauge) return "";
+  const auto shown = [](double d) { return "D " + text({d, Unit::kMetre}, UnitSystem::kShop, kDiameterDigits); };
+  return shown(diameter) + " was entered. The largest blank of this job has " + shown(blank) + ", its shank " +
+         shown(cutter.shank_diameter) + ".";
 }
 
 /// One for the process, however many panels there are.
@@ -100,7 +114,11 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) { touchOff(axis, at, false); });
+  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) {
+    const std::string doubt = axis == kY && job_->job() ? diameterDoubt(*job_->job(), at) : "";
+    if (doubt.empty()) return touchOff(axis, at, false);
+    touch_off_->ask(QString::fromStdString(doubt), [=] { touchOff(axis, at, false); });
+  });
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
@@ -285,6 +303,7 @@ void GrindPanel::refresh() {
     sent_.reset();
     job_->discardPlan();
   }
+  dropPassedReply(state);
   nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -361,7 +380,24 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
 void GrindPanel::request(MachineEvent event) {
   if (event == MachineEvent::kStart) return job_->start();
   if (isStop(event)) return link_->stop(event, reply(done(event)));
-  link_->request(event, reply(done(event)));
+  const auto state = link_->view().state;
+  const auto next = state ? after(static_cast<MachineState>(state->state), event) : std::nullopt;
+  passing_.reset();
+  if (next) passing_ = Passing{*next, false, ""};
+  link_->request(event, [this, event](const std::string& refusal) {
+    showMessage(refusal.empty() ? done(event) : refusal);
+    if (passing_ && refusal.empty()) passing_->reply = messages_->toPlainText();
+  });
+}
+
+/// What is true in a state is not to be read after it.
+void GrindPanel::dropPassedReply(std::optional<MachineState> state) {
+  if (!passing_) return;
+  const bool there = state == passing_->state;
+  passing_->seen = passing_->seen || there;
+  if (there || !passing_->seen || passing_->reply.isEmpty()) return;
+  if (messages_->toPlainText() == passing_->reply) messages_->clear();
+  passing_.reset();
 }
 
 void GrindPanel::plan(const GrindGoal& goal) {
@@ -403,14 +439,14 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
     sent_.reset();
     if (goal.dry_run) {
       goal.dry_run = false;
-      Plan::Response plan;
-      plan.valid = static_cast<std::uint8_t>(good);
-      plan.statistics = result.statistics;
-      plan.duration = result.statistics.duration;
-      plan.reasons = {result.error_string};
-      plan.violations = result.reasons;
-      job_->setPlan(goal, plan);
-      if (good) showMessage(result.error_string);
+      if (good) {
+        showMessage(result.error_string);
+        return plan(goal);  // which the grinder has kept, and which tells more
+      }
+      Plan::Response refused;
+      refused.reasons = {result.error_string};
+      refused.violations = result.reasons;
+      job_->setPlan(goal, refused);
       return;
     }
   }
@@ -462,15 +498,26 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
   const auto message = link_->view().offsets;
   if (!message) return;
   const core::WorkOffsets offsets = fromMessage(*message);
-  auto left = std::make_shared<int>(0);
+  struct Replies {
+    int missing = 0;
+    std::map<int, std::string> lines;  ///< of the axes
+  };
+  auto replies = std::make_shared<Replies>();
   for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
     if (!misfit.change) continue;
-    const core::WorkOffset& was = offsets.axes[static_cast<std::size_t>(misfit.axis)];
-    ++*left;
-    link_->setOffset(misfit.axis, was.value + *misfit.change, basisOf(goal, OffsetMethod::kComputed),
-                     [this, left](const std::string& refusal) {
-                       if (!refusal.empty()) showMessage(refusal);
-                       if (--*left == 0) job_->planAnew();
+    const double was = offsets.axes[static_cast<std::size_t>(misfit.axis)].value, is = was + *misfit.change;
+    const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
+    const std::string done = "work offset of " + axisName(misfit.axis, UnitSystem::kShop) + ": " + shown(is) +
+                             ", was " + shown(was) + "; computed";
+    ++replies->missing;
+    link_->setOffset(misfit.axis, is, basisOf(goal, OffsetMethod::kComputed),
+                     [this, replies, axis = misfit.axis, done](const std::string& refusal) {
+                       replies->lines[axis] = refusal.empty() ? done : refusal;
+                       if (--replies->missing > 0) return;
+                       std::string all;
+                       for (const auto& line : replies->lines) all += (all.empty() ? "" : "\n") + line.second;
+                       showMessage(all);
+                       job_->planAnew();
                      });
   }
 }

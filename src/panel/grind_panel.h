@@ -54,6 +54,13 @@ class GrindPanel : public rviz::Panel {
     GrindGoal goal;
   };
 
+  /// The state to which a request leads.
+  struct Passing {
+    MachineState state;
+    bool seen;
+    QString reply;  ///< to the request, which is true in this state; empty until it has come
+  };
+
   void layOut();
   QLayout* layOutButtons();
   QLayout* layOutSwitches();
@@ -66,6 +73,7 @@ class GrindPanel : public rviz::Panel {
   void showLegend(const std::optional<Legend>& legend);
   bool allowed(MachineEvent event, const GrinderView& view) const;
   void request(MachineEvent event);
+  void dropPassedReply(std::optional<MachineState> state);
   void plan(const GrindGoal& goal);
   void dryRun(const GrindGoal& goal);
   void send(const GrindGoal& goal);
@@ -91,8 +99,9 @@ class GrindPanel : public rviz::Panel {
   std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
   bool planning_ = false;
   std::optional<Sent> sent_;
-  std::string last_sent_;  ///< id of the last goal from here
-  bool begun_ = false;     ///< a job runs or was sent, whoever sent it: the focus has gone to Hold
+  std::optional<Passing> passing_;  ///< of the last request
+  std::string last_sent_;           ///< id of the last goal from here
+  bool begun_ = false;              ///< a job runs or was sent, whoever sent it: the focus has gone to Hold
 
   StateBox* state_;
   JobBox* job_;

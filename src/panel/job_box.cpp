@@ -5,6 +5,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "panel/beside.h"
 #include "panel/plain_words.h"
 #include "panel/setup_dialog.h"
 #include "panel/text_view.h"
@@ -12,6 +13,7 @@
 #include <ros/package.h>
 #include <QFileInfo>
 #include <QHBoxLayout>
+#include <QStringList>
 #include <QVBoxLayout>
 
 #include <exception>
@@ -23,7 +25,9 @@ namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
 constexpr int kQuestionLines = 4;
-constexpr int kAngleDigits = 10;  ///< so that the angle appears as in the job file
+constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
+constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
+constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
 
 /// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
 /// same one.
@@ -85,7 +89,9 @@ void JobBox::layOut() {
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
   zeros_->setObjectName("zero_points");
-  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  zeros_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
+  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
+  zeros_->setFixedHeight(2 * zeros_->fontMetrics().lineSpacing() + 2);
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);
@@ -161,6 +167,7 @@ void JobBox::choose() {
     setFile(file);
     Q_EMIT fileChosen();
   });
+  moveBeside(*file_dialog_, *this);
   file_dialog_->show();
 }
 
@@ -171,6 +178,7 @@ void JobBox::openSetup() {
     discardPlan();
     read();
   });
+  moveBeside(*dialog, *this);
   dialog->show();
 }
 
@@ -179,12 +187,13 @@ void JobBox::setFile(const QString& file) {
   job_.reset();
   where_left_.reset();
   continue_->setChecked(false);
-  const QString name = file.isEmpty() ? "no job file" : QFileInfo(file).fileName();
-  name_->setText(name_->fontMetrics().elidedText(name, Qt::ElideMiddle, 180));
+  showFile();
   name_->setToolTip(file);
   discardPlan();
   if (!file.isEmpty()) read();
 }
+
+void JobBox::showFile() { showName(*name_, file_.isEmpty() ? "no job file" : QFileInfo(file_).fileName()); }
 
 void JobBox::read() {
   try {
@@ -249,21 +258,30 @@ void JobBox::ask(Question* question, const QString& text) {
 void JobBox::askForOffsets(bool discard) {
   discard_ = discard;
   offsets_are_right_ = false;
-  const auto misfits = offsetMisfits();
+  const auto misfits = offsetsToAskFor();
   if (misfits.empty()) return askForSwivel();
-  QString text;
-  for (const core::OffsetMisfit& misfit : misfits) text += QString::fromStdString(misfit.reason) + ".\n";
+  QStringList reasons;
+  for (const core::OffsetMisfit& misfit : misfits) reasons << QString::fromStdString(misfit.reason) + ".";
+  // So that each axis' is seen, however long they are.
+  const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
+  QString text = "Start with these zero points?";
+  for (const QString& reason : reasons) text += "\n" + fontMetrics().elidedText(reason, Qt::ElideRight, room);
+  offset_question_->setToolTip(reasons.join("\n"));
   const QString axes = QString::fromStdString(computable(misfits));
   fit_->setText("Fit " + axes);
   fit_->setVisible(!axes.isEmpty());
-  ask(offset_question_, text + "Start with these?");
+  ask(offset_question_, text);
 }
 
-/// Those of the job as it would be started now. One that is continued needs those with which it began, which the
-/// grinder knows.
+/// Those that do not fit the chosen job.
 std::vector<core::OffsetMisfit> JobBox::offsetMisfits() const {
-  if (!job_ || !offsets_ || continue_->isChecked()) return {};
+  if (!job_ || !offsets_) return {};
   return misfits(*offsets_, goal());
+}
+
+/// A job that is continued needs those with which it began, which the grinder knows.
+std::vector<core::OffsetMisfit> JobBox::offsetsToAskFor() const {
+  return continue_->isChecked() ? std::vector<core::OffsetMisfit>{} : offsetMisfits();
 }
 
 void JobBox::askForSwivel() {
@@ -313,6 +331,7 @@ void JobBox::showOtherJob(const QString& text) {
 void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
   offsets_.reset();
   if (offsets) offsets_ = fromMessage(*offsets);
+  showFile();
   showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
@@ -327,7 +346,7 @@ void JobBox::refresh(const std::optional<GrinderState>& state, const std::option
 /// Whether the question shown, if there is one, still has to be answered.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
-  if (pages_->currentWidget() == offset_question_) return !offsetMisfits().empty();
+  if (pages_->currentWidget() == offset_question_) return !offsetsToAskFor().empty();
   if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
   return discardsUnfinished(*planned_, progress_);
 }
@@ -336,13 +355,12 @@ void JobBox::showZeroPoints() {
   QString text = "Zero points: not known";
   QString hint;
   if (offsets_) {
-    std::string axes;
-    for (const core::OffsetMisfit& misfit : offsetMisfits()) {
-      axes += (axes.empty() ? "" : ", ") + std::string(1, "XYZA"[misfit.axis]);
-    }
-    text = !job_          ? "Zero points"
-           : axes.empty() ? "Zero points: set for this job"
-                          : "Zero points: not of this job: " + QString::fromStdString(axes);
+    QStringList axes, said;
+    for (const core::OffsetMisfit& misfit : offsetMisfits()) axes << QString("XYZA"[misfit.axis]);
+    if (continue_->isChecked()) said << "as when the job began";
+    if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
+    if (said.isEmpty()) said << "set for this job";
+    text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
       hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);

@@ -82,6 +82,7 @@ class JobBox : public QWidget {
  private:
   void choose();
   void openSetup();
+  void showFile();
   void read();
   std::optional<GrindGoal> takePlanned();
   void layOut();
@@ -91,6 +92,7 @@ class JobBox : public QWidget {
   void askForOffsets(bool discard);
   void askForSwivel();
   std::vector<core::OffsetMisfit> offsetMisfits() const;
+  std::vector<core::OffsetMisfit> offsetsToAskFor() const;
   void showZeroPoints();
   bool asksWithReason() const;
   void continueUnfinished();

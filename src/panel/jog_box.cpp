@@ -85,10 +85,7 @@ QPushButton* JogBox::addButton(int axis, int direction) {
 
 bool JogBox::isContinuous() const { return step_->currentData().toDouble() == kContinuous; }
 
-double JogBox::speed(int axis) const {
-  const NumberBox& box = axis == kA ? *rotary_speed_ : *linear_speed_;
-  return box.value() * unitOf(axis) / 60;
-}
+double JogBox::speed(int axis) const { return speedBoxOf(axis).value() * unitOf(axis) / 60; }
 
 void JogBox::click(const Button& button) {
   if (isContinuous()) return;
@@ -124,7 +121,7 @@ void JogBox::refresh(const std::optional<GrinderState>& state, bool has_services
   for (const Button& button : buttons_) {
     const bool raises = button.axis == kY && button.direction > 0;
     const bool safe = state && (!state->wheel_in_work || raises);
-    button.button->setEnabled(allowed && reached && safe);
+    button.button->setEnabled(allowed && reached && safe && speedBoxOf(button.axis).isGood());
   }
 }
 

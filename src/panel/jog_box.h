@@ -41,6 +41,7 @@ class JogBox : public QWidget {
   void press(const Button& button);
   void repeat();
   bool isContinuous() const;
+  const NumberBox& speedBoxOf(int axis) const { return axis == kA ? *rotary_speed_ : *linear_speed_; }
   double speed(int axis) const;
 
   QComboBox* step_;

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
@@ -66,6 +67,12 @@ std::string describe(const GrinderState& state) {
   return text + (sentence.empty() ? "This panel does not know the grinder's state." : sentence);
 }
 
+std::string swivelText(const GrinderState& state) {
+  if (!std::isfinite(state.swivel)) return state.swivel_measured ? "Swivel not known" : "Swivel not confirmed";
+  return (state.swivel_measured ? "Swivel at " : "Swivel set to ") +
+         text(Quantity{state.swivel, Unit::kRadian}, UnitSystem::kShop);
+}
+
 std::string done(MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return "enable: the power is on";
@@ -96,7 +103,13 @@ std::string describe(const Plan::Response& plan) {
     for (const std::string& reason : planTexts(plan)) text += "\n" + reason;
     return text;
   }
-  text = "Takes " + duration(plan.duration) + ".\n" + feedText(plan.statistics);
+  text = "Takes " + duration(plan.duration) + ".\n";
+  if (plan.closest_bodies.size() == 2) {
+    text += "Closest: " + plan.closest_bodies[0] + " and " + plan.closest_bodies[1] +
+            format(", %.3f mm at X %.3f mm.\n", plan.closest_distance / kMillimetre, plan.closest_x / kMillimetre);
+  }
+  for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
+  text += feedText(plan.statistics);
   for (const FeedLimit& limit : plan.statistics.feed_limits) {
     text += "\n" + core::causeText(limit.cause, UnitSystem::kShop) +
             format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);

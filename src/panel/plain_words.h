@@ -15,6 +15,9 @@ std::string duration(double seconds);
 /// What the grinder is doing, why, and what to do about it.
 std::string describe(const GrinderState& state);
 
+/// Where the swivel stands, as the drive measures it or somebody has confirmed it.
+std::string swivelText(const GrinderState& state);
+
 /// The success of a request, in a line. @param event a request.
 std::string done(MachineEvent event);
 
@@ -24,7 +27,8 @@ std::string describe(const GrindGoal& goal);
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
 std::string describe(const JobProgress& progress);
 
-/// What came of a plan: how long the job takes, what cuts its feed, or its violations. A line for each.
+/// What came of a plan: how long the job takes, what comes closest, why zero points do not fit, what cuts its feed; or
+/// its violations. A line for each.
 std::string describe(const Plan::Response& plan);
 
 }  // namespace flute_grinder

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "panel/plain_words.h"
+#include "panel/text_view.h"
 
 #include <QFontDatabase>
 #include <QGridLayout>
@@ -21,7 +22,6 @@ constexpr const char* kGrey = "#5f6368";
 constexpr const char* kGreen = "#1e7d34";
 constexpr const char* kBlue = "#1a5fb4";
 constexpr const char* kAmber = "#9a5b00";
-constexpr const char* kRed = "#b00020";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const GrinderState& grinder) {
@@ -29,7 +29,7 @@ const char* colourOf(const GrinderState& grinder) {
     case StateGroup::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case StateGroup::kActive: return kBlue;
     case StateGroup::kPausing: return kAmber;
-    case StateGroup::kFault: return kRed;
+    case StateGroup::kFault: return kWrong;
     case StateGroup::kOff: break;
   }
   return kGrey;
@@ -37,8 +37,7 @@ const char* colourOf(const GrinderState& grinder) {
 
 constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
-constexpr int kBarHeight = 8;   ///< [px]
-constexpr int kNameWidth = 96;  ///< of a job's name [px]
+constexpr int kBarHeight = 8;  ///< [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // Of positions [mm, deg]: micrometres, and no finer than encoders read.
@@ -59,10 +58,11 @@ QString feedText(double feed) {
 
 }  // namespace
 
-StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
+StateBox::StateBox(QWidget* parent)
+    : QWidget(parent), node_(new QLabel), swivel_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
   node_->setObjectName("grinder");
-  node_->setAlignment(Qt::AlignCenter);
   node_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  swivel_->setObjectName("swivel");
   name_->setObjectName("state");
   name_->setAlignment(Qt::AlignCenter);
   QFont font = name_->font();
@@ -77,13 +77,16 @@ StateBox::StateBox(QWidget* parent) : QWidget(parent), node_(new QLabel), name_(
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setSpacing(3);
-  layout->addWidget(node_);
+  auto* head = new QHBoxLayout;
+  head->addWidget(node_, 1);
+  head->addWidget(swivel_);
+  layout->addLayout(head);
   layout->addWidget(name_);
   layout->addWidget(meaning_);
 }
 
 void StateBox::setNode(const QString& node) {
-  node_->setText(node_->fontMetrics().elidedText(node, Qt::ElideMiddle, node_->width()));
+  showName(*node_, node);
   node_->setToolTip(node);
 }
 
@@ -95,6 +98,7 @@ void StateBox::setName(const QString& name, const QString& colour) {
 
 void StateBox::show(const GrinderView& view, const QString& node, Master master) {
   setNode(node);
+  swivel_->setText(view.state ? QString::fromStdString(swivelText(*view.state)) : "");
   if (!view.state) {
     setName("No answer", kGrey);
     meaning_->setText(master == Master::kMissing
@@ -120,14 +124,17 @@ ProgressBox::ProgressBox(QWidget* parent)
   place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
+  feed_->setMinimumWidth(feed_->fontMetrics().horizontalAdvance("10000 mm/min"));
+  // What changes must not make the panel grow.
+  stroke_.text->setMinimumWidth(stroke_.text->fontMetrics().horizontalAdvance("Stroke 100 %") + 4);
+  job_.text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* place = new QHBoxLayout;
   place->addWidget(place_, 1);
   place->addWidget(feed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(3);
-  layout->setColumnStretch(0, 1);
-  layout->setColumnStretch(1, 2);
+  layout->setColumnStretch(1, 1);
   layout->addLayout(place, 0, 0, 1, 2);
   layout->addWidget(stroke_.text, 1, 0);
   layout->addWidget(job_.text, 1, 1);
@@ -166,17 +173,14 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   feed_->setText(feedText(f.feed));
   // The grinder's estimate assumes the job's own feed.
   const bool at_feed = !view.state || view.state->override == 1;
-  const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 % feed");
+  const QString left = QString::fromStdString(duration(f.remaining_time)) + (at_feed ? " left" : " left at 100 %");
   set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
 }
 
 void ProgressBox::showPlace(const GrinderView& view, const GrindFeedback& feedback) {
   const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
-  const QString job = place_->fontMetrics().elidedText(name, Qt::ElideMiddle, kNameWidth);
-  place_->setText(QString("%1ooth %2, pass %3")
-                      .arg(name.isEmpty() ? "T" : job + ", t")
-                      .arg(feedback.tooth + 1)
-                      .arg(feedback.pass + 1));
+  const QString first = name.isEmpty() ? "T" : ", t";
+  showName(*place_, name, first + QString("ooth %1, pass %2").arg(feedback.tooth + 1).arg(feedback.pass + 1));
   place_->setToolTip(name);
 }
 
@@ -197,6 +201,7 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
     auto* value = new QLabel;
     value->setObjectName(QString("position_%1").arg("xyza"[axis]));
     value->setFont(font);
+    value->setMinimumWidth(value->fontMetrics().horizontalAdvance("A -0000.0000 deg"));
     layout->addWidget(value, axis / 2, axis % 2);
     values_[static_cast<std::size_t>(axis)] = value;
   }

@@ -12,8 +12,8 @@
 
 namespace flute_grinder {
 
-/// The panel's head: the grinder's name, its state on a coloured field, and a sentence that explains it, or that
-/// says whether the grinder or the ROS master is missing.
+/// The panel's head: the grinder's name, where its swivel stands, its state on a coloured field, and a sentence that
+/// explains it, or that says whether the grinder or the ROS master is missing.
 class StateBox : public QWidget {
   Q_OBJECT
 
@@ -27,6 +27,7 @@ class StateBox : public QWidget {
   void setName(const QString& name, const QString& colour);
 
   QLabel* node_;
+  QLabel* swivel_;
   QLabel* name_;
   QLabel* meaning_;
 };

@@ -1,5 +1,7 @@
 #include "panel/section_drawing.h"
 
+#include "panel/text_view.h"
+
 #include <QPainter>
 #include <QStringList>
 
@@ -78,7 +80,7 @@ class Painting {
     circle(section_.ground.radius, QPen(kThin, 1));
     circle(section_.asked_core, dashed(kThin));
     circle(ground, QPen(kMeasured, 1));
-    label(1, 1, {"core", mm(2 * ground) + " mm"}, !section_.outline.empty(), at(ground, -kPi / 4));
+    label(1, 1, {"core", mm(2 * ground) + " mm"}, section_.coreIsWithin(), at(ground, -kPi / 4));
     label(-1, 1, {"cutter", mm(2 * section_.ground.radius) + " mm"}, true, at(section_.ground.radius, -3 * kPi / 4));
   }
 

@@ -44,7 +44,7 @@ SectionView::SectionView(QWidget* parent)
   figures_->setObjectName("section_figures");
   figures_->setWordWrap(true);
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  figures_->setMinimumHeight(3 * figures_->fontMetrics().lineSpacing() + 4);
+  figures_->setMinimumHeight(4 * figures_->fontMetrics().lineSpacing() + 4);
   auto* choice = new QHBoxLayout;
   choice->addWidget(new QLabel("X"));
   choice->addWidget(x_, 1);
@@ -113,7 +113,7 @@ void SectionView::setJob(const Job& job) {
 /// Why no section can be shown; empty if one can.
 QString SectionView::whyNothing(const GrinderView& view) const {
   if (!job_) return "No job is chosen, or its file has an error.";
-  if (!follow_->isChecked()) return "";
+  if (!follow_->isChecked()) return x_->isGood() ? "" : "Allowed X: " + x_->allowed() + ".";
   if (!view.work_position || !std::isfinite((*view.work_position)[kX])) return "No position comes from the grinder.";
   if (!view.state || !isInJob(static_cast<MachineState>(view.state->state))) return "";
   const JobProgress& running = view.state->progress;

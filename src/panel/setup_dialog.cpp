@@ -25,7 +25,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kPollInterval = 50;  ///< [ms]
-constexpr int kSheetLines = 24, kColumns = 100;
+constexpr int kSheetLines = 24, kColumns = 105;
 
 }  // namespace
 
@@ -40,7 +40,6 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + QFileInfo(file).fileName() + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
-  sheet_->setMinimumWidth(kColumns * sheet_->fontMetrics().horizontalAdvance('0'));
   keep_->setObjectName("keep_figure");
   keep_->setToolTip("Leave this figure as it is in the job file");
   keep_->addItem("nothing");
@@ -59,6 +58,7 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
   layout->addLayout(buttons);
+  resize(kColumns * sheet_->fontMetrics().horizontalAdvance('0'), sizeHint().height());
   connect(close, &QPushButton::clicked, this, &QDialog::close);
   connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
   connect(write_, &QPushButton::clicked, this, [this] {

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <QLabel>
 #include <QPlainTextEdit>
 #include <QString>
 
 namespace flute_grinder {
+
+constexpr const char* kWrong = "#b00020";  ///< colour of what is not as it should be
 
 /// A read-only text field that scrolls if there are more lines than fit.
 inline QPlainTextEdit* textView(const char* name, int lines) {
@@ -19,8 +22,14 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
 
 /// @param good false shows it in red.
 inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
-  view.setStyleSheet(good ? "" : "color: #b00020;");
+  view.setStyleSheet(good ? "" : QString("color: %1;").arg(kWrong));
   view.setPlainText(text);
+}
+
+/// Shows a name, shortened in its middle to what room the label has beside the rest.
+inline void showName(QLabel& label, const QString& name, const QString& rest = "") {
+  const QFontMetrics metrics = label.fontMetrics();
+  label.setText(metrics.elidedText(name, Qt::ElideMiddle, label.width() - metrics.horizontalAdvance(rest)) + rest);
 }
 
 }  // namespace flute_grinder

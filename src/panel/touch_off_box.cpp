@@ -42,7 +42,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   offset_->setWordWrap(true);
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // A long text must not make the panel grow.
-  offset_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
+  offset_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
   offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
   auto* form = new QWidget;
   auto* layout = new QGridLayout(form);
@@ -54,7 +54,9 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(offset_, 1, 0, 1, 3);
   layout->setColumnStretch(1, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
-  connect(touch_, &QPushButton::clicked, this, [this] { Q_EMIT wanted(axis(), at_->value() * scaleOf(axis())); });
+  connect(touch_, &QPushButton::clicked, this, [this] {
+    if (at_->isGood()) Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()));
+  });
   const auto* set =
       question_->addAnswer("touch_off_anyway", "Set it all the same", "Set the work offset; nothing moves", 1, 0);
   connect(set, &QPushButton::clicked, this, [this] {
@@ -87,7 +89,7 @@ void TouchOffBox::chooseAxis() {
 void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
   if (view.state) position_ = view.state->position[static_cast<std::size_t>(axis())];
   if (!view.state || !(std::abs(position_ - asked_at_) <= kMoved)) pages_->setCurrentIndex(0);
-  const bool given = axis() != kY || at_->value() > 0;
+  const bool given = at_->isGood() && (axis() != kY || at_->value() > 0);
   touch_->setEnabled(has_services && given && view.state && mayTouchOff(*view.state));
   const QString text = offsetText(view);
   if (text == offset_->text()) return;

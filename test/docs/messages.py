@@ -67,12 +67,12 @@ MESSAGES = {
                                   'Look at the tool',
                                   "Turn rviz's view back to the tool; it does so by itself when another tool is shown"),
     'src/panel/grinder_link.cpp': (),
-    'src/panel/plain_words.cpp': ('The feed is never reached.', '; no axis limits it.', ', limited by', 'a job without a name',
+    'src/panel/plain_words.cpp': ('Zero points:', 'Swivel set to', 'Swivel at', 'The feed is never reached.', '; no axis limits it.', ', limited by', 'a job without a name',
                                   ', at tooth', 'enable: the power is on', 'home: the drive is homing the axes',
                                   'reset: the fault is cleared; the power is off', ': the wheel is being lifted',
                                   'resume: the job continues', 'the spindle is on; keep clear of the wheel',
                                   'the spindle is off; the wheel runs down', 'the coolant is on', 'the coolant is off', 'was sent'),
-    'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 % feed',
+    'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 %',
                               'Position in work coordinates.\\nMachine:', '\\nWork offset:', 'To go', 'Distance to go to the end of the running move in'),
 }
 

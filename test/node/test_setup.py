@@ -146,7 +146,7 @@ class TestFigures(TestSetup):
 
     def test_sheet(self):
         sheet = self.grind(0, 'setup', PAPER_JOB).stdout
-        for line in (r'swivel +31\.76\d deg; the machine.s range is -60 to 60 deg', r'height +2\.788 mm', r'less 0\.1498 L with the wheel.s middle L above the swivel.s centre', r'upper face 4\.55[23] mm',
+        for line in (r'swivel +31\.76\d deg; the machine.s range is -60 to 60 deg', r'height +2\.788 mm', r'0\.1498 mm less per mm of the wheel.s middle above the swivel.s centre', r'upper face 4\.55[23] mm',
                      r'reads D/2 - 1\.288 mm: 3\.712 mm for D = 10 mm', r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm',
                      r'rake +7\.989 to 8\.011 deg; asked 8 deg within 0\.5 deg', r'flutes complete X 0\.000 to 30\.000 mm'):
             self.assertRegex(sheet, line)

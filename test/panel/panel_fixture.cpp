@@ -48,7 +48,7 @@ std::string lacksRoom(QWidget& widget) {
   if (auto* label = qobject_cast<QLabel*>(&widget)) {
     const bool fits = label->wordWrap()
                           ? label->heightForWidth(label->width()) <= label->height()
-                          : label->fontMetrics().horizontalAdvance(label->text()) <= label->contentsRect().width();
+                          : label->fontMetrics().size(0, label->text()).width() <= label->contentsRect().width();
     if (!fits) return "no room for the text of " + nameOf(widget) + ": " + label->text().toStdString() + '\n';
   } else if (auto* button = qobject_cast<QAbstractButton*>(&widget)) {
     const QSize text(button->fontMetrics().horizontalAdvance(button->text()) + 6, button->fontMetrics().height());

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -72,7 +73,7 @@ struct Row {
   const char* meaning;
 };
 const std::vector<Row> kStates{
-    {GrinderState::DISABLED, "disabled", {"enable", "disable", "reset"}, "power is off"},
+    {GrinderState::DISABLED, "disabled", {"enable", "reset"}, "power is off"},
     {GrinderState::READY, "ready", {"disable", "home", "start"}, "power is on"},
     {GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
     {GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
@@ -83,7 +84,7 @@ const std::vector<Row> kStates{
     {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
     {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
     {GrinderState::CANCELING, "canceling", {"disable", "hold"}, "the job ends"},
-    {GrinderState::FAULT, "fault", {"disable", "reset"}, "following error 1.2 mm"},
+    {GrinderState::FAULT, "fault", {"reset"}, "following error 1.2 mm"},
     {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
     {GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
     {GrinderState::JOGGING_RETRACTED, "jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
@@ -338,6 +339,31 @@ TEST_F(OnStage, ARequestThatIsDoneSaysSoInALine) {
   }
 }
 
+TEST_F(OnStage, AReplyGoesWithTheStateThatItIsAbout) {
+  Panel panel("cell/stage");
+  const auto lift = [&] {
+    stage.change([&] { stage.state.wheel_in_work = 1; });
+    stage.be(GrinderState::READY, "ready");
+    WAIT_FOR(panel.enabled("lift"));
+    panel.click("lift");
+    WAIT_FOR(said(panel) == "Lift: the wheel is being lifted");
+    stage.be(GrinderState::LIFTING, "lifting");
+    WAIT_FOR(panel.state() == "Lifting");
+    EXPECT_EQ(said(panel), "Lift: the wheel is being lifted");
+  };
+  ASSERT_NO_FATAL_FAILURE(lift());
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(panel.text("messages"), "");
+  // Not what was said since then.
+  ASSERT_NO_FATAL_FAILURE(lift());
+  panel.click("hold");
+  WAIT_FOR(said(panel) == "Hold was sent");
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.state() == "Ready");
+  EXPECT_EQ(said(panel), "Hold was sent");
+}
+
 TEST_F(OnStage, AReplyReplacesTheOneBeforeAndBeginsWithItsFirstLine) {
   Panel panel("cell/stage");
   stage.be(GrinderState::DISABLED, "disabled");
@@ -379,6 +405,59 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.the<QWidget>("verdict").isVisible());
   EXPECT_EQ(panel.label("place"), "No job runs");
+}
+
+TEST_F(OnStage, NothingMovesAtAStart) {
+  Panel panel("cell/stage", kPaper);
+  panel.widget().resize(1, panel.widget().height());
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] {
+    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, stage.joints.position = {0, 0, 0, 0};
+  });
+  WAIT_FOR(panel.label("position_x") == "X     0.000 mm");
+  std::map<QWidget*, QRect> before;
+  for (const std::string& name : kRequests) {
+    auto& button = panel.the<QPushButton>(name.c_str());
+    before[&button] = button.geometry();
+  }
+  const int width = panel.widget().minimumSizeHint().width();
+  GrindActionGoal job;
+  job.goal_id.id = "of the night shift";
+  job.goal = goalFromJob(readJobFile(kPaper.toStdString()));
+  job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
+  stage.tellJob(job);
+  Legend legend = legendOf(kPaper);
+  legend.tolerance = 0.1e-6;
+  stage.tellLegend(legend);
+  stage.change([&] {
+    stage.joints.position = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
+    stage.state.distance_to_go = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
+    stage.state.override = 0.36;
+    stage.progress.stroke_fraction = stage.progress.job_fraction = 1;
+    stage.progress.remaining_time = 360000, stage.progress.tooth = 63, stage.progress.pass = 9999;
+    stage.progress.feed = 10.0 / 60;
+  });
+  stage.be(GrinderState::RUNNING, "running");
+  WAIT_FOR(panel.label("feed") == "10000 mm/min" && panel.label("position_a") == "A -3780.0000 deg");
+  WAIT_FOR(panel.label("to_go") == "To go" && panel.label("override_value") == "36 %");
+  // It is laid out level by level.
+  for (int level = 0; level < 10; ++level) QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+  EXPECT_EQ(panel.widget().minimumSizeHint().width(), width);
+  for (const auto& [button, place] : before) EXPECT_EQ(button->geometry(), place) << button->objectName().toStdString();
+  auto& place = panel.the<QLabel>("place");
+  WAIT_FOR(panel.label("place").find(", tooth 64, pass 10000") != std::string::npos);
+  WAIT_FOR(place.fontMetrics().horizontalAdvance(place.text()) <= place.width());
+}
+
+TEST_F(OnStage, ALongNameIsShortenedToItsRoom) {
+  const QTemporaryDir folder;
+  const QString path = folder.filePath("four_teeth_of_the_night_shift_with_a_long_name.yaml");
+  ASSERT_TRUE(QFile::copy(kPaper, path));
+  Panel panel("cell/stage", path);
+  auto& name = panel.the<QLabel>("job_file");
+  WAIT_FOR(name.text().startsWith("fo") && name.text().endsWith("ml") &&
+           name.fontMetrics().horizontalAdvance(name.text()) <= name.width());
+  EXPECT_EQ(name.toolTip(), path);
 }
 
 TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
@@ -487,6 +566,49 @@ TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
   WAIT_FOR(!panel.enabled("cancel"));
 }
 
+TEST_F(OnStage, PlanAndDryRunSayTheSame) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  stage.change([&] {
+    stage.plan.valid = 1;
+    stage.plan.duration = 7.03;
+    stage.plan.closest_bodies = {"wheel", "collet"};
+    stage.plan.closest_distance = 1.4214e-3;
+    stage.plan.closest_x = 0.037;
+    stage.plan.warnings = {"X was never set; Y was never set"};
+  });
+  const std::string verdict =
+      "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
+      "Zero points: X was never set; Y was never set.\nThe feed is never reached.";
+  WAIT_FOR(panel.enabled("plan"));
+  panel.click("plan");
+  WAIT_FOR(panel.text("verdict") == verdict);
+  WAIT_FOR(panel.enabled("dry_run"));
+  panel.click("dry_run");
+  WAIT_FOR(panel.text("verdict") == "Planning ..." && stage.get([&] { return stage.goals.size(); }) == 1);
+  GrindResult good;
+  good.error_string = "planned and checked; nothing moved";
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), good);
+  WAIT_FOR(panel.text("verdict") == verdict && panel.enabled("start"));
+  EXPECT_EQ(said(panel), "Planned and checked; nothing moved");
+  panel.picture("dry_run");
+}
+
+TEST_F(OnStage, ADryRunThatIsRefusedSaysWhy) {
+  Panel panel("cell/stage", kPaper);
+  stage.be(GrinderState::READY, "ready");
+  WAIT_FOR(panel.enabled("dry_run"));
+  panel.click("dry_run");
+  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
+  GrindResult refused;
+  refused.error_code = GrindResult::LIMIT_VIOLATED;
+  refused.reasons = {feedOutOfRange()};
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), refused);
+  WAIT_FOR(panel.text("verdict") ==
+           "Cannot be ground:\nprocess.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min");
+  EXPECT_FALSE(panel.enabled("start"));
+}
+
 /// With a job that is planned, and a swivel that nobody has confirmed.
 class BeforeTheSwivelIsSet : public OnStage {
  protected:
@@ -534,6 +656,22 @@ TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
   ASSERT_EQ(swivels().size(), 1U);
   EXPECT_DOUBLE_EQ(swivels()[0], 31.769 * M_PI / 180);
   EXPECT_FALSE(stage.get([&] { return stage.goals[0].goal.discard; }));
+}
+
+TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
+  EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
+  tell(43.32 * M_PI / 180, false);
+  for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+    panel.openTab(tab);
+    EXPECT_TRUE(panel.the<QWidget>("swivel").isVisible());
+    EXPECT_EQ(panel.label("swivel"), "Swivel set to 43.32 deg");
+  }
+  tell(43.32 * M_PI / 180, true);
+  EXPECT_EQ(panel.label("swivel"), "Swivel at 43.32 deg");
+  tell(std::numeric_limits<double>::quiet_NaN(), true);
+  EXPECT_EQ(panel.label("swivel"), "Swivel not known");
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(panel.label("swivel").empty());
 }
 
 TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
@@ -690,7 +828,7 @@ TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
   WAIT_FOR(stage.get([&] { return stage.overrides.size(); }) == 1);
   EXPECT_DOUBLE_EQ(stage.get([&] { return stage.overrides[0]; }), 0.35);
   // The grinder's own value again, and another one that it gets from elsewhere.
-  WAIT_FOR(panel.the<QProgressBar>("job").text().endsWith("left at 100 % feed"));
+  WAIT_FOR(panel.the<QProgressBar>("job").text().endsWith("left at 100 %"));
   stage.change([&] { stage.state.override = 1.2; });
   WAIT_FOR(panel.label("override_value") == "120 %");
   // By key: sent when it rests.
@@ -796,7 +934,7 @@ TEST_F(OnStage, TheNodeCanBeChosen) {
   QTest::keyClicks(&node, "cell/stage");
   QTest::keyClick(&node, Qt::Key_Return);
   WAIT_FOR(panel.state() == "Disabled");
-  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "disable", "reset"}));
+  EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
 }
 
 TEST_F(OnStage, WhatHeldTheJobIsToldInPlainWords) {

@@ -15,6 +15,7 @@
 #include <QFileDialog>
 #include <QLineEdit>
 #include <QLocale>
+#include <QScreen>
 #include <QScrollBar>
 #include <QWheelEvent>
 #include <QWindow>
@@ -100,16 +101,13 @@ TEST_F(Input, CommaAndPointAreTheDecimalSignInEveryBox) {
       EXPECT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
       EXPECT_DOUBLE_EQ(typed(box, "12,5"), 12.5);
       EXPECT_EQ(box.text().count(','), 0) << box.text().toStdString();
-      // The second sign is not taken.
-      EXPECT_DOUBLE_EQ(typed(box, "1.2,5"), 1.25);
-      EXPECT_DOUBLE_EQ(typed(box, "1,2.5"), 1.25);
     });
     panel.the<QComboBox>("touch_axis").setCurrentText("X");
     EXPECT_DOUBLE_EQ(typed(panel.the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
   }
 }
 
-TEST_F(Input, WhatIsNotANumberIsNotTaken) {
+TEST_F(Input, WhatIsNoNumberInRangeStaysAsItWasTyped) {
   for (const QLocale& locale : {QLocale::c(), QLocale(QLocale::English), QLocale(QLocale::German)}) {
     SCOPED_TRACE(locale.name().toStdString());
     QLocale::setDefault(locale);
@@ -118,15 +116,65 @@ TEST_F(Input, WhatIsNotANumberIsNotTaken) {
     panel.openTab("Jog");
     forEachBox(panel, [](QAbstractSpinBox& box) {
       ASSERT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
-      for (const char* text :
-           {"1.234,5", "1,234.5", "1,234,567", "1 000", "1'000", "1e3", "nan", "inf", "0x10", "six"}) {
-        EXPECT_DOUBLE_EQ(pasted(box, text), 7.25) << text;
+      for (const char* text : {"1.234,5", "1,234.5", "1.2.5", "1 000", "1'000", "1e9", "nan", "inf", "0x10", "abc", "-",
+                               "500000", "-20000", "1.23456"}) {
+        SCOPED_TRACE(text);
+        for (const auto enter : {typed, pasted}) {
+          enter(box, text);
+          QFocusEvent left(QEvent::FocusOut, Qt::TabFocusReason);
+          QApplication::sendEvent(&box, &left);
+          EXPECT_EQ(qobject_cast<QDoubleSpinBox*>(&box)->cleanText(), text);
+          EXPECT_FALSE(box.hasAcceptableInput());
+        }
       }
       EXPECT_DOUBLE_EQ(pasted(box, "8,25"), 8.25);
-      // What is left unfinished is given up.
-      EXPECT_DOUBLE_EQ(typed(box, "-"), 8.25);
+      EXPECT_TRUE(box.hasAcceptableInput());
     });
   }
+}
+
+TEST_F(Input, AUnitThatIsDeletedInPartComesBack) {
+  Panel panel("cell/stage");
+  panel.openTab("Jog");
+  auto& box = panel.the<QAbstractSpinBox>("touch_at");
+  typed(box, "5");
+  const QString whole = box.text();
+  for (const Qt::Key key : {Qt::Key_Backspace, Qt::Key_Backspace}) {
+    box.findChild<QLineEdit*>()->end(false);
+    QTest::keyClick(&box, key);
+  }
+  EXPECT_EQ(box.text(), whole);
+}
+
+TEST_F(Input, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
+  Panel panel("cell/stage", kJobs + "paper.yaml");
+  panel.openTab("Jog");
+  WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus"));
+  const auto enter = [&](const char* box, const char* text) { typed(panel.the<QAbstractSpinBox>(box), text); };
+  const auto red = [&](const char* box) {
+    return panel.the<QAbstractSpinBox>(box).palette().color(QPalette::Text) == QColor("#b00020");
+  };
+  enter("touch_at", "abc");
+  WAIT_FOR(!panel.enabled("touch_off") && red("touch_at"));
+  enter("jog_speed", "1e9");
+  WAIT_FOR(!panel.enabled("jog_x_plus") && red("jog_speed"));
+  EXPECT_TRUE(panel.enabled("jog_a_plus")) << "A has a speed of its own";
+  panel.picture("no_number");
+  panel.openTab("Section");
+  WAIT_FOR(panel.label("section_figures").find("Rake ") == 0);
+  enter("section_x", "500");
+  WAIT_FOR(panel.label("section_figures") == "Allowed X: 0 to 30 mm, 2 decimals.");
+  EXPECT_TRUE(red("section_x"));
+  panel.openTab("Jog");
+  EXPECT_FALSE(panel.enabled("touch_off")) << "it was only hidden";
+  enter("jog_speed", "120");
+  enter("touch_at", "0.5");
+  WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus") && !red("touch_at") && !red("jog_speed"));
+  enter("touch_at", "500000");
+  WAIT_FOR(red("touch_at"));
+  panel.the<QComboBox>("touch_axis").setCurrentText("Z");
+  WAIT_FOR(!red("touch_at"));
+  EXPECT_TRUE(panel.enabled("touch_off"));
 }
 
 TEST_F(Input, ATouchOffIsSentAsItIsRead) {
@@ -163,7 +211,13 @@ class BesideADialog : public Input {
   }
   void expectHoldWorks() {
     EXPECT_EQ(QGuiApplication::modalWindow(), nullptr);
-    for (const auto* dialog : panel.widget().findChildren<QDialog*>()) EXPECT_FALSE(dialog->isModal());
+    const auto& hold = panel.the<QPushButton>("hold");
+    const QRect place(hold.mapToGlobal(QPoint()), hold.size());
+    for (const auto* dialog : panel.widget().findChildren<QDialog*>()) {
+      EXPECT_FALSE(dialog->isModal());
+      EXPECT_FALSE(dialog->frameGeometry().intersects(place));
+      EXPECT_TRUE(QGuiApplication::primaryScreen()->geometry().contains(dialog->geometry()));
+    }
     be(GrinderState::RUNNING, "running");
     WAIT_FOR(panel.state() == "Running" && panel.enabled("hold"));
     clickInWindow(panel, "hold");
@@ -201,6 +255,15 @@ TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
   ASSERT_TRUE(dialog);
   enter(*dialog, "/nowhere/job.yaml");
   WAIT_FOR(panel.text("verdict").find("job.yaml") != std::string::npos);
+  expectHoldWorks();
+}
+
+TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
+  // As rviz docks it.
+  panel.widget().move(940, 40);
+  WAIT_FOR(panel.widget().mapToGlobal(QPoint()).x() == 940);
+  panel.click("setup");
+  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
   expectHoldWorks();
 }
 

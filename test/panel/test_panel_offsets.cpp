@@ -1,14 +1,20 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 #include "stage.h"
 
 #include <ros/package.h>
+#include <QCheckBox>
 #include <QComboBox>
 #include <QDoubleSpinBox>
+#include <QTextBlock>
+#include <QTextCursor>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -31,10 +37,11 @@ class ZeroPoints : public ::testing::Test {
     WAIT_FOR(panel.enabled("start"));
   }
 
-  /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter. @param diameter [m].
-  void setFor(double diameter) {
+  /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter and height [m].
+  void setFor(double diameter, double height = 0.002788) {
     GrindGoal goal = goalFromFile(kPaper.toStdString());
     goal.cutter.end_diameter = diameter;
+    goal.process.setup_height = height;
     goal.job_name = "other.yaml";
     WorkOffsets offsets;
     offsets.values = {0.001, 0.002, 0.003, 0};
@@ -58,12 +65,65 @@ class ZeroPoints : public ::testing::Test {
   Panel panel{"cell/stage", kPaper};
 };
 
+TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
+  GrindGoal other = goalFromFile((QString(kPaper).replace("paper", "roughing_d10_t4")).toStdString());
+  other.cutter.end_diameter = 0.006123;
+  other.job_name = "a_roughing_cutter_of_last_week.yaml";
+  WorkOffsets offsets;
+  for (const int axis : {kX, kY, kZ}) {
+    const auto i = static_cast<std::size_t>(axis);
+    offsets.set_at[i] = ros::Time(1.7e9);
+    offsets.basis[i] = toMessage(basisOf(other, OffsetMethod::kTouchOff));
+    offsets.basis[i].wheel_diameter = 0.0751234;
+    offsets.basis[i].wheel_width = 0.0041234;
+  }
+  stage.tellOffsets(offsets);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+  panel.click("start");
+  WAIT_FOR(asks());
+  const auto& text = panel.the<QPlainTextEdit>("offsets_question");
+  std::string shown;
+  for (QTextBlock line = text.document()->begin(); line.isValid(); line = line.next()) {
+    QTextCursor end(line);
+    end.movePosition(QTextCursor::EndOfBlock);
+    EXPECT_TRUE(text.viewport()->rect().contains(text.cursorRect(end))) << line.text().toStdString();
+    shown += line.text()[0].toLatin1();
+  }
+  EXPECT_EQ(shown, "SXYZ");
+  const std::string whole = panel.the<QPlainTextEdit>("offsets_question").parentWidget()->toolTip().toStdString();
+  EXPECT_NE(whole.find("(a_roughing_cutter_of_last_week.yaml); this job has height 2.788 mm, swivel 31.769 deg"),
+            std::string::npos)
+      << whole;
+  panel.picture("offset_question_long");
+}
+
 TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
   setFor(0.01);
   WAIT_FOR(panel.label("zero_points") == "Zero points: set for this job");
   panel.click("start");
   WAIT_FOR(goals().size() == 1);
   EXPECT_FALSE(goals()[0].goal.offsets_are_right);
+}
+
+TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
+  setFor(0.006);
+  stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });
+  auto& go_on = panel.the<QCheckBox>("continue");
+  WAIT_FOR(go_on.isEnabled() && panel.label("zero_points") == "Zero points: not of this job: Y");
+  const auto& zeros = panel.the<QLabel>("zero_points");
+  const auto room = [&] { return std::pair(zeros.geometry(), panel.the<QWidget>("verdict").geometry()); };
+  const auto before = room();
+  QTest::mouseClick(&go_on, Qt::LeftButton, {}, QPoint(8, go_on.height() / 2));
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: Y");
+  EXPECT_EQ(room(), before) << "it moves";
+  panel.picture("zero_points_of_a_continued_job");
+  setFor(0.01);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began");
+  panel.widget().resize(1, panel.widget().height());
+  stage.tellOffsets({});
+  WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: X, Y, Z");
+  const QSize text = zeros.fontMetrics().size(0, zeros.text());
+  EXPECT_EQ(zeros.size().expandedTo(text), zeros.size()) << "it is clipped where the panel is narrow";
 }
 
 TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
@@ -102,6 +162,19 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   EXPECT_EQ(set.basis.end_diameter, 0.01);
   EXPECT_EQ(set.basis.method, OffsetBasis::COMPUTED);
   EXPECT_TRUE(goals().empty()) << "only planned";
+}
+
+TEST_F(ZeroPoints, ThatAreFittedAreToldWithWhatTheyWereBesideThePlan) {
+  setFor(0.006, 0.001788);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y, Z");
+  panel.click("start");
+  WAIT_FOR(asks());
+  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
+  panel.answer("fit_offsets");
+  WAIT_FOR(panel.text("messages").size() > 9 && panel.text("verdict").find("Takes 12.0 s.") == 0);
+  EXPECT_EQ(panel.text("messages").substr(9),
+            "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");
+  panel.picture("fitted");
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
@@ -148,6 +221,34 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   WAIT_FOR(touches().size() == 7);
   EXPECT_TRUE(touches()[6].large_change_ok);
   EXPECT_FALSE(asks());
+}
+
+TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
+  const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
+  // The wheel's middle at the height of the axis, where it touches.
+  stage.change([&] { stage.state.work_position[kZ] = -0.002788, stage.state.override = 0.5; });
+  WAIT_FOR(panel.label("override_value") == "50 %");
+  panel.openTab("Jog");
+  panel.the<QComboBox>("touch_axis").setCurrentText("Y");
+  auto& at = panel.the<QDoubleSpinBox>("touch_at");
+  // The cone ends with D 15.249 mm; the shank has D 16 mm.
+  at.setValue(16.9);
+  WAIT_FOR(panel.enabled("touch_off"));
+  panel.click("touch_off");
+  WAIT_FOR(touches().size() == 1);
+  EXPECT_NEAR(touches()[0].position, 0.00345, 1e-12);
+  at.setValue(110);
+  panel.click("touch_off");
+  WAIT_FOR(panel.the<QWidget>("touch_off_anyway").isVisible());
+  EXPECT_EQ(panel.text("touch_question"),
+            "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm.");
+  panel.picture("touch_off_diameter");
+  panel.answer("decline_touch");
+  panel.click("touch_off");
+  panel.answer("touch_off_anyway");
+  WAIT_FOR(touches().size() == 2);
+  EXPECT_NEAR(touches()[1].position, 0.05, 1e-12);
+  EXPECT_FALSE(touches()[1].large_change_ok) << "the limit of a change is another question";
 }
 
 TEST_F(ZeroPoints, OfYAndZNeedAJob) {

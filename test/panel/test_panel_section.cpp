@@ -149,6 +149,33 @@ TEST_F(SectionOnStage, WhatIsNotAsAskedIsRed) {
   panel.picture("section_wrong_rake");
 }
 
+TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
+  const auto job = [&](const QString& name, const QByteArray& core, const QByteArray& spiral) {
+    return changedJob(
+        kPaper, folder.filePath(name),
+        {{"rake_tolerance_deg: 0.5", "rake_tolerance_deg: 0.5\n  core_diameter_mm: " + core +
+                                         "\n  core_tolerance_mm: 0.1\n  spiral_tolerance_deg: " + spiral}});
+  };
+  {
+    Panel good("cell/stage", job("good.yaml", "7.1", "5"));
+    openSection(good);
+    WAIT_FOR(shows(good, "Core "));
+    good.the<QDoubleSpinBox>("section_x").setValue(0);
+    WAIT_FOR(shows(good, "mm, asked 7.100 within 0.1 mm"));
+    EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5 deg")) << good.label("section_figures");
+    EXPECT_FALSE(shows(good, kRed)) << good.label("section_figures");
+    good.picture("section_with_tolerances");
+  }
+  Panel off("cell/stage", job("off.yaml", "7.4", "0.0001"));
+  openSection(off);
+  WAIT_FOR(shows(off, "Core "));
+  off.the<QDoubleSpinBox>("section_x").setValue(0);
+  WAIT_FOR(shows(off, "asked 7.400 within 0.1 mm"));
+  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 7.0")) << off.label("section_figures");
+  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Spiral ")) << off.label("section_figures");
+  off.picture("section_core_off");
+}
+
 TEST_F(SectionOnStage, ItFollowsTheWheel) {
   Panel panel("cell/stage", kPaper);
   stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });

@@ -313,7 +313,11 @@ void GrindPanel::refresh() {
   const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
   enable(MachineEvent::kHold);
   const bool begun = job_runs || (state && sent_ && !sent_->goal.dry_run);
-  if (begun && !begun_) buttons_.at(MachineEvent::kHold)->setFocus();
+  if (begun && !begun_) {
+    buttons_.at(MachineEvent::kHold)->setFocus();
+    const double feed_override = view.state->override;
+    if (feed_override != 1) showMessage(format("the job begins at a feed override of %.0f %%", feed_override * 100));
+  }
   begun_ = begun;
   for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);

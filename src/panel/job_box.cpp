@@ -1,7 +1,10 @@
 #include "panel/job_box.h"
 
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
+#include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -24,15 +27,20 @@ namespace flute_grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
+constexpr int kContinueWidth = 240;  ///< [px]
 constexpr int kQuestionLines = 4;
 constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
 constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
 constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
 
+bool isUnfinished(const JobProgress& progress) { return !progress.job_digest.empty() && !progress.finished; }
+
+QString packageJobs() { return QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"; }
+
 /// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
 /// same one.
 bool discardsUnfinished(const GrindGoal& goal, const JobProgress& progress) {
-  if (progress.job_digest.empty() || progress.finished) return false;
+  if (!isUnfinished(progress)) return false;
   const bool goes_on = goal.first_tooth == progress.tooth && goal.first_pass == progress.pass;
   return !(goes_on && progress.job_digest == jobDigest(jobFromGoal(goal)));
 }
@@ -74,7 +82,7 @@ JobBox::JobBox(QWidget* parent)
   makeQuestions();
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
   connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
-  connect(continue_, &QCheckBox::clicked, this, &JobBox::discardPlan);
+  connect(continue_, &QCheckBox::clicked, this, &JobBox::clickContinue);
   connect(plan_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
   });
@@ -154,8 +162,7 @@ void JobBox::choose() {
     file_dialog_->raise();
     return file_dialog_->activateWindow();
   }
-  const QString folder = file_.isEmpty() ? QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"
-                                         : QFileInfo(file_).path();
+  const QString folder = file_.isEmpty() ? packageJobs() : QFileInfo(file_).path();
   file_dialog_ = new QFileDialog(this, "Choose a job file for " + QString::fromStdString(grinder_), folder,
                                  "Jobs (*.yaml *.yml);;All files (*)");
   // Qt's own: the desktop's is modal, and so are the messages that the others of these would open.
@@ -210,7 +217,23 @@ void JobBox::read() {
 
 void JobBox::discardPlan() {
   planned_.reset();
-  showVerdict(file_.isEmpty() ? "Open a job file first." : "Not planned yet.", true);
+  showVerdict(withoutPlan(), true);
+}
+
+/// What is shown as long as nothing was planned.
+QString JobBox::withoutPlan() const {
+  const QString text = file_.isEmpty() ? "Open a job file first." : "Not planned yet.";
+  if (!isUnfinished(progress_) || job_runs_) return text;
+  return text +
+         QString::fromStdString("\nNot finished: " + describe(progress_) + ". It ended: " + endText(progress_) + ".");
+}
+
+/// Takes the file of the unfinished job if it is another than the chosen one.
+void JobBox::clickContinue(bool checked) {
+  if (!checked || where_left_) return discardPlan();
+  setFile(unfinished_file_);
+  continue_->setChecked(true);
+  Q_EMIT fileChosen();
 }
 
 GrindGoal JobBox::goal() const {
@@ -238,7 +261,12 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
   if (goalNow() != goal) return;
   planned_.reset();
   if (plan.valid) planned_ = goal;
-  showVerdict(QString::fromStdString(describe(plan)), plan.valid != 0);
+  std::string text = describe(plan);
+  const double cut = shankCut(job_->cutter);
+  if (plan.valid && cut > 0) {
+    text += format("\nThe first pass cuts %.3f mm more than its infeed out of the shank.", cut / units::kMillimetre);
+  }
+  showVerdict(QString::fromStdString(text), plan.valid != 0);
 }
 
 void JobBox::start() {
@@ -338,7 +366,7 @@ void JobBox::refresh(const std::optional<GrinderState>& state, const std::option
   if (!idle || !asksWithReason()) closeQuestion();
   choose_->setEnabled(idle);
   setup_->setEnabled(!file_.isEmpty());
-  continue_->setEnabled(idle && where_left_);
+  continue_->setEnabled(idle && (where_left_ || !unfinished_file_.isEmpty()));
   plan_->setEnabled(idle && !file_.isEmpty());
   dry_run_->setEnabled(idle && !file_.isEmpty());
 }
@@ -373,20 +401,44 @@ void JobBox::showZeroPoints() {
 
 void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   if (!state) return;
+  const bool has_no_plan = verdict_->toPlainText() == withoutPlan();
+  job_runs_ = isInJob(static_cast<MachineState>(state->state));
   progress_ = state->progress;
+  if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {
     GrindGoal left = goal();
     if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
   if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();
-  if (!where_left_) {
-    continue_->setChecked(false);
-    continue_->setText(kContinue);
+  findUnfinished();
+  if (!where_left_) continue_->setChecked(false);
+  const QString name = unfinished_file_.isEmpty() ? QString() : " " + QFileInfo(unfinished_file_).fileName();
+  const QString text =
+      "Continue" + name + QString(" at tooth %1, pass %2").arg(progress_.tooth + 1).arg(progress_.pass + 1);
+  continue_->setText(where_left_ || !name.isEmpty() ? fontMetrics().elidedText(text, Qt::ElideMiddle, kContinueWidth)
+                                                    : kContinue);
+}
+
+/// The file of an unfinished job other than the chosen one, if it lies beside that or is one of the package's.
+void JobBox::findUnfinished() {
+  if (where_left_ || job_runs_ || !isUnfinished(progress_)) {
+    unfinished_file_.clear();
+    sought_.clear();
     return;
   }
-  continue_->setText(
-      QString("Continue at tooth %1, pass %2").arg(where_left_->first_tooth + 1).arg(where_left_->first_pass + 1));
+  // A file is read once for each job.
+  if (sought_ == progress_.job_digest) return;
+  sought_ = progress_.job_digest;
+  unfinished_file_.clear();
+  for (const QString& folder : {QFileInfo(file_).path(), packageJobs()}) {
+    const QString file = folder + "/" + QFileInfo(QString::fromStdString(progress_.job_name)).fileName();
+    try {
+      if (jobDigest(readJobFile(file.toStdString())) == progress_.job_digest) unfinished_file_ = file;
+    } catch (const std::exception&) {
+      // Whatever is there is not that job's.
+    }
+  }
 }
 
 void JobBox::showVerdict(const QString& text, bool good) {

@@ -100,6 +100,9 @@ class JobBox : public QWidget {
   std::optional<GrindGoal> goalNow();
   std::optional<GrindGoal> beginPlan();
   void refreshContinue(const std::optional<GrinderState>& state);
+  void findUnfinished();
+  void clickContinue(bool checked);
+  QString withoutPlan() const;
   void showVerdict(const QString& text, bool good);
 
   QString file_;
@@ -108,6 +111,9 @@ class JobBox : public QWidget {
   std::optional<GrindGoal> planned_;          ///< without violations
   std::optional<GrindGoal> where_left_;       ///< the job as it would be continued, if it can be
   JobProgress progress_;                      ///< as last received from the grinder
+  bool job_runs_ = false;                     ///< whose progress that is
+  QString unfinished_file_;                   ///< of another job that can be continued; empty if none is known
+  std::string sought_;                        ///< digest of the job for which that was sought
   Swivel swivel_;                             ///< as last received from the grinder
   std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
   std::string wheel_;                         ///< name of the file's wheel file; empty if it has none

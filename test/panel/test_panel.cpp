@@ -797,6 +797,45 @@ TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
   EXPECT_EQ(goal().first_pass, 2);
 }
 
+TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
+  leavePaper();
+  stage.change([&] { stage.state.progress.end = "the drive reports a fault"; });
+  Panel panel("cell/stage");
+  auto& go_on = panel.the<QCheckBox>("continue");
+  WAIT_FOR(go_on.isEnabled());
+  EXPECT_EQ(go_on.text(), "Continue paper.yaml at tooth 2, pass 3");
+  EXPECT_EQ(
+      panel.text("verdict"),
+      "Open a job file first.\nNot finished: paper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), "
+      "at tooth 2, pass 3. It ended: the drive reports a fault.");
+  panel.picture("unfinished");
+  QTest::mouseClick(&go_on, Qt::LeftButton, {}, QPoint(8, go_on.height() / 2));
+  EXPECT_EQ(panel.label("job_file"), "paper.yaml");
+  WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
+  EXPECT_TRUE(go_on.isChecked());
+  EXPECT_EQ(panel.text("verdict").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
+}
+
+TEST_F(AfterAJobWasLeft, OneWhoseFileIsNotKnownIsNamed) {
+  Panel panel("cell/stage");
+  WAIT_FOR(panel.text("verdict").find("Not finished: published.yaml") != std::string::npos);
+  EXPECT_NE(panel.text("verdict").find("It ended: in the middle, with the grinder's program."), std::string::npos);
+  EXPECT_FALSE(panel.enabled("continue"));
+}
+
+TEST_F(AfterAJobWasLeft, AnOverrideOfItIsSaidAtTheStart) {
+  leavePaper();
+  stage.change([&] { stage.state.override = 0.36; });
+  Panel panel("cell/stage", kPaper);
+  planAndStart(panel);
+  EXPECT_NE(panel.text("verdict").find("The first pass cuts 0.375 mm more than its infeed out of the shank."),
+            std::string::npos);
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  panel.answer("discard");
+  WAIT_FOR(goals() == 1);
+  WAIT_FOR(panel.text("messages").find("The job begins at a feed override of 36 %") != std::string::npos);
+}
+
 TEST_F(AfterAJobWasLeft, NothingIsAskedOnceItIsFinished) {
   leavePaper();
   stage.change([&] { stage.state.progress.finished = 1; });

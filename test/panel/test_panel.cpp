@@ -414,7 +414,11 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   stage.change([&] {
     stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, stage.joints.position = {0, 0, 0, 0};
   });
-  WAIT_FOR(panel.label("position_x") == "X     0.000 mm");
+  WAIT_FOR(panel.state() == "Ready" && panel.label("position_x") == "X     0.000 mm");
+  const auto lay_out = [] {  // level by level
+    for (int level = 0; level < 10; ++level) QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+  };
+  lay_out();
   std::map<QWidget*, QRect> before;
   for (const std::string& name : kRequests) {
     auto& button = panel.the<QPushButton>(name.c_str());
@@ -440,8 +444,7 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   stage.be(GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("feed") == "10000 mm/min" && panel.label("position_a") == "A -3780.0000 deg");
   WAIT_FOR(panel.label("to_go") == "To go" && panel.label("override_value") == "36 %");
-  // It is laid out level by level.
-  for (int level = 0; level < 10; ++level) QCoreApplication::sendPostedEvents(nullptr, QEvent::LayoutRequest);
+  lay_out();
   EXPECT_EQ(panel.widget().minimumSizeHint().width(), width);
   for (const auto& [button, place] : before) EXPECT_EQ(button->geometry(), place) << button->objectName().toStdString();
   auto& place = panel.the<QLabel>("place");

@@ -27,7 +27,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
-constexpr int kContinueWidth = 240;  ///< [px]
+constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
 constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
 constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
@@ -416,8 +416,9 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   const QString name = unfinished_file_.isEmpty() ? QString() : " " + QFileInfo(unfinished_file_).fileName();
   const QString text =
       "Continue" + name + QString(" at tooth %1, pass %2").arg(progress_.tooth + 1).arg(progress_.pass + 1);
-  continue_->setText(where_left_ || !name.isEmpty() ? fontMetrics().elidedText(text, Qt::ElideMiddle, kContinueWidth)
-                                                    : kContinue);
+  continue_->setText(where_left_ || !name.isEmpty()
+                         ? fontMetrics().elidedText(text, Qt::ElideMiddle, pages_->width() - kTick)
+                         : kContinue);
 }
 
 /// The file of an unfinished job other than the chosen one, if it lies beside that or is one of the package's.

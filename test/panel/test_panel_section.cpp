@@ -128,8 +128,8 @@ TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   openSection(panel);
   WAIT_FOR(shows(panel, "Land "));
   const std::vector<double> shown = numbers(panel);
-  ASSERT_EQ(shown.size(), 9U) << panel.label("section_figures");
-  EXPECT_NEAR(shown[6] - shown[5], (*largest - *least) * 180 / M_PI, 0.02);
+  ASSERT_EQ(shown.size(), 13U) << panel.label("section_figures");
+  EXPECT_NEAR(shown[10] - shown[9], (*largest - *least) * 180 / M_PI, 0.02);
   panel.picture("section_of_a_tool");
 }
 

@@ -50,7 +50,7 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   panel->click("write_setup");
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
   EXPECT_FALSE(panel->enabled("write_setup"));
-  EXPECT_EQ(panel->text("verdict"), "Not planned yet.");
+  EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U);
   QByteArray after = text();
   EXPECT_EQ(after.count("setup: {swivel_deg: 31.769, height_mm: 2.78841}"), 1);
   EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.769, height_mm: 2.78841}\n", "").size(), before.size());

@@ -176,8 +176,8 @@ class MotionWatch {
 
 GrindGoal goalOf(const GrindJob& job) {
   GrindGoal goal = goalFromJob(job);
-  goal.discard = true;            // whatever the job before has left in the journal
-  goal.offsets_are_right = true;  // nobody has set them
+  goal.discard = true;              // whatever the job before has left in the journal
+  goal.ignore_offset_check = true;  // nobody has set them
   return goal;
 }
 

@@ -1,8 +1,8 @@
 // Streams one flute as CSV: a setpoint for each cycle of 1 ms, from rest to rest, at a constant feed along the cutting
 // edge.
 
-#include "flute_grinder/curve/feed_law.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 #include "flute_grinder/curve/units.h"
 
 #include <cstdio>
@@ -25,7 +25,7 @@ int main() {
 
   // On a cone of constant spiral angle, a constant feed along the edge is a constant speed of X.
   const double speed = kFeed / cutter.edgePerTravel();
-  FeedLaw law({speed, 0.5, 50}, geometry.flute_length, speed);  // m/s, m/s^2, m/s^3
+  SCurveProfile law({speed, 0.5, 50}, geometry.flute_length, speed);  // m/s, m/s^2, m/s^3
 
   unsigned long cycle = 0;
   const auto print = [&](const CurvePoint& point) {

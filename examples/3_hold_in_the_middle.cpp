@@ -1,7 +1,7 @@
 // Holds a flute in the middle, and continues it: the axes come to rest on the curve, and nothing of the path is lost.
 
-#include "flute_grinder/curve/feed_law.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 #include "flute_grinder/curve/units.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ int main() {
 
   const LogCurve curve(2 * std::tan(5 * units::kDegree) / 0.010, 2 * std::tan(30 * units::kDegree) / 0.010);
   OddEvenInterpolator interpolator(curve, units::kMillimetrePerRadian, EvenStepRule::kThirdOrder, 0);
-  FeedLaw law({kSpeed, 0.5, 50}, kLength, kSpeed);
+  SCurveProfile law({kSpeed, 0.5, 50}, kLength, kSpeed);
 
   double largest = 0;  // error of the pairs' ends [rad]
   // Until the law is at rest: at its end, or because its target is 0.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The package in a catkin workspace, beside a package that uses its messages and libraries (test/workspace/neighbour) and the drive
 # plugin of docs/drive-plugin.md: tests, programs and launch files from the devel space and from the install space.
-# Nothing is optimised there, and all sources of a room are compiled as one, which takes half the time; the panel is left out.
+# Nothing is optimised there, and all sources of a module are compiled as one, which takes half the time; the panel is left out.
 set -euo pipefail
 source "$(dirname "$0")/launched.sh"
 # Kept: the first run compiles the whole package, those after it only what has changed. Not below the clone, where roslaunch would

@@ -89,7 +89,7 @@ void addRun(Commands& commands) {
       .add_flag("--discard", options->discard,
                 "start even if the grinder's journal is damaged or holds another, unfinished job, and discard that job")
       ->excludes(go_on);
-  command.add_flag("--offsets-are-right", options->offsets_are_right,
+  command.add_flag("--ignore-offset-check", options->ignore_offset_check,
                    "start even if a work offset was never set, or was set for another tool, wheel or set-up");
   addCsv(command, options->csv, "write the streamed setpoints to this file");
 }

@@ -125,6 +125,7 @@ Json toJson(const std::string& node, const GrinderState& state, const WorkOffset
           {"pass", job ? Json(state.pass + 1) : Json(nullptr)},
           {"hold_reason", state.hold_reason},
           {"fault", faultText(state)},
+          {"journal_error", state.journal_error},
           {"last_job", lastJobObject(state.progress)}};
 }
 

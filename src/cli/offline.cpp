@@ -86,10 +86,10 @@ void printStatistics(const core::PathStatistics& s) {
   std::printf("largest even error   %.4e rad\n", s.max_even_error);
   std::printf("largest deviation    %.3g um at the cutter's surface\n", s.max_deviation / kMicrometre);
   if (s.max_feed > 0) {
-    std::printf("feed held            %.6f to %.6f mm/min\n", s.min_feed / kMillimetrePerMinute,
+    std::printf("feed constancy       %.6f to %.6f mm/min\n", s.min_feed / kMillimetrePerMinute,
                 s.max_feed / kMillimetrePerMinute);
   } else {
-    std::printf("feed held            never reached\n");
+    std::printf("feed constancy       never reached\n");
   }
   for (const core::FeedLimit& limit : s.feed_limits) {
     std::printf("feed limited by      %s, X %.3f to %.3f mm\n", core::causeText(limit.cause, UnitSystem::kShop).c_str(),

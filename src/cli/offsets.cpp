@@ -141,22 +141,22 @@ int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
   const auto was = [&](int axis) -> const core::WorkOffset& { return offsets.axes[static_cast<std::size_t>(axis)]; };
   int status = 0;
   bool all = true;
-  const std::vector<core::OffsetMisfit> found = misfits(offsets, goal);
-  for (const core::OffsetMisfit& misfit : found) {
-    if (misfit.change) continue;
-    status = fail(misfit.reason + "; set it anew");
-    all = all && misfit.axis == kX;
+  const std::vector<core::OffsetMismatch> found = mismatches(offsets, goal);
+  for (const core::OffsetMismatch& mismatch : found) {
+    if (mismatch.change) continue;
+    status = fail(mismatch.reason + "; set it anew");
+    all = all && mismatch.axis == kX;
   }
   std::vector<int> set;
-  for (const core::OffsetMisfit& misfit : found) {
-    if (!all || !misfit.change) continue;
+  for (const core::OffsetMismatch& mismatch : found) {
+    if (!all || !mismatch.change) continue;
     const core::OffsetBasis basis = basisOf(goal, OffsetMethod::kComputed);
     if (const int refused =
-            setWorkOffset(nh, misfit.axis, was(misfit.axis).value + *misfit.change, basis, large_change_ok)) {
+            setWorkOffset(nh, mismatch.axis, was(mismatch.axis).value + *mismatch.change, basis, large_change_ok)) {
       for (const int axis : set) setWorkOffset(nh, axis, was(axis).value, was(axis).basis, true);
       return refused;
     }
-    set.push_back(misfit.axis);
+    set.push_back(mismatch.axis);
   }
   return status;
 }

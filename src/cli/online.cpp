@@ -107,7 +107,8 @@ void printState(const std::string& node, const GrinderState& state, const WorkOf
                                                                 : "not at speed");
   std::printf("coolant         %s\n", state.coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state.emergency_stop ? "pressed" : "released");
-  std::printf("wheel in work   %s\n", state.wheel_in_work ? "yes" : "no");
+  const bool known = state.journal_error.empty() || !state.progress.job_digest.empty();
+  std::printf("wheel in work   %s\n", state.wheel_in_work ? "yes" : known ? "no" : "not known");
   std::printf("swivel          %s\n", swivelText(state).c_str());
   printPosition("work position", state.work_position);
   printPosition("of the machine", state.position);
@@ -118,6 +119,7 @@ void printState(const std::string& node, const GrinderState& state, const WorkOf
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
   if (!state.hold_reason.empty()) std::printf("held because    %s\n", state.hold_reason.c_str());
   if (!state.fault.empty()) std::printf("fault           %s\n", faultText(state).c_str());
+  if (!state.journal_error.empty()) std::printf("no journal      %s\n", state.journal_error.c_str());
   if (state.progress.job_digest.empty()) return;
   std::printf("last job        %s\n", lastJob(state.progress).c_str());
   if (!inJob(state)) std::printf("it ended        %s\n", endText(state.progress).c_str());
@@ -205,7 +207,7 @@ int succeed(const std::string& text) {
 std::string doneText(MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return "the power is on";
-    case MachineEvent::kReset: return "the fault is reset; the power is off";
+    case MachineEvent::kReset: return "the fault is reset; the power is commanded off";
     default: return toString(event) + std::string(": done");
   }
 }

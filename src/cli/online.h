@@ -12,10 +12,10 @@ namespace flute_grinder {
 struct RunOptions {
   std::string job;
   bool dry_run = false;
-  bool go_on = false;              ///< from the first unfinished pass
-  bool discard = false;            ///< even if the journal holds another, unfinished job
-  bool offsets_are_right = false;  ///< whatever they were set for
-  std::string csv;                 ///< file for the streamed setpoints, or empty
+  bool go_on = false;                ///< from the first unfinished pass
+  bool discard = false;              ///< even if the journal holds another, unfinished job
+  bool ignore_offset_check = false;  ///< whatever they were set for
+  std::string csv;                   ///< file for the streamed setpoints, or empty
 };
 
 /// Waits for the ROS master, for kMasterPatience, and makes this program a node, whose callbacks are called in a thread

@@ -185,7 +185,7 @@ GrindGoal goalFor(const RunOptions& options) {
   GrindGoal goal = goalFromFile(options.job);
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;
-  goal.offsets_are_right = options.offsets_are_right;
+  goal.ignore_offset_check = options.ignore_offset_check;
   return goal;
 }
 

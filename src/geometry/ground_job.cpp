@@ -35,13 +35,13 @@ std::vector<double> wearOfTeeth(const GrindJob& job) {
   return wear;
 }
 
-/// As WheelSweep::spoilsFrom(), of the first of some circles of a section.
+/// As WheelSweep::overcutStart(), of the first of some circles of a section.
 std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, double radius) {
-  std::optional<double> first = sweep.spoilsFrom(x, radius);
+  std::optional<double> first = sweep.overcutStart(x, radius);
   if (!first) return first;  // the wheel reaches no other circle from farther away
   const double core = sweep.leastRadius(x, radius);
   for (int i = 1; i < kRingsToSpoil; ++i) {
-    const auto here = sweep.spoilsFrom(x, core + (radius - core) * i / kRingsToSpoil);
+    const auto here = sweep.overcutStart(x, core + (radius - core) * i / kRingsToSpoil);
     if (here && std::abs(*here - x) < std::abs(*first - x)) first = here;
   }
   return first;

@@ -50,7 +50,7 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
   if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
   WheelSweep longest = over(ends);
   const double nearest = opens ? 0 : cutter_.geometry().flute_length;
-  const auto spoils = longest.spoilsFrom(nearest, cutter_.radius(nearest));
+  const auto spoils = longest.overcutStart(nearest, cutter_.radius(nearest));
   if (!spoils) return longest;
   ends[opens ? 0 : 1] = *spoils + kShortOf * (nearest - *spoils);
   return over(ends);

@@ -310,7 +310,7 @@ std::optional<WheelSweep::Spoiling> WheelSweep::spoiling(double x, double r, boo
   return Spoiling{within, own};
 }
 
-std::optional<double> WheelSweep::spoilsFrom(double x, double r) const {
+std::optional<double> WheelSweep::overcutStart(double x, double r) const {
   std::optional<double> first;
   for (const bool high : {false, true}) {
     const auto found = spoiling(x, r, high);

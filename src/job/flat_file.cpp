@@ -75,8 +75,8 @@ void FlatFile::add(const std::string& errors) {
 
 void FlatFile::throwErrors() const {
   if (error_count_ == 0) return;
-  const int untold = error_count_ - kMaxReported;
-  throw JobFileError(errors_ + (untold > 0 ? "\n" + name_ + ": and " + std::to_string(untold) + " more" : ""));
+  const int unreported = error_count_ - kMaxReported;
+  throw JobFileError(errors_ + (unreported > 0 ? "\n" + name_ + ": and " + std::to_string(unreported) + " more" : ""));
 }
 
 void FlatFile::drop(const std::string& key) {

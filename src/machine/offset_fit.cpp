@@ -77,27 +77,28 @@ std::optional<double> changeFor(int axis, const OffsetBasis& was, const OffsetBa
   return change;
 }
 
-std::optional<OffsetMisfit> misfit(int axis, const WorkOffset& offset, const OffsetBasis& job) {
+std::optional<OffsetMismatch> mismatch(int axis, const WorkOffset& offset, const OffsetBasis& job) {
   const Dependence& on = dependenceOf(axis);
   const std::string name(1, "XYZA"[axis]);
   const OffsetBasis& was = offset.basis;
   if (!on.on_job && !on.wheel && !on.placing) return std::nullopt;
-  if (!offset.wasSet()) return OffsetMisfit{axis, name + " was never set", {}};
+  if (std::isnan(offset.value)) return OffsetMismatch{axis, name + " cannot be read", {}};
+  if (!offset.wasSet()) return OffsetMismatch{axis, name + " was never set", {}};
   if (was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) {
-    return OffsetMisfit{axis, name + " was " + basisText(axis, offset), {}};
+    return OffsetMismatch{axis, name + " was " + basisText(axis, offset), {}};
   }
   const std::string differs = was.hasJob() ? figures(axis, job, &was) : "";
   if (differs.empty()) return std::nullopt;
-  return OffsetMisfit{axis, name + " was " + basisText(axis, offset) + "; this job has " + differs,
-                      changeFor(axis, was, job)};
+  return OffsetMismatch{axis, name + " was " + basisText(axis, offset) + "; this job has " + differs,
+                        changeFor(axis, was, job)};
 }
 
 }  // namespace
 
-std::vector<OffsetMisfit> misfits(const WorkOffsets& offsets, const OffsetBasis& job) {
-  std::vector<OffsetMisfit> found;
+std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job) {
+  std::vector<OffsetMismatch> found;
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    auto one = misfit(axis, offsets.axes[static_cast<std::size_t>(axis)], job);
+    auto one = mismatch(axis, offsets.axes[static_cast<std::size_t>(axis)], job);
     if (one) found.push_back(std::move(*one));
   }
   return found;

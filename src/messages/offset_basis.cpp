@@ -108,28 +108,28 @@ core::WorkOffsets fromMessage(const WorkOffsets& message) {
   return offsets;
 }
 
-std::vector<core::OffsetMisfit> misfits(const core::WorkOffsets& offsets, const GrindGoal& goal) {
-  return core::misfits(offsets, basisOf(goal, OffsetMethod::kUnknown));
+std::vector<core::OffsetMismatch> mismatches(const core::WorkOffsets& offsets, const GrindGoal& goal) {
+  return core::mismatches(offsets, basisOf(goal, OffsetMethod::kUnknown));
 }
 
-std::string text(const std::vector<core::OffsetMisfit>& misfits) {
-  if (misfits.empty()) return "";
+std::string text(const std::vector<core::OffsetMismatch>& mismatches) {
+  if (mismatches.empty()) return "";
   std::string all;
-  for (const core::OffsetMisfit& misfit : misfits) all += (all.empty() ? "" : "; ") + misfit.reason;
-  const std::string axes = computable(misfits);
+  for (const core::OffsetMismatch& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch.reason;
+  const std::string axes = computable(mismatches);
   if (!axes.empty()) all += "; 'grind offsets --fit JOB' computes " + axes;
   return all;
 }
 
 std::vector<std::string> offsetWarnings(const core::WorkOffsets& offsets, const GrindGoal& goal) {
-  std::string warning = text(misfits(offsets, goal));
+  std::string warning = text(mismatches(offsets, goal));
   return warning.empty() ? std::vector<std::string>{} : std::vector<std::string>{std::move(warning)};
 }
 
-std::string computable(const std::vector<core::OffsetMisfit>& misfits) {
+std::string computable(const std::vector<core::OffsetMismatch>& mismatches) {
   std::string axes;
-  for (const core::OffsetMisfit& misfit : misfits) {
-    if (misfit.change) axes += (axes.empty() ? "" : " and ") + std::string(1, "XYZA"[misfit.axis]);
+  for (const core::OffsetMismatch& mismatch : mismatches) {
+    if (mismatch.change) axes += (axes.empty() ? "" : " and ") + std::string(1, "XYZA"[mismatch.axis]);
   }
   return axes;
 }

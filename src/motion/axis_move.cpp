@@ -10,7 +10,7 @@ AxisMove::AxisMove(const Machine& machine) : period_(machine.period) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     MotionLimits& limits = limits_[static_cast<std::size_t>(axis)];
     limits = {l.max_velocity[axis], l.max_acceleration[axis], l.max_jerk[axis]};
-    law_ = FeedLaw(limits, 0, limits.velocity);
+    law_ = SCurveProfile(limits, 0, limits.velocity);
   }
 }
 

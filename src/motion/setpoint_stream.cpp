@@ -151,6 +151,11 @@ bool SetpointStream::beginPair() noexcept {
   return true;
 }
 
+//   clearance  + . . . + <- - kBack  - - +
+//              |       |                 ^       kBack:   over the stroke to before where it was left
+//              |    kPlunge            kLift     kPlunge: at feed, down to the stroke
+//              |       v                 |       kPath:   on, at feed again where it was left
+//   stroke  ---+-------+== kPath =====>  x  left here
 bool SetpointStream::beginNext() noexcept {
   const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
   switch (leg_) {
@@ -234,7 +239,7 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   linear_way_ = way_.head<3>().matrix().norm();
   if ((way_.abs() <= kNegligibleDistance).all()) {
     current_.position = to;
-    law_ = FeedLaw();
+    law_ = SCurveProfile();
     return;
   }
   MotionLimits limits = limitsAlong(way_, program_->machine().limits);

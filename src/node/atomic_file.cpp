@@ -54,7 +54,7 @@ class AtomicFile::File {
     if (!S_ISREG(about.st_mode)) throw std::runtime_error(path_ + " is not a regular file");
   }
 
-  /// At most one byte more than a kept file has.
+  /// At most one byte more than an atomic file has.
   std::string read() const {
     std::string text(kMaxFile + 1, '\0');
     std::size_t done = 0;
@@ -100,9 +100,9 @@ AtomicFile::AtomicFile(std::string kind, std::string path, std::string owner)
     : kind_(std::move(kind)), path_(std::move(path)), owner_(std::move(owner)) {
   try {
     named([&] { acquire(); });
-  } catch (const KeptFileOwned&) {
+  } catch (const AtomicFileOwned&) {
     throw;
-  } catch (const KeptFileError&) {
+  } catch (const AtomicFileError&) {
     // read() and write() will meet it again, and report it.
   }
 }
@@ -121,8 +121,8 @@ void AtomicFile::acquire() const {
   lock->requireRegular();
   if (!lock->lock()) {
     const std::string holder = lock->read();
-    throw KeptFileOwned(kind_ + " " + path_ + " is in use by " + holder.substr(0, holder.find('\n')) + "; allowed: a " +
-                        kind_ + " of its own for every node");
+    throw AtomicFileOwned(kind_ + " " + path_ + " is in use by " + holder.substr(0, holder.find('\n')) +
+                          "; allowed: a " + kind_ + " of its own for every node");
   }
   lock->replace("node " + owner_ + ", process " + std::to_string(getpid()) + "\n");
   file_ = file.string();
@@ -136,7 +136,7 @@ std::optional<std::string> AtomicFile::read() const {
     const File file(file_, O_RDONLY);
     file.requireRegular();
     const std::string text = file.read();
-    return named<KeptFileDamaged>([&] { return unsealed(text); });
+    return named<AtomicFileDamaged>([&] { return unsealed(text); });
   });
 }
 

@@ -8,22 +8,22 @@
 
 namespace flute_grinder {
 
-/// A kept file that cannot be read or written; what() names it and the reason.
-class KeptFileError : public std::runtime_error {
+/// An atomic file that cannot be read or written; what() names it and the reason.
+class AtomicFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A kept file that was read, and is not as it was written.
-class KeptFileDamaged : public KeptFileError {
+/// An atomic file that was read, and is not as it was written.
+class AtomicFileDamaged : public AtomicFileError {
  public:
-  using KeptFileError::KeptFileError;
+  using AtomicFileError::AtomicFileError;
 };
 
-/// A kept file in use by another process; what() names its node and process.
-class KeptFileOwned : public KeptFileError {
+/// An atomic file in use by another process; what() names its node and process.
+class AtomicFileOwned : public AtomicFileError {
  public:
-  using KeptFileError::KeptFileError;
+  using AtomicFileError::AtomicFileError;
 };
 
 /// Keeps a text on disk, so that it survives a crash and a power failure. The file is always either the old or the new
@@ -36,29 +36,29 @@ class AtomicFile {
   /// @param kind what the file is, for messages, e.g. "journal".
   /// @param path the file; missing folders are created, symbolic links are followed.
   /// @param owner the resolved name of the node.
-  /// @throw KeptFileOwned if another process owns it.
+  /// @throw AtomicFileOwned if another process owns it.
   AtomicFile(std::string kind, std::string path, std::string owner);
   ~AtomicFile();
 
   /// The text written last; nothing if there is no file.
-  /// @throw KeptFileDamaged if the file is not complete, as write() wrote it. @throw KeptFileError if it cannot be
+  /// @throw AtomicFileDamaged if the file is not complete, as write() wrote it. @throw AtomicFileError if it cannot be
   /// read.
   std::optional<std::string> read() const;
 
   /// Returns once the text is on the disk. After a power failure the file holds the new or the old text, and the new
   /// one for certain once settle() has returned.
-  /// @throw KeptFileError
+  /// @throw AtomicFileError
   void write(const std::string& text) const;
   /// Returns once the file's name on the disk stands for the text written last.
-  /// @throw KeptFileError
+  /// @throw AtomicFileError
   void settle() const;
 
   /// Rethrows any other error of an action as an Error that names the file.
-  template <typename Error = KeptFileError, typename Action>
+  template <typename Error = AtomicFileError, typename Action>
   auto named(const Action& action) const {
     try {
       return action();
-    } catch (const KeptFileError&) {
+    } catch (const AtomicFileError&) {
       throw;
     } catch (const std::exception& error) {
       throw Error(kind_ + " " + path_ + ": " + error.what());

@@ -100,7 +100,7 @@ void Diagnostics::add(const CycleRecord& record) {
   const std::lock_guard<std::mutex> lock(mutex_);
   ++loop_.cycles;
   loop_.total += record.period;
-  keepLargest(loop_.longest, record.period);
+  updateMax(loop_.longest, record.period);
   if (isLate(record.period, config_.machine.period)) ++loop_.late;
   loop_.busy.add(record.busy);
   loop_.delay.add(record.period - config_.machine.period);
@@ -110,7 +110,7 @@ void Diagnostics::add(const CycleRecord& record) {
   if (!was_powered && isPowered(record.state)) fullest_ = 0;
   // The cycle that ends in a fault still shows its cause.
   if (was_powered || isPowered(record.state)) {
-    for (int i = 0; i < kAxisCount; ++i) keepLargest(following_error_[i], record.followingError(i));
+    for (int i = 0; i < kAxisCount; ++i) updateMax(following_error_[i], record.followingError(i));
     addBuffer(record.drive);
   }
   if (record.has_setpoint) addSetpoint(record.setpoint, record.command);
@@ -122,7 +122,7 @@ void Diagnostics::add(const CycleRecord& record) {
 
 void Diagnostics::addDrive(const CycleRecord& record) {
   const DriveStatus& drive = record.drive;
-  keepLargest(drive_.feedback_age, record.feedback_age);
+  updateMax(drive_.feedback_age, record.feedback_age);
   drive_.emergency_stop |= drive.emergency_stop;
   drive_.fault |= drive.fault;
   if (record.interlock != Interlock::kNone) drive_.interlock = record.interlock;
@@ -146,11 +146,11 @@ void Diagnostics::addSetpoint(const Setpoint& setpoint, const Axes& command) {
   ++limits_.setpoints;
   const AxisLimits& limits = config_.machine.limits;
   for (int i = 0; i < kAxisCount; ++i) {
-    keepLargest(limits_.use[0][i], positionUse(i, command[i]));
-    keepLargest(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
+    updateMax(limits_.use[0][i], positionUse(i, command[i]));
+    updateMax(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
     if (setpoint.cycle % 2 != 0) continue;  // within a pair the odd and even steps alternate
-    keepLargest(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);
-    keepLargest(limits_.use[3][i], std::abs(limit_check_.jerk()[i]) / limits.max_jerk[i]);
+    updateMax(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);
+    updateMax(limits_.use[3][i], std::abs(limit_check_.jerk()[i]) / limits.max_jerk[i]);
   }
 }
 
@@ -158,7 +158,7 @@ void Diagnostics::addViolation(const LimitViolation& v) {
   ++limits_.setpoints;
   const bool of_position = v.quantity == LimitedQuantity::kPosition || v.quantity == LimitedQuantity::kNotFinite;
   const std::size_t quantity = of_position ? 0 : static_cast<std::size_t>(v.quantity);
-  keepLargest(limits_.use[quantity][v.axis], of_position ? positionUse(v.axis, v.value) : std::abs(v.value) / v.limit);
+  updateMax(limits_.use[quantity][v.axis], of_position ? positionUse(v.axis, v.value) : std::abs(v.value) / v.limit);
 }
 
 double Diagnostics::positionUse(int axis, double position) const {

@@ -164,9 +164,9 @@ std::string GoalServer::offsetRefusal(const GrindGoal& goal, const std::string& 
     // A job goes on with what it began with, whatever was said then.
     if (!changed.empty() || tracker_.continues(digest, offsets.values())) return changed;
   }
-  if (goal.offsets_are_right) return "";
-  const std::string misfit = text(misfits(offsets, goal));
-  return misfit.empty() ? "" : misfit + "; set them for this job, or start it with --offsets-are-right";
+  if (goal.ignore_offset_check) return "";
+  const std::string mismatch = text(mismatches(offsets, goal));
+  return mismatch.empty() ? "" : mismatch + "; set them for this job, or start it with --ignore-offset-check";
 }
 
 void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& job) {
@@ -228,7 +228,7 @@ void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
     return handle.setSucceeded(checked);
   }
   preview->offsets = goal_->offsets;
-  preview->offsets_are_right = handle.getGoal()->offsets_are_right != 0;
+  preview->ignore_offset_check = handle.getGoal()->ignore_offset_check != 0;
   startJob(std::move(preview));
 }
 
@@ -262,6 +262,11 @@ void GoalServer::poll() {
   if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
   cycles_ = status.cycles;
   tracker_.update(status);
+  const bool faulty = status.state == MachineState::kFault;
+  // That of a job is in its result.
+  if (!std::exchange(faulty_, faulty) && faulty && !goal_) {
+    ROS_ERROR_STREAM("fault: " << core::text(reasonOf(status.fault), UnitSystem::kSi));
+  }
   if (!goal_) return;
   publishFeedback();
   switch (goal_->phase) {

@@ -65,7 +65,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   history_ = std::make_unique<History>(own.history, own.history_limit);
   loadDrive(own.drive, parameters);
-  const MachineInfo machine = machineInfo(config, own.drive);
+  const core::MachineInfo machine = machineInfo(config, own.drive);
   machine_ = publishMachine(private_nh_, machine);
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
@@ -77,9 +77,9 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
   telemetry_->start();
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
-  offset_desk_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
-                                                offsetLimits(config.machine.limits, own.offset_change_limit));
-  probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_desk_);
+  offset_server_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
+                                                  offsetLimits(config.machine.limits, own.offset_change_limit));
+  probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_server_);
   plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
   goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
 }

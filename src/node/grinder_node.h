@@ -31,7 +31,7 @@ class GrinderNode {
   /// Reads all parameters, loads and initialises the drive, and starts the control loop.
   /// @param nh the node's namespace, for robot_description and joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of a kept file.
+  /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of an atomic file.
   GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
   ~GrinderNode();
 
@@ -56,7 +56,7 @@ class GrinderNode {
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<StopServer> stops_;
   std::unique_ptr<RequestServer> requests_;
-  std::unique_ptr<OffsetServer> offset_desk_;
+  std::unique_ptr<OffsetServer> offset_server_;
   std::unique_ptr<ProbeServer> probes_;
   std::unique_ptr<PlanServer> plans_;
   std::unique_ptr<GoalServer> goals_;

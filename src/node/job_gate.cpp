@@ -66,7 +66,7 @@ void JobGate::shut() {
   if (phase_ != Phase::kIdle) giveUp();
 }
 
-bool JobGate::shutOutJobs() {
+bool JobGate::lockOutJobs() {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (phase_ != Phase::kIdle) return false;
   ++shut_outs_;

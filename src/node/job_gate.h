@@ -37,9 +37,9 @@ class JobGate {
   /// Cancels the goal if its job has not started, and prevents every later start.
   void shut();
 
-  /// Lets no goal in until letJobsIn(); each call wants one of these.
+  /// Lets no goal in until letJobsIn(); the calls must be paired.
   /// @return false, and nothing is changed, if there is one already.
-  bool shutOutJobs();
+  bool lockOutJobs();
   void letJobsIn();
 
   bool isShut() const;
@@ -58,7 +58,7 @@ class JobGate {
   bool canceled_ = false;
   bool held_ = false;
   bool shut_ = false;
-  int shut_outs_ = 0;  ///< shutOutJobs() less letJobsIn()
+  int shut_outs_ = 0;  ///< lockOutJobs() less letJobsIn()
 };
 
 }  // namespace flute_grinder

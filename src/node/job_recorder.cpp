@@ -6,7 +6,7 @@
 
 namespace flute_grinder {
 
-JobRecorder::JobRecorder(std::string grinder, MachineInfo machine, History& history)
+JobRecorder::JobRecorder(std::string grinder, core::MachineInfo machine, History& history)
     : grinder_(std::move(grinder)), machine_(std::move(machine)), history_(history) {}
 
 JobRecorder::~JobRecorder() {
@@ -15,7 +15,7 @@ JobRecorder::~JobRecorder() {
 
 void JobRecorder::announce(std::uint64_t number, const Preview& job, const std::string& name) {
   const auto record = std::make_shared<JobRecord>(*job.plan, name);
-  record->setZeroPoints(job.offsets, job.offsets_are_right);
+  record->setZeroPoints(job.offsets, job.ignore_offset_check);
   jobs_[number].record = record;
 }
 

@@ -16,7 +16,7 @@ namespace flute_grinder {
 class JobRecorder {
  public:
   /// @param grinder the node's name. @param history must outlive this object.
-  JobRecorder(std::string grinder, MachineInfo machine, History& history);
+  JobRecorder(std::string grinder, core::MachineInfo machine, History& history);
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
   /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
@@ -42,7 +42,7 @@ class JobRecorder {
   void keep(const std::shared_ptr<const JobRecord>& record);
 
   const std::string grinder_;
-  const MachineInfo machine_;
+  const core::MachineInfo machine_;
   History& history_;
   std::map<std::uint64_t, Job> jobs_;
 };

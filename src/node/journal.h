@@ -11,13 +11,13 @@
 namespace flute_grinder {
 
 /// A journal that cannot be read or written; what() names the file and the reason.
-using JournalError = KeptFileError;
+using JournalError = AtomicFileError;
 
 /// A journal that was read, and is not complete, or no journal.
-using JournalDamaged = KeptFileDamaged;
+using JournalDamaged = AtomicFileDamaged;
 
 /// A journal in use by another process; what() names its node and process.
-using JournalOwned = KeptFileOwned;
+using JournalOwned = AtomicFileOwned;
 
 /// How far a job has come.
 struct Progress {

@@ -1,16 +1,15 @@
-// The message has the name of a struct of core's, which must not be included here.
 #include "node/machine_topic.h"
-#include "flute_grinder/Machine.h"
+#include "flute_grinder/MachineInfo.h"
 
 #include <algorithm>
 
 namespace flute_grinder {
 
-ros::Publisher publishMachine(ros::NodeHandle private_nh, const MachineInfo& info) {
+ros::Publisher publishMachine(ros::NodeHandle private_nh, const core::MachineInfo& info) {
   const auto copy = [](const Axes& axes, auto& array) {
     std::copy(axes.data(), axes.data() + kAxisCount, array.begin());
   };
-  Machine message;
+  MachineInfo message;
   message.name = info.name;
   message.version = info.version;
   message.drive = info.drive;
@@ -18,7 +17,7 @@ ros::Publisher publishMachine(ros::NodeHandle private_nh, const MachineInfo& inf
   copy(info.max_velocity, message.max_velocity);
   copy(info.max_acceleration, message.max_acceleration);
   copy(info.max_following_error, message.max_following_error);
-  ros::Publisher publisher = private_nh.advertise<Machine>("machine", 1, true);
+  ros::Publisher publisher = private_nh.advertise<MachineInfo>("machine", 1, true);
   publisher.publish(message);
   return publisher;
 }

@@ -7,6 +7,6 @@
 namespace flute_grinder {
 
 /// Publishes it on `~machine`, latched for as long as the publisher is kept.
-ros::Publisher publishMachine(ros::NodeHandle private_nh, const MachineInfo& info);
+ros::Publisher publishMachine(ros::NodeHandle private_nh, const core::MachineInfo& info);
 
 }  // namespace flute_grinder

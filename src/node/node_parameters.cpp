@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMaxHistory = 1e12;  ///< [bytes]
 
-/// A kept file; if the parameter is a folder, the file in it named after the node.
+/// An atomic file; if the parameter is a folder, the file in it named after the node.
 std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
   return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
 }

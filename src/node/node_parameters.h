@@ -12,7 +12,7 @@ namespace flute_grinder {
 
 /// The node's own parameters.
 struct NodeParameters {
-  std::string journal, offsets;     ///< the kept files
+  std::string journal, offsets;     ///< the files kept on disk
   std::string history;              ///< the folder of records
   std::uint64_t history_limit = 0;  ///< [bytes]
   Axes offset_change_limit;         ///< [m], A [rad]

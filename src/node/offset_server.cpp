@@ -95,7 +95,7 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   const int axis = axisOf(request.axis);
   std::string refused = requestRefusal(request);
   bool large_change = false;
-  if (refused.empty() && !gate_.shutOutJobs()) {
+  if (refused.empty() && !gate_.lockOutJobs()) {
     const LoopStatus status = loop_.status();
     refused = isInJob(status.state) ? refusal(status) : "a job is being planned, or ends; allowed: after its end";
   } else if (refused.empty()) {
@@ -143,7 +143,7 @@ std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const
   if (large_change) return refused;
   try {
     store_.set(axis, offset);
-  } catch (const KeptFileError& error) {
+  } catch (const AtomicFileError& error) {
     return error.what();
   }
   ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = "

@@ -87,9 +87,9 @@ OffsetStore::OffsetStore(std::string path, std::string owner)
   try {
     const std::optional<std::string> text = file_.read();
     if (text) offsets_ = file_.named([&] { return offsetsFromText(*text); });
-  } catch (const KeptFileOwned&) {
+  } catch (const AtomicFileOwned&) {
     throw;
-  } catch (const KeptFileError& error) {
+  } catch (const AtomicFileError& error) {
     error_ = error.what();
     for (core::WorkOffset& offset : offsets_.axes) offset.value = std::numeric_limits<double>::quiet_NaN();
   }

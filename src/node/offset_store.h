@@ -15,7 +15,7 @@ class OffsetStore {
  public:
   /// Reads the file. Blocks on the disk.
   /// @param path, owner as for AtomicFile.
-  /// @throw KeptFileOwned
+  /// @throw AtomicFileOwned
   OffsetStore(std::string path, std::string owner);
 
   /// Thread safe; never waits for the disk.
@@ -27,7 +27,7 @@ class OffsetStore {
 
   /// Sets the offset of an axis. Returns once it is on the disk; if it throws, nothing has changed. For one thread.
   /// @param axis Axis. @param offset its value is at most kMaxOffset in size.
-  /// @throw KeptFileError
+  /// @throw AtomicFileError
   void set(int axis, const core::WorkOffset& offset);
 
  private:

@@ -18,7 +18,7 @@ struct Preview {
   std::shared_ptr<const PlannedJob> plan;
   std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is good
   core::WorkOffsets offsets;               ///< of a goal's job, whose values are the program's
-  bool offsets_are_right = false;          ///< the goal says so
+  bool ignore_offset_check = false;        ///< the goal says so
 };
 
 /// Shared between the planner and whoever waits for the plan. Thread safe.

@@ -29,7 +29,7 @@ void ProbeServer::onGoal(GoalHandle handle) {
   const LoopStatus status = loop_.status();
   ProbeResult result;
   result.message = refusal(*handle.getGoal(), status);
-  if (result.message.empty() && !gate_.shutOutJobs()) {
+  if (result.message.empty() && !gate_.lockOutJobs()) {
     result.message = "a job is planned or in progress; allowed: after its end";
   }
   if (!result.message.empty()) {

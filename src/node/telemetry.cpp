@@ -58,7 +58,7 @@ JobProgress toMessage(const Progress& progress) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
+                     const core::MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
                      const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
@@ -298,7 +298,10 @@ GrinderState Telemetry::stateMessage() const {
   message.fault = text(fault, UnitSystem::kSi);
   message.fault_reason = flute_grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
-  message.progress = toMessage(journal_.status().on_disk);
+  const JournalWriter::Status journal = journal_.status();
+  message.progress = toMessage(journal.on_disk);
+  message.journal_error = journal.error;
+  message.journal_damaged = static_cast<std::uint8_t>(!journal.damage.empty());
   return message;
 }
 

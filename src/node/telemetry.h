@@ -37,8 +37,9 @@ class Telemetry {
   /// @param loop,journal,offsets,history must outlive this object.
   /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
-            const DiagnosticThresholds& thresholds, const std::string& urdf, const FirstView& first_view);
+            const JournalWriter& journal, const OffsetStore& offsets, History& history,
+            const core::MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
+            const FirstView& first_view);
 
   /// Starts publishing.
   void start() { thread_.start(); }

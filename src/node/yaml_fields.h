@@ -8,8 +8,8 @@
 #include <type_traits>
 
 /// @file
-/// Writes and reads the fields of a kept file as a map in YAML. `fields` is called with a visitor, and calls that with
-/// key and value of every field.
+/// Writes and reads the fields of an atomic file as a map in YAML. `fields` is called with a visitor, and calls that
+/// with key and value of every field.
 namespace flute_grinder {
 
 template <typename Fields>

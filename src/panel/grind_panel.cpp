@@ -507,15 +507,15 @@ void GrindPanel::fitOffsets(const GrindGoal& goal) {
     std::map<int, std::string> lines;  ///< of the axes
   };
   auto replies = std::make_shared<Replies>();
-  for (const core::OffsetMisfit& misfit : misfits(offsets, goal)) {
-    if (!misfit.change) continue;
-    const double was = offsets.axes[static_cast<std::size_t>(misfit.axis)].value, is = was + *misfit.change;
+  for (const core::OffsetMismatch& mismatch : mismatches(offsets, goal)) {
+    if (!mismatch.change) continue;
+    const double was = offsets.axes[static_cast<std::size_t>(mismatch.axis)].value, is = was + *mismatch.change;
     const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
-    const std::string done = "work offset of " + axisName(misfit.axis, UnitSystem::kShop) + ": " + shown(is) +
+    const std::string done = "work offset of " + axisName(mismatch.axis, UnitSystem::kShop) + ": " + shown(is) +
                              ", was " + shown(was) + "; computed";
     ++replies->missing;
-    link_->setOffset(misfit.axis, is, basisOf(goal, OffsetMethod::kComputed),
-                     [this, replies, axis = misfit.axis, done](const std::string& refusal) {
+    link_->setOffset(mismatch.axis, is, basisOf(goal, OffsetMethod::kComputed),
+                     [this, replies, axis = mismatch.axis, done](const std::string& refusal) {
                        replies->lines[axis] = refusal.empty() ? done : refusal;
                        if (--replies->missing > 0) return;
                        std::string all;

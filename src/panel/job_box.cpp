@@ -133,7 +133,7 @@ void JobBox::makeQuestions() {
                                      "Computed from what they were set for: the wheel and the swivel are the same. "
                                      "Plans the job again",
                                      0, 1);
-  const auto* right = offset_question_->addAnswer("offsets_are_right", "Start with these",
+  const auto* right = offset_question_->addAnswer("ignore_offset_check", "Start with these",
                                                   "Start the job with the work offsets as they are", 1, 0);
   const auto* confirm = swivel_question_->addAnswer("confirm_swivel", "Confirm and start",
                                                     "The swivel is set and clamped: start the job", 0, 1);
@@ -144,7 +144,7 @@ void JobBox::makeQuestions() {
     if (planned_) Q_EMIT offsetFitWanted(*planned_);
   });
   connect(right, &QPushButton::clicked, this, [this] {
-    offsets_are_right_ = true;
+    ignore_offset_check_ = true;
     askForSwivel();
   });
   connect(confirm, &QPushButton::clicked, this, [this] {
@@ -222,7 +222,8 @@ void JobBox::discardPlan() {
 
 /// What is shown as long as nothing was planned.
 QString JobBox::withoutPlan() const {
-  const QString text = file_.isEmpty() ? "Open a job file first." : "Not planned yet.";
+  QString text = file_.isEmpty() ? "Open a job file first." : "Not planned yet.";
+  if (!journal_error_.empty()) text += "\nThere is no journal: " + QString::fromStdString(journal_error_) + ".";
   if (!isUnfinished(progress_) || job_runs_) return text;
   return text +
          QString::fromStdString("\nNot finished: " + describe(progress_) + ". It ended: " + endText(progress_) + ".");
@@ -271,11 +272,14 @@ void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
 
 void JobBox::start() {
   if (!planned_) return;
-  if (!discardsUnfinished(*planned_, progress_)) return askForOffsets(false);
+  if (!discardsSomething()) return askForOffsets(false);
   keep_->setVisible(where_left_.has_value());
-  ask(discard_question_, "Not finished: " + QString::fromStdString(describe(progress_)) +
-                             ". Once this job starts it cannot be continued.");
+  const std::string lost =
+      journal_damaged_ ? journal_error_ + ". What job it kept is not known" : "Not finished: " + describe(progress_);
+  ask(discard_question_, QString::fromStdString(lost + ". Once this job starts it cannot be continued."));
 }
+
+bool JobBox::discardsSomething() const { return journal_damaged_ || discardsUnfinished(*planned_, progress_); }
 
 void JobBox::ask(Question* question, const QString& text) {
   question->ask(text);
@@ -285,31 +289,31 @@ void JobBox::ask(Question* question, const QString& text) {
 
 void JobBox::askForOffsets(bool discard) {
   discard_ = discard;
-  offsets_are_right_ = false;
-  const auto misfits = offsetsToAskFor();
-  if (misfits.empty()) return askForSwivel();
+  ignore_offset_check_ = false;
+  const auto mismatches = offsetsToAskFor();
+  if (mismatches.empty()) return askForSwivel();
   QStringList reasons;
-  for (const core::OffsetMisfit& misfit : misfits) reasons << QString::fromStdString(misfit.reason) + ".";
+  for (const core::OffsetMismatch& mismatch : mismatches) reasons << QString::fromStdString(mismatch.reason) + ".";
   // So that each axis' is seen, however long they are.
   const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
   QString text = "Start with these zero points?";
   for (const QString& reason : reasons) text += "\n" + fontMetrics().elidedText(reason, Qt::ElideRight, room);
   offset_question_->setToolTip(reasons.join("\n"));
-  const QString axes = QString::fromStdString(computable(misfits));
+  const QString axes = QString::fromStdString(computable(mismatches));
   fit_->setText("Fit " + axes);
   fit_->setVisible(!axes.isEmpty());
   ask(offset_question_, text);
 }
 
 /// Those that do not fit the chosen job.
-std::vector<core::OffsetMisfit> JobBox::offsetMisfits() const {
+std::vector<core::OffsetMismatch> JobBox::offsetMismatches() const {
   if (!job_ || !offsets_) return {};
-  return misfits(*offsets_, goal());
+  return mismatches(*offsets_, goal());
 }
 
 /// A job that is continued needs those with which it began, which the grinder knows.
-std::vector<core::OffsetMisfit> JobBox::offsetsToAskFor() const {
-  return continue_->isChecked() ? std::vector<core::OffsetMisfit>{} : offsetMisfits();
+std::vector<core::OffsetMismatch> JobBox::offsetsToAskFor() const {
+  return continue_->isChecked() ? std::vector<core::OffsetMismatch>{} : offsetMismatches();
 }
 
 void JobBox::askForSwivel() {
@@ -327,7 +331,7 @@ void JobBox::startConfirmed() {
     return;
   }
   goal->discard = static_cast<std::uint8_t>(discard_);
-  goal->offsets_are_right = static_cast<std::uint8_t>(offsets_are_right_);
+  goal->ignore_offset_check = static_cast<std::uint8_t>(ignore_offset_check_);
   Q_EMIT startWanted(*goal);
 }
 
@@ -376,7 +380,7 @@ bool JobBox::asksWithReason() const {
   if (!planned_) return false;
   if (pages_->currentWidget() == offset_question_) return !offsetsToAskFor().empty();
   if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
-  return discardsUnfinished(*planned_, progress_);
+  return discardsSomething();
 }
 
 void JobBox::showZeroPoints() {
@@ -384,7 +388,7 @@ void JobBox::showZeroPoints() {
   QString hint;
   if (offsets_) {
     QStringList axes, said;
-    for (const core::OffsetMisfit& misfit : offsetMisfits()) axes << QString("XYZA"[misfit.axis]);
+    for (const core::OffsetMismatch& mismatch : offsetMismatches()) axes << QString("XYZA"[mismatch.axis]);
     if (continue_->isChecked()) said << "as when the job began";
     if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
     if (said.isEmpty()) said << "set for this job";
@@ -404,6 +408,8 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   const bool has_no_plan = verdict_->toPlainText() == withoutPlan();
   job_runs_ = isInJob(static_cast<MachineState>(state->state));
   progress_ = state->progress;
+  journal_error_ = state->journal_error;
+  journal_damaged_ = state->journal_damaged != 0;
   if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {

@@ -91,10 +91,11 @@ class JobBox : public QWidget {
   void closeQuestion() { pages_->setCurrentWidget(form_); }
   void askForOffsets(bool discard);
   void askForSwivel();
-  std::vector<core::OffsetMisfit> offsetMisfits() const;
-  std::vector<core::OffsetMisfit> offsetsToAskFor() const;
+  std::vector<core::OffsetMismatch> offsetMismatches() const;
+  std::vector<core::OffsetMismatch> offsetsToAskFor() const;
   void showZeroPoints();
   bool asksWithReason() const;
+  bool discardsSomething() const;
   void continueUnfinished();
   GrindGoal goal() const;
   std::optional<GrindGoal> goalNow();
@@ -111,6 +112,8 @@ class JobBox : public QWidget {
   std::optional<GrindGoal> planned_;          ///< without violations
   std::optional<GrindGoal> where_left_;       ///< the job as it would be continued, if it can be
   JobProgress progress_;                      ///< as last received from the grinder
+  std::string journal_error_;                 ///< the same; empty if the journal is good
+  bool journal_damaged_ = false;              ///< the same; the journal may then be discarded
   bool job_runs_ = false;                     ///< whose progress that is
   QString unfinished_file_;                   ///< of another job that can be continued; empty if none is known
   std::string sought_;                        ///< digest of the job for which that was sought
@@ -118,7 +121,7 @@ class JobBox : public QWidget {
   std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
   std::string wheel_;                         ///< name of the file's wheel file; empty if it has none
   bool discard_ = false;                      ///< the unfinished job, by the start that waits for an answer
-  bool offsets_are_right_ = false;            ///< said for that start
+  bool ignore_offset_check_ = false;          ///< said for that start
   QLabel* name_;
   QPushButton* choose_;
   QPushButton* setup_;

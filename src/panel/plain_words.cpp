@@ -77,7 +77,7 @@ std::string done(MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return "enable: the power is on";
     case MachineEvent::kHome: return "home: the drive is homing the axes";
-    case MachineEvent::kReset: return "reset: the fault is cleared; the power is off";
+    case MachineEvent::kReset: return "reset: the fault is cleared; the power is commanded off";
     case MachineEvent::kRetract:
     case MachineEvent::kLift: return toString(event) + std::string(": the wheel is being lifted");
     case MachineEvent::kResume: return "resume: the job continues";

@@ -27,7 +27,7 @@ Json placed(Json json, const ToothPass& pass) {
   return json;
 }
 
-Json toJson(const MachineInfo& machine) {
+Json toJson(const core::MachineInfo& machine) {
   return {{"name", machine.name},
           {"software", machine.version},
           {"drive", machine.drive},
@@ -61,7 +61,7 @@ void JobRecord::addCycle(const CycleRecord& record) {
   if (cycles_++ == 0) started_ = record.time;
   ended_ = record.time;
   if (isLate(record.period, program_->machine().period)) ++late_;
-  keepLargest(longest_, record.period);
+  updateMax(longest_, record.period);
   addToHold(record);
   if (record.feed_override == override_) return;
   override_ = record.feed_override;
@@ -106,9 +106,9 @@ void JobRecord::addToStroke(const Setpoint& setpoint, const CycleRecord& record)
   stroke.complete |= setpoint.move_fraction == 1;
   const double x = setpoint.position[kX];
   const ConicalCutter& cutter = program_->cutter(setpoint.tooth);
-  keepLargest(stroke.deviation, std::abs(setpoint.path_error) * cutter.radius(x) * cutter.cosHelixToGeneratrix());
+  updateMax(stroke.deviation, std::abs(setpoint.path_error) * cutter.radius(x) * cutter.cosHelixToGeneratrix());
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    keepLargest(stroke.following_error[axis], record.followingError(axis));
+    updateMax(stroke.following_error[axis], record.followingError(axis));
   }
   if (setpoint.step != StepKind::kEven || !(x >= 0 && x <= cutter.geometry().flute_length)) return;
   stroke.min_feed = stroke.has_feed ? std::min(stroke.min_feed, setpoint.feed) : setpoint.feed;
@@ -159,7 +159,7 @@ Json JobRecord::strokesJson() const {
   return list;
 }
 
-Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) const {
+Json JobRecord::json(const std::string& grinder, const core::MachineInfo& machine) const {
   Json holds = Json::array(), overrides = Json::array();
   for (const Hold& hold : holds_) {
     holds.push_back(

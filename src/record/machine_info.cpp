@@ -4,7 +4,7 @@
 
 namespace flute_grinder {
 
-MachineInfo machineInfo(const LoopConfig& config, const std::string& drive) {
+core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive) {
   const AxisLimits& limits = config.machine.limits;
   return {config.name,           FLUTE_GRINDER_VERSION, drive,
           config.machine.period, limits.max_velocity,   limits.max_acceleration,

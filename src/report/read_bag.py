@@ -10,10 +10,10 @@ import numpy as np
 from actionlib_msgs.msg import GoalStatus
 from bag_file import BagFile
 from diagnostic_msgs.msg import DiagnosticArray
-from flute_grinder.msg import GrindActionGoal, GrindActionResult, GrinderState, Machine, SetpointBatch, WorkOffsets
+from flute_grinder.msg import GrindActionGoal, GrindActionResult, GrinderState, MachineInfo, SetpointBatch, WorkOffsets
 from record import BLOCK, DEG, MM, MS, ROW, STILL, UM, Record, SourceError
 
-KINDS = {kind._type: kind for kind in (SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, Machine, WorkOffsets, DiagnosticArray)}
+KINDS = {kind._type: kind for kind in (SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, MachineInfo, WorkOffsets, DiagnosticArray)}
 
 OUTCOMES = {GoalStatus.SUCCEEDED: 'done', GoalStatus.PREEMPTED: 'canceled', GoalStatus.ABORTED: 'fault'}
 
@@ -102,7 +102,7 @@ class BagReader:
         self._record = Record('bag')
         self.take = {SetpointBatch._type: self._take_batch, GrinderState._type: self._take_state,
                      GrindActionGoal._type: self._take_goal,
-                     GrindActionResult._type: self._take_result, Machine._type: self._take_machine,
+                     GrindActionResult._type: self._take_result, MachineInfo._type: self._take_machine,
                      WorkOffsets._type: self._take_offsets, DiagnosticArray._type: self._take_diagnostics}
 
     def _take_batch(self, data):
@@ -166,7 +166,7 @@ class BagReader:
         self._results[message.status.goal_id.id] = message
 
     def _take_machine(self, data):
-        self._machine = decoded(Machine, data)
+        self._machine = decoded(MachineInfo, data)
 
     def _take_offsets(self, data):
         message = decoded(WorkOffsets, data)

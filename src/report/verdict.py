@@ -104,14 +104,14 @@ def of_tool(job_file, tool, tolerances):
     """tool: as ground, or None if it was not measured."""
     cutter = job_file['cutter']
     rake = Criterion('rake', 'deg', 3, cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])
-    # At the small end, where the job asks for it.
-    core = Criterion('core diameter', 'mm', 3, cutter.get('core_diameter_mm'), tolerances['core_diameter_mm'],
-                     bool(cutter.get('core_diameter_mm')))
+    # At the ends, where the job asks for it.
+    core = Criterion('core diameter', 'mm', 3, cutter.get('core_diameter_mm'),
+                     cutter.get('core_tolerance_mm') or tolerances['core_diameter_mm'], bool(cutter.get('core_diameter_mm')))
     land = Criterion('land', 'mm', 3, tolerances['land_mm'], None)
-    spiral = Criterion('spiral angle', 'deg', 3, None, tolerances['spiral_angle_deg'])
+    spiral = Criterion('spiral angle', 'deg', 3, None, cutter.get('spiral_tolerance_deg') or tolerances['spiral_angle_deg'])
     sections = tool['sections'] if tool else []
-    for section in sections[:1]:
-        core.add(section['core_diameter_mm'], 'X = 0.000 mm', section['asked_core_diameter_mm'])
+    for section in sections[:1] + (sections[-1:] if cutter.get('core_diameter_end_mm') else []):
+        core.add(section['core_diameter_mm'], 'X = %.3f mm' % section['x_mm'], section['asked_core_diameter_mm'])
     for section in sections:
         for i, tooth in enumerate(section['teeth'], 1):
             place = 'tooth %d, X = %.3f mm' % (i, section['x_mm'])

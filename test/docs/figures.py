@@ -17,11 +17,11 @@ def plain(cell):
 
 def of_plan(output):
     """What the columns of a table of plans are called, with what a plan's output says of them."""
-    feed = re.search(r'(?m)^feed held +(.*)$', output).group(1)
+    feed = re.search(r'(?m)^feed constancy +(.*)$', output).group(1)
     return {
         'stroke s': re.search(r' stroke ([\d.]+)', output).group(1),
         'largest deviation um': re.search(r'(?m)^largest deviation +(\S+) um', output).group(1),
-        'feed held mm/min': re.sub(r'^(\S+) to \1 mm/min$', r'\1', feed),
+        'feed constancy mm/min': re.sub(r'^(\S+) to \1 mm/min$', r'\1', feed),
         'limited by': ', '.join(re.findall(r'(?m)^feed limited by +(.*?), X', output)),
     }
 

@@ -346,7 +346,7 @@ TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {
     if (apex > 0) longer.to = std::min(longer.to, 0.95 * apex);
     const double r = k->outer - uniform(0, 0.8) * std::min(k->c.depth * kMillimetre, 0.9 * k->outer);
     // Nor may it go where it would spoil the flute.
-    if (const auto spoils = longer.sweep(k->wheel).spoilsFrom(k->x, r)) {
+    if (const auto spoils = longer.sweep(k->wheel).overcutStart(k->x, r)) {
       if (apex < 0) longer.from = std::max(longer.from, *spoils / kMillimetre);
       if (apex > 0) longer.to = std::min(longer.to, *spoils / kMillimetre);
     }

@@ -102,7 +102,7 @@ class TestHoming(unittest.TestCase):
         first = RECORDER.now()
         job = gc.package_file('jobs/paper.yaml')
         self.grinder.confirm_swivel(gc.PAPER['process.setup_swivel'])
-        refused = gc.grind('run', job, '--offsets-are-right')
+        refused = gc.grind('run', job, '--ignore-offset-check')
         self.assertEqual(refused.returncode, 1, refused.stdout)
         self.assertIn('start refused: ' + NOT_HOMED, refused.stderr)
         run = self.grinder.run(JOB)

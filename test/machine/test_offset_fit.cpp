@@ -35,38 +35,38 @@ WorkOffsets offsetsFor(const OffsetBasis& basis) {
   return offsets;
 }
 
-std::string axesOf(const std::vector<core::OffsetMisfit>& misfits) {
+std::string axesOf(const std::vector<core::OffsetMismatch>& mismatches) {
   std::string axes;
-  for (const core::OffsetMisfit& misfit : misfits) axes += "XYZA"[misfit.axis];
+  for (const core::OffsetMismatch& mismatch : mismatches) axes += "XYZA"[mismatch.axis];
   return axes;
 }
 
 TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsAlways) {
   const OffsetBasis job = basisOf();
-  EXPECT_TRUE(core::misfits(offsetsFor(job), job).empty());
+  EXPECT_TRUE(core::mismatches(offsetsFor(job), job).empty());
   WorkOffsets offsets = offsetsFor(job);
   offsets.axes[kA] = offsetFor(OffsetBasis{});
-  EXPECT_TRUE(core::misfits(offsets, job).empty());
+  EXPECT_TRUE(core::mismatches(offsets, job).empty());
 }
 
 TEST(OffsetFit, WhatWasNeverSetDoesNotFit) {
-  const auto found = core::misfits(WorkOffsets{}, basisOf());
+  const auto found = core::mismatches(WorkOffsets{}, basisOf());
   ASSERT_EQ(axesOf(found), "XYZ");
   EXPECT_EQ(found[1].reason, "Y was never set");
-  for (const auto& misfit : found) EXPECT_FALSE(misfit.change);
+  for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
 }
 
 TEST(OffsetFit, WhatWasSetBeforeThisWasKeptIsUnknown) {
-  const auto found = core::misfits(offsetsFor(OffsetBasis{}), basisOf());
+  const auto found = core::mismatches(offsetsFor(OffsetBasis{}), basisOf());
   ASSERT_EQ(axesOf(found), "XYZ");
   EXPECT_EQ(found[1].reason, "Y was set, not known for which job");
-  for (const auto& misfit : found) EXPECT_FALSE(misfit.change);
+  for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
 }
 
 TEST(OffsetFit, WithoutAJobOnlyXFits) {
   OffsetBasis none;
   none.method = OffsetMethod::kTouchOff;
-  const auto found = core::misfits(offsetsFor(none), basisOf());
+  const auto found = core::mismatches(offsetsFor(none), basisOf());
   ASSERT_EQ(axesOf(found), "YZ");
   EXPECT_EQ(found[0].reason, "Y was touched off, not known for which job");
 }
@@ -75,7 +75,7 @@ TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
   OffsetBasis job = basisOf();
   job.job_name = "d10.yaml";
   job.end_diameter = 0.01;
-  const auto found = core::misfits(offsetsFor(basisOf()), job);
+  const auto found = core::mismatches(offsetsFor(basisOf()), job);
   ASSERT_EQ(axesOf(found), "Y");
   EXPECT_EQ(found[0].reason, "Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); this job has D 10 mm");
   ASSERT_TRUE(found[0].change);
@@ -106,10 +106,10 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
   for (const Row& row : rows) {
     OffsetBasis job = basisOf();
     row.change(job);
-    const auto found = core::misfits(offsetsFor(basisOf()), job);
+    const auto found = core::mismatches(offsetsFor(basisOf()), job);
     EXPECT_EQ(axesOf(found), row.axes) << row.has;
-    for (const auto& misfit : found) {
-      EXPECT_EQ(misfit.reason.substr(misfit.reason.find("; ")), std::string("; this job has ") + row.has);
+    for (const auto& mismatch : found) {
+      EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
     }
   }
 }
@@ -121,7 +121,8 @@ TEST(OffsetFit, OfAnotherWheelSwivelOrWidthNothingIsComputed) {
     OffsetBasis job = basisOf();
     job.height += 0.001;
     change(job);
-    for (const auto& misfit : core::misfits(offsetsFor(basisOf()), job)) EXPECT_FALSE(misfit.change) << misfit.reason;
+    for (const auto& mismatch : core::mismatches(offsetsFor(basisOf()), job))
+      EXPECT_FALSE(mismatch.change) << mismatch.reason;
   }
 }
 
@@ -162,14 +163,23 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
     WorkOffsets offsets = offsetsFor(basis(was));
     const Eigen::Vector3d before = workZero(machine, was, mounting), after = workZero(machine, is, mounting);
     for (int axis = kX; axis <= kZ; ++axis) offsets.axes[static_cast<std::size_t>(axis)].value = before[axis];
-    const auto found = core::misfits(offsets, basis(is));
+    const auto found = core::mismatches(offsets, basis(is));
     ASSERT_EQ(axesOf(found), "YZ");
-    for (const auto& misfit : found) {
-      ASSERT_TRUE(misfit.change);
-      EXPECT_NEAR(before[misfit.axis] + *misfit.change, after[misfit.axis], 1e-15);
+    for (const auto& mismatch : found) {
+      ASSERT_TRUE(mismatch.change);
+      EXPECT_NEAR(before[mismatch.axis] + *mismatch.change, after[mismatch.axis], 1e-15);
     }
     EXPECT_NEAR(before.x(), after.x(), 1e-15);
   }
+}
+
+TEST(OffsetFit, OneThatCannotBeReadIsNotOneThatWasNeverSet) {
+  WorkOffsets offsets;
+  offsets.axes[kX].value = kNan;
+  const auto found = core::mismatches(offsets, basisOf());
+  ASSERT_EQ(axesOf(found), "XYZ");
+  EXPECT_EQ(found[0].reason, "X cannot be read");
+  EXPECT_EQ(found[1].reason, "Y was never set");
 }
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {

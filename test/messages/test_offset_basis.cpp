@@ -69,12 +69,12 @@ TEST(OffsetBasis, ADeeperCutThanAskedIsAMisfit) {
   for (core::WorkOffset& offset : offsets.axes) {
     offset = {0.001, "anna@grinder", 1.7e9, basisOf(small, OffsetMethod::kTouchOff)};
   }
-  EXPECT_TRUE(misfits(offsets, small).empty());
+  EXPECT_TRUE(mismatches(offsets, small).empty());
   EXPECT_TRUE(offsetWarnings(offsets, small).empty());
   for (const double diameter : {0.01, 0.02}) {
     GrindGoal large = small;
     large.cutter.end_diameter = diameter;
-    const auto found = misfits(offsets, large);
+    const auto found = mismatches(offsets, large);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].axis, kY);
     EXPECT_NEAR(found[0].change.value_or(0), (diameter - 0.006) / 2, 1e-15);
@@ -87,7 +87,7 @@ TEST(OffsetBasis, DoesNotEnterTheDigestOfAJob) {
   GrindGoal goal = goalFromFile(kJob);
   const std::string digest = jobDigest(jobFromGoal(goal));
   goal.wheel_name = "other.yaml";
-  goal.offsets_are_right = 1;
+  goal.ignore_offset_check = 1;
   EXPECT_EQ(jobDigest(jobFromGoal(goal)), digest);
 }
 

@@ -230,7 +230,7 @@ RC_GTEST_PROP(FeedScheduleProperty, TheRunUpIsTheWayToTheFeedFromRest, ()) {
   const FeedSchedule schedule = Case::draw().schedule();
   const MotionLimits l = schedule.limits();
   const double speed = schedule.feedSpeed();
-  FeedLaw law(l, 1e3 * (schedule.runUp() + schedule.length()), speed);
+  SCurveProfile law(l, 1e3 * (schedule.runUp() + schedule.length()), speed);
   // Time is cut until the law has just come to its speed.
   const double all_of_it = speed / l.acceleration + 2 * std::sqrt(speed / l.jerk) + l.acceleration / l.jerk;
   for (int i = 0; i < 100000 && !law.cruising(); ++i) law.advance(all_of_it / 10000);
@@ -239,7 +239,7 @@ RC_GTEST_PROP(FeedScheduleProperty, TheRunUpIsTheWayToTheFeedFromRest, ()) {
   RC_ASSERT(law.position() <= schedule.runUp() * (1 + 1e-9) + speed * all_of_it / 10000 * (1 + 1e-9));
 }
 
-RC_GTEST_PROP(FeedScheduleProperty, LeavesTheFeedLawSomethingToGoBy, ()) {
+RC_GTEST_PROP(FeedScheduleProperty, LeavesTheProfileSomethingToGoBy, ()) {
   const MotionLimits limits = Case::draw().schedule().limits();
   RC_ASSERT(limits.velocity > 0);
   RC_ASSERT(std::isfinite(limits.velocity));
@@ -267,7 +267,7 @@ RC_GTEST_PROP(FeedScheduleProperty, AMotionWithStopsKeepsAllAxesWithinTheirLimit
   const Case c = Case::draw();
   const FeedSchedule schedule = c.schedule();
   const MotionLimits limits = schedule.limits();
-  FeedLaw law(limits, schedule.length(), limits.velocity);
+  SCurveProfile law(limits, schedule.length(), limits.velocity);
   const double h = std::max(c.machine.period, law.timeLeft() / 4000);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> fraction(0, 1);

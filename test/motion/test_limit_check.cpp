@@ -243,9 +243,9 @@ TEST(LimitCheck, ForgetsThePastAtARestart) {
   EXPECT_FALSE(feeder.feedAll({0, 0, 0, 0}));
   feeder.check().restart();
   EXPECT_FALSE(feeder.feedAll({0.25, 0.25, 0.25}));
-  Feeder untold(kX);
-  EXPECT_FALSE(untold.feedAll({0, 0, 0, 0}));
-  EXPECT_TRUE(untold.feed(0.25));
+  Feeder unreported(kX);
+  EXPECT_FALSE(unreported.feedAll({0, 0, 0, 0}));
+  EXPECT_TRUE(unreported.feed(0.25));
 }
 
 /// A tenth of the highest speed, in pairs.

@@ -112,7 +112,7 @@ SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
 def goal_of(job, **fields):
     """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
     and the work offsets are right, unless they say otherwise."""
-    goal = GrindGoal(**dict({'discard': True, 'offsets_are_right': True}, **fields))
+    goal = GrindGoal(**dict({'discard': True, 'ignore_offset_check': True}, **fields))
     for path, value in job.items():
         part, name = path.split('.')
         setattr(getattr(goal, part), name, value)

@@ -34,6 +34,10 @@ class TestUnreadableJournal(JournalTest):
         self.check_trouble_is_told()
         with open(self.journal, 'rb') as file:
             self.assertEqual(file.read(), content, 'it is left as it is until the next job')
+        state = self.client.fresh_state()
+        self.assertIn('journal ' + self.journal, state.journal_error)
+        self.assertTrue(state.journal_damaged)
+        self.assertRegex(gc.grind('--node', self.client.name, 'status').stdout, r'(?m)^wheel in work +not known$')
 
     def test_next_job_makes_a_new_one(self):
         self.check(b'nothing of a journal')

@@ -117,7 +117,7 @@ class TestPlan(CommandLine):
             count = len(list(lines)) - 1
         self.assertRegex(printed.stdout, r'setpoints +%d\n' % count)
         self.assertRegex(printed.stdout, r'duration +%.3f s' % ((count - 1) * 1e-3))
-        low, high = map(float, re.search(r'feed held +(\S+) to (\S+) mm/min', printed.stdout).groups())
+        low, high = map(float, re.search(r'feed constancy +(\S+) to (\S+) mm/min', printed.stdout).groups())
         self.assertAlmostEqual(low, 600, delta=600e-6)
         self.assertAlmostEqual(high, 600, delta=600e-6)
 

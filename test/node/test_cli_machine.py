@@ -60,7 +60,7 @@ class TestMachine(CommandLine):
             'zero_points': dict.fromkeys('xyza'), 'coolant_on': False, 'spindle_commanded': False, 'coolant_commanded': False,
             'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
-            'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1, 'end': 'done'}})
+            'journal_error': '', 'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1, 'end': 'done'}})
 
     def test_disable_and_enable(self):
         self.grind(0, 'disable')
@@ -106,7 +106,7 @@ class TestMachine(CommandLine):
         job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
         batches = len(grinder().batches)
         self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
-        printed = self.grind(0, 'run', job, '--discard', '--offsets-are-right', '--csv', self.path('run.csv'))
+        printed = self.grind(0, 'run', job, '--discard', '--ignore-offset-check', '--csv', self.path('run.csv'))
         with open(self.path('plan.csv')) as plan, open(self.path('run.csv')) as run:
             planned, streamed = plan.read().splitlines(), run.read().splitlines()
         # The run's file has four more columns, the positions that the drive read.
@@ -233,7 +233,7 @@ class TestMachine(CommandLine):
 
     def test_run_outside_of_the_limits(self):
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
-        self.assertRegex(self.grind(1, 'run', job, '--discard', '--offsets-are-right').stderr,
+        self.assertRegex(self.grind(1, 'run', job, '--discard', '--ignore-offset-check').stderr,
                          r'(?m)^axis X position 401 mm is 101 mm beyond its limit 300 mm \(.*\(code -6\)')
 
     def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
@@ -242,11 +242,11 @@ class TestMachine(CommandLine):
         run.wait()
         batches = len(grinder().batches)
         job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1)
-        self.assertRegex(self.grind(1, 'run', job, '--offsets-are-right').stderr,
+        self.assertRegex(self.grind(1, 'run', job, '--ignore-offset-check').stderr,
                          r'^the journal keeps a job that is not finished: left\.yaml \(.*\(code -7\)\n$')
         self.assertEqual(grinder().fresh_state().progress.job_name, 'left.yaml')
         self.assertEqual(len(grinder().batches), batches)
-        self.grind(0, 'run', job, '--discard', '--offsets-are-right')
+        self.grind(0, 'run', job, '--discard', '--ignore-offset-check')
         self.assertEqual(grinder().fresh_state().progress.job_name, 'short.yaml')
 
     def test_run_of_a_bad_file(self):
@@ -262,7 +262,7 @@ class TestMachine(CommandLine):
         self.assertRegex(reason, r'emergency stop \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -9\)')
 
     def start_run(self):
-        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard', '--offsets-are-right'],
+        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard', '--ignore-offset-check'],
                                    stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, universal_newlines=True)
         self.addCleanup(self.kill, process)

@@ -19,7 +19,7 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
-from flute_grinder.msg import GrinderState, Machine
+from flute_grinder.msg import GrinderState, MachineInfo
 
 import grinder_client as gc
 import path_checks as checks
@@ -264,7 +264,7 @@ class TestRecordOfAJob(Kept):
 
     def test_machine(self):
         told, limits = self.record['machine'], self.grinder.limits()
-        message = rospy.wait_for_message('/kept/machine', Machine, gc.PATIENCE)
+        message = rospy.wait_for_message('/kept/machine', MachineInfo, gc.PATIENCE)
         version = rospkg.RosPack().get_manifest('flute_grinder').version
         self.assertEqual((told['name'], told['software'], told['drive'], told['period_ms']),
                          ('flute_grinder', version, 'flute_grinder/SimulatedDrive', 1))

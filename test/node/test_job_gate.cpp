@@ -131,17 +131,17 @@ TEST_F(JobGateTest, OnceShutItStaysShut) {
 }
 
 TEST_F(JobGateTest, AJobAndAChangeOfTheOffsetsShutEachOtherOut) {
-  ASSERT_TRUE(gate_.shutOutJobs());
+  ASSERT_TRUE(gate_.lockOutJobs());
   EXPECT_FALSE(gate_.open(id("job"), [] {}));
   EXPECT_FALSE(gate_.isShut());
   EXPECT_FALSE(start());
   gate_.letJobsIn();
   open();
-  EXPECT_FALSE(gate_.shutOutJobs()) << "while it is planned";
+  EXPECT_FALSE(gate_.lockOutJobs()) << "while it is planned";
   EXPECT_TRUE(start());
-  EXPECT_FALSE(gate_.shutOutJobs()) << "while it runs";
+  EXPECT_FALSE(gate_.lockOutJobs()) << "while it runs";
   gate_.close();
-  EXPECT_TRUE(gate_.shutOutJobs());
+  EXPECT_TRUE(gate_.lockOutJobs());
   gate_.letJobsIn();
   gate_.shut();
   EXPECT_TRUE(gate_.isShut());

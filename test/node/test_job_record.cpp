@@ -27,8 +27,8 @@ namespace flute_grinder {
 namespace test_job_record {
 
 constexpr double kStart = 1795367053.123;  ///< 2026-11-22 17:04:13.123 UTC
-const MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive",       0.001,
-                           Axes(1, 2, 3, 4), Axes(5, 6, 7, 8), Axes(9, 10, 11, 12)};
+const core::MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive",       0.001,
+                                 Axes(1, 2, 3, 4), Axes(5, 6, 7, 8), Axes(9, 10, 11, 12)};
 
 /// Two unequal teeth of a short cone in two passes.
 GrindJob shortJob() {
@@ -86,7 +86,7 @@ class JobRecordTest : public ::testing::Test {
     job.offsets.axes[kX].basis.method = OffsetMethod::kProbe;
     job.offsets.axes[kX].basis.wheel_digest = "a";
     job.offsets.axes[kX].basis.swivel = units::kPi / 6;
-    job.offsets_are_right = true;
+    job.ignore_offset_check = true;
     return job;
   }
 

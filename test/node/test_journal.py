@@ -26,7 +26,7 @@ CUTTER = ['end_diameter', 'cone_angle', 'spiral_angle', 'rake_angle', 'flute_len
 CUTTER_KEYS = ['end_diameter_m', 'cone_angle_rad', 'spiral_angle_rad', 'rake_angle_rad', 'flute_length_m',
                'tooth_angles_rad']
 KEYS = {'job_digest', 'job_name', 'finished', 'tooth', 'pass', 'x_m', 'wheel_in_work', 'clear_y_m', 'lift_m',
-        'offset_x_m', 'offset_y_m', 'offset_z_m', 'offset_a_rad', 'checksum', *CUTTER_KEYS}
+        'offset_x_m', 'offset_y_m', 'offset_z_m', 'offset_a_rad', 'end', 'feed_override', 'checksum', *CUTTER_KEYS}
 JOB_NAME = 'mill "10°".yaml'
 KILLS = 20
 SEED = 20
@@ -333,7 +333,7 @@ class TestContinue(JournalTest):
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
         self.assertNotIn('last job', self.grind(0, 'status').stdout)
         self.assertEqual(self.client.batches, [])
-        self.grind(0, 'run', self.job_path, '--offsets-are-right')
+        self.grind(0, 'run', self.job_path, '--ignore-offset-check')
         self.wait_finished()
 
 

@@ -190,7 +190,7 @@ TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsTold) {
   std::filesystem::create_directory(path_);
   OffsetStore store(path_, "/grinder");
   EXPECT_NE(store.unknown(), "");
-  EXPECT_THROW(store.set(kX, kSome), KeptFileError);
+  EXPECT_THROW(store.set(kX, kSome), AtomicFileError);
   EXPECT_TRUE(store.offsets().values().isNaN().all());
   std::filesystem::remove(path_);
   store.set(kX, kSome);
@@ -200,8 +200,8 @@ TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsTold) {
 TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   const std::string good = written();
   OffsetStore store(path_, "/grinder");
-  EXPECT_THROW(store.set(kY, {1000.1, "", 0}), KeptFileError);
-  EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), KeptFileError);
+  EXPECT_THROW(store.set(kY, {1000.1, "", 0}), AtomicFileError);
+  EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
   // A disk that is full after some bytes.
   signal(SIGXFSZ, SIG_IGN);
   rlimit before{};
@@ -209,7 +209,7 @@ TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   rlimit full = before;
   full.rlim_cur = 100;
   setrlimit(RLIMIT_FSIZE, &full);
-  EXPECT_THROW(store.set(kY, kOther), KeptFileError);
+  EXPECT_THROW(store.set(kY, kOther), AtomicFileError);
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(contentOf(path_), good);
@@ -220,7 +220,7 @@ TEST_F(OffsetStoreTest, BelongsToOneNode) {
   try {
     const OffsetStore second(path_, "/right/grinder");
     ADD_FAILURE() << "it has two owners";
-  } catch (const KeptFileOwned& error) {
+  } catch (const AtomicFileOwned& error) {
     EXPECT_EQ(std::string(error.what()), "file of work offsets " + path_ +
                                              " is in use by node /left/grinder, process " + std::to_string(getpid()) +
                                              "; allowed: a file of work offsets of its own for every node");

@@ -311,7 +311,7 @@ class TestRestart(OffsetsTest):
         # As somebody sets it who has read its four decimals of a millimetre.
         self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 5e-8).success)
         # Nobody has said what they were set for, but that they are right was said when it began.
-        run = self.client.send(job, first_tooth=1, discard=False, offsets_are_right=False).wait()
+        run = self.client.send(job, first_tooth=1, discard=False, ignore_offset_check=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
 
 
@@ -319,7 +319,7 @@ class TestZeroPoints(OffsetsTest):
     """An offset is known for what it was set."""
 
     def check_rejected(self, text, **fields):
-        run = self.client.send(gc.SHORT, offsets_are_right=False, **fields).wait()
+        run = self.client.send(gc.SHORT, ignore_offset_check=False, **fields).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertIn(text, run.text)
 
@@ -337,7 +337,7 @@ class TestZeroPoints(OffsetsTest):
     def test_of_another_diameter(self):
         never = 'X was never set; Y was never set; Z was never set'
         self.check_told(never)
-        self.check_rejected(never + '; set them for this job, or start it with --offsets-are-right')
+        self.check_rejected(never + '; set them for this job, or start it with --ignore-offset-check')
         self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    never set$')
 
         run = self.client.send(gc.SHORT, wheel_name='\x1b[2J').wait()
@@ -360,7 +360,7 @@ class TestZeroPoints(OffsetsTest):
         for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
             self.assertAlmostEqual(got, expected, delta=1e-15)
         self.check_told()
-        run = self.client.send(gc.SHORT, offsets_are_right=False).wait()
+        run = self.client.send(gc.SHORT, ignore_offset_check=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    computed for D 10 mm, wheel')
         told = json.loads(self.grind('status', '--json').stdout)['zero_points']

@@ -12,6 +12,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree as xml
@@ -75,7 +76,7 @@ class Recording:
 
     def grind_with_hold_and_override(self):
         """The job by the command line; in its stroke it is held, and then ground at half the feed."""
-        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--offsets-are-right', '--csv',
+        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--ignore-offset-check', '--csv',
                                 self.csv],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
         try:
@@ -654,6 +655,23 @@ class TestVerdict(ReportCase):
             worst = max((t for s in sections for t in s['teeth']), key=lambda t: abs(t[key] - t['asked_' + key]))
             self.assertEqual(figures[name]['measured'], worst[key])
         self.assertEqual(figures['land']['measured'], min(t['land_mm'] for s in sections for t in s['teeth']))
+
+    def test_a_tool_is_judged_by_the_tolerances_of_its_job(self):
+        sys.path.insert(0, gc.package_file('src/report'))
+        self.addCleanup(sys.path.pop, 0)
+        from verdict import of_tool
+        tooth = {'complete': True, 'rake_deg': 8, 'land_mm': 1, 'spiral_deg': 30.2, 'asked_spiral_deg': 30}
+        sections = [{'x_mm': x, 'core_diameter_mm': core + off, 'asked_core_diameter_mm': core, 'teeth': [tooth]}
+                    for x, core, off in ((0, 6, 0.01), (10, 7, 0.2), (20, 8, 0.03))]
+        own = {'core_diameter_mm': 6, 'rake_angle_deg': 8, 'rake_tolerance_deg': 0.5}
+        for asked, results in (({}, ('passed', 'passed')),
+                               ({'spiral_tolerance_deg': 0.3}, ('passed', 'passed')),
+                               ({'spiral_tolerance_deg': 0.1}, ('passed', 'failed')),
+                               ({'core_tolerance_mm': 0.005}, ('failed', 'passed')),
+                               ({'core_diameter_end_mm': 8}, ('failed', 'passed')),
+                               ({'core_diameter_end_mm': 8, 'core_tolerance_mm': 0.05}, ('passed', 'passed'))):
+            _, core, _, spiral = of_tool({'cutter': dict(own, **asked), 'process': {}}, {'sections': sections}, self.TOLERANCES)
+            self.assertEqual((core.result, spiral.result), results, asked)
 
     def test_job_whose_end_is_not_in_the_file(self):
         # Without the result, which the recorder may have got or not before it was ended itself.

@@ -19,7 +19,7 @@ from grind_command import PAPER_JOB, RunTest, default_signals
 from grinder_client import LIFT, MM, STROKE, X, grinder
 
 # Whatever the test before has left in the journal is forgotten.
-RUN = ['run', '--discard', '--offsets-are-right']
+RUN = ['run', '--discard', '--ignore-offset-check']
 
 CLEAR_LINE = '\r\x1b[K'
 # What the line shows where there is room for all.
@@ -92,6 +92,8 @@ class TestBar(RunTest):
         command.resize(30)
         self.assertEqual(command.end(), 0, command.text)
         lines = [line for line in self.drawn(command) if 'planning' not in line]
+        self.assertEqual([line for line in lines if not LINE.fullmatch(line)][:1], ['the feed override is 20 %'])
+        lines.remove('the feed override is 20 %')
         self.assertTrue(LINE.fullmatch(lines[0]), lines[0])
         self.assertEqual(max(len(line) for line in command.text[:wide].split(CLEAR_LINE)), len(lines[0]))
         # The first two after each change may have been drawn before it was seen.
@@ -116,10 +118,10 @@ class TestBar(RunTest):
         self.assertEqual(command.end(), 1)
         lines = self.drawn(command)
         others = [line for line in lines if not LINE.fullmatch(line) and not re.search('  planning \\d+ %$', line)]
-        self.assertEqual(others[:2], ["held: no coolant flows; once cleared, 'grind resume' continues",
+        self.assertEqual(others[:3], ['the feed override is 20 %', "held: no coolant flows; once cleared, 'grind resume' continues",
                                       'canceling: waiting for the stop'])
-        self.assertRegex(others[2], r'^canceled; stopped on the path')
-        self.assertEqual(len(others), 3)
+        self.assertRegex(others[3], r'^canceled; stopped on the path')
+        self.assertEqual(len(others), 4)
 
 
 class TestEnd(RunTest):

@@ -291,7 +291,7 @@ class TestTheWayDown(NodeTest):
         path = os.path.join(self.node.folder, 'job.yaml')
         gc.job_file(path, flute_length_mm=10)
         client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--discard',
-                                   '--offsets-are-right'],
+                                   '--ignore-offset-check'],
                                   stdout=subprocess.DEVNULL)
         try:
             self.client.wait_for(lambda: self.client.batches, 'the first setpoints')

@@ -70,7 +70,7 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         gc.poll(lambda: all(s.get_num_connections() for s in subscribers), 'transforms')
         cls.first_joints = {client.name: len(client.joints) for client in (cls.left, cls.right)}
         runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--discard',
-                                  '--offsets-are-right', '--csv',
+                                  '--ignore-offset-check', '--csv',
                                   cls.csv(name)],
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
                 for name in NAMES]

@@ -368,7 +368,7 @@ class TestShortTool(WholeTool, unittest.TestCase):
         g.make_ready_at_park()
         batches = len(g.batches)
         cls.plan = gc.grind('plan', cls.job_path, '--csv', planned)
-        cls.grind_run = gc.grind('run', cls.job_path, '--offsets-are-right', '--csv', cls.csv)
+        cls.grind_run = gc.grind('run', cls.job_path, '--ignore-offset-check', '--csv', cls.csv)
         with open(planned) as plan, open(cls.csv) as run:
             # The run's file has four more columns, the positions that the drive read.
             cls.planned = plan.read().splitlines()
@@ -464,7 +464,7 @@ class TestConstantRake(unittest.TestCase):
         plan = gc.grind('plan', self.job_path, '--csv', self.plan_csv)
         self.assertEqual(plan.returncode, 0, plan.stderr)
         self.assertTrue(grinder().confirm_swivel(self.job['process.setup_swivel']).success)
-        run = gc.grind('run', self.job_path, '--offsets-are-right', '--csv', self.run_csv)
+        run = gc.grind('run', self.job_path, '--ignore-offset-check', '--csv', self.run_csv)
         self.assertEqual(run.returncode, 0, run.stderr)
         with open(self.plan_csv) as planned, open(self.run_csv) as streamed:
             self.assertEqual(planned.read().splitlines(), [line.rsplit(',', 4)[0] for line in streamed.read().splitlines()])

@@ -130,7 +130,7 @@ class TestWithoutMaster(RunTest):
         for words in (['enable'], ['confirm-swivel', '31.769']):
             done = self.master.grind(*words)
             self.assertEqual(done.returncode, 0, done.stderr)
-        command = self.grind('run', PAPER_JOB, '--offsets-are-right', environment=self.master.environment)
+        command = self.grind('run', PAPER_JOB, '--ignore-offset-check', environment=self.master.environment)
         command.wait_text('  running  ')
         self.master.end(self.master.process)
         return command

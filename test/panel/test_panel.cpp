@@ -331,7 +331,7 @@ TEST_F(OnStage, ARequestThatIsDoneSaysSoInALine) {
   for (const Request& r :
        {Request{GrinderState::DISABLED, "disabled", "enable", "Enable: the power is on"},
         Request{GrinderState::READY, "ready", "home", "Home: the drive is homing the axes"},
-        Request{GrinderState::FAULT, "fault", "reset", "Reset: the fault is cleared; the power is off"},
+        Request{GrinderState::FAULT, "fault", "reset", "Reset: the fault is cleared; the power is commanded off"},
         Request{GrinderState::HELD, "held", "retract", "Retract: the wheel is being lifted"}}) {
     stage.be(r.state, r.name);
     WAIT_FOR(panel.enabled(r.button));
@@ -819,6 +819,24 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
   WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
   EXPECT_TRUE(go_on.isChecked());
   EXPECT_EQ(panel.text("verdict").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
+}
+
+TEST_F(AfterAJobWasLeft, ADamagedJournalIsDiscardedIfTheOperatorSaysSo) {
+  stage.change([&] {
+    stage.state.progress = JobProgress();
+    stage.state.journal_error = "journal /j: its checksum is wrong";
+    stage.state.journal_damaged = 1;
+  });
+  Panel panel("cell/stage", kPaper);
+  WAIT_FOR(panel.text("verdict") == "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
+  planAndStart(panel);
+  WAIT_FOR(panel.the<QPushButton>("discard").isVisible());
+  EXPECT_EQ(panel.text("unfinished_question"),
+            "journal /j: its checksum is wrong. What job it kept is not known. Once this job starts it cannot be "
+            "continued.");
+  panel.answer("discard");
+  WAIT_FOR(goals() == 1);
+  EXPECT_TRUE(goal().discard);
 }
 
 TEST_F(AfterAJobWasLeft, OneWhoseFileIsNotKnownIsNamed) {

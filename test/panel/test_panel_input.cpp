@@ -338,7 +338,7 @@ TEST_F(Asked, ADoubleClickAnswersOneQuestion) {
     SCOPED_TRACE(pause);
     panel.doubleClick("start", pause);
     ASSERT_NO_FATAL_FAILURE(answerTwice("discard", pause, "offsets"));
-    ASSERT_NO_FATAL_FAILURE(answerTwice("offsets_are_right", pause, "swivel"));
+    ASSERT_NO_FATAL_FAILURE(answerTwice("ignore_offset_check", pause, "swivel"));
     panel.answer("decline_swivel");
   }
   EXPECT_EQ(goals(), 0U);
@@ -349,12 +349,12 @@ TEST_F(Asked, AQuestionTakesNoClickAtFirst) {
   // Far from the button that asks, long after it in the events' time, but not in the operator's.
   WAIT_FOR(panel.enabled("discard"));
   panel.click("discard");
-  for (const char* answer : {"offsets_are_right", "decline_offsets"}) panel.click(answer);
+  for (const char* answer : {"ignore_offset_check", "decline_offsets"}) panel.click(answer);
   EXPECT_TRUE(shown("offsets"));
   WAIT_FOR(panel.enabled("decline_offsets"));
   panel.openTab("Section");
   panel.openTab("Job");
-  EXPECT_FALSE(panel.enabled("offsets_are_right")) << "it appears again";
+  EXPECT_FALSE(panel.enabled("ignore_offset_check")) << "it appears again";
 }
 
 TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
@@ -364,11 +364,11 @@ TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
   };
   const QRect discard = place("discard"), not_yet = place("decline_unfinished");
   panel.answer("discard");
-  WAIT_FOR(panel.enabled("offsets_are_right"));
-  const QRect right = place("offsets_are_right");
+  WAIT_FOR(panel.enabled("ignore_offset_check"));
+  const QRect right = place("ignore_offset_check");
   EXPECT_EQ(place("decline_offsets"), not_yet);
   EXPECT_FALSE(right.intersects(discard));
-  panel.answer("offsets_are_right");
+  panel.answer("ignore_offset_check");
   WAIT_FOR(panel.enabled("confirm_swivel"));
   EXPECT_EQ(place("decline_swivel"), not_yet);
   for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
@@ -381,7 +381,7 @@ TEST_F(Asked, NoKeyStartsAnything) {
     }
   };
   const std::vector<std::pair<const char*, std::string>> ways{
-      {"discard", "unfinished"}, {"offsets_are_right", "offsets"}, {"confirm_swivel", "swivel"}};
+      {"discard", "unfinished"}, {"ignore_offset_check", "offsets"}, {"confirm_swivel", "swivel"}};
   for (std::size_t asked = 0; asked < ways.size(); ++asked) {
     SCOPED_TRACE(ways[asked].second);
     for (std::size_t before = 0; before < asked; ++before) panel.answer(ways[before].first);
@@ -404,7 +404,7 @@ TEST_F(Asked, NoKeyStartsAnything) {
 }
 
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
-  for (const char* answer : {"discard", "offsets_are_right", "confirm_swivel"}) panel.answer(answer);
+  for (const char* answer : {"discard", "ignore_offset_check", "confirm_swivel"}) panel.answer(answer);
   WAIT_FOR(goals() == 1);
   // From the goal on: a job that is still planned begins held.
   WAIT_FOR(panel.the<QWidget>("hold").hasFocus());

@@ -65,7 +65,7 @@ class WithGrinder : public ::testing::Test {
   static void startAndDiscard(Panel& of) {
     of.click("start");
     if (of.the<QPushButton>("discard").isVisible()) of.answer("discard");
-    if (of.the<QPushButton>("offsets_are_right").isVisible()) of.answer("offsets_are_right");
+    if (of.the<QPushButton>("ignore_offset_check").isVisible()) of.answer("ignore_offset_check");
     if (of.the<QPushButton>("confirm_swivel").isVisible()) of.answer("confirm_swivel");
   }
   void start() {

@@ -53,7 +53,7 @@ class ZeroPoints : public ::testing::Test {
     }
     stage.tellOffsets(offsets);
   }
-  bool asks() { return panel.the<QPushButton>("offsets_are_right").isVisible(); }
+  bool asks() { return panel.the<QPushButton>("ignore_offset_check").isVisible(); }
   std::vector<GrindActionGoal> goals() {
     return stage.get([&] { return stage.goals; });
   }
@@ -102,7 +102,7 @@ TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
   WAIT_FOR(panel.label("zero_points") == "Zero points: set for this job");
   panel.click("start");
   WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(goals()[0].goal.offsets_are_right);
+  EXPECT_FALSE(goals()[0].goal.ignore_offset_check);
 }
 
 TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
@@ -141,9 +141,9 @@ TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   EXPECT_TRUE(goals().empty());
   panel.click("start");
   WAIT_FOR(asks());
-  panel.answer("offsets_are_right");
+  panel.answer("ignore_offset_check");
   WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goals()[0].goal.offsets_are_right);
+  EXPECT_TRUE(goals()[0].goal.ignore_offset_check);
   EXPECT_TRUE(offsetsSet().empty());
 }
 

@@ -5,7 +5,7 @@
 namespace flute_grinder {
 
 /// Which way a cutter turns, and so which wall of a flute is its rake face: the edges of a right-hand cutter move
-/// toward falling angles A.
+/// toward decreasing A.
 enum class CutDirection { kRightHand, kLeftHand };
 
 /// With the names used in job files.
@@ -32,9 +32,9 @@ struct CutterGeometry {
   double spiral_tolerance = 0;   ///< the same of the edge's spiral angle; 0: any [rad]
 };
 
-/// A part of the cutter's axis.
+/// Of a figure: X [m], an angle [rad], as its user says.
 struct Range {
-  double from = 0, to = 0;  ///< X [m]
+  double from = 0, to = 0;
 };
 
 /// A conical end mill with constant rake and spiral angle (paper, section 2).

@@ -82,7 +82,7 @@ class WheelSweep {
   /// reaches a circle takes its arc farther than it was complete, as far as the stroke goes.
   /// @param x of the circle. @param r its radius, positive [m].
   /// @return the X at which that begins, whether this stroke goes so far or not; nothing if it does not begin [m].
-  std::optional<double> spoilsFrom(double x, double r) const;
+  std::optional<double> overcutStart(double x, double r) const;
 
   const GrindStroke& stroke() const noexcept { return stroke_; }
 

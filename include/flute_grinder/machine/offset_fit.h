@@ -14,7 +14,7 @@
 namespace flute_grinder::core {
 
 /// An axis whose work offset does not fit a job.
-struct OffsetMisfit {
+struct OffsetMismatch {
   int axis = 0;
   std::string reason;            ///< for the operator, in mm and deg
   std::optional<double> change;  ///< to be added to the offset, so that it fits; nothing if it must be set anew [m]
@@ -23,7 +23,7 @@ struct OffsetMisfit {
 /// The axes whose offsets do not fit a job: never set, not known for what, or set for other figures than the job's.
 /// X alone needs no job: it may have been set as it is, for whatever is ground there.
 /// @param job its figures; method and, for axes that fit, names do not count.
-std::vector<OffsetMisfit> misfits(const WorkOffsets& offsets, const OffsetBasis& job);
+std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job);
 
 /// What a work offset was set for, for the operator, e.g. "touched off for D 6 mm, wheel straight_d100_w3.yaml
 /// (taper.yaml)"; only the figures that the axis depends on. "never set" if it was not, "cannot be read" if

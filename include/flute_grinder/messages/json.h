@@ -26,7 +26,7 @@ Json toJson(const Axes& value, const std::string& per_time);
 Json toJson(const std::vector<core::FeedLimit>& limits);
 
 /// A job in the keys and units of a job file: as YAML it is one, and read as one it is the same job, to the last bit if
-/// the job has come from a file. A wheel that has a file of its own is told by its figures.
+/// the job has come from a file. A wheel that has a file of its own is written inline.
 Json toJson(const GrindJob& job);
 
 /// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.

@@ -33,15 +33,15 @@ core::OffsetBasis fromMessage(const OffsetBasis& message);
 core::WorkOffsets fromMessage(const WorkOffsets& message);
 
 /// The work offsets that do not fit a goal.
-std::vector<core::OffsetMisfit> misfits(const core::WorkOffsets& offsets, const GrindGoal& goal);
+std::vector<core::OffsetMismatch> mismatches(const core::WorkOffsets& offsets, const GrindGoal& goal);
 
 /// What a dry run or a plan says of them: nothing, or one text.
 std::vector<std::string> offsetWarnings(const core::WorkOffsets& offsets, const GrindGoal& goal);
 
 /// Why offsets do not fit and what to do about it, for the operator; empty if all fit.
-std::string text(const std::vector<core::OffsetMisfit>& misfits);
+std::string text(const std::vector<core::OffsetMismatch>& mismatches);
 
 /// The axes among them whose offset can be computed, e.g. "Y and Z".
-std::string computable(const std::vector<core::OffsetMisfit>& misfits);
+std::string computable(const std::vector<core::OffsetMismatch>& mismatches);
 
 }  // namespace flute_grinder

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/feed_law.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/setpoint.h"
 
@@ -53,7 +53,7 @@ class AxisMove {
 
   std::array<MotionLimits, kAxisCount> limits_;
   double period_;
-  FeedLaw law_;
+  SCurveProfile law_;
   Setpoint current_;
   int axis_ = kX;
   double from_ = 0, to_ = 0;  ///< of the axis [m], A [rad]

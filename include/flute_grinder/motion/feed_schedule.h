@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/curve/conical_cutter.h"
-#include "flute_grinder/curve/feed_law.h"
 #include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 #include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/motion/axis_limits.h"
 
@@ -32,6 +32,15 @@ struct FeedLimit {
 /// elsewhere X moves at constant speed; a blend between the two keeps the jerk bounded. The schedule is a parameter s
 /// along the stroke that advances at constant speed in both cases. A feed law with constant limits in s obeys all
 /// limits of all axes, slows down ahead of a thin end without further measures, and can be stopped or slowed anywhere.
+///
+///     dX/dt                        ________________  v: X limits, ds = dX
+///       |                     _.-'
+///       |                  .-'    blend: the jerk is bounded
+///       |              _.-'
+///       |          _.-'  c u: A limits, and turns at constant speed; u = radius / end radius
+///       |      _.-'
+///       +-----+-------------------------------------> X
+///         small end                          shank
 ///
 /// Y moves in proportion to X, and so does Z by the published law. With a correction, what the bending of Z takes of
 /// its limits is not there for the motion of X: (d2Z/dX2) v^2 of the acceleration, (d3Z/dX3) v^3 + 3 (d2Z/dX2) v dv/dt

@@ -50,8 +50,8 @@ class LimitCheck {
     slow_down_ = 1;
   }
 
-  /// For axes that stood still for a while and continue at a fraction of their speed, see FeedLaw::slowDown(). The
-  /// stored history is scaled to the same speed, from the next pair on.
+  /// For axes that stood still for a while and continue at a fraction of their speed, see SCurveProfile::slowDown().
+  /// The stored history is scaled to the same speed, from the next pair on.
   /// @param factor above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;

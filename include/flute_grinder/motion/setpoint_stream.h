@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/curve/feed_law.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/setpoint.h"
 
@@ -131,7 +131,7 @@ class SetpointStream {
   bool mid_pair_ = false;
   std::size_t next_move_ = 0;
   Leg leg_ = Leg::kPath;
-  FeedLaw law_;
+  SCurveProfile law_;
   double move_speed_ = 0;  ///< of the law, without override
 
   // For a straight move: position = from_ + law * way_.

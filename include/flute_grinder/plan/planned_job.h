@@ -25,7 +25,7 @@ class JobWithDigest {
   std::string digest_;
 };
 
-/// All that is known of a job before it is ground. Its program holds the job with its law of Z, the machine with the
+/// A job's complete plan. Its program holds the job with its law of Z, the machine with the
 /// work offset, and the start.
 struct PlannedJob : JobPlan {
   std::string digest;                   ///< see jobDigest()

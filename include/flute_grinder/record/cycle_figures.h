@@ -8,7 +8,7 @@ namespace flute_grinder {
 inline bool isLate(double period, double nominal) { return !(period <= 1.5 * nominal); }
 
 /// Keeps the larger value; NaN is kept.
-inline void keepLargest(double& largest, double value) {
+inline void updateMax(double& largest, double value) {
   if (!(value <= largest) && !std::isnan(largest)) largest = value;
 }
 

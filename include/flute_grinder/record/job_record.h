@@ -46,7 +46,7 @@ class JobRecord {
 
   /// The record as it is kept, see docs/ros-interface.md.
   /// @param grinder the node's name.
-  Json json(const std::string& grinder, const MachineInfo& machine) const;
+  Json json(const std::string& grinder, const core::MachineInfo& machine) const;
 
  private:
   /// Times are since the start [s].

@@ -8,7 +8,9 @@ namespace flute_grinder {
 
 struct LoopConfig;
 
-/// Which machine this is, as `~machine` and the records of its jobs tell.
+namespace core {
+
+/// Identity and limits of the machine, as `~machine` publishes them and the records of jobs have them.
 struct MachineInfo {
   std::string name;                         ///< of the robot description
   std::string version;                      ///< of flute_grinder
@@ -19,7 +21,9 @@ struct MachineInfo {
   Axes max_following_error = Axes::Zero();  ///< [m], A [rad]
 };
 
+}  // namespace core
+
 /// @param drive type of the drive's plugin.
-MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
+core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
 
 }  // namespace flute_grinder

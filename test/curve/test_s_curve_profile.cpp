@@ -1,4 +1,4 @@
-#include "flute_grinder/curve/feed_law.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 
 #include "motion/generators.h"
 
@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace flute_grinder {
-namespace test_feed_law {
+namespace test_s_curve_profile {
 
 using namespace test_support;
 
@@ -26,7 +26,7 @@ struct Sample {
   double position, speed, acceleration;
 };
 
-Sample sampleOf(const FeedLaw& law) { return {law.position(), law.speed(), law.acceleration()}; }
+Sample sampleOf(const SCurveProfile& law) { return {law.position(), law.speed(), law.acceleration()}; }
 
 /// The quickest way from rest to rest under the three limits, by the cases of the double-S law.
 double doubleSTime(const MotionLimits& m, double distance) {
@@ -46,7 +46,7 @@ double doubleSTime(const MotionLimits& m, double distance) {
 
 /// Runs through a law in equal steps until it rests; `change` may change the target, and so end a rest, before each.
 template <typename Change>
-std::vector<Sample> run(FeedLaw& law, double dt, int most, Change change) {
+std::vector<Sample> run(SCurveProfile& law, double dt, int most, Change change) {
   std::vector<Sample> samples{sampleOf(law)};
   for (int i = 0; i < most; ++i) {
     change(i);
@@ -97,7 +97,7 @@ void checkBounds(const Motion& m, const std::vector<Sample>& samples) {
   }
 }
 
-void assertFinished(const FeedLaw& law, const Motion& m) {
+void assertFinished(const SCurveProfile& law, const Motion& m) {
   RC_ASSERT(law.resting());
   RC_ASSERT(law.finished());
   RC_ASSERT(law.position() == m.distance);
@@ -117,8 +117,8 @@ double stoppingBound(const MotionLimits& l, double speed, double acceleration) {
   return peak * back + peak * brake / 2;
 }
 
-TEST(FeedLaw, HasNothingToDoByDefault) {
-  FeedLaw law;
+TEST(SCurveProfile, HasNothingToDoByDefault) {
+  SCurveProfile law;
   EXPECT_TRUE(law.resting());
   EXPECT_TRUE(law.finished());
   law.advance(1);
@@ -126,15 +126,15 @@ TEST(FeedLaw, HasNothingToDoByDefault) {
   EXPECT_EQ(law.speed(), 0);
 }
 
-TEST(FeedLaw, NeedsNoTimeForNoDistance) {
-  FeedLaw law({1, 1, 1}, 0, 1);
+TEST(SCurveProfile, NeedsNoTimeForNoDistance) {
+  SCurveProfile law({1, 1, 1}, 0, 1);
   EXPECT_TRUE(law.resting());
   EXPECT_TRUE(law.finished());
   EXPECT_EQ(law.timeLeft(), 0);
 }
 
-TEST(FeedLaw, StartsAtRestAtZero) {
-  const FeedLaw law({1, 1, 1}, 1, 0.5);
+TEST(SCurveProfile, StartsAtRestAtZero) {
+  const SCurveProfile law({1, 1, 1}, 1, 0.5);
   EXPECT_EQ(law.position(), 0);
   EXPECT_EQ(law.speed(), 0);
   EXPECT_EQ(law.acceleration(), 0);
@@ -142,17 +142,17 @@ TEST(FeedLaw, StartsAtRestAtZero) {
   EXPECT_FALSE(law.resting());
 }
 
-TEST(FeedLaw, RestsAtTheStartWithoutATarget) {
-  FeedLaw law({1, 1, 1}, 1, 0);
+TEST(SCurveProfile, RestsAtTheStartWithoutATarget) {
+  SCurveProfile law({1, 1, 1}, 1, 0);
   EXPECT_TRUE(law.resting());
   EXPECT_FALSE(law.finished());
   law.advance(1);
   EXPECT_EQ(law.position(), 0);
 }
 
-TEST(FeedLaw, GoesThroughItsSevenPhasesByHandCalculation) {
+TEST(SCurveProfile, GoesThroughItsSevenPhasesByHandCalculation) {
   // j 1, a 1, v 2: 1 s up to a, 1 s at a, 1 s back: at 2 after 3 s and 3 m. 10 m: 2 s at 2, then 3 s down.
-  FeedLaw law({2, 1, 1}, 10, 2);
+  SCurveProfile law({2, 1, 1}, 10, 2);
   EXPECT_NEAR(law.timeLeft(), 8, 1e-14);
   const struct {
     double time, position, speed, acceleration;
@@ -168,8 +168,8 @@ TEST(FeedLaw, GoesThroughItsSevenPhasesByHandCalculation) {
   }
 }
 
-TEST(FeedLaw, CruisesAtTheTargetOnly) {
-  FeedLaw law({2, 1, 1}, 10, 2);
+TEST(SCurveProfile, CruisesAtTheTargetOnly) {
+  SCurveProfile law({2, 1, 1}, 10, 2);
   EXPECT_FALSE(law.cruising());
   law.advance(2.5);
   EXPECT_FALSE(law.cruising());
@@ -182,8 +182,8 @@ TEST(FeedLaw, CruisesAtTheTargetOnly) {
   EXPECT_EQ(law.speed(), 1);
 }
 
-TEST(FeedLaw, OfAShorterWayThanToFullSpeedCruisesNever) {
-  FeedLaw law({2, 1, 1}, 2, 2);
+TEST(SCurveProfile, OfAShorterWayThanToFullSpeedCruisesNever) {
+  SCurveProfile law({2, 1, 1}, 2, 2);
   for (int i = 0; i < 1000 && !law.resting(); ++i) {
     law.advance(0.01);
     EXPECT_FALSE(law.cruising());
@@ -191,9 +191,9 @@ TEST(FeedLaw, OfAShorterWayThanToFullSpeedCruisesNever) {
   EXPECT_TRUE(law.finished());
 }
 
-TEST(FeedLaw, StopsAsSoonAsTheLimitsAllow) {
+TEST(SCurveProfile, StopsAsSoonAsTheLimitsAllow) {
   // At 2 m/s: 3 s and 3 m to a stop.
-  FeedLaw law({2, 1, 1}, 20, 2);
+  SCurveProfile law({2, 1, 1}, 20, 2);
   law.advance(4);
   law.setTarget(0);
   EXPECT_NEAR(law.timeLeft(), 3, 1e-14);
@@ -204,9 +204,9 @@ TEST(FeedLaw, StopsAsSoonAsTheLimitsAllow) {
   EXPECT_EQ(law.speed(), 0);
 }
 
-TEST(FeedLaw, TakesTheAccelerationBackBeforeItStops) {
+TEST(SCurveProfile, TakesTheAccelerationBackBeforeItStops) {
   // After 1 s: 0.5 m/s and 1 m/s^2. 1 s to no acceleration at 1 m/s, 1 s and 1 s down with a peak of 1 m/s^2.
-  FeedLaw law({2, 1, 1}, 20, 2);
+  SCurveProfile law({2, 1, 1}, 20, 2);
   law.advance(1);
   law.setTarget(0);
   EXPECT_NEAR(law.timeLeft(), 3, 1e-14);
@@ -215,34 +215,34 @@ TEST(FeedLaw, TakesTheAccelerationBackBeforeItStops) {
   EXPECT_NEAR(law.acceleration(), 0, 1e-14);
 }
 
-TEST(FeedLaw, TellsItsLimits) {
-  const FeedLaw law({2, 3, 5}, 1, 1);
+TEST(SCurveProfile, TellsItsLimits) {
+  const SCurveProfile law({2, 3, 5}, 1, 1);
   EXPECT_EQ(law.limits().velocity, 2);
   EXPECT_EQ(law.limits().acceleration, 3);
   EXPECT_EQ(law.limits().jerk, 5);
-  EXPECT_EQ(FeedLaw().limits().velocity, 0);
+  EXPECT_EQ(SCurveProfile().limits().velocity, 0);
 }
 
-TEST(FeedLaw, RefusesBadArguments) {
+TEST(SCurveProfile, RefusesBadArguments) {
   const double bad_limits[]{0, -1, kNan, kInf, -kInf};
   for (const double bad : bad_limits) {
     SCOPED_TRACE(bad);
-    EXPECT_THROW(FeedLaw({bad, 1, 1}, 1, 0), std::invalid_argument);
-    EXPECT_THROW(FeedLaw({1, bad, 1}, 1, 0), std::invalid_argument);
-    EXPECT_THROW(FeedLaw({1, 1, bad}, 1, 0), std::invalid_argument);
+    EXPECT_THROW(SCurveProfile({bad, 1, 1}, 1, 0), std::invalid_argument);
+    EXPECT_THROW(SCurveProfile({1, bad, 1}, 1, 0), std::invalid_argument);
+    EXPECT_THROW(SCurveProfile({1, 1, bad}, 1, 0), std::invalid_argument);
   }
   for (const double bad : {-1e-9, kNan, kInf}) {
     SCOPED_TRACE(bad);
-    EXPECT_THROW(FeedLaw({1, 1, 1}, bad, 0), std::invalid_argument);
+    EXPECT_THROW(SCurveProfile({1, 1, 1}, bad, 0), std::invalid_argument);
   }
   for (const double bad : {-1e-9, 1.0000001, kNan, kInf}) {
     SCOPED_TRACE(bad);
-    EXPECT_THROW(FeedLaw({1, 1, 1}, 1, bad), std::invalid_argument);
+    EXPECT_THROW(SCurveProfile({1, 1, 1}, 1, bad), std::invalid_argument);
   }
 }
 
-TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
-  FeedLaw law({2, 1, 1}, 10, 2);
+TEST(SCurveProfile, BeginsWithGoodArgumentsOnly) {
+  SCurveProfile law({2, 1, 1}, 10, 2);
   law.advance(1);
   const double position = law.position();
   EXPECT_FALSE(law.begin({2, 1, kNan}, 10, 2));
@@ -250,7 +250,7 @@ TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
   EXPECT_FALSE(law.begin({2, 1, 1}, 10, 3));
   EXPECT_EQ(law.position(), position);
   ASSERT_TRUE(law.begin({1, 1, 1}, 5, 1));
-  FeedLaw made({1, 1, 1}, 5, 1);
+  SCurveProfile made({1, 1, 1}, 5, 1);
   EXPECT_EQ(law.timeLeft(), made.timeLeft());
   for (int i = 0; i < 90; ++i) {
     law.advance(0.1);
@@ -260,7 +260,7 @@ TEST(FeedLaw, BeginsWithGoodArgumentsOnly) {
   EXPECT_EQ(law.position(), 5);
 }
 
-TEST(FeedLaw, NamesTheBadArgument) {
+TEST(SCurveProfile, NamesTheBadArgument) {
   const auto text = [](const std::function<void()>& make) -> std::string {
     try {
       make();
@@ -269,18 +269,18 @@ TEST(FeedLaw, NamesTheBadArgument) {
     }
     return "";
   };
-  EXPECT_NE(text([] { FeedLaw({-1, 1, 1}, 1, 0); }).find("velocity"), std::string::npos);
-  EXPECT_NE(text([] { FeedLaw({1, -1, 1}, 1, 0); }).find("acceleration"), std::string::npos);
-  EXPECT_NE(text([] { FeedLaw({1, 1, -1}, 1, 0); }).find("jerk"), std::string::npos);
-  EXPECT_NE(text([] { FeedLaw({1, 1, 1}, -1, 0); }).find("distance"), std::string::npos);
-  EXPECT_NE(text([] { FeedLaw({1, 1, 1}, 1, 2); }).find("target"), std::string::npos);
+  EXPECT_NE(text([] { SCurveProfile({-1, 1, 1}, 1, 0); }).find("velocity"), std::string::npos);
+  EXPECT_NE(text([] { SCurveProfile({1, -1, 1}, 1, 0); }).find("acceleration"), std::string::npos);
+  EXPECT_NE(text([] { SCurveProfile({1, 1, -1}, 1, 0); }).find("jerk"), std::string::npos);
+  EXPECT_NE(text([] { SCurveProfile({1, 1, 1}, -1, 0); }).find("distance"), std::string::npos);
+  EXPECT_NE(text([] { SCurveProfile({1, 1, 1}, 1, 2); }).find("target"), std::string::npos);
 }
 
-TEST(FeedLaw, ARefusedTargetChangesNothing) {
+TEST(SCurveProfile, ARefusedTargetChangesNothing) {
   for (const double bad : {kNan, -1e-9, 2.0000001, kInf, -kInf}) {
     SCOPED_TRACE(bad);
-    FeedLaw law({2, 1, 1}, 10, 2);
-    FeedLaw untouched({2, 1, 1}, 10, 2);
+    SCurveProfile law({2, 1, 1}, 10, 2);
+    SCurveProfile untouched({2, 1, 1}, 10, 2);
     for (int i = 0; i < 90; ++i) {
       EXPECT_FALSE(law.setTarget(bad));
       law.advance(0.1);
@@ -294,12 +294,12 @@ TEST(FeedLaw, ARefusedTargetChangesNothing) {
   }
 }
 
-TEST(FeedLaw, StoppedDuringTheFinalBrakingItNeitherPassesTheEndNorFailsToResume) {
+TEST(SCurveProfile, StoppedDuringTheFinalBrakingItNeitherPassesTheEndNorFailsToResume) {
   const MotionLimits limits{0.16312605896444626, 0.18834111712747642, 0.20329808767523674};
   const double distance = 0.39464941190965325;
-  const double total = FeedLaw(limits, distance, limits.velocity).timeLeft();
+  const double total = SCurveProfile(limits, distance, limits.velocity).timeLeft();
   for (int i = 0; i < 5000; ++i) {
-    FeedLaw law(limits, distance, limits.velocity);
+    SCurveProfile law(limits, distance, limits.velocity);
     law.advance(total * (0.5 + 0.5 * i / 5000));
     law.setTarget(0);
     law.advance(2 * total);
@@ -312,7 +312,7 @@ TEST(FeedLaw, StoppedDuringTheFinalBrakingItNeitherPassesTheEndNorFailsToResume)
 }
 
 /// Rest is without speed and acceleration, and nothing then moves any more.
-void assertRestsIfItSaysSo(FeedLaw law, const Motion& m) {
+void assertRestsIfItSaysSo(SCurveProfile law, const Motion& m) {
   if (!law.resting()) return;
   RC_ASSERT(law.speed() == 0);
   RC_ASSERT(law.acceleration() == 0);
@@ -323,9 +323,9 @@ void assertRestsIfItSaysSo(FeedLaw law, const Motion& m) {
   RC_ASSERT(law.position() == rest);
 }
 
-RC_GTEST_PROP(FeedLawProperty, ATargetSetAtTheVeryEndLeavesNoSpeedInALawThatRests, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, ATargetSetAtTheVeryEndLeavesNoSpeedInALawThatRests, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   const bool stops_short = *rc::gen::arbitrary<bool>();
   if (stops_short) {
     law.advance(law.timeLeft() * *uniform(0, 1));
@@ -344,7 +344,7 @@ RC_GTEST_PROP(FeedLawProperty, ATargetSetAtTheVeryEndLeavesNoSpeedInALawThatRest
   }
 }
 
-TEST(FeedLaw, APlanWithoutMotionRestsAtOnce) {
+TEST(SCurveProfile, APlanWithoutMotionRestsAtOnce) {
   // Told to stop just where the final braking would begin, it comes to the end with a rounding of speed left: a target
   // then makes a plan without motion.
   std::mt19937_64 random(1);
@@ -354,7 +354,7 @@ TEST(FeedLaw, APlanWithoutMotionRestsAtOnce) {
     const MotionLimits limits{2, fraction(random), fraction(random)};
     const double ramp = 2 / limits.acceleration + limits.acceleration / limits.jerk;
     const double distance = 2 * ramp + fraction(random);
-    FeedLaw law(limits, distance, limits.velocity);
+    SCurveProfile law(limits, distance, limits.velocity);
     law.advance(law.timeLeft() - ramp);
     law.setTarget(0);
     law.advance(law.timeLeft() * (1 - 1e-9));
@@ -369,15 +369,15 @@ TEST(FeedLaw, APlanWithoutMotionRestsAtOnce) {
   EXPECT_GT(at_the_end, 100);
 }
 
-RC_GTEST_PROP(FeedLawProperty, UndisturbedItTakesTheDoubleSTime, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, UndisturbedItTakesTheDoubleSTime, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   const double expected = doubleSTime(m.limits, m.distance);
   RC_ASSERT(std::abs(law.timeLeft() - expected) <= 1e-9 * expected);
 }
 
 /// One motion for each of the double-S law's four cases: velocity, and acceleration, reached or not.
-RC_GTEST_PROP(FeedLawProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
   const double a = *logUniform(0.01, 10);
   const double j = *logUniform(0.1, 1000);
   const double knee = a * a / j;  // speed from which on the full acceleration is reached
@@ -387,21 +387,21 @@ RC_GTEST_PROP(FeedLawProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
   const double ramp = acceleration_reached ? peak / a + a / j : 2 * std::sqrt(peak / j);
   const double cruise = velocity_reached ? *uniform(0.01, 5) * ramp : 0;
   const double v = velocity_reached ? peak : peak * *uniform(1.01, 3);
-  const FeedLaw law({v, a, j}, peak * (ramp + cruise), v);
+  const SCurveProfile law({v, a, j}, peak * (ramp + cruise), v);
   RC_ASSERT(std::abs(law.timeLeft() - (2 * ramp + cruise)) <= 1e-9 * (2 * ramp + cruise));
 }
 
-RC_GTEST_PROP(FeedLawProperty, UndisturbedItKeepsTheLimitsAndFinishes, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, UndisturbedItKeepsTheLimitsAndFinishes, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity * *uniform(0.05, 1));
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity * *uniform(0.05, 1));
   const auto samples = run(law, m.dt, 100000, [](int) {});
   checkBounds(m, samples);
   assertFinished(law, m);
 }
 
-RC_GTEST_PROP(FeedLawProperty, KeepsTheLimitsAndFinishesWhateverTheTargetsWere, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, KeepsTheLimitsAndFinishesWhateverTheTargetsWere, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> fraction(0, 1);
   std::uniform_real_distribution<double> target(-0.3, 1.2);  // 0 and full speed have their share
@@ -420,9 +420,9 @@ RC_GTEST_PROP(FeedLawProperty, KeepsTheLimitsAndFinishesWhateverTheTargetsWere, 
   assertFinished(law, m);
 }
 
-RC_GTEST_PROP(FeedLawProperty, FinishesThoughTheTargetChangesDuringTheFinalBraking, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, FinishesThoughTheTargetChangesDuringTheFinalBraking, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   const double brake_from = law.timeLeft() * *uniform(0.5, 1);
   const int every = *whole(1, 5);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
@@ -436,9 +436,9 @@ RC_GTEST_PROP(FeedLawProperty, FinishesThoughTheTargetChangesDuringTheFinalBraki
   assertFinished(law, m);
 }
 
-RC_GTEST_PROP(FeedLawProperty, AnotherTargetDuringTheFinalBrakingDoesNotDelayTheEnd, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, AnotherTargetDuringTheFinalBrakingDoesNotDelayTheEnd, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   law.advance(law.timeLeft() * *uniform(0.5, 1));
   RC_PRE(law.acceleration() < 0);
   const double left = law.timeLeft();
@@ -447,9 +447,9 @@ RC_GTEST_PROP(FeedLawProperty, AnotherTargetDuringTheFinalBrakingDoesNotDelayThe
   RC_ASSERT(law.timeLeft() <= left * (1 + 1e-3));
 }
 
-RC_GTEST_PROP(FeedLawProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   law.advance(law.timeLeft() * *uniform(0, 1));
   const double from = law.position();
   const double bound = stoppingBound(m.limits, law.speed(), law.acceleration());
@@ -473,9 +473,9 @@ RC_GTEST_PROP(FeedLawProperty, StopsWithinTheDistanceAndRestsAndResumes, ()) {
   assertFinished(law, m);
 }
 
-RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRestAtTheEnd, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRestAtTheEnd, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> fraction(0, 1), factor(0.01, 0.99);
   const double from = *uniform(0, 1) * law.timeLeft();  // the final braking has its share
@@ -494,7 +494,7 @@ RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRe
       RC_ASSERT(law.acceleration() == f * f * before.acceleration);
       samples = {sampleOf(law)};
       // There is always a stop within the way left.
-      FeedLaw stop = law;
+      SCurveProfile stop = law;
       stop.setTarget(0);
       checkBounds(m, run(stop, m.dt, 100000, [](int) {}));
       RC_ASSERT(stop.resting());
@@ -506,9 +506,9 @@ RC_GTEST_PROP(FeedLawProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndComesToRe
   assertFinished(law, m);
 }
 
-TEST(FeedLaw, SlowedDownItTakesUpItsSpeedAnew) {
+TEST(SCurveProfile, SlowedDownItTakesUpItsSpeedAnew) {
   const MotionLimits limits{1, 2, 8};
-  FeedLaw law(limits, 10, 1);
+  SCurveProfile law(limits, 10, 1);
   law.advance(2);
   ASSERT_TRUE(law.cruising());
   law.slowDown(0.25);
@@ -519,23 +519,23 @@ TEST(FeedLaw, SlowedDownItTakesUpItsSpeedAnew) {
   EXPECT_EQ(law.speed(), 1);
 }
 
-TEST(FeedLaw, WhatIsNoFactorDoesNotSlowItDown) {
+TEST(SCurveProfile, WhatIsNoFactorDoesNotSlowItDown) {
   for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
-    FeedLaw law({1, 2, 8}, 10, 1);
+    SCurveProfile law({1, 2, 8}, 10, 1);
     law.advance(2);
     const double left = law.timeLeft();
     law.slowDown(factor);
     EXPECT_EQ(law.speed(), 1) << factor;
     EXPECT_EQ(law.timeLeft(), left) << factor;
   }
-  FeedLaw resting;
+  SCurveProfile resting;
   resting.slowDown(0.5);
   EXPECT_TRUE(resting.finished());
 }
 
-RC_GTEST_PROP(FeedLawProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   law.advance(law.timeLeft() * *uniform(0, 0.9));
   const double target = m.limits.velocity * *uniform(0.01, 1);
   RC_ASSERT(law.setTarget(target));
@@ -548,10 +548,10 @@ RC_GTEST_PROP(FeedLawProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
   }
 }
 
-RC_GTEST_PROP(FeedLawProperty, DoesNotDependOnHowTheTimeIsCut, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, DoesNotDependOnHowTheTimeIsCut, ()) {
   const Motion m = Motion::draw();
-  FeedLaw fine(m.limits, m.distance, m.limits.velocity);
-  FeedLaw coarse(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile fine(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile coarse(m.limits, m.distance, m.limits.velocity);
   const int parts = *whole(2, 30);
   for (int i = 0; i < 30; ++i) {
     for (int part = 0; part < parts; ++part) fine.advance(m.dt / parts);
@@ -561,15 +561,15 @@ RC_GTEST_PROP(FeedLawProperty, DoesNotDependOnHowTheTimeIsCut, ()) {
   }
 }
 
-RC_GTEST_PROP(FeedLawProperty, TheSameCallsGiveTheSameBits, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, TheSameCallsGiveTheSameBits, ()) {
   const Motion m = Motion::draw();
-  FeedLaw one(m.limits, m.distance, m.limits.velocity);
-  FeedLaw other(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile one(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile other(m.limits, m.distance, m.limits.velocity);
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> fraction(0, 1);
   for (int change = 0; change < 100; ++change) {
     const double target = fraction(random);
-    for (FeedLaw* law : {&one, &other}) {
+    for (SCurveProfile* law : {&one, &other}) {
       law->setTarget(m.limits.velocity * target);
       for (int i = 0; i < 5; ++i) law->advance(m.dt);
     }
@@ -579,9 +579,9 @@ RC_GTEST_PROP(FeedLawProperty, TheSameCallsGiveTheSameBits, ()) {
   }
 }
 
-RC_GTEST_PROP(FeedLawProperty, TheTimeLeftIsWhatItThenTakes, ()) {
+RC_GTEST_PROP(SCurveProfileProperty, TheTimeLeftIsWhatItThenTakes, ()) {
   const Motion m = Motion::draw();
-  FeedLaw law(m.limits, m.distance, m.limits.velocity);
+  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
   law.advance(law.timeLeft() * *uniform(0, 1));
   law.setTarget(m.limits.velocity * *uniform(0.01, 1));
   const double left = law.timeLeft();
@@ -591,5 +591,5 @@ RC_GTEST_PROP(FeedLawProperty, TheTimeLeftIsWhatItThenTakes, ()) {
   assertFinished(law, m);
 }
 
-}  // namespace test_feed_law
+}  // namespace test_s_curve_profile
 }  // namespace flute_grinder

@@ -17,17 +17,17 @@ struct MotionLimits {
 /// always ends in a stop within the remaining distance, so it needs no look-ahead; it is recomputed when the target
 /// changes. The same calls give bit-identical results. Real-time safe except for the constructor; setTarget() takes
 /// microseconds, advance() nanoseconds.
-class FeedLaw {
+class SCurveProfile {
  public:
   /// At rest at the end of a motion of length 0.
-  FeedLaw() noexcept = default;
+  SCurveProfile() noexcept = default;
 
   /// At rest at the start of `distance`.
   /// @param limits limits of speed, acceleration and jerk.
   /// @param distance distance to travel, not negative.
   /// @param target target speed, 0 to limits.velocity.
   /// @throw std::invalid_argument unless limits, distance and target are as stated and finite.
-  FeedLaw(const MotionLimits& limits, double distance, double target);
+  SCurveProfile(const MotionLimits& limits, double distance, double target);
 
   /// Restarts like the constructor, but does not throw. Real-time safe.
   /// @return false, and nothing changes, unless limits, distance and target are valid for the constructor.

@@ -1,4 +1,4 @@
-#include "flute_grinder/curve/feed_law.h"
+#include "flute_grinder/curve/s_curve_profile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ std::array<Figure, 5> figures(const MotionLimits& limits, double distance, doubl
 
 }  // namespace
 
-FeedLaw::FeedLaw(const MotionLimits& limits, double distance, double target) {
+SCurveProfile::SCurveProfile(const MotionLimits& limits, double distance, double target) {
   if (begin(limits, distance, target)) return;
   const auto all = figures(limits, distance, target);
   const Figure& bad = *std::find_if(all.begin(), all.end(), [](const Figure& f) { return !f.good; });
@@ -38,10 +38,10 @@ FeedLaw::FeedLaw(const MotionLimits& limits, double distance, double target) {
   throw std::invalid_argument(text.str());
 }
 
-bool FeedLaw::begin(const MotionLimits& limits, double distance, double target) noexcept {
+bool SCurveProfile::begin(const MotionLimits& limits, double distance, double target) noexcept {
   const auto all = figures(limits, distance, target);
   if (!std::all_of(all.begin(), all.end(), [](const Figure& f) { return f.good; })) return false;
-  *this = FeedLaw();
+  *this = SCurveProfile();
   limits_ = limits;
   distance_ = distance;
   target_ = target;
@@ -49,7 +49,7 @@ bool FeedLaw::begin(const MotionLimits& limits, double distance, double target) 
   return true;
 }
 
-bool FeedLaw::setTarget(double target) noexcept {
+bool SCurveProfile::setTarget(double target) noexcept {
   if (!(target >= 0 && target <= limits_.velocity)) return false;
   if (target == target_) return true;
   target_ = target;
@@ -59,14 +59,14 @@ bool FeedLaw::setTarget(double target) noexcept {
   return true;
 }
 
-void FeedLaw::slowDown(double factor) noexcept {
+void SCurveProfile::slowDown(double factor) noexcept {
   if (!(factor > 0 && factor < 1) || resting()) return;
   speed_ *= factor;
   acceleration_ *= factor * factor;
   plan();
 }
 
-void FeedLaw::advance(double dt) noexcept {
+void SCurveProfile::advance(double dt) noexcept {
   time_ += dt;
   if (resting()) {
     segment_ = segment_count_;
@@ -76,7 +76,7 @@ void FeedLaw::advance(double dt) noexcept {
   follow(segment_);
 }
 
-void FeedLaw::follow(int segment) noexcept {
+void SCurveProfile::follow(int segment) noexcept {
   const Segment& s = segments_[segment];
   const State state = after(s.start, s.jerk, time_ - s.start_time);
   position_ = std::min(state.position, distance_);
@@ -84,7 +84,7 @@ void FeedLaw::follow(int segment) noexcept {
   acceleration_ = state.acceleration;
 }
 
-std::uint64_t FeedLaw::skipCruise(double dt, double margin, std::uint64_t at_most) noexcept {
+std::uint64_t SCurveProfile::skipCruise(double dt, double margin, std::uint64_t at_most) noexcept {
   if (!cruising() || time_ < segments_[segment_].start_time + margin) return 0;
   const double end = segment_ + 1 < segment_count_ ? segments_[segment_ + 1].start_time : end_time_;
   std::uint64_t count = 0;
@@ -97,14 +97,14 @@ std::uint64_t FeedLaw::skipCruise(double dt, double margin, std::uint64_t at_mos
   return count;
 }
 
-FeedLaw::State FeedLaw::after(const State& s, double jerk, double t) noexcept {
+SCurveProfile::State SCurveProfile::after(const State& s, double jerk, double t) noexcept {
   // At constant speed, which is most of the time: the same figures without a division.
   if (jerk == 0 && s.acceleration == 0) return {s.position + t * s.speed, s.speed, 0};
   return {s.position + t * (s.speed + t * (s.acceleration / 2 + t * jerk / 6)),
           s.speed + t * (s.acceleration + t * jerk / 2), s.acceleration + t * jerk};
 }
 
-FeedLaw::SpeedChange FeedLaw::changeSpeed(double speed, double acceleration, double to) const noexcept {
+SCurveProfile::SpeedChange SCurveProfile::changeSpeed(double speed, double acceleration, double to) const noexcept {
   const double j = limits_.jerk;
   // The speed that would result from reducing the acceleration to 0 immediately decides whether to speed up or slow
   // down.
@@ -122,7 +122,7 @@ FeedLaw::SpeedChange FeedLaw::changeSpeed(double speed, double acceleration, dou
   return {Phase{(peak - a0) / j, sign * j}, Phase{hold, 0}, Phase{peak / j, -sign * j}};
 }
 
-double FeedLaw::stoppingDistance(double through) const noexcept {
+double SCurveProfile::stoppingDistance(double through) const noexcept {
   State s{0, speed_, acceleration_};
   for (const Phase& p : changeSpeed(speed_, acceleration_, through)) s = after(s, p.jerk, p.duration);
   s.speed = through;
@@ -131,7 +131,7 @@ double FeedLaw::stoppingDistance(double through) const noexcept {
   return s.position;
 }
 
-void FeedLaw::plan() noexcept {
+void SCurveProfile::plan() noexcept {
   State s{position_, speed_, acceleration_};
   segment_count_ = 0;
   segment_ = 0;
@@ -148,13 +148,13 @@ void FeedLaw::plan() noexcept {
   if (resting()) rest();
 }
 
-void FeedLaw::rest() noexcept {
+void SCurveProfile::rest() noexcept {
   position_ = end_.position;
   speed_ = 0;
   acceleration_ = 0;
 }
 
-double FeedLaw::cruiseSpeed(double left) const noexcept {
+double SCurveProfile::cruiseSpeed(double left) const noexcept {
   if (stoppingDistance(target_) <= left) return target_;
   double low = 0;
   double high = target_;
@@ -164,14 +164,14 @@ double FeedLaw::cruiseSpeed(double left) const noexcept {
   return low;
 }
 
-void FeedLaw::append(const Phase& phase, State& state) noexcept {
+void SCurveProfile::append(const Phase& phase, State& state) noexcept {
   if (!(phase.duration > 0)) return;
   segments_[segment_count_++] = {end_time_, state, phase.jerk};
   state = after(state, phase.jerk, phase.duration);
   end_time_ += phase.duration;
 }
 
-void FeedLaw::append(const SpeedChange& change, double end_speed, State& state) noexcept {
+void SCurveProfile::append(const SpeedChange& change, double end_speed, State& state) noexcept {
   for (const Phase& phase : change) append(phase, state);
   state.speed = end_speed;
   state.acceleration = 0;

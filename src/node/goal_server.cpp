@@ -262,11 +262,6 @@ void GoalServer::poll() {
   if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
   cycles_ = status.cycles;
   tracker_.update(status);
-  const bool faulty = status.state == MachineState::kFault;
-  // That of a job is in its result.
-  if (!std::exchange(faulty_, faulty) && faulty && !goal_) {
-    ROS_ERROR_STREAM("fault: " << core::text(reasonOf(status.fault), UnitSystem::kSi));
-  }
   if (!goal_) return;
   publishFeedback();
   switch (goal_->phase) {

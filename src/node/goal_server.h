@@ -86,7 +86,6 @@ class GoalServer {
   ProgressTracker tracker_;
 
   std::uint64_t cycles_ = 0;    ///< of the loop, when last seen
-  bool faulty_ = false;         ///< when polled last
   ros::SteadyTime last_cycle_;  ///< when that count was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};

@@ -8,6 +8,7 @@ import rospy
 import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
+import grinder_client as gc
 from test_journal import JournalTest, sealed
 
 # Name, what stands in the journal.

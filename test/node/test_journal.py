@@ -282,7 +282,9 @@ class TestContinue(JournalTest):
 
         self.start()
         self.check_told(journal)
-        self.assertTrue(self.client.fresh_state().wheel_in_work)
+        state = self.client.fresh_state()
+        self.assertEqual((bool(state.wheel_in_work), state.override), (True, 0.05))
+        self.assertTrue(self.client.set_feed_override(1).success)
         status = self.grind(0, 'status').stdout
         self.assertRegex(status, r'(?m)^last job .*tooth 2, pass 1 not finished, X %.3f mm' % (at.position[X] / MM))
         self.assertIn(JOB_NAME, status)

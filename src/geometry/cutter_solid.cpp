@@ -13,6 +13,8 @@ namespace flute_grinder {
 
 namespace {
 
+constexpr double kNoStep = 1e-9;  ///< [m]
+
 struct Layer {
   double x;
   std::vector<PolarPoint> outline;
@@ -58,8 +60,10 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
     return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
   };
   double x = extent.to;
+  // Without a step there is no ring between cone and shank: it would be seen as a line of slivers.
+  const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
   for (int i = 1; x < extent.shank_to; ++i) {
-    add(x, shank);
+    if (is_step || i > 1) add(x, shank);
     x = is_whole() ? extent.shank_to : std::min(extent.shank_to, extent.to + i * step);
   }
   add(extent.shank_to, shank);

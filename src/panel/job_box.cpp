@@ -434,14 +434,16 @@ void JobBox::findUnfinished() {
     sought_.clear();
     return;
   }
-  // A file is read once for each job.
-  if (sought_ == progress_.job_digest) return;
-  sought_ = progress_.job_digest;
+  // Files are read once for each job, and for each that is chosen.
+  const std::string sought = progress_.job_digest + file_.toStdString();
+  if (std::exchange(sought_, sought) == sought) return;
   unfinished_file_.clear();
   for (const QString& folder : {QFileInfo(file_).path(), packageJobs()}) {
     const QString file = folder + "/" + QFileInfo(QString::fromStdString(progress_.job_name)).fileName();
     try {
-      if (jobDigest(readJobFile(file.toStdString())) == progress_.job_digest) unfinished_file_ = file;
+      if (jobDigest(readJobFile(file.toStdString())) != progress_.job_digest) continue;
+      unfinished_file_ = file;
+      return;
     } catch (const std::exception&) {
       // Whatever is there is not that job's.
     }

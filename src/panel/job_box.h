@@ -116,7 +116,7 @@ class JobBox : public QWidget {
   bool journal_damaged_ = false;              ///< the same; the journal may then be discarded
   bool job_runs_ = false;                     ///< whose progress that is
   QString unfinished_file_;                   ///< of another job that can be continued; empty if none is known
-  std::string sought_;                        ///< digest of the job for which that was sought
+  std::string sought_;                        ///< the job and the chosen file for which that was sought
   Swivel swivel_;                             ///< as last received from the grinder
   std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
   std::string wheel_;                         ///< name of the file's wheel file; empty if it has none

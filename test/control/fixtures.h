@@ -39,7 +39,7 @@ inline LoopConfig machineConfig() {
   return config;
 }
 
-/// The swivel of jobs/paper.yaml [rad].
+/// The swivel of test/jobs/paper.yaml [rad].
 constexpr double kPaperSwivel = 31.769 * 3.14159265358979323846 / 180;
 
 inline SimulatedDrive::Model driveModel(const LoopConfig& config = machineConfig()) {

@@ -24,7 +24,7 @@ const double kStrokeTo = 0.037;
 
 inline SetpointStream paperFromPark() {
   const LoopConfig config = machineConfig();
-  return SetpointStream(GrindProgram(readJobFile("jobs/paper.yaml"), config.machine, config.machine.park));
+  return SetpointStream(GrindProgram(readJobFile("test/jobs/paper.yaml"), config.machine, config.machine.park));
 }
 
 /// The job's setpoints without interference.

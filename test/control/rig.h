@@ -96,7 +96,7 @@ class Rig {
 
   /// The paper's job from the commanded position; the machine may differ from the loop's.
   SetpointStream paperStream(const Machine& machine) const {
-    static const GrindJob job = readJobFile("jobs/paper.yaml");
+    static const GrindJob job = readJobFile("test/jobs/paper.yaml");
     return SetpointStream(GrindProgram(job, machine, last().command));
   }
   SetpointStream paperStream() const { return paperStream(config_.machine); }

@@ -100,7 +100,7 @@ void expectNone(const HeapUse& use) {
   EXPECT_EQ(use.releases, 0);
 }
 
-GrindJob paperJob() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paperJob() { return readJobFile("test/jobs/paper.yaml"); }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The counter must see every allocation, or the tests below would pass whatever happens.

@@ -287,7 +287,7 @@ TEST_P(StartAfterMoving, IsRefused) {
   const int axis = GetParam();
   Axes planned = rig.last().command;
   planned[axis] = std::nextafter(planned[axis], 1.0);
-  SetpointStream stream(GrindProgram(readJobFile("jobs/paper.yaml"), machineConfig().machine, planned));
+  SetpointStream stream(GrindProgram(readJobFile("test/jobs/paper.yaml"), machineConfig().machine, planned));
   const RequestReply answer = rig.askToStart(stream);
   EXPECT_FALSE(answer.accepted);
   EXPECT_CONTAINS(answer.text, "do not stand where the job was planned to start");

@@ -81,7 +81,7 @@ class LoopThreads : public testing::Test {
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
   }
 
-  const GrindJob job_ = readJobFile("jobs/paper.yaml");
+  const GrindJob job_ = readJobFile("test/jobs/paper.yaml");
   FakeDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
   std::atomic<bool> busy_{true}, cycling_{true};

@@ -18,7 +18,7 @@ const double kLift = kClearance + 0.001 * kTanCone + 0.0016;  // from its deepes
 constexpr double kStrokeEnd = 0.037;                          // X, in work coordinates
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
-GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 Machine machineAt(const Axes& offset, const LoopConfig& config = machineConfig()) {
   Machine machine = config.machine;

@@ -23,7 +23,7 @@ constexpr Range kMachine{-60 * units::kDegree, 60 * units::kDegree};
 class SetupFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string text = textOf("jobs/paper.yaml");
+    std::string text = textOf("test/jobs/paper.yaml");
     text.replace(text.find("31.769"), 6, "31");
     write(text);
     fs::permissions(job_, fs::perms(0640));

@@ -23,7 +23,7 @@ constexpr double kMicron = 1e-6;
 const double kEdge = 1.5 * kMillimetre * std::cos(31.769 * kDegree);  ///< above the middle of the wheel
 
 /// A wheel of 3 mm at a height of 2.788 mm, by its swivel of 31.769 deg.
-GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 GrindJob worn() {
   GrindJob job = paper();
@@ -221,7 +221,7 @@ TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
 }
 
 TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
-  EXPECT_FALSE(wheelAboveSwivel("jobs/paper.yaml", paper(), machine()));
+  EXPECT_FALSE(wheelAboveSwivel("test/jobs/paper.yaml", paper(), machine()));
 }
 
 }  // namespace test_touch_off

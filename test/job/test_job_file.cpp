@@ -94,7 +94,7 @@ bool hasLineWith(const std::string& text, const std::vector<std::string>& parts)
 }
 
 TEST(JobFile, ReadsThePapersJob) {
-  const GrindJob job = readJobFile("jobs/paper.yaml");
+  const GrindJob job = readJobFile("test/jobs/paper.yaml");
   EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.01);
   EXPECT_DOUBLE_EQ(job.cutter.cone_angle, kPi / 36);
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, kPi / 6);

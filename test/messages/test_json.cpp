@@ -29,7 +29,7 @@ void expectSameBits(const GrindJob& job) {
   EXPECT_EQ(jobDigest(back), jobDigest(job));
 }
 
-GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 TEST(JobJson, OfEveryShippedJobIsTheSameJob) {
   int jobs = 0;

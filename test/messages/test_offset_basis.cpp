@@ -24,7 +24,7 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   EXPECT_EQ(basis.wheel_diameter, 0.1);
   EXPECT_EQ(basis.wheel_width, 0.003);
   EXPECT_TRUE(basis.hasJob());
-  EXPECT_EQ(goalFromFile("jobs/paper.yaml").wheel_name, "");
+  EXPECT_EQ(goalFromFile("test/jobs/paper.yaml").wheel_name, "");
 }
 
 /// The job that asks for nothing but what its wheel is.

@@ -17,7 +17,7 @@ import unittest
 import grinder_client as gc
 from grinder_client import MM, STROKE, X
 
-PAPER_JOB = gc.package_file('jobs/paper.yaml')
+PAPER_JOB = gc.package_file('test/jobs/paper.yaml')
 
 
 def default_signals():

@@ -43,7 +43,7 @@ ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 # Much longer than anything takes, even on a host that stalls.
 PATIENCE = 60
 
-# The paper's conical end mill, as in jobs/paper.yaml; the names are those of the goal's fields.
+# The paper's conical end mill, as in test/jobs/paper.yaml; the names are those of the goal's fields.
 PAPER = {
     'cutter.end_diameter': 10 * MM,
     'cutter.cone_angle': 5 * DEG,
@@ -199,8 +199,8 @@ def job_from_file(path):
 
 
 def job_file(path, **changes):
-    """Writes jobs/paper.yaml to `path`; with other values, as feed_mm_min=60, for tests of the motion, like MOTION."""
-    with open(package_file('jobs/paper.yaml')) as original:
+    """Writes test/jobs/paper.yaml to `path`; with other values, as feed_mm_min=60, for tests of the motion, like MOTION."""
+    with open(package_file('test/jobs/paper.yaml')) as original:
         text = original.read()
     if changes:
         changes = dict({'rake_tolerance_deg': 180, 'shank_diameter_mm': 1, 'depth_mm': 0.5, 'infeed_mm': 0.5, 'overtravel_mm': '[1, 1]'}, **changes)

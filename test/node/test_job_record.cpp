@@ -32,7 +32,7 @@ const core::MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive
 
 /// Two unequal teeth of a short cone in two passes.
 GrindJob shortJob() {
-  GrindJob job = readJobFile("jobs/paper.yaml");
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.cutter.flute_length = 2e-3;
   job.process.overtravel_shank = 1e-3;
   job.process.feed = 0.05;

@@ -120,7 +120,7 @@ class JobThreads : public ::testing::Test {
     if (status.jobs_started > status.jobs_ended && status.place.move_index < 3) canceled_amid_ = number;
   }
 
-  const GrindJob job_ = readJobFile("jobs/paper.yaml");
+  const GrindJob job_ = readJobFile("test/jobs/paper.yaml");
   FakeDrive drive_;
   std::atomic<bool> emergency_stop_{false};
   std::unique_ptr<ControlLoop> loop_;

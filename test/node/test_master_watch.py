@@ -109,7 +109,7 @@ class TestMasterWatch(unittest.TestCase):
         self.assertIn('disabled', self.grind('status'))
         self.grind('enable')
         # A client whose goals the node gets by a connection that it makes now.
-        self.grind('run', '--dry-run', gc.package_file('jobs/paper.yaml'))
+        self.grind('run', '--dry-run', gc.package_file('test/jobs/paper.yaml'))
 
     def test_publishers_of_the_old_master_and_of_the_next_are_heard(self):
         def publish():

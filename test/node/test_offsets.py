@@ -381,7 +381,7 @@ class TestZeroPoints(OffsetsTest):
         self.assertEqual((self.offsets().values, self.offsets().basis), (before.values, before.basis))
 
     def test_computed_ones_fit_their_job(self):
-        job = gc.package_file('jobs/paper.yaml')
+        job = gc.package_file('test/jobs/paper.yaml')
         done = self.grind('zeros', job, '--stickout', '62', '--flange', '2', '--set')
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         done = self.grind('run', job, '--dry-run')
@@ -427,7 +427,7 @@ class TestCommandLine(OffsetsTest):
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.assertEqual(done.stdout, 'axis X: work offset -51.5 mm; it stands at 1.5 mm of the work\n')
         self.assertEqual(self.grind('touch-off', 'a', '--at', '30').returncode, 0)
-        self.assertEqual(self.grind('touch-off', 'z', '--job', gc.package_file('jobs/paper.yaml')).returncode, 0)
+        self.assertEqual(self.grind('touch-off', 'z', '--job', gc.package_file('test/jobs/paper.yaml')).returncode, 0)
         done = self.grind('touch-off', 'x', '--at', '30')
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr, r'would change by 28\.5 mm.*\n--yes sets it all the same$')
@@ -438,7 +438,7 @@ class TestCommandLine(OffsetsTest):
         self.assertAlmostEqual(values[Z], self.rest[Z], delta=1e-12)
 
     def test_terminal_is_asked_for_a_large_change(self):
-        job = gc.package_file('jobs/paper.yaml')
+        job = gc.package_file('test/jobs/paper.yaml')
         zeros = ('zeros', job, '--stickout', '62', '--flange', '2', '--set')
         fit = ('offsets', '--fit', gc.job_file(os.path.join(self.folder, 'd40.yaml'), end_diameter_mm=40))
         self.assertEqual(self.grind('offsets', '--set', 'x=0', '--set', 'y=4', '--set', 'z=0', '--job', job).returncode, 0)
@@ -474,7 +474,7 @@ class TestCommandLine(OffsetsTest):
     def test_wrong_usage(self):
         self.check_fails(['touch-off', 'y', '--at', '12'], 2, 'touch-off y needs --job JOB')
         self.check_fails(['touch-off', 'z'], 2, 'touch-off z needs --job JOB')
-        self.check_fails(['touch-off', 'y', '--job', 'jobs/paper.yaml'], 2, 'touch-off y needs --at DIAMETER')
+        self.check_fails(['touch-off', 'y', '--job', 'test/jobs/paper.yaml'], 2, 'touch-off y needs --at DIAMETER')
         self.check_fails(['offsets', '--set', 'x=1', '--set', 'z=1'], 2, '--set z=1 needs --job JOB')
         self.check_fails(['touch-off', 'b'], 2, 'AXIS')
         self.check_fails(['touch-off', 'x', '--at', 'nan'], 2, 'nan; allowed: a finite number')

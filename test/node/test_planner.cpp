@@ -25,7 +25,7 @@ Machine machine() {
 
 const MachineShapes kShapes(shippedUrdf());
 
-GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 /// Takes hours to plan: with a depth that changes along the flute, no pass is like another.
 GrindJob endless() {

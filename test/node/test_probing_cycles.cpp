@@ -99,7 +99,7 @@ TEST_F(ProbingCycles, EndFaceGivesTheStickOutAndXOfTheJob) {
   ProbeGoal probe = goal(ProbeGoal::END_FACE, 0.005);
   probe.set_offset = 1;
   probe.flange = 0.002;
-  probe.job = goalFromJob(readJobFile("jobs/paper.yaml"));
+  probe.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
   ASSERT_EQ(goalRefusal(probe), "");
   const double offset = run(probe);
   ASSERT_EQ(result_.figures.size(), 2U);
@@ -130,7 +130,7 @@ TEST_F(ProbingCycles, ADiameterFarFromTheKnownOneSetsNothing) {
   start(config(), [](const FakeDrive& drive) { return std::abs(drive.position[kY] - 0.01) <= 0.006 + kBall; });
   ProbeGoal probe = goal(ProbeGoal::DIAMETER, 0.035);
   probe.set_offset = 1;
-  probe.job = goalFromJob(readJobFile("jobs/paper.yaml"));
+  probe.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
   for (const double known : {0.0109, 0.0131, 0.006, 0.022}) {
     probe.diameter = known;
     EXPECT_CONTAINS(refusal(probe), "diameter = 11.9999 mm, known as ");
@@ -203,7 +203,7 @@ TEST_F(ProbingCycles, GoalsThatAreWrongAreRefused) {
   EXPECT_CONTAINS(goalRefusal(good), "diameter = 0");
   good.diameter = 0.01;
   EXPECT_CONTAINS(goalRefusal(good), "allowed: ");  // without a job
-  good.job = goalFromJob(readJobFile("jobs/paper.yaml"));
+  good.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
   EXPECT_EQ(goalRefusal(good), "");
   good.flange = std::nan("");
   EXPECT_EQ(goalRefusal(good), "flange = nan; allowed: finite");

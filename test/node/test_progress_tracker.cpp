@@ -18,7 +18,7 @@ const ToothPass kFirst{0, 0};
 
 /// One tooth in as many passes.
 GrindProgram program(int passes) {
-  GrindJob job = readJobFile("jobs/paper.yaml");
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.process.infeed = job.process.depth / passes;
   const Machine machine = test_support::machineConfig().machine;
   return {job, machine, machine.park};
@@ -145,7 +145,7 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
 }
 
 TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
-  GrindJob job = readJobFile("jobs/paper.yaml");
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.process.infeed = job.process.depth / 2;
   Machine machine = test_support::machineConfig().machine;
   machine.work_offset << 0.1, 0.03, 0, 0.5;

@@ -31,7 +31,7 @@ from flute_grinder.msg import GrinderState
 from grinder_client import DEG, JOINTS, MM, ODD, STROKE, UM, X
 
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
-PAPER_JOB = gc.package_file('jobs/paper.yaml')
+PAPER_JOB = gc.package_file('test/jobs/paper.yaml')
 SVG = '{http://www.w3.org/2000/svg}'
 HREF = '{http://www.w3.org/1999/xlink}href'
 UNITS = [MM, MM, MM, DEG]

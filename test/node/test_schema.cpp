@@ -105,7 +105,7 @@ struct File {
 };
 
 YAML::Node goodJob() {
-  YAML::Node job = YAML::LoadFile("jobs/paper.yaml");
+  YAML::Node job = YAML::LoadFile("test/jobs/paper.yaml");
   YAML::Node process = job["process"], wheel = process["wheel"];
   process["depth_end_mm"] = 1.6;
   process["incomplete_ok"] = false;

@@ -31,7 +31,7 @@ def face_at(face, width, swivel):
 
 
 def paper_goal():
-    """The goal of jobs/paper.yaml."""
+    """The goal of test/jobs/paper.yaml."""
     goal = gc.goal_of(gc.job_from_file(PAPER_JOB))
     with open(PAPER_JOB) as file:
         job = yaml.safe_load(file)

@@ -55,7 +55,7 @@ class SwivelTest(unittest.TestCase):
         else:
             self.assertAlmostEqual(reason.value, angle * DEG, delta=1e-12)
         self.assertEqual([f.state for f in run.feedback], [], 'it was not even planned')
-        done = self.grind(1, 'run', gc.package_file('jobs/paper.yaml'), '--ignore-offset-check')
+        done = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--ignore-offset-check')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: ' + text, done.stderr)
         self.assertEqual(self.grinder.fresh_state().state, GrinderState.READY)
         self.assertEqual(self.grinder.wait_rest(), rest)

@@ -278,7 +278,7 @@ class TestZeros(WheelTest):
             self.assertAlmostEqual(after[axis] - before[axis], moved, delta=1e-9)
 
     def test_refusals(self):
-        job = gc.package_file('jobs/paper.yaml')
+        job = gc.package_file('test/jobs/paper.yaml')
         said = self.grind(2, 'zeros', job, '--stickout', '62').stderr
         self.assertEqual(said, '--flange is missing, and %s names no wheel file\n' % job)
         said = self.grind(1, 'zeros', job, '--stickout', '29', '--flange', '2').stderr

@@ -57,7 +57,7 @@ class Stage {
     jogs_ = nh_.subscribe("jog", 100, &Stage::onJog, this);
     state.homed = 1;
     state.override = 1;
-    state.swivel = 31.769 * M_PI / 180;  // as jobs/paper.yaml needs it
+    state.swivel = 31.769 * M_PI / 180;  // as test/jobs/paper.yaml needs it
     timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { tell(); });
   }
   ~Stage() { release(); }

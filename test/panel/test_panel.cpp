@@ -26,7 +26,7 @@
 namespace flute_grinder {
 namespace test_panel {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
 
 class OnStage : public ::testing::Test {
  protected:

@@ -31,7 +31,7 @@
 namespace flute_grinder {
 namespace test_panel_input {
 
-const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/";
+const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/";
 
 class Input : public ::testing::Test {
  protected:

@@ -18,9 +18,9 @@
 namespace flute_grinder {
 namespace test_panel_job {
 
-const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/";
+const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/";
 
-/// A copy of jobs/paper.yaml with other values.
+/// A copy of test/jobs/paper.yaml with other values.
 QString jobFile(const QTemporaryDir& folder, const QString& name,
                 const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
   return changedJob(kJobs + "paper.yaml", folder.filePath(name), changes);

@@ -19,7 +19,7 @@
 namespace flute_grinder {
 namespace test_panel_jog {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
                      "jog_z_plus", "jog_z_minus", "jog_a_plus", "jog_a_minus"};
 

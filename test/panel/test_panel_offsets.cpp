@@ -20,7 +20,7 @@
 namespace flute_grinder {
 namespace test_panel_offsets {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
 
 /// With the paper's job, of D 10 mm, planned.
 class ZeroPoints : public ::testing::Test {

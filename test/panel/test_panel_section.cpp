@@ -20,7 +20,7 @@
 namespace flute_grinder {
 namespace test_panel_section {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs/paper.yaml";
+const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
 const char* const kRed = "color:#b00020";
 
 // A cylinder of 10 mm with a straight flute of 1.6 mm depth: the wheel's upper face passes the axis at 5 mm sin 8 deg,
@@ -40,7 +40,7 @@ QByteArray straight(double width) {
 
 class SectionOnStage : public ::testing::Test {
  protected:
-  /// A copy of jobs/paper.yaml with a cylinder and a straight flute in it.
+  /// A copy of test/jobs/paper.yaml with a cylinder and a straight flute in it.
   QString cylinder(double width, int teeth) {
     return changedJob(kPaper, folder.filePath("cylinder.yaml"),
                       {{"cone_angle_deg: 5", "cone_angle_deg: 0"},

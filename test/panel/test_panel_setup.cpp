@@ -13,7 +13,7 @@ namespace flute_grinder {
 namespace test_panel_setup {
 
 const QString kPackage = QString::fromStdString(ros::package::getPath("flute_grinder"));
-const QString kPaper = kPackage + "/jobs/paper.yaml";
+const QString kPaper = kPackage + "/test/jobs/paper.yaml";
 const QByteArray kSetup = "  setup: {swivel_deg: 31.769, height_mm: 2.788}";
 
 class SetupSheet : public ::testing::Test {

@@ -27,7 +27,7 @@ PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const Pla
   return planWholeJob(JobWithDigest(job), on, MachineShapes(shippedUrdf()), on.park, {}, {}, watch);
 }
 
-GrindJob paper() { return readJobFile("jobs/paper.yaml"); }
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 GrindJob withConstantRake() {
   GrindJob job = paper();

@@ -19,7 +19,8 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 GrindProgram program() {
-  return GrindProgram(readJobFile("jobs/paper.yaml"), test_support::plainMachine(), test_support::plainMachine().park);
+  const auto machine = test_support::plainMachine();
+  return GrindProgram(readJobFile("test/jobs/paper.yaml"), machine, machine.park);
 }
 
 /// What a drive must never say, and may all the same.
@@ -133,7 +134,7 @@ TEST(PathMarkers, AreLinesOfAWidth) {
 }
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
-  GrindJob job = readJobFile("jobs/paper.yaml");
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
   job.process.depth = job.process.infeed = 0.01e-3;
   const MarkerArray array =

@@ -23,6 +23,9 @@ using units::kMillimetre;
 
 GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
+/// The paper's cutter by its published motion.
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+
 /// A machine on which every shipped job can be planned.
 Machine roomyMachine() {
   Machine machine = test_support::plainMachine();
@@ -49,7 +52,7 @@ core::Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
 
 /// A cylinder of the design's table: D 10, S 30, rake 8, depth 1.6, straight wheel 100 x 6, its face at R sin r.
 GrindJob cylinder(double swivel_deg) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.cutter.cone_angle = 0;
   job.process.wheel_width = 6 * kMillimetre;
   job.process.setup_swivel = swivel_deg * kDegree;
@@ -110,7 +113,7 @@ TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
 }
 
 TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.process.overtravel_shank = 1 * kMillimetre;
   CutterCheck check = checked(job);
   const core::Reason reason = reasonOf(check, ReasonKind::kIncomplete);
@@ -153,7 +156,7 @@ TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
 }
 
 TEST(GroundJob, CornersThatDoNotFitAreRefused) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.process.wheel_profile = WheelShape::kPoints;
   job.wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
   job.process.wheel_corner_radius_lower = 1 * kMillimetre;
@@ -162,7 +165,7 @@ TEST(GroundJob, CornersThatDoNotFitAreRefused) {
 }
 
 TEST(GroundJob, EveryProfileIsTheWheelsOfItsFigures) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   GrindProcess& p = job.process;
   p.wheel_corner_radius_lower = 0.2e-3;
   p.wheel_corner_radius_upper = 0.4e-3;
@@ -267,7 +270,7 @@ TEST(GroundJob, AStraightGrooveIsAsDeepAsAskedAtBothEnds) {
 
 TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   // Half round: the groove's floor runs along the axis, just above it.
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   CutterGeometry& c = job.cutter;
   c.end_diameter = 0.2 * kMillimetre;
   c.cone_angle = 30 * kDegree;

@@ -23,6 +23,9 @@ constexpr Range kMachine{-60 * kDegree, 60 * kDegree};
 
 GrindJob shipped(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
+/// The paper's cutter by its published motion.
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+
 /// A shipped job that asks for its rake alone.
 GrindJob shippedForRake(const std::string& name) {
   GrindJob job = shipped(name);
@@ -93,7 +96,7 @@ TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
 
 // What a file with the edits would have.
 TEST(JobSetup, TheEditsSayTheJobsFigures) {
-  GrindJob job = shipped("paper");
+  GrindJob job = paper();
   job.cutter.core_diameter = 7 * kMillimetre;
   job.process.overtravel_shank = 0;
   const JobSetup setup = solved(job);
@@ -109,7 +112,7 @@ TEST(JobSetup, TheEditsSayTheJobsFigures) {
 /// The job of a steep cone with four teeth, in mm and deg: found at random, with much rake to correct.
 GrindJob steep(double diameter, double cone, double spiral, double rake, double length, double core, double wheel,
                double width) {
-  GrindJob job = shipped("paper");
+  GrindJob job = paper();
   job.cutter.end_diameter = diameter * kMillimetre;
   job.cutter.cone_angle = cone * kDegree;
   job.cutter.spiral_angle = spiral * kDegree;
@@ -163,7 +166,7 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
   expectContains(planRefusal(std::get<JobSetup>(result)),
                  "a plan would refuse this tool: cutter.rake_angle_deg = 13.78 deg");
   expectContains(planRefusal(std::get<JobSetup>(result)), ", or set process.z_law: constant_rake\n");
-  EXPECT_EQ(planRefusal(solved(shipped("paper"))), "");
+  EXPECT_EQ(planRefusal(solved(paper())), "");
 }
 
 bool hasReason(const GrindJob& job, core::ReasonKind kind) {
@@ -173,7 +176,7 @@ bool hasReason(const GrindJob& job, core::ReasonKind kind) {
 
 // By the published motion the paper's cutter gets an edge of 26.8 to 27.9 deg and a core of 7.08 to 12.37 mm.
 TEST(JobSetup, EdgeAndCoresBeyondTheirTolerancesAreRefusedAndFound) {
-  GrindJob job = shipped("paper");
+  GrindJob job = paper();
   job.cutter.core_diameter = 6.8 * kMillimetre;
   job.cutter.core_diameter_end = 12.05 * kMillimetre;
   EXPECT_FALSE(hasReason(job, core::ReasonKind::kSpiral));
@@ -223,14 +226,13 @@ TEST(JobSetup, ADepthThatIsFoundAgreesWithTheTaperToTheFlutesEnd) {
 }
 
 TEST(JobSetup, AWornWheelIsTakenAsItIs) {
-  GrindJob job = shipped("paper");
+  GrindJob job = paper();
   job.process.wheel_wear = 20 * kMillimetre;
   const JobSetup setup = solved(job);
   EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.05);
   EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.05);
   EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, 8, 0.003);
-  EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(shipped("paper")).job.process.setup_swivel),
-            0.01 * kDegree);
+  EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(paper()).job.process.setup_swivel), 0.01 * kDegree);
 }
 
 TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
@@ -262,7 +264,7 @@ TEST(JobSetup, WhatIsKeptIsNotWritten) {
 }
 
 TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
-  GrindJob job = shipped("paper");
+  GrindJob job = paper();
   std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
   expectContains(text, "a swivel of 31.76");
   expectContains(text, "-20 to 30 deg; change cutter.spiral_angle_deg");
@@ -270,13 +272,13 @@ TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
   expectContains(refused(job, kMachine, SetupFigure::kSwivel), "process.setup.swivel_deg = 70 deg");
   job.cutter.core_diameter = 7 * kMillimetre;
   expectContains(refused(job, kMachine, SetupFigure::kHeight), "cutter.core_diameter_mm");
-  job = shipped("paper");
+  job = paper();
   job.tooth_angles.clear();
   for (int i = 0; i < 8; ++i) job.tooth_angles.push_back(i * 45 * kDegree);
   text = refused(job);
   expectContains(text, "no land is left");
   expectContains(text, "change process.wheel.width_mm");
-  job = shipped("paper");
+  job = paper();
   job.cutter.core_diameter = 7 * kMillimetre;
   job.process.finish_infeed = 3 * kMillimetre;
   expectContains(refused(job), "process.finish_infeed_mm = 3 mm");
@@ -298,7 +300,7 @@ TEST(JobSetup, EdgeAndCoresThatCannotBeHadAreRefusedWithHowNearTheyCome) {
 }
 
 TEST(SetupSheet, TellsHowHighTheWheelStands) {
-  const GrindJob job = shipped("paper");
+  const GrindJob job = paper();
   EXPECT_NEAR(upperFaceHeight(job) / kMillimetre, 4.552, 1e-3);
   EXPECT_NEAR(lowerFaceHeight(job) / kMillimetre, 2 * 2.788 - 4.552, 1e-3);
 }

@@ -28,6 +28,9 @@ constexpr double kNearly = 1e-6;  ///< [rad]
 
 GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
+/// The paper's cutter by its published motion.
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+
 /// A ball at a distance and an angle about the axis.
 struct Ball {
   double x, from_axis, angle, diameter;
@@ -49,7 +52,7 @@ std::optional<core::Reason> refusal(const GrindJob& job, const Ball& ball) {
 
 /// A cutter with straight flutes on a cylinder of 10 mm under an upright straight wheel: both walls are planes.
 GrindJob straight(CutDirection cut) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.cutter.cone_angle = job.cutter.spiral_angle = 0;
   job.cutter.cut = cut;
   job.process.wheel_diameter = 100 * kMillimetre;
@@ -160,7 +163,7 @@ void expectTouch(const GrindJob& job, const Ball& ball, double a, int rows = 16)
 class RandomJobs {
  public:
   GrindJob job() {
-    GrindJob job = jobOf("paper");
+    GrindJob job = paper();
     const double side = flag() ? 1 : -1;
     job.cutter.cut = side > 0 ? CutDirection::kRightHand : CutDirection::kLeftHand;
     job.cutter.end_diameter = between(3, 20) * kMillimetre;
@@ -250,7 +253,7 @@ TEST(RakeTouch, FollowsTheLawOfZ) {
 }
 
 TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFaceFirst) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.process.wheel_wear_per_pass = 0;
   int touched = 0, refused = 0;
   for (int i = 0; i < 20; ++i) {

@@ -66,7 +66,7 @@ class ZeroPoints : public ::testing::Test {
 };
 
 TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
-  GrindGoal other = goalFromFile((QString(kPaper).replace("paper", "roughing_d10_t4")).toStdString());
+  GrindGoal other = goalFromFile((QString(kPaper).replace("test/jobs/paper", "jobs/roughing_d10_t4")).toStdString());
   other.cutter.end_diameter = 0.006123;
   other.job_name = "a_roughing_cutter_of_last_week.yaml";
   WorkOffsets offsets;

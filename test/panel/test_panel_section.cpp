@@ -117,7 +117,7 @@ TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {
 }
 
 TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
-  const QString job = QString(kPaper).replace("paper", "unequal_d12_t4");
+  const QString job = QString(kPaper).replace("test/jobs/paper", "jobs/unequal_d12_t4");
   std::vector<double> pitches = readJobFile(job.toStdString()).tooth_angles;
   pitches.push_back(2 * M_PI);
   std::adjacent_difference(pitches.begin(), pitches.end(), pitches.begin());

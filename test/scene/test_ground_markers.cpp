@@ -25,6 +25,9 @@ constexpr std::uint32_t kMaxBytes = 3000000;
 
 GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
+/// The paper's cutter by its published motion.
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+
 std::vector<Marker> solidOf(const MarkerArray& array, const std::string& ns) {
   std::vector<Marker> found;
   for (const Marker& m : array.markers) {
@@ -77,10 +80,10 @@ TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
 }
 
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
-  GrindJob even = jobOf("paper");
+  GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;
   for (const GrindJob& job :
-       {jobOf("roughing_d10_t4"), jobOf("paper"), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
+       {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
     SCOPED_TRACE(toolText(job.cutter, job.tooth_angles.size()) + " " + toString(job.process.z_law));
     const GroundCutter planned = groundCutterOf(job),
                        done = groundSoFar(job, {passOrder(job).back(), PassPhase::kAfter, 0});
@@ -266,7 +269,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
 }
 
 TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
-  GrindJob job = jobOf("paper");
+  GrindJob job = paper();
   job.cutter.shank_diameter = 20 * kMillimetre;
   const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
   const double stroke_end = 37 * kMillimetre;

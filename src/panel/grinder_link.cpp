@@ -54,7 +54,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefus
   subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
   subscribers_.push_back(nh_.subscribe("job", 1, &GrinderLink::onJob, this, hints));
-  subscribers_.push_back(nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints));
+  results_ = nh_.subscribe("grind/result", 10, &GrinderLink::onResult, this, hints);
   subscribers_.push_back(nh_.subscribe("jog_refusal", 10, &GrinderLink::onJogRefusal, this, hints));
   subscribers_.push_back(nh_.subscribe("offsets", 10, &GrinderLink::onOffsets, this, hints));
   subscribers_.push_back(nh_.subscribe("legend", 10, &GrinderLink::onLegend, this, hints));
@@ -70,7 +70,8 @@ GrinderLink::~GrinderLink() { spinner_.stop(); }
 GrinderView GrinderLink::view() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   GrinderView view;
-  if (isFresh(state_)) {
+  // Not before the connections of a goal and its result are there, or a short job might end unheard.
+  if (isFresh(state_) && goals_.getNumSubscribers() > 0 && results_.getNumPublishers() > 0) {
     view.state = state_->message;
     view.offsets = offsets_;
     view.legend = legend_;

@@ -147,6 +147,7 @@ class GrinderLink {
   std::deque<std::function<void()>> answers_;
 
   ros::Publisher goals_, stops_, jogs_;
+  ros::Subscriber results_;
   std::deque<Unsent> unsent_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;

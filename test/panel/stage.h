@@ -33,7 +33,7 @@ class Stage {
   Stage() : nh_("cell/stage") {
     state_topic_ = nh_.advertise<GrinderState>("state", 10, true);
     feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
-    results_ = nh_.advertise<GrindActionResult>("grind/result", 10);
+    openResults();
     offsets_ = nh_.advertise<WorkOffsets>("offsets", 10, true);
     legend_ = nh_.advertise<Legend>("legend", 10, true);
     job_ = nh_.advertise<GrindActionGoal>("job", 1, true);
@@ -80,6 +80,8 @@ class Stage {
   void release() {
     change([&] { resume_hangs = plan_hangs = false; });
   }
+  void shutResults() { results_.shutdown(); }
+  void openResults() { results_ = nh_.advertise<GrindActionResult>("grind/result", 10); }
   /// Tells the end of a goal.
   void end(const std::string& goal_id, const GrindResult& result) {
     GrindActionResult message;

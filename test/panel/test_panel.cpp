@@ -165,6 +165,15 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
 }
 
+TEST_F(OnStage, AGrinderAnswersOnceAResultWouldBeHeard) {
+  Panel panel("cell/stage");
+  WAIT_FOR(panel.state() == "Ready");
+  stage.shutResults();
+  WAIT_FOR(panel.state() == "No answer");
+  stage.openResults();
+  WAIT_FOR(panel.state() == "Ready");
+}
+
 TEST_F(OnStage, AGrinderThatComesBackKnowsNoProgressOfBefore) {
   Panel panel("cell/stage");
   stage.change([&] { stage.progress.stroke_fraction = 0.43, stage.progress.job_fraction = 0.12; });

@@ -167,6 +167,7 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
 
 TEST_F(OnStage, AGrinderAnswersOnceAResultWouldBeHeard) {
   Panel panel("cell/stage");
+  stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   stage.shutResults();
   WAIT_FOR(panel.state() == "No answer");
@@ -752,9 +753,9 @@ class AfterAJobWasLeft : public OnStage {
   GrindGoal goal() {
     return stage.get([&] { return stage.goals.at(0).goal; });
   }
-  void leavePaper() {
+  void leavePaper(const QString& file = kPaper) {
     stage.change([&] {
-      stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString()));
+      stage.state.progress.job_digest = jobDigest(readJobFile(file.toStdString()));
       stage.state.progress.job_name = "paper.yaml";
     });
   }
@@ -812,7 +813,7 @@ TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
 }
 
 TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
-  leavePaper();
+  leavePaper(QString(kPaper).replace("test/jobs", "jobs"));  // the panel looks among the jobs of the package
   stage.change([&] { stage.state.progress.end = "the drive reports a fault"; });
   Panel panel("cell/stage");
   auto& go_on = panel.the<QCheckBox>("continue");

@@ -76,6 +76,15 @@ bool isKnown(const std::string& node) {
   return std::any_of(topics.begin(), topics.end(), is_state);
 }
 
+/// Whether the ROS master knows no more than its own log: it was just started, and nodes that outlived another one have
+/// yet to find it.
+bool isNew() {
+  ros::master::V_TopicInfo topics;
+  ros::master::getTopics(topics);
+  const auto is_log = [](const ros::master::TopicInfo& topic) { return topic.name.rfind("/rosout", 0) == 0; };
+  return std::all_of(topics.begin(), topics.end(), is_log);
+}
+
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
   std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
               axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
@@ -162,7 +171,7 @@ bool joinRos(const std::string& node) {
     }
   }
   const std::string name = ros::names::resolve(node);
-  if (!isKnown(name)) {
+  if (!isKnown(name) && !(isNew() && await(kMasterPatience, [&] { return isKnown(name); }))) {
     noNode(name);
     return false;
   }

@@ -40,7 +40,8 @@ std::string overtravelText(const JobSetup& setup) {
 
 std::string leadText(const GrindProcess& p) {
   if (p.setup_lead == 0) return "0 mm: A by the published motion";
-  return format("%.3f mm, of the wheel's centre ahead of where it forms the edge", mm(p.setup_lead));
+  return format("%.3f mm: A follows the curve at X - lead, so that the ground edge is the asked helix",
+                mm(p.setup_lead));
 }
 
 std::string whatToSet(const JobSetup& setup, const Range& swivel) {

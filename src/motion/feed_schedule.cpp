@@ -1,5 +1,6 @@
 #include "flute_grinder/motion/feed_schedule.h"
 
+#include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
 
 #include <algorithm>
@@ -90,7 +91,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
 
   Bound even;  // on the speed of X, everywhere on the stroke
   // The odd points' deviation is largest at the thin end. The next-order term reduces the leading-order step.
-  const double a_error = stroke.tolerance / (cutter.radius(thin_x) * cutter.cosHelixToGeneratrix());
+  const double a_error = stroke.tolerance / FormedEdge{cutter, stroke.lead}.deviation(thin_x, 1);
   const double step = OddEvenInterpolator::largestStepLength(curve, 1, thin_x, a_error);
   if (std::isfinite(step)) {
     const double dx = step * u_thin / std::hypot(u_thin, curve.k());

@@ -88,7 +88,7 @@ void requireParkClear(const Machine& machine, const Axes& park, double clearance
 }
 
 std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
-  const auto same = [&](const Helix& h) { return h.cutter.geometry().spiral_angle == spiral_angle; };
+  const auto same = [&](const Helix& h) { return h.edge.cutter.geometry().spiral_angle == spiral_angle; };
   return static_cast<std::size_t>(std::find_if(helices.begin(), helices.end(), same) - helices.begin());
 }
 
@@ -99,8 +99,10 @@ std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, c
     if (indexOf(helices, geometry.spiral_angle) < helices.size()) continue;
     const ConicalCutter cutter(geometry);
     stroke.z_correction = zCorrectionOf(job, static_cast<int>(tooth));
-    helices.push_back(
-        {cutter, LogCurve(cutter, stroke.lead), stroke.z_correction, FeedSchedule(cutter, stroke, machine)});
+    helices.push_back({{cutter, stroke.lead},
+                       LogCurve(cutter, stroke.lead),
+                       stroke.z_correction,
+                       FeedSchedule(cutter, stroke, machine)});
   }
   return helices;
 }
@@ -118,7 +120,7 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
     helix_of_tooth_[tooth] = indexOf(helices_, cutterOf(job, static_cast<int>(tooth)).spiral_angle);
   }
-  for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.cutter);
+  for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.edge.cutter);
   requireSwivel(machine, job);
   const Axes park = machine.park - machine.work_offset;
   requireParkClear(machine, park, clearance_y_);
@@ -156,7 +158,7 @@ void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, 
 
 void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, Axes& at) {
   const Helix& helix = this->helix(pass.tooth);
-  const ConicalCutter& cutter = helix.cutter;
+  const ConicalCutter& cutter = helix.edge.cutter;
   const LogCurve& curve = helix.curve;
   const DepthLaw law = depthLaw(job_, depth);
   const double at_end = law.at_end + wear;

@@ -80,15 +80,15 @@ void PlanChecks::measure(const Setpoint& p) {
 }
 
 void PlanChecks::measureStroke(const Setpoint& p) {
-  const ConicalCutter& cutter = program_.cutter(p.tooth);
+  const FormedEdge& edge = program_.helix(p.tooth).edge;
   const double error = std::abs(p.path_error);
   double& max_error = p.step == StepKind::kOdd ? statistics_.max_odd_error : statistics_.max_even_error;
   max_error = std::max(max_error, error);
-  const double deviation = error * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
+  const double deviation = edge.deviation(p.position[kX], error);
   statistics_.max_deviation = std::max(statistics_.max_deviation, deviation);
   if (!(deviation * deviation_factor_ <= deviation_.limit)) addDeviation(p, deviation * deviation_factor_);
   if (p.step == StepKind::kEven && p.at_feed) {
-    const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * cutter.edgePerTravel();
+    const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * edge.cutter.edgePerTravel();
     statistics_.max_feed = std::max(statistics_.max_feed, feed);
     statistics_.min_feed = statistics_.min_feed == 0 ? feed : std::min(statistics_.min_feed, feed);
   }

@@ -292,7 +292,7 @@ void SetpointStream::strokePair() noexcept {
   const double s = strokeParameter();
   const double dx = helix_->schedule.x(s) - interpolator_.position().x;
   const OddEvenPair pair = interpolator_.advance(dx);
-  current_.feed = law_.speed() * helix_->schedule.rate(s) * helix_->cutter.edgePerTravel();
+  current_.feed = law_.speed() * helix_->schedule.rate(s) * helix_->edge.cutter.edgePerTravel();
   current_.at_feed = was_steady && steady();
   even_point_ = pair.even;
   strokePoint(pair.odd, StepKind::kOdd);

@@ -97,8 +97,9 @@ void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   contact_stamp_ = stamp;
   const auto [from, to] = std::minmax({program_->strokeFrom(), program_->strokeTo()});
   const double at = std::clamp(x, from, to);
-  const ConicalCutter& cutter = program_->cutter(tooth);
-  Eigen::Isometry3d pose(Eigen::Translation3d(at, cutter.radius(at), 0));
+  const FormedEdge& edge = program_->helix(tooth).edge;
+  const ConicalCutter& cutter = edge.cutter;
+  Eigen::Isometry3d pose(Eigen::Translation3d(edge.x(at), edge.radius(at), 0));
   pose.linear().col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
   pose.linear().col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
   pose.linear().col(2) = pose.linear().col(0).cross(pose.linear().col(1));

@@ -22,8 +22,8 @@ namespace flute_grinder {
 ///   Y, and the height of the set-up + Z, in work coordinates.
 /// - `cutter` in the chuck: it turns in `work` by -A.
 /// - the child links of the robot description's joints y_zero, z_zero and wheel_swivel, the last of which is `wheel`.
-/// And, on `tf`, `contact` in `work`: where the wheel's rim touches the cutter's surface, at the X of the axes, with X
-/// along the flute and Y away from the cutter.
+/// And, on `tf`, `contact` in `work`: where the wheel forms the edge, at the X of the axes less the lead, with X along
+/// the flute and Y away from the cutter.
 /// Not thread safe; not for the control thread.
 class Frames {
  public:

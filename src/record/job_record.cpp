@@ -105,12 +105,12 @@ void JobRecord::addToStroke(const Setpoint& setpoint, const CycleRecord& record)
   stroke.to = since(record);
   stroke.complete |= setpoint.move_fraction == 1;
   const double x = setpoint.position[kX];
-  const ConicalCutter& cutter = program_->cutter(setpoint.tooth);
-  updateMax(stroke.deviation, std::abs(setpoint.path_error) * cutter.radius(x) * cutter.cosHelixToGeneratrix());
+  const FormedEdge& edge = program_->helix(setpoint.tooth).edge;
+  updateMax(stroke.deviation, edge.deviation(x, std::abs(setpoint.path_error)));
   for (int axis = 0; axis < kAxisCount; ++axis) {
     updateMax(stroke.following_error[axis], record.followingError(axis));
   }
-  if (setpoint.step != StepKind::kEven || !(x >= 0 && x <= cutter.geometry().flute_length)) return;
+  if (setpoint.step != StepKind::kEven || !(x >= 0 && x <= edge.cutter.geometry().flute_length)) return;
   stroke.min_feed = stroke.has_feed ? std::min(stroke.min_feed, setpoint.feed) : setpoint.feed;
   stroke.max_feed = std::max(stroke.max_feed, setpoint.feed);
   stroke.has_feed = true;

@@ -104,7 +104,7 @@ def survey(record, job_file, with_plots):
         return None, None
     if record.kind == 'table':
         return None, TablePlots(record) if with_plots else None
-    figures = Figures(record.period, job_file['cutter'] if job_file else None)
+    figures = Figures(record.period, job_file)
     plots = Plots(record) if with_plots else None
     for motion in motions(record):
         figures.add(motion)

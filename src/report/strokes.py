@@ -11,12 +11,14 @@ from record import AXES, DEG, MM, MM_MIN, UM, X
 MDEG = DEG / 1000
 
 
-def deviation(cutter, tooth, x, error):
-    """Of the path at the surface, normal to the helix [m]: the arc, by the cosine of its angle against the generatrix.
-    cutter: of a job file."""
+def deviation(job_file, tooth, x, error):
+    """Of the path at the surface, normal to the helix [m]: the arc, by the cosine of its angle against the generatrix. With
+    a lead, the edge is at X - lead."""
+    cutter = job_file['cutter']
+    edge_x = x / MM - job_file['process']['setup'].get('lead_mm', 0)
     spirals = spiral_angles(cutter)
     to_generatrix = math.atan(math.tan(spirals[tooth % len(spirals)] * DEG) * math.cos(cutter['cone_angle_deg'] * DEG))
-    return np.abs(error) * radius(cutter, x / MM) * MM * math.cos(to_generatrix)
+    return np.abs(error) * radius(cutter, edge_x) * MM * math.cos(to_generatrix)
 
 
 class Largest:
@@ -40,19 +42,19 @@ class Stroke:
         self.deviation, self.deviation_x = 0.0, None
         self.following = Largest()
 
-    def add(self, rows, time, known, following, cutter):
+    def add(self, rows, time, known, following, job_file):
         if self.begin is None:
             self.begin = float(time[0])
         self.end = float(time[-1])
         x = rows['position'][:, X]
-        in_flute = (x >= 0) & (x <= cutter['flute_length_mm'] * MM) if cutter else np.ones(len(x), bool)
+        in_flute = (x >= 0) & (x <= job_file['cutter']['flute_length_mm'] * MM) if job_file else np.ones(len(x), bool)
         if in_flute.any():
             feed = rows['feed'][in_flute]
             if feed.min() < self.least_feed:
                 self.least_feed, self.least_feed_x = float(feed.min()), float(x[in_flute][np.argmin(feed)])
             self.largest_feed = max(self.largest_feed, float(feed.max()))
-        if cutter:
-            off = deviation(cutter, self.tooth, x, rows['error'])
+        if job_file:
+            off = deviation(job_file, self.tooth, x, rows['error'])
             if off.max() >= self.deviation:
                 self.deviation, self.deviation_x = float(off.max()), float(x[np.argmax(off)])
         self.following.add(known, following)
@@ -78,11 +80,11 @@ class Figures:
     """Of all rows of a record; largest absolute values, SI units. `speed`, `acceleration`, `following`: of the strokes, and
     of the rapids and infeeds between them."""
 
-    def __init__(self, period, cutter=None):
+    def __init__(self, period, job_file=None):
         self.strokes = {}
         self.speed, self.acceleration, self.following = ((Largest(), Largest()) for _ in range(3))
         self.shortest_period, self.longest_period, self.late_cycles = math.inf, 0.0, 0
-        self._period, self._cutter = period, cutter
+        self._period, self._job_file = period, job_file
         self._sum, self._count = 0.0, 0
 
     def add(self, motion):
@@ -112,4 +114,4 @@ class Figures:
             piece = slice(part[0], part[-1] + 1)
             tooth, pass_ = int(rows['tooth'][part[0]]), int(rows['pass'][part[0]])
             stroke = self.strokes.setdefault((tooth, pass_), Stroke(tooth, pass_))
-            stroke.add(rows[piece], motion.time[piece], known[piece], following[piece], self._cutter)
+            stroke.add(rows[piece], motion.time[piece], known[piece], following[piece], self._job_file)

@@ -22,7 +22,7 @@ constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
 constexpr std::size_t kMaxArrows = 200;
 constexpr std::size_t kMaxExecutedPoints = 2000;
 
-/// Where the wheel touches the cutter, at the radius r.
+/// A point of the cutter at the radius r.
 geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
 
 /// Whether a point can be shown.
@@ -38,8 +38,8 @@ double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radiu
 double pathStep(const GrindProgram& program) {
   double turning = 0;  // of the steepest helix
   for (const Helix& helix : program.helices()) {
-    const ConicalCutter& cutter = helix.cutter;
-    const double radius = std::min(cutter.radius(program.strokeFrom()), cutter.radius(program.strokeTo()));
+    const ConicalCutter& cutter = helix.edge.cutter;
+    const double radius = std::min(helix.edge.radius(program.strokeFrom()), helix.edge.radius(program.strokeTo()));
     turning =
         std::max(turning, std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius);
   }
@@ -56,7 +56,7 @@ double roundDown(double value) {
 }  // namespace
 
 ToolPath::ToolPath(const GrindProgram& program)
-    : cutter_(program.cutter()),
+    : edge_(program.helix(0).edge),
       tolerance_(program.job().interpolation.tolerance),
       from_(program.strokeFrom()),
       to_(program.strokeTo()),
@@ -86,7 +86,7 @@ bool ToolPath::add(const Setpoint& p, const Axes& actual) {
 
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
   const double around = flutes_[p.tooth].angle + flutes_[p.tooth].curve.a(actual[kX]) - actual[kA];
-  const double error = std::abs(around) * cutter_.radius(actual[kX]) * cutter_.cosHelixToGeneratrix();
+  const double error = edge_.deviation(actual[kX], std::abs(around));
   // A faulty drive may report NaN, or a position beyond the cone's apex.
   if (!(error <= kFarthest)) return;
   const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
@@ -115,11 +115,11 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(cutter_));
+    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(edge_.cutter));
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
-      m.points.push_back(atRadius(x(i), cutter_.radius(x(i)), flute.angle + flute.curve.a(x(i))));
+      m.points.push_back(atRadius(edge_.x(x(i)), edge_.radius(x(i)), flute.angle + flute.curve.a(x(i))));
       if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
     }
   }
@@ -165,7 +165,7 @@ void ExecutedPath::append(MarkerArray& array) const {
 
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone) return;
-  const double deviation = -p.path_error * cutter_.radius(p.position[kX]) * cutter_.cosHelixToGeneratrix();
+  const double deviation = edge_.deviation(p.position[kX], -p.path_error);
   if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
@@ -196,22 +196,23 @@ double PathErrorMarkers::scale() const {
   if (points_.empty()) return 0;
   // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
   const double largest = std::max(largest_, kMinDrawn * tolerance_);
-  return roundDown(kMaxArrow * fineness(cutter_) / largest);
+  return roundDown(kMaxArrow * fineness(edge_.cutter) / largest);
 }
 
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(cutter_));
+  Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(edge_.cutter));
   // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
-  const double around = cutter_.cosHelixToGeneratrix();
-  const double along = std::copysign(std::sqrt(1 - around * around), cutter_.tanSpiral());
-  const double cos_cone = 1 / std::hypot(1, cutter_.tanCone());
-  const double sin_cone = cutter_.tanCone() * cos_cone;
+  const ConicalCutter& cutter = edge_.cutter;
+  const double around = cutter.cosHelixToGeneratrix();
+  const double along = std::copysign(std::sqrt(1 - around * around), cutter.tanSpiral());
+  const double cos_cone = 1 / std::hypot(1, cutter.tanCone());
+  const double sin_cone = cutter.tanCone() * cos_cone;
   const double factor = scale();
   for (const Point& p : points_) {
     const double offset = factor * p.deviation;
-    const geometry_msgs::Point from = atRadius(p.x, cutter_.radius(p.x), p.a);
+    const geometry_msgs::Point from = atRadius(edge_.x(p.x), edge_.radius(p.x), p.a);
     geometry_msgs::Point to = from;
     to.x -= offset * along * cos_cone;
     to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));

@@ -103,6 +103,17 @@ TEST(JobCollision, TeethAndPassesDoNotChangeTheClosestPlace) {
   EXPECT_EQ(many.first + many.second, one.first + one.second);
 }
 
+TEST(JobCollision, ALeadTurnsTheCutterAndMovesNothingElse) {
+  GrindJob job = paperJob();
+  const ClosestPlace without = *checked(job).closest;
+  for (const double lead : {-15e-3, 11.847e-3}) {
+    job.process.setup_lead = lead;
+    const ClosestPlace with = *checked(job).closest;
+    EXPECT_EQ(with.distance, without.distance) << lead;
+    EXPECT_EQ(with.first + with.second, without.first + without.second) << lead;
+  }
+}
+
 /// A job with a bow of Z of some tenths of a millimetre.
 GrindJob bentJob() {
   GrindJob job = paperJob();

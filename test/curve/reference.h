@@ -11,18 +11,19 @@ namespace flute_grinder::test_support {
 
 using Real = long double;
 
-/// A(X) = (k/b) ln(1 + bX).
+/// A(X) = (k/b) ln(1 + b (X - lead)).
 struct ReferenceCurve {
-  Real b, k;
+  Real b, k, lead = 0;
 
   ReferenceCurve(Real b_, Real k_) : b(b_), k(k_) {}
-  explicit ReferenceCurve(const CutterGeometry& g)
+  explicit ReferenceCurve(const CutterGeometry& g, Real lead_ = 0)
       : b(2 * std::tan(Real(g.cone_angle)) / Real(g.end_diameter)),
-        k(2 * std::tan(Real(g.spiral_angle)) / Real(g.end_diameter)) {}
+        k(2 * std::tan(Real(g.spiral_angle)) / Real(g.end_diameter)),
+        lead(lead_) {}
 
-  Real u(Real x) const { return 1 + b * x; }
+  Real u(Real x) const { return 1 + b * (x - lead); }
   Real slope(Real x) const { return k / u(x); }
-  Real a(Real x) const { return b == 0 ? k * x : k / b * std::log1p(b * x); }
+  Real a(Real x) const { return b == 0 ? k * (x - lead) : k / b * std::log1p(b * (x - lead)); }
   /// A(x + dx) - A(x)
   Real delta(Real x, Real dx) const { return b == 0 ? k * dx : k / b * std::log1p(b * dx / u(x)); }
 };
@@ -53,9 +54,9 @@ struct ReferencePair {
 inline ReferencePair publishedPair(const ReferenceCurve& curve, Real scale, Real x, Real l) {
   const Real a = scale * curve.k / curve.b;
   const Real b = curve.b;
-  const Real root = std::sqrt((1 + b * x) * (1 + b * x) + a * b * a * b);
+  const Real root = std::sqrt(curve.u(x) * curve.u(x) + a * b * a * b);
   const Real sin2 = (a * b / root) * (a * b / root);
-  const Real x10 = (1 + b * x) * l / root;
+  const Real x10 = curve.u(x) * l / root;
   const Real a10 = a * b * l / root;
   const Real bottom = 3 * a * a * a - 2 * a * a10 * sin2 * (3 * a - 4 * a10);
   const Real x21 = (3 * a * a * a - 2 * a10 * a10 * sin2 * (3 * a - 8 * a10)) / bottom * x10;

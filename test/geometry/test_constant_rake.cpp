@@ -145,6 +145,29 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
   EXPECT_GE(bent, 6);
 }
 
+TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
+  const Shop shop;
+  const SetupRequest request = requestFor(shop);
+  GrindJob job = jobFor(shop).value();
+  for (const double lead : {-1e-3, 1e-3}) {
+    SCOPED_TRACE(lead);
+    job.process.setup_lead = lead;
+    const GrindJob with_law = withZLaw(job);
+    EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
+    const brute::Bench bench{request,
+                             job.process.setup_swivel,
+                             job.process.setup_height,
+                             job.process.depth,
+                             800,
+                             100,
+                             with_law.z_corrections.at(0),
+                             lead};
+    for (const double part : {0.1, 0.9}) {
+      EXPECT_NEAR(bench.rake(part * job.cutter.flute_length) / kDegree, shop.rake, 0.005) << part;
+    }
+  }
+}
+
 TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
   GrindJob job = steepJob();
   job.tooth_angles = {0, 1.5, 3.1, 4.6};

@@ -53,6 +53,15 @@ std::string refusal(const std::string& text, const Edits& edits) {
   return "";
 }
 
+/// With the two overtravels each in a line of its own.
+std::string withBlockList(std::string text) {
+  const std::size_t at = text.find(" [", text.find("  overtravel_mm:"));
+  const std::size_t comma = text.find(", ", at), end = text.find(']', at);
+  return text.replace(at, end + 1 - at,
+                      "  # list\n  - " + text.substr(at + 2, comma - at - 2) + "  # first\n\n  - " +
+                          text.substr(comma + 2, end - comma - 2));
+}
+
 /// The shipped files with their setup in flow style become others with the same values.
 std::string inLayout(std::string text, int layout) {
   const std::size_t at = text.find("  setup: {swivel_deg: ");
@@ -73,6 +82,7 @@ std::string inLayout(std::string text, int layout) {
     case 4: text = "\xEF\xBB\xBF# \xC3\xA4\n" + text; break;
     case 5: text = text.substr(0, text.find_last_not_of('\n') + 1); break;  // no end of the last line
     case 6: text = "---\n" + text; break;
+    case 7: return withBlockList(text);
     default: break;
   }
   return text;
@@ -89,7 +99,7 @@ std::string anyNumber(double from, double to, int decimals = 0) {
 
 RC_GTEST_PROP(JobEditProperty, ChangesTheNumbersAndNoOtherByte, ()) {
   static const std::vector<std::string> jobs = shippedJobs();
-  const std::string text = inLayout(*rc::gen::elementOf(jobs), *test_support::whole(0, 6));
+  const std::string text = inLayout(*rc::gen::elementOf(jobs), *test_support::whole(0, 7));
   const Edits edits{{"process.setup.swivel_deg", anyNumber(-60, 60)},
                     {"process.setup.height_mm", anyNumber(-9, 9)},
                     {"process.depth_mm", anyNumber(0.1, 0.15, 2)},
@@ -104,7 +114,7 @@ RC_GTEST_PROP(JobEditProperty, ChangesTheNumbersAndNoOtherByte, ()) {
       at += std::string(key).size();
       const bool list = key == std::string("overtravel_mm");
       for (int i = 0; i < (list ? 2 : 1); ++i) {
-        at = job.find_first_of("-0123456789", at);
+        at = job.find_first_of(list ? "0123456789" : "-0123456789", at);
         const std::size_t end = job.find_first_not_of("-0123456789.", at);
         numbers.push_back(job.substr(at, end - at));
         at = end;
@@ -120,8 +130,8 @@ RC_GTEST_PROP(JobEditProperty, ChangesTheNumbersAndNoOtherByte, ()) {
   const char* const keys[]{"swivel_deg", "height_mm", "  depth_mm", "overtravel_mm", "overtravel_mm"};
   for (std::size_t i = 0; i < edits.size(); ++i) {
     std::size_t at = back.find(keys[i]) + std::string(keys[i]).size();
-    at = back.find_first_of("-0123456789", at);
-    if (i == 4) at = back.find_first_of("-0123456789", back.find(',', at));
+    at = back.find_first_of(i < 3 ? "-0123456789" : "0123456789", at);
+    if (i == 4) at = back.find_first_of("0123456789", back.find_first_of(",\n", at));
     back.replace(at, now[i].size(), old[i]);
   }
   RC_ASSERT(back == text);
@@ -175,6 +185,16 @@ const Row kRows[]{
      "process:\n  setup: { swivel_deg: 31.5, height_mm: -2 } # x\n"},
     {"BesideOneInBlockStyle", "process:\n  setup:\n      swivel_deg: 4 # x\n  d: 5\n", kSetup,
      "process:\n  setup:\n      swivel_deg: 31.5 # x\n      height_mm: -2\n  d: 5\n"},
+    {"AmidABlockList",
+     "process:\n  overtravel_mm:\n    - 1  # a\n    # b\n    -   7\n  setup:\n    swivel_deg: 1\n    height_mm: 2\n",
+     {{"process.overtravel_mm[0]", "1.5"}, {"process.overtravel_mm[1]", "8.25"}, kSetup[0], {"process.depth_mm", "3"}},
+     "process:\n  overtravel_mm:\n    - 1.5  # a\n    # b\n    -   8.25\n  setup:\n    swivel_deg: 31.5\n    "
+     "height_mm: 2\n"
+     "  depth_mm: 3\n"},
+    {"BesideABlockList",
+     "process:\n  overtravel_mm:\n  - 1\n  - 7\n",
+     {{"process.overtravel_mm[1]", "8.25"}, kSetup[0], kSetup[1]},
+     "process:\n  overtravel_mm:\n  - 1\n  - 8.25\n  setup: {swivel_deg: 31.5, height_mm: -2}\n"},
     {"WithADepth",
      "process:\n  a: 1\nc: 3\n",
      {{"process.depth_mm", "1.25"}, kSetup[0], kSetup[1]},

@@ -92,6 +92,14 @@ inline rc::Gen<Machine> machine() {
   });
 }
 
+/// Now and then none; the edge stays where the radius is at least a fifth of that at X = 0. [m]
+inline rc::Gen<double> lead(const GrindJob& j) {
+  const double shank = j.cutter.flute_length + j.process.overtravel_shank, longest = 3 * j.cutter.end_diameter;
+  const auto room = [&](int side, double reached) { return openLength(j.cutter, side, reached + longest) - reached; };
+  return rc::gen::weightedOneOf<double>(
+      {{1, rc::gen::just(0.0)}, {2, uniform(-room(1, shank), room(-1, j.process.overtravel_end))}});
+}
+
 /// One tooth, one or two passes, feeds of 60 to 6000 mm/min, all rules, both directions; its figures pass validate().
 inline rc::Gen<GrindJob> job() {
   return rc::gen::exec([] {
@@ -118,6 +126,7 @@ inline rc::Gen<GrindJob> job() {
         *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
     j.interpolation.tolerance = *logUniform(0.1e-6, 100e-6);
     j.interpolation.rotary_scale = *logUniform(0.1e-3, 10e-3);
+    j.process.setup_lead = *lead(j);
     return j;
   });
 }
@@ -201,7 +210,8 @@ inline rc::Gen<Work> correctedWork(double cycles) {
                                       w.job.process.feed,
                                       w.job.interpolation.tolerance,
                                       0,
-                                      w.job.z_corrections[0]};
+                                      w.job.z_corrections[0],
+                                      w.job.process.setup_lead};
     // A much bent one may be too slow for a test, or for a job.
     const FeedSchedule schedule(ConicalCutter(w.job.cutter), stroke, w.machine);
     RC_PRE(schedule.length() / schedule.feedSpeed() / w.machine.period < 10 * cycles);
@@ -275,10 +285,10 @@ inline std::ostream& operator<<(std::ostream& out, const Machine& m) {
 inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
   return out << j.cutter << ", " << toString(j.interpolation.even_step) << ", " << toString(j.process.direction)
              << ", feed " << j.process.feed << " m/s, overtravel " << j.process.overtravel_end << " "
-             << j.process.overtravel_shank << " m, depth " << j.process.depth << " m, clearance " << j.process.clearance
-             << " m, tolerance " << j.interpolation.tolerance << " m, scale " << j.interpolation.rotary_scale
-             << " m/rad, spark out " << j.process.spark_out << ", " << j.tooth_angles.size() << " teeth, "
-             << toString(j.process.order);
+             << j.process.overtravel_shank << " m, lead " << j.process.setup_lead << " m, depth " << j.process.depth
+             << " m, clearance " << j.process.clearance << " m, tolerance " << j.interpolation.tolerance << " m, scale "
+             << j.interpolation.rotary_scale << " m/rad, spark out " << j.process.spark_out << ", "
+             << j.tooth_angles.size() << " teeth, " << toString(j.process.order);
 }
 
 namespace test_support {

@@ -101,7 +101,7 @@ inline double clearHeight(const GrindJob& job) {
 
 /// How far the strokes' points are off what the paper's construction gives, as text; empty where they are not.
 inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const GrindJob& job, std::size_t every) {
-  const ReferenceCurve curve(job.cutter);
+  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
   const Real scale = job.interpolation.rotary_scale;
   const Axes noise = 4 * roundingOf(setpoints);
   const Real x_noise = noise[kX];
@@ -132,7 +132,7 @@ inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, co
 /// Whether every odd point leaves the curve from where its pair starts by the tangent's error k b dX^2 / (2 u^2), up to
 /// the next orders, of which 2/3 b dX/u is the largest.
 inline std::string offTheTangent(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
-  const ReferenceCurve curve(job.cutter);
+  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
   const Axes noise = 4 * roundingOf(setpoints);
   for (const SeenPair& s : pairsOf(setpoints)) {
     const Real x = s.start.position[kX];
@@ -152,7 +152,7 @@ inline std::string offTheTangent(const std::vector<Setpoint>& setpoints, const G
 class Deviation {
  public:
   explicit Deviation(const GrindJob& job)
-      : curve_(job.cutter),
+      : curve_(job.cutter, job.process.setup_lead),
         teeth_(job.tooth_angles),
         end_radius_(Real(job.cutter.end_diameter) / 2),
         growth_(std::tan(Real(job.cutter.cone_angle))),
@@ -161,7 +161,7 @@ class Deviation {
   double of(const Setpoint& p) const {
     const Real x = p.position[kX];
     const Real error = curve_.a(x) - (Real(p.position[kA]) - teeth_[p.tooth]);
-    return static_cast<double>(std::abs(error) * (end_radius_ + x * growth_) * normal_);
+    return static_cast<double>(std::abs(error) * (end_radius_ + (x - curve_.lead) * growth_) * normal_);
   }
 
  private:
@@ -195,7 +195,7 @@ inline double largestDeviation(const std::vector<Setpoint>& setpoints, const Gri
 /// What the rounding of A makes of a deviation. [m]
 inline double noiseOfDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
   const double shank = job.cutter.flute_length + job.process.overtravel_shank;
-  const double x = std::max(shank, job.process.overtravel_end);
+  const double x = std::max(shank, job.process.overtravel_end) + std::abs(job.process.setup_lead);
   const double radius = job.cutter.end_diameter / 2 + x * std::abs(std::tan(job.cutter.cone_angle));
   return (8 * roundingOf(setpoints)[kA] + 1e-15) * radius;
 }
@@ -219,7 +219,7 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
   const auto z_per_y = static_cast<double>(zPerY(g));
   const double feed = kMaxFeedOverride * work.job.process.feed / edgePerTravel(g);
   const double step = feed * work.machine.period;
-  const ReferenceCurve curve(g);
+  const ReferenceCurve curve(g, work.job.process.setup_lead);
   const auto thin = static_cast<double>(std::min(curve.u(from), curve.u(to)));
   const double uneven = 4 * std::abs(static_cast<double>(curve.b)) * step / thin;
   for (std::size_t i = 1; i < setpoints.size(); ++i) {

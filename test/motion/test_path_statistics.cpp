@@ -19,7 +19,7 @@ using namespace test_support;
 
 /// Every statistic once more, from the setpoints that the visitor saw.
 core::PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
-  const ReferenceCurve curve(job.cutter);
+  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
   const CutterGeometry& g = job.cutter;
   const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
   core::PathStatistics s;
@@ -46,7 +46,7 @@ core::PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const Gr
     const auto error = static_cast<double>(std::abs(curve.a(x) - (Real(p.position[kA]) - job.tooth_angles[p.tooth])));
     (p.step == StepKind::kOdd ? s.max_odd_error : s.max_even_error) =
         std::max(p.step == StepKind::kOdd ? s.max_odd_error : s.max_even_error, error);
-    const Real radius = Real(g.end_diameter) / 2 + x * std::tan(Real(g.cone_angle));
+    const Real radius = Real(g.end_diameter) / 2 + (x - curve.lead) * std::tan(Real(g.cone_angle));
     s.max_deviation = std::max(s.max_deviation, static_cast<double>(error * radius * normal));
     if (p.step == StepKind::kEven && p.at_feed) {
       const double feed =
@@ -85,6 +85,16 @@ void expectSame(const GrindJob& job, const Machine& machine) {
 }
 
 TEST(JobPlan, TellsTheStatisticsOfThePapersJob) { expectSame(paperJob(), plainMachine()); }
+
+TEST(JobPlan, TellsTheStatisticsWhereTheEdgeIsAheadOfTheWheelOrBehind) {
+  GrindJob job = paperJob();
+  job.cutter.cone_angle = 9.6 * units::kDegree;
+  for (const double lead : {-15e-3, 11.847e-3}) {
+    SCOPED_TRACE(lead);
+    job.process.setup_lead = lead;
+    expectSame(job, plainMachine());
+  }
+}
 
 TEST(JobPlan, TellsTheStatisticsOfManyTeethAndPasses) {
   GrindJob job = steepJob();

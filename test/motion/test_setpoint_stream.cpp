@@ -128,7 +128,7 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
   const Work work = *toothedWork(kCycles / 3);
   const GrindProgram program = work.program();
   const auto setpoints = all(work);
-  const ReferenceCurve curve(work.job.cutter);
+  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const bool exact = work.job.interpolation.even_step == EvenStepRule::kExact;
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
     const Setpoint& p = setpoints[i];
@@ -205,7 +205,7 @@ RC_GTEST_PROP(SetpointStreamProperty, TellsTheMeanVelocityOfTheCycle, ()) {
 
 RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) {
   const Work work = *test_support::work(kCycles);
-  const ReferenceCurve curve(work.job.cutter);
+  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const auto setpoints = all(work);
   const Axes noise = roundingOf(setpoints);
   for (const Setpoint& p : setpoints) {

@@ -62,8 +62,8 @@ void checkDetours(const Ride& ride, const Work& work) {
         RC_ASSERT(direction * (left - start) <= program.schedule().runUp() + rounding[kX]);
         RC_ASSERT(direction * (reached - start) >= -rounding[kX]);  // nothing is left out
       }
-      const double slope = static_cast<double>(ReferenceCurve(g).slope(start));
-      const double radius = g.end_diameter / 2 + start * growth;
+      const double slope = static_cast<double>(ReferenceCurve(g, work.job.process.setup_lead).slope(start));
+      const double radius = g.end_diameter / 2 + (start - work.job.process.setup_lead) * growth;
       RC_ASSERT(Deviation(work.job).of(before) <= radius * (rounding[kA] + rounding[kX] * std::abs(slope)));
       RC_ASSERT(std::abs(before.position[kY] - (start * growth - work.job.process.depth)) <= 2 * rounding[kY]);
       RC_ASSERT(std::abs(before.position[kZ] - start * growth * static_cast<double>(zPerY(g))) <= 2 * rounding[kZ]);

@@ -78,6 +78,7 @@ PAPER = {
     'process.wheel_wear_per_pass': 0.0,
     'process.setup_swivel': 31.769 * DEG,
     'process.setup_height': 2.788 * MM,
+    'process.setup_lead': 0.0,
     'interpolation.even_step': 0,
     'interpolation.tolerance': 1 * UM,
     'interpolation.rotary_scale': 1 * MM,

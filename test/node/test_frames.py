@@ -18,11 +18,11 @@ import path_checks as checks
 from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z, grinder
 
 OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
-SWIVEL, HEIGHT = 20 * DEG, 3 * MM
+SWIVEL, HEIGHT, LEAD = 20 * DEG, 3 * MM, -15 * MM
 TEETH = [0.0, 100 * DEG]
 # Its stroke takes some seconds.
 JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=5 * MM, clearance=1 * MM, tooth_angles=TEETH,
-               setup_swivel=SWIVEL, setup_height=HEIGHT)
+               setup_swivel=SWIVEL, setup_height=HEIGHT, setup_lead=LEAD)
 HELIX = checks.Helix(JOB)
 # Of a cutter of 12 mm and a wheel of 100 mm.
 BETWEEN_AXES = 56 * MM
@@ -165,19 +165,20 @@ class TestStroke(unittest.TestCase):
             self.check(at, about_x(setpoint[A]) @ centre, sum(tolerance[:3]) + tolerance[A] * numpy.linalg.norm(centre))
             self.check(turned[:, 2], about_x(setpoint[A]) @ axis, tolerance[A])
 
-    def test_contact_runs_along_the_flute_on_the_cutters_surface(self):
+    def test_contact_runs_along_the_edge_on_the_cutters_surface(self):
         for seen in self.strokes():
             x, a = (seen['setpoint'].actual[axis] for axis in (X, A))
             at, turned = seen['contact', 'cutter']
             to_cutter = about_x(a)
-            self.check(at, to_cutter @ [x, HELIX.radius(x), 0], seen['delta'])
+            radius = HELIX.radius(x - LEAD)
+            self.check(at, to_cutter @ [x - LEAD, radius, 0], seen['delta'])
             along = to_cutter @ [1, HELIX.tan_cone, HELIX.tan_spiral]
             self.check(turned[:, 0], along / numpy.linalg.norm(along), seen['turn'])
             outward = to_cutter @ [-HELIX.tan_cone, 1, 0]
             self.check(turned[:, 1], outward / numpy.linalg.norm(outward), seen['turn'])
-            # As far as the axes follow, it is on the theoretical flute.
+            # As far as the axes follow, it is on the theoretical edge.
             flute = TEETH[1] + HELIX.a(x)
-            self.check(at[1:], [HELIX.radius(x) * math.cos(flute), HELIX.radius(x) * math.sin(flute)], 0.05 * MM)
+            self.check(at[1:], [radius * math.cos(flute), radius * math.sin(flute)], 0.05 * MM)
 
 
 class TestSetUp(unittest.TestCase):

@@ -38,6 +38,7 @@ GrindJob shortJob() {
   job.process.feed = 0.05;
   job.process.depth = 1e-3;
   job.process.depth_end = 0.8e-3;
+  job.process.setup_lead = -15e-3;
   job.process.infeed = 0.6e-3;
   job.tooth_angles = {0, 3.1};
   job.spiral_angles = {job.cutter.spiral_angle, job.cutter.spiral_angle * 0.9};
@@ -162,7 +163,7 @@ void JobRecordTest::expectStroke(const Json& told, int tooth, int pass) const {
   for (const Cycle& c : stroke) {
     const double x = c.setpoint.position[kX];
     const double normal = std::cos(std::atan(spiral * std::cos(cone)));
-    const double radius = job_.cutter.end_diameter / 2 + x * std::tan(cone);
+    const double radius = job_.cutter.end_diameter / 2 + (x + 15e-3) * std::tan(cone);
     deviation = std::max(deviation, std::abs(c.setpoint.path_error) * radius * normal);
     following = following.max((c.record.command_in_effect - c.record.position).abs());
     if (c.setpoint.step != StepKind::kEven || x < 0 || x > job_.cutter.flute_length) continue;

@@ -105,6 +105,8 @@ class TestMasterWatch(unittest.TestCase):
         self.assertIn(NODE + '/hold', before['services'])
         self.kill_master()
         self.start_master()
+        # The node looks for another master once a second.
+        self.grind('disable')
         wait_for(lambda: self.registered() == before, 'node as it was under the master before')
         self.assertIn('disabled', self.grind('status'))
         self.grind('enable')

@@ -656,6 +656,15 @@ class TestVerdict(ReportCase):
             self.assertEqual(figures[name]['measured'], worst[key])
         self.assertEqual(figures['land']['measured'], min(t['land_mm'] for s in sections for t in s['teeth']))
 
+    def test_deviation_with_a_lead_is_that_at_the_edge(self):
+        sys.path.insert(0, gc.package_file('src/report'))
+        self.addCleanup(sys.path.pop, 0)
+        from strokes import deviation
+        cutter = {'end_diameter_mm': 10, 'cone_angle_deg': 45, 'spiral_angle_deg': 0}
+        # The edge is at X = 20 mm, where the radius is 25 mm.
+        job_file = {'cutter': cutter, 'process': {'setup': {'lead_mm': -15}}}
+        self.assertAlmostEqual(deviation(job_file, 0, 5 * MM, -2e-3), 50 * UM, delta=1e-15)
+
     def test_a_tool_is_judged_by_the_tolerances_of_its_job(self):
         sys.path.insert(0, gc.package_file('src/report'))
         self.addCleanup(sys.path.pop, 0)

@@ -211,7 +211,7 @@ class WholeTool:
         tolerance = self.job['interpolation.tolerance']
         for stroke in self.strokes:
             angle = self.angles_deg[stroke.tooth] * DEG
-            worst = max(abs(angle + self.helix.a(p[X]) - p[A]) * self.helix.radius(p[X]) for p in stroke.points)
+            worst = max(abs(angle + self.helix.a(p[X]) - p[A]) * self.helix.radius(p[X] - self.helix.lead) for p in stroke.points)
             self.assertLessEqual(worst * self.helix.normal, tolerance)
 
     def test_path_error_is_theory_minus_commanded(self):
@@ -230,7 +230,7 @@ class WholeTool:
             still = [1e-12] * 4
             if segment.move == 'retract':
                 # A takes back what the last pair's error has left.
-                radius = self.helix.radius(self.stroke_to)
+                radius = self.helix.radius(self.stroke_to - self.helix.lead)
                 still[A] += self.job['interpolation.tolerance'] / (radius * self.helix.normal)
             ways = [max(values) - min(values) for values in zip(*segment.all_points())]
             moved = {axis for axis in range(4) if ways[axis] > still[axis]}

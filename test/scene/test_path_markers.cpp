@@ -1,5 +1,6 @@
 #include "flute_grinder/scene/path_markers.h"
 
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"
 
@@ -131,6 +132,52 @@ TEST(PathMarkers, AreLinesOfAWidth) {
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) errors.add(p);
   expectLinesOfAWidth(errors.markers());
+}
+
+// With a lead, A at X of the wheel's centre is that of the edge at X - lead.
+TEST(PathMarkers, AreAtTheEdgeThatIsFormed) {
+  GrindJob job = readJobFile("jobs/paper.yaml");
+  job.cutter.cone_angle = 9.6 * units::kDegree;
+  const double b = 2 * std::tan(job.cutter.cone_angle) / job.cutter.end_diameter;
+  const double turn = std::tan(job.cutter.spiral_angle) / std::tan(job.cutter.cone_angle);
+  const double normal = std::cos(std::atan(std::tan(job.cutter.spiral_angle) * std::cos(job.cutter.cone_angle)));
+  for (const double lead : {0.0, -15e-3, 11.847e-3}) {
+    SCOPED_TRACE(lead);
+    job.process.setup_lead = lead;
+    const GrindProgram of_lead(job, test_support::plainMachine(), test_support::plainMachine().park);
+    const auto expect_at_edge = [&](const geometry_msgs::Point& p, double delta) {
+      const double r = job.cutter.end_diameter / 2 + p.x * std::tan(job.cutter.cone_angle);
+      const double a = turn * std::log1p(b * p.x);
+      EXPECT_NEAR(std::hypot(p.y - r * std::cos(a), p.z - r * std::sin(a)), 0, delta);
+    };
+    ToolPath flutes(of_lead);
+    const MarkerArray edges = flutes.markers();
+    ASSERT_GT(edges.markers.size(), 1u);
+    const std::vector<geometry_msgs::Point>& edge = edges.markers[1].points;
+    EXPECT_NEAR(edge.front().x, of_lead.strokeFrom() - lead, 1e-15);
+    EXPECT_NEAR(edge.back().x, of_lead.strokeTo() - lead, 1e-15);
+    for (const geometry_msgs::Point& p : edge) expect_at_edge(p, 1e-12);
+
+    PathErrorMarkers errors(job);
+    SetpointStream stream(of_lead);
+    double largest = 0;
+    for (Setpoint p; stream.next(p) && p.pass == 0 && p.tooth == 0;) {
+      errors.add(p);
+      Axes off = p.position;
+      off[kA] += 1e-5;
+      flutes.add(p, off);
+      if (p.step == StepKind::kNone) continue;
+      const double x = p.position[kX] - lead;
+      const double error = std::abs(turn * std::log1p(b * x) - off[kA]);
+      largest = std::max(largest, error * (job.cutter.end_diameter / 2 + x * std::tan(job.cutter.cone_angle)) * normal);
+    }
+    EXPECT_NEAR(flutes.largestMeasured(), largest, 1e-15);
+    const MarkerArray arrows = errors.markers();
+    ASSERT_EQ(arrows.markers.size(), 2u);
+    const std::vector<geometry_msgs::Point>& ends = arrows.markers[1].points;
+    ASSERT_GT(ends.size(), 100u);
+    for (std::size_t i = 0; i < ends.size(); i += 2) expect_at_edge(ends[i], 1e-6);
+  }
 }
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {

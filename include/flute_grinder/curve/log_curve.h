@@ -12,8 +12,8 @@ class LogCurve {
   /// Takes b = 2 tan C / D1 and k = 2 tan S / D1 from a cutter.
   explicit LogCurve(const ConicalCutter& cutter) noexcept : LogCurve(cutter, 0) {}
 
-  /// The cutter's curve for a wheel whose centre is at X when it forms the edge at X - lead: A(X - lead). That is the
-  /// curve of the cone moved by `lead`, which begins at another A.
+  /// The cutter's curve shifted along X, A(X - lead), so that the edge that a wheel grinds is the asked helix. That is
+  /// the curve of the cone moved by `lead`, which begins at another A. See FormedEdge.
   /// @param lead finite; the cone must be open at X = -lead [m].
   LogCurve(const ConicalCutter& cutter, double lead) noexcept
       : LogCurve(2 * cutter.tanCone() / cutter.geometry().end_diameter,

@@ -15,7 +15,7 @@ namespace flute_grinder {
 struct WheelSetup {
   double swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
-  double lead = 0;    ///< of the wheel's centre, see LogCurve [m]
+  double lead = 0;    ///< shift of A's curve along X, see LogCurve [m]
 };
 
 /// How far the axes are off the job's path at an X.

@@ -85,7 +85,7 @@ struct GrindProcess {
   double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
   double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
-  double setup_lead = 0;    ///< of the wheel's centre in X, ahead of where it forms the edge; see LogCurve [m]
+  double setup_lead = 0;    ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< at the flute's end [m]
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< where the flute is deepest [m]

@@ -56,7 +56,7 @@ class FeedSchedule {
     double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
     double taper = 0;         ///< largest value, by magnitude, that passes add to the cone's dY/dX; they may add less
     ZCorrection z_correction{};  ///< added to Z
-    double lead = 0;             ///< of the wheel's centre, see LogCurve [m]
+    double lead = 0;             ///< shift of A's curve along X, see LogCurve [m]
   };
 
   /// @param cutter the cutter; its curve must exist over the whole stroke.

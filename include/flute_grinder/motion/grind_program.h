@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/axis_limits.h"
@@ -23,14 +23,14 @@ struct Move {
 
 /// The path of a tooth's strokes before infeed and indexing, and its feed.
 struct Helix {
-  ConicalCutter cutter;
+  FormedEdge edge;
   LogCurve curve;
   ZCorrection z_correction;
   FeedSchedule schedule;
 
   /// Height Z on the path: the cutter's, with the job's correction. Real-time safe. [m]
   double z(double x) const noexcept {
-    return z_correction.pieces == 0 ? cutter.z(x) : cutter.z(x) + z_correction.at(x).z;
+    return z_correction.pieces == 0 ? edge.cutter.z(x) : edge.cutter.z(x) + z_correction.at(x).z;
   }
 };
 
@@ -52,7 +52,7 @@ class GrindProgram {
   const GrindJob& job() const noexcept { return job_; }
   const Machine& machine() const noexcept { return machine_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
-  const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).cutter; }
+  const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
   const Axes& start() const noexcept { return start_; }
   const std::vector<Move>& moves() const noexcept { return moves_; }
 

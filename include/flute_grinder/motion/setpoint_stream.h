@@ -112,7 +112,7 @@ class SetpointStream {
   void beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept;
   double targetSpeed() const noexcept;
   double strokeParameter() const noexcept;
-  double strokeY(double x) const noexcept { return helix_->cutter.y(x) + x * taper_ + y_offset_; }
+  double strokeY(double x) const noexcept { return helix_->edge.cutter.y(x) + x * taper_ + y_offset_; }
   void straightStep() noexcept;
   void strokePair() noexcept;
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;

@@ -9,9 +9,9 @@
 
 namespace flute_grinder {
 
-/// The flutes of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
+/// The edges of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
 /// one being ground bright, and a finished one coloured point by point by the error measured in its last pass, red at
-/// the job's tolerance.
+/// the job's tolerance. With a lead they are where the edge is formed, not at X of the wheel's centre.
 class ToolPath {
  public:
   explicit ToolPath(const GrindProgram& program);
@@ -39,12 +39,12 @@ class ToolPath {
     std::vector<float> errors;  ///< per point of the strip [m]; empty until a pass is finished
   };
 
-  double x(std::size_t i) const;
+  double x(std::size_t i) const;  ///< of the wheel's centre at a point of a strip [m]
   void measure(const Setpoint& setpoint, const Axes& actual);
   void finishPass(Flute& flute);
   void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
-  ConicalCutter cutter_;
+  FormedEdge edge_;
   double tolerance_;   ///< where the colour scale ends [m]
   double from_, to_;   ///< of the stroke [m]
   std::size_t steps_;  ///< between the points of a strip
@@ -55,7 +55,8 @@ class ToolPath {
 };
 
 /// Path of the wheel's lowest point in the current stroke, from measured positions, as a line strip in the frame
-/// `cutter`: below the planned path by the depth of the pass. Thinned out as it grows.
+/// `cutter`: below the planned path by the depth of the pass, and ahead of it in X by the lead. Thinned out as it
+/// grows.
 class ExecutedPath {
  public:
   explicit ExecutedPath(const GrindProgram& program);
@@ -80,7 +81,8 @@ class ExecutedPath {
 /// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
-  explicit PathErrorMarkers(const GrindJob& job) : cutter_(job.cutter), tolerance_(job.interpolation.tolerance) {}
+  explicit PathErrorMarkers(const GrindJob& job)
+      : edge_{ConicalCutter(job.cutter), job.process.setup_lead}, tolerance_(job.interpolation.tolerance) {}
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
@@ -93,11 +95,13 @@ class PathErrorMarkers {
 
  private:
   struct Point {
-    double x, a, deviation;  ///< commanded - theory, normal to the helix [m]
+    double x;          ///< of the wheel's centre [m]
+    double a;          ///< [rad]
+    double deviation;  ///< commanded - theory, normal to the helix [m]
   };
   void thinOut();
 
-  ConicalCutter cutter_;
+  FormedEdge edge_;
   double tolerance_;  ///< [m]
   std::optional<std::uint32_t> move_;
   std::vector<Point> points_;

@@ -34,21 +34,17 @@ double largest(const Eigen::ArrayXd& errors) {
 }
 
 /// A damped fit (Levenberg, Marquardt) of the figures of a set-up that are free.
-class Fit {
+class DampedFit {
  public:
   using Errors = std::function<Eigen::ArrayXd(const SetupPoint&)>;
 
-  Fit(const SetupTrial& trial, const SetupRequest& request) : trial_(trial), request_(request) {
-    const bool keeps_swivel = request.keep == SetupFigure::kSwivel, keeps_height = request.keep == SetupFigure::kHeight;
-    if (!keeps_swivel) figures_.push_back(&SetupPoint::swivel);
-    if (!keeps_height) figures_.push_back(&SetupPoint::height);
-    if (request.core_diameter || keeps_swivel || keeps_height) figures_.push_back(&SetupPoint::depth);
-    if (hasLead(request)) figures_.push_back(&SetupPoint::lead);
-    if (request.core_diameter_end) figures_.push_back(&SetupPoint::taper);
-  }
-
-  static bool hasLead(const SetupRequest& request) {
-    return request.asks_spiral && std::abs(std::tan(request.cutter.spiral_angle)) > kLeastSpiral;
+  DampedFit(const SetupTrial& trial, const SetupRequest& request)
+      : trial_(trial), request_(request), is_height_tied_(isHeightTied(trial, request)) {
+    if (request.keep != SetupFigure::kSwivel) figures_.push_back(&SetupPoint::swivel);
+    if (request.keep != SetupFigure::kHeight && !is_height_tied_) figures_.push_back(&SetupPoint::height);
+    if (findsDepth(trial, request)) figures_.push_back(&SetupPoint::depth);
+    if (hasLead(trial, request)) figures_.push_back(&SetupPoint::lead);
+    if (request.core_diameter_end && !trial.isCylinder()) figures_.push_back(&SetupPoint::taper);
   }
 
   /// @param enough the largest error at which the fit may end. @return nothing if the start gives no tool.
@@ -79,6 +75,7 @@ class Fit {
   SetupPoint moved(SetupPoint point, const Eigen::VectorXd& step) const {
     for (std::size_t k = 0; k < figures_.size(); ++k)
       point.*figures_[k] += step[static_cast<Eigen::Index>(k)] * unit(k);
+    if (is_height_tied_) point.height = tiedHeight(trial_, request_, point.swivel);
     return point;
   }
 
@@ -111,6 +108,7 @@ class Fit {
 
   const SetupTrial& trial_;
   const SetupRequest& request_;
+  bool is_height_tied_;
   std::vector<double SetupPoint::*> figures_;  ///< that are free
 };
 
@@ -119,12 +117,12 @@ std::optional<SetupPoint> exact(const SetupTrial& trial, const SetupRequest& req
                                 double rake) {
   const auto errors_of = [&](const SetupPoint& point) {
     const SetupErrors e = setupErrors(trial, request, point, 1);
-    const Eigen::ArrayXd spiral = Fit::hasLead(request) ? e.spiral : Eigen::ArrayXd();
-    Eigen::ArrayXd all(e.rake.size() + spiral.size() + e.core.size());
-    all << e.rake + request.rake - rake, spiral, e.core;
+    const Eigen::ArrayXd turn = hasLead(trial, request) ? e.turn : Eigen::ArrayXd();
+    Eigen::ArrayXd all(e.rake.size() + turn.size() + e.core.size());
+    all << e.rake + request.rake - rake, turn, e.core;
     return all;
   };
-  const auto found = Fit(trial, request).solve(start, errors_of, kExact);
+  const auto found = DampedFit(trial, request).solve(start, errors_of, kExact);
   return found && largest(errors_of(*found)) <= kExact ? found : std::nullopt;
 }
 
@@ -132,35 +130,55 @@ std::optional<SetupPoint> exact(const SetupTrial& trial, const SetupRequest& req
 
 double SetupErrors::worst(const SetupRequest& request) const {
   const CutterGeometry& c = request.cutter;
-  return std::max({largest(rake) / allowed(c.rake_tolerance), largest(spiral) / allowed(c.spiral_tolerance),
+  return std::max({largest(rake) / allowed(c.rake_tolerance),
+                   std::max(largest(turn), largest(spiral)) / allowed(c.spiral_tolerance),
                    largest(core) / allowed(c.core_tolerance / c.end_diameter)});
 }
 
+bool hasLead(const SetupTrial& trial, const SetupRequest& request) {
+  return request.asks_spiral && !trial.isCylinder() && std::abs(std::tan(request.cutter.spiral_angle)) > kLeastSpiral;
+}
+
+bool isHeightTied(const SetupTrial& trial, const SetupRequest& request) {
+  const bool keeps_depth = request.keep == SetupFigure::kDepth;
+  return trial.isCylinder() && (!request.keep || (keeps_depth && !request.core_diameter));
+}
+
+double tiedHeight(const SetupTrial& trial, const SetupRequest& request, double swivel) {
+  return trial.cutter().radius(0) * std::sin(request.rake) - trial.wheel().upperFace() / std::cos(swivel);
+}
+
+bool findsDepth(const SetupTrial& trial, const SetupRequest& request) {
+  if (request.core_diameter) return !(trial.isCylinder() && request.keep == SetupFigure::kDepth);
+  return !trial.isCylinder() && (request.keep == SetupFigure::kSwivel || request.keep == SetupFigure::kHeight);
+}
+
 SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps) {
+  if (trial.isCylinder()) steps = 0;
   const WheelSweep sweep = trial.sweep(point);
   const double length = request.cutter.flute_length, diameter = request.cutter.end_diameter;
   const LogCurve travel(2 * trial.cutter().tanCone() / diameter, 2 / diameter);  // of an edge at 45 deg
-  SetupErrors errors;
-  errors.rake.resize(steps + 1);
-  errors.spiral.resize(request.asks_spiral ? steps : 0);
+  const auto &core = request.core_diameter, &core_end = request.core_diameter_end;
+  std::vector<double> rakes, turns, spirals, cores;
   double before = 0;
   for (int i = 0; i <= steps; ++i) {
-    const double x = length * i / steps;
+    const double part = steps > 0 ? static_cast<double>(i) / steps : 0, x = part * length;
     const SetupTrial::Edge edge = trial.edge(sweep, x);
-    errors.rake[i] = edge.rake - request.rake;
+    rakes.push_back(edge.rake - request.rake);
     if (i > 0 && request.asks_spiral) {
       const double turn = (edge.angle - before) / (travel.a(x) - travel.a(length * (i - 1) / steps));
-      errors.spiral[i - 1] = std::atan(turn) - request.cutter.spiral_angle;
+      turns.push_back(std::atan(turn) - request.cutter.spiral_angle);
     }
+    if (steps > 1 && request.asks_spiral) spirals.push_back(trial.spiral(sweep, x) - request.cutter.spiral_angle);
     before = edge.angle;
+    if (!(core && core_end ? true : core ? i == 0 : core_end && i == steps)) continue;
+    const double asked = core && core_end ? *core + part * (*core_end - *core) : core ? *core : *core_end;
+    cores.push_back((2 * trial.coreRadius(sweep, x) - asked) / diameter);
   }
-  std::vector<double> cores;
-  if (request.core_diameter) cores.push_back((2 * trial.coreRadius(sweep, 0) - *request.core_diameter) / diameter);
-  if (request.core_diameter_end) {
-    cores.push_back((2 * trial.coreRadius(sweep, length) - *request.core_diameter_end) / diameter);
-  }
-  errors.core = Eigen::Map<Eigen::ArrayXd>(cores.data(), static_cast<Eigen::Index>(cores.size()));
-  return errors;
+  const auto array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
+    return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  };
+  return {array(rakes), array(turns), array(spirals), array(cores)};
 }
 
 std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
@@ -189,12 +207,12 @@ std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupReque
   const CutterGeometry& c = request.cutter;
   const auto errors_of = [&](const SetupPoint& point) {
     const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
-    Eigen::ArrayXd all(e.rake.size() + e.spiral.size() + e.core.size());
-    all << e.rake / allowed(c.rake_tolerance), e.spiral / allowed(c.spiral_tolerance),
-        e.core / allowed(c.core_tolerance / c.end_diameter);
+    Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + e.core.size());
+    all << e.rake / allowed(c.rake_tolerance), e.turn / allowed(c.spiral_tolerance),
+        e.spiral / allowed(c.spiral_tolerance), e.core / allowed(c.core_tolerance / c.end_diameter);
     return all;
   };
-  const Fit fit(trial, request);
+  const DampedFit fit(trial, request);
   const auto found = fit.solve(start, errors_of, 0);
   const double error = found ? largest(errors_of(*found)) : 0;
   if (!(error > 1 && error < kNearEnough)) return found;

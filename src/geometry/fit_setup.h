@@ -12,17 +12,32 @@ namespace flute_grinder {
 /// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
 struct SetupErrors {
   Eigen::ArrayXd rake;    ///< in sections at equal distances, the flute's ends among them [rad]
-  Eigen::ArrayXd spiral;  ///< of the edge, from each section to the next [rad]
-  Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end
+  Eigen::ArrayXd turn;    ///< of the edge from each section to the next, as a spiral angle [rad]
+  Eigen::ArrayXd spiral;  ///< of the edge in the sections; none if they are the ends alone [rad]
+  Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end; if both are asked, in the sections
 
   /// The largest error by its tolerance: 1 or less is within them; infinite if there is none.
   double worst(const SetupRequest& request) const;
 };
 
-/// @param trial of a right-hand cutter. @param request of the same, not of a cylinder. @param steps between sections.
+/// @param trial of a right-hand cutter. @param request of the same. @param steps between sections; a cylinder, whose
+///        edge turns as asked in any set-up, has one section.
 SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps);
 
-/// The set-up of a cone that gives all that is asked: the rake at both ends, the angle of the edge between them, and
+/// Whether a lead is looked for: it has no effect on a cylinder, nor on straight flutes.
+bool hasLead(const SetupTrial& trial, const SetupRequest& request);
+
+/// Whether the height follows the swivel, so that the wheel's face passes the axis at the height R sin r: on a cylinder
+/// of which neither another figure is kept nor all are asked.
+bool isHeightTied(const SetupTrial& trial, const SetupRequest& request);
+
+/// The height of the wheel for its upper face to pass the axis at the height R sin r [m].
+double tiedHeight(const SetupTrial& trial, const SetupRequest& request, double swivel);
+
+/// Whether the depth is looked for.
+bool findsDepth(const SetupTrial& trial, const SetupRequest& request);
+
+/// The set-up that gives all that is asked: the rake at both ends, the angle of the edge between them, and
 /// the cores. By the published law of Z the rake rises or falls between the ends, so the same error of the other sign
 /// is given to both: the set-up with the least largest error over the flute.
 /// @param trial, request as of setupErrors(). @param start from which it is looked for.

@@ -1,5 +1,6 @@
 #include "flute_grinder/geometry/ground_job.h"
 
+#include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
 
@@ -60,6 +61,27 @@ void add(CutterFigures& figures, const GroundSection& section) {
   }
 }
 
+/// How far an edge turns between two sections: as that of a spiral angle, which is the mean of the edge's own.
+std::optional<double> meanSpiral(const GrindJob& job, std::size_t tooth, const GroundSection& from,
+                                 const GroundSection& to) {
+  const auto &edge = to.teeth[tooth].edge, &before = from.teeth[tooth].edge;
+  if (!edge || !before) return std::nullopt;
+  const double diameter = job.cutter.end_diameter;
+  const LogCurve at_45_deg(2 * std::tan(job.cutter.cone_angle) / diameter, 2 / diameter);
+  return std::atan((*edge - *before) / (at_45_deg.a(to.x) - at_45_deg.a(from.x)));
+}
+
+/// As CutterFigures::edge, of one tooth.
+double edgeOff(const GrindJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
+  const LogCurve asked(ConicalCutter(cutterOf(job, static_cast<int>(tooth))));
+  Range off{CutterFigures::kNone, CutterFigures::kNone};
+  for (const GroundSection& section : sections) {
+    const ToothSection& measured = section.teeth[tooth];
+    if (measured.complete) widen(off, *measured.edge - asked.a(section.x));
+  }
+  return (off.to - off.from) / 2;
+}
+
 /// Collects what is wrong with a cutter.
 class Checker {
  public:
@@ -76,8 +98,18 @@ class Checker {
       if (std::abs(*tooth.rake - asked) <= tolerance) continue;
       add(ReasonKind::kRake, section.x, number, Unit::kRadian, *tooth.rake, asked, tolerance);
     }
-    checkSpiral(section);
+    for (std::size_t i = 0; i < section.teeth.size(); ++i) {
+      if (section.teeth[i].complete) checkSpiral(section.x, i, section.teeth[i].spiral);
+    }
     checkCore(section);
+  }
+
+  /// How far the edges turn between two sections. Where each is within the tolerance everywhere, so is this.
+  void checkTurn(const GroundSection& from, const GroundSection& to) {
+    for (std::size_t i = 0; i < to.teeth.size(); ++i) {
+      if (!from.teeth[i].complete || !to.teeth[i].complete) continue;
+      checkSpiral((from.x + to.x) / 2, i, meanSpiral(job_, i, from, to));
+    }
   }
 
   void checkRange(const std::optional<Range>& complete) {
@@ -112,28 +144,27 @@ class Checker {
   std::vector<core::Reason> take() { return std::move(reasons_); }
 
  private:
-  void checkSpiral(const GroundSection& section) {
+  void checkSpiral(double x, std::size_t tooth, const std::optional<double>& spiral) {
     const double tolerance = job_.cutter.spiral_tolerance;
-    for (std::size_t i = 0; i < section.teeth.size() && tolerance > 0; ++i) {
-      const ToothSection& tooth = section.teeth[i];
-      const int number = static_cast<int>(i);
-      const double asked = cutterOf(job_, number).spiral_angle;
-      if (!tooth.complete || !tooth.spiral || std::abs(*tooth.spiral - asked) <= tolerance) continue;
-      add(ReasonKind::kSpiral, section.x, number, Unit::kRadian, *tooth.spiral, asked, tolerance);
-    }
+    const int number = static_cast<int>(tooth);
+    const double asked = cutterOf(job_, number).spiral_angle;
+    if (!(tolerance > 0) || !spiral || std::abs(*spiral - asked) <= tolerance) return;
+    add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
   }
 
-  /// At an end of the flute where a core is asked.
+  /// At an end of the flute where a core is asked; if at both, in between, too.
   void checkCore(const GroundSection& section) {
     const CutterGeometry& c = job_.cutter;
-    const bool at_small_end = section.x == 0;
-    const double asked = at_small_end ? c.core_diameter : section.x == c.flute_length ? c.core_diameter_end : 0;
+    const bool at_small_end = section.x == 0, at_end = section.x == c.flute_length;
+    const bool asks_both = c.core_diameter > 0 && c.core_diameter_end > 0;
+    const double between = c.core_diameter + (c.core_diameter_end - c.core_diameter) * section.x / c.flute_length;
+    const double asked = asks_both ? between : at_small_end ? c.core_diameter : at_end ? c.core_diameter_end : 0;
     const double core = 2 * section.core_radius;
     if (!(asked > 0 && c.core_tolerance > 0) || std::abs(core - asked) <= c.core_tolerance) return;
     const std::size_t before = reasons_.size();
     add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, c.core_tolerance);
     if (reasons_.size() > before) {
-      reasons_.back().field = at_small_end ? "cutter.core_diameter" : "cutter.core_diameter_end";
+      reasons_.back().field = at_end ? "cutter.core_diameter_end" : "cutter.core_diameter";
     }
   }
 
@@ -223,12 +254,17 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
   const double length = job.cutter.flute_length;
   Checker checker(job);
   CutterFigures figures;
+  std::vector<GroundSection> sections;
   bool complete = true;
   for (int i = 0; i <= kSections; ++i) {
-    const GroundSection section = cutter.section(length * i / kSections);
+    const GroundSection& section = sections.emplace_back(cutter.section(length * i / kSections));
     checker.check(section);
+    if (i > 0) checker.checkTurn(sections[sections.size() - 2], section);
     add(figures, section);
     for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
+  }
+  for (std::size_t i = 0; i < cutter.teeth().size(); ++i) {
+    figures.edge = std::fmax(figures.edge, edgeOff(job, i, sections));
   }
   const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
   checker.checkOvertravel(cutter);

@@ -53,8 +53,6 @@ std::string asked(const char* path, double value, Unit unit) {
 }
 
 std::string range(const SetupRefusal& r, Unit unit) {
-  const auto shown = [&](double si) { return text({si, unit}, UnitSystem::kShop, 5); };
-  if (r.least < r.asked && r.asked < r.largest) return "up to " + shown(r.least) + ", and from " + shown(r.largest);
   return text(Quantity{r.least, unit}, Quantity{r.largest, unit}, UnitSystem::kShop, 5);
 }
 
@@ -76,6 +74,21 @@ std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
   return all;
 }
 
+std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
+  const auto figure = [](const char* path, double value) {
+    return fieldName(path, UnitSystem::kShop) + " = " + textOf(value, units::kMillimetre, 3);
+  };
+  if (mend.wheel_diameter > 0) {
+    return "\nIt would be set up with " +
+           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process.wheel_wear);
+  }
+  if (mend.core_diameter[0] > 0) {
+    return "\nIt would be set up with " + figure("cutter.core_diameter", mend.core_diameter[0]) + " and " +
+           figure("cutter.core_diameter_end", mend.core_diameter[1]);
+  }
+  return "\nNo smaller wheel and no other core was found to mend it";
+}
+
 std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
   const std::string change = "; change " + fieldName(rowOf(r.problem).change, UnitSystem::kShop);
   switch (r.problem) {
@@ -88,25 +101,21 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
                        range(r, Unit::kRadian) + "; change it"
                  : "the set-up takes a swivel of " + text(Quantity{r.asked, Unit::kRadian}, UnitSystem::kShop, 5) +
                        "; the machine swivels " + range(r, Unit::kRadian) + change;
-    case SetupProblem::kRake:
-      return asked("cutter.rake_angle", r.asked, Unit::kRadian) + " at both ends of the flute; " +
-             (r.least <= r.largest ? "reachable: " + range(r, Unit::kRadian)
-                                   : std::string("this wheel reaches the cutter in no set-up")) +
-             change;
-    case SetupProblem::kCore:
-      return r.asked > 0 ? asked("cutter.core_diameter", r.asked, Unit::kMetre) +
-                               "; reachable with this wheel: " + range(r, Unit::kMetre) + change
-                         : "the wheel cuts through the core; lower " + fieldName("process.depth", UnitSystem::kShop);
+    case SetupProblem::kReach: return "this wheel reaches the cutter in no set-up" + change;
+    case SetupProblem::kCore: return "the wheel cuts through the core" + change;
     case SetupProblem::kWall:
       return "the wheel's circumference would form the rake face, not its face or edge; it can in no set-up with this "
              "depth" +
              change;
     case SetupProblem::kTolerance:
-      return "no set-up gives all that is asked within its tolerance" + change + "; the nearest one gives for" +
-             textOf(r.nearest, job);
+      return "no set-up gives all that is asked within its tolerance; the nearest one gives for" +
+             textOf(r.nearest, job) + textOf(r.mend, job);
     case SetupProblem::kLand:
       return "no land is left: the flutes overlap by " + text(Quantity{-r.least, Unit::kMetre}, UnitSystem::kShop, 3) +
              " along the circle" + change;
+    case SetupProblem::kIncomplete:
+      return "near the cone's apex no overtravel makes the flute complete" + change + ", or set " +
+             fieldName("process.incomplete_ok", UnitSystem::kShop);
   }
   return "";
 }
@@ -129,6 +138,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
     if (core > 0)
       r.y_per_x = (*r.core_diameter_end - core) / 2 / job.cutter.flute_length - std::tan(job.cutter.cone_angle);
   }
+  r.incomplete_ok = p.incomplete_ok;
   r.asks_spiral = job.cutter.spiral_tolerance > 0 || p.setup_lead != 0;
   r.least_swivel = swivel.from;
   r.largest_swivel = swivel.to;

@@ -141,6 +141,7 @@ std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigu
   if (!std::isnan(ground.spiral.from)) {
     all.push_back({"spiral angle", angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});
   }
+  if (!std::isnan(ground.edge)) all.push_back({"edge", format("within %.3f deg of the asked helix", deg(ground.edge))});
   if (!std::isnan(ground.core_diameter[0])) all.push_back({"core", coreText(ground.core_diameter, c)});
   return all;
 }

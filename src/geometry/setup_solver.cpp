@@ -2,12 +2,10 @@
 
 #include "flute_grinder/curve/units.h"
 #include "geometry/fit_setup.h"
-#include "geometry/plane_roots.h"
 #include "geometry/setup_trial.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <sstream>
 #include <stdexcept>
@@ -17,190 +15,29 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kTolerance = 1e-6;                    ///< of the rake [rad], and of the core by its radius
-constexpr double kSwivelStep = 2 * units::kDegree;     ///< between the columns of the search
-constexpr int kFinerOnLine = 32;                       ///< where one unknown is looked for
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
-constexpr int kFaceSteps = 64;
-constexpr double kMinDepth = 0.02, kMaxDepth = 0.98;  ///< of the deepest one
-constexpr int kDepthSteps = 48;
 constexpr double kQuarter = units::kPi / 2;
-constexpr int kMinColumns = 4;
 constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
+constexpr double kSame = 1e-4;         ///< [rad], of the taper and of the radius: of two fits that came to the same
+constexpr double kBelowEdge = 0.998;   ///< of the radius: where the rake face still has the edge's rake
+constexpr double kSameFace = 2 * units::kDegree;
+constexpr double kSameError = 0.5;  ///< of the tolerances
 constexpr double kSameRake = 0.1 * units::kDegree;
-constexpr int kFluteHalvings = 20;  ///< of the flute, for where it is complete
-constexpr double kNearApex = 0.8;   ///< of the way there, beyond which a stroke is long
-constexpr double kBeyond = 1e-5;    ///< added to the overtravel, for the precision of an extremum's place [m]
-constexpr double kBesideSpiral = 4 * units::kDegree;  ///< the swivel from which fits start
-constexpr int kStartHeights = 4;                      ///< from which they start, on either side of the axis
-constexpr double kCylinder = 1e-6;  ///< a cone whose radius changes less than this over its length is a cylinder
-
-/// What is looked for: two unknowns, or v alone.
-struct Unknowns {
-  std::optional<SearchRange> u;
-  SearchRange v;
-  std::function<SetupPoint(double u, double v)> point;
-};
-
-class Search {
- public:
-  Search(const SetupTrial& trial, const SetupRequest& request)
-      : trial_(trial), request_(request), radius_(request.cutter.end_diameter / 2) {}
-
-  bool isCylinder() const {
-    return std::abs(std::tan(request_.cutter.cone_angle)) < kCylinder && std::abs(request_.y_per_x) < kCylinder;
-  }
-
-  /// All the set-ups that give what is asked, with a swivel between two.
-  std::vector<SetupPoint> solutions(double least_swivel, double largest_swivel) const {
-    const Unknowns unknowns = this->unknowns(least_swivel, largest_swivel);
-    std::vector<SetupPoint> points;
-    if (!unknowns.u) {
-      for (const LineRoot& root : line(unknowns, 0)) points.push_back(unknowns.point(0, root.at));
-      // A wheel in the plane of the helix may give the largest rake, and that be the asked one.
-      const SetupPoint along = unknowns.point(0, request_.cutter.spiral_angle);
-      const bool allowed = along.swivel >= least_swivel && along.swivel <= largest_swivel;
-      const double error = std::abs(rakeError(along, 0));
-      if (points.empty() && allowed && error <= std::max(kTolerance, request_.cutter.rake_tolerance)) {
-        points.push_back(along);
-      }
-      return points;
-    }
-    const auto first = [&](double u, double v) { return rakeError(unknowns.point(u, v), 0); };
-    const auto second = [&](double u, double v) { return secondError(unknowns.point(u, v)); };
-    for (const PlaneRoot& root : planeRoots(first, second, *unknowns.u, unknowns.v, kTolerance)) {
-      points.push_back(unknowns.point(root.u, root.v));
-    }
-    return points;
-  }
-
-  /// Why there is no solution: how far rake or core can be had.
-  SetupRefusal unreachable() const {
-    const Unknowns unknowns = this->unknowns(request_.least_swivel, request_.largest_swivel);
-    Reached rakes, seconds, cores;
-    for (int i = 0; i <= (unknowns.u ? unknowns.u->steps : 0); ++i) {
-      const double u = unknowns.u ? unknowns.u->at(i) : 0;
-      for (int j = 0; j <= unknowns.v.steps; ++j) {
-        SetupPoint point = unknowns.point(u, unknowns.v.at(j));
-        rakes.add(trial_.rake(point, 0));
-        if (!request_.core_diameter) continue;
-        point.depth = trial_.deepest();
-        cores.add(2 * trial_.coreRadius(trial_.sweep(point), 0));
-      }
-      if (!unknowns.u) continue;
-      for (const LineRoot& root : line(unknowns, u)) seconds.add(secondError(unknowns.point(u, root.at)));
-    }
-    if (rakes.empty() && request_.core_diameter) {
-      return {SetupProblem::kCore, *request_.core_diameter, cores.around(0).least, request_.cutter.end_diameter};
-    }
-    if (seconds.empty()) {
-      const auto [least, largest] = rakes.around(request_.rake);
-      return {SetupProblem::kRake, request_.rake, least, largest};
-    }
-    const auto [least, largest] = seconds.around(0);
-    if (!isCylinder()) return {SetupProblem::kRake, request_.rake, request_.rake + least, request_.rake + largest};
-    const double core = *request_.core_diameter;
-    return {SetupProblem::kCore, core, core * (1 + least), core * (1 + largest)};
-  }
-
- private:
-  /// Values that were reached.
-  class Reached {
-   public:
-    struct Ends {
-      double least, largest;
-    };
-
-    void add(double value) {
-      if (!std::isnan(value)) values_.push_back(value);
-    }
-    bool empty() const { return values_.empty(); }
-
-    /// The least and the largest value, or the nearest ones if the asked one lies between them, and was jumped over.
-    Ends around(double asked) const {
-      constexpr double far = std::numeric_limits<double>::infinity();
-      Ends all{far, -far}, nearest{-far, far};
-      for (const double value : values_) {
-        all = {std::min(all.least, value), std::max(all.largest, value)};
-        (value < asked ? nearest.least : nearest.largest) =
-            value < asked ? std::max(nearest.least, value) : std::min(nearest.largest, value);
-      }
-      return all.least < asked && asked < all.largest ? nearest : all;
-    }
-
-   private:
-    std::vector<double> values_;
-  };
-
-  bool keeps(SetupFigure figure) const { return request_.keep == figure; }
-
-  Unknowns unknowns(double least_swivel, double largest_swivel) const {
-    const int columns = static_cast<int>(std::ceil((largest_swivel - least_swivel) / kSwivelStep));
-    const SearchRange swivels{least_swivel, largest_swivel, std::max(kMinColumns, columns)};
-    const SearchRange faces{-1, 1, kFaceSteps};
-    const SearchRange depths{kMinDepth * trial_.deepest(), kMaxDepth * trial_.deepest(), kDepthSteps};
-    const SearchRange line{least_swivel, largest_swivel, kFinerOnLine * swivels.steps};
-    const SearchRange face_line{-1, 1, kFinerOnLine * kFaceSteps};
-    const double swivel = request_.kept.swivel, height = request_.kept.height, depth = request_.depth;
-    if (!isCylinder()) {
-      if (keeps(SetupFigure::kSwivel)) {
-        return {depths, faces, [=](double u, double v) {
-                  return SetupPoint{swivel, heightAt(swivel, v * highestFace(swivel)), u};
-                }};
-      }
-      if (keeps(SetupFigure::kHeight)) {
-        return {depths, swivels, [=](double u, double v) { return SetupPoint{v, height, u}; }};
-      }
-      return {swivels, faces, [this](double u, double v) { return withDepth(u, heightAt(u, v * highestFace(u))); }};
-    }
-    if (keeps(SetupFigure::kDepth) && request_.core_diameter) {
-      return {swivels, faces, [=](double u, double v) {
-                return SetupPoint{u, heightAt(u, v * highestFace(u)), depth};
-              }};
-    }
-    if (keeps(SetupFigure::kSwivel)) {
-      return {{}, face_line, [=](double, double v) {
-                return withDepth(swivel, heightAt(swivel, v * highestFace(swivel)));
-              }};
-    }
-    if (keeps(SetupFigure::kHeight)) {
-      return {{}, line, [=](double, double v) { return withDepth(v, height); }};
-    }
-    const double face = radius_ * std::sin(request_.rake);
-    return {{}, line, [=](double, double v) { return withDepth(v, heightAt(v, face)); }};
-  }
-
-  /// The height of the upper face, at its lowest point, beyond which it no longer comes below the outer circle
-  /// anywhere.
-  double highestFace(double swivel) const {
-    const double depth = request_.core_diameter ? radius_ : std::min(request_.depth, radius_);
-    const double reach = std::sqrt(2 * trial_.wheel().largestRadius() * depth);
-    return radius_ + reach * std::abs(std::sin(swivel));
-  }
-
-  /// The wheel's height for its upper face, at its lowest point, to have a height above the axis.
-  double heightAt(double swivel, double face) const { return face - trial_.wheel().upperFace() / std::cos(swivel); }
-
-  SetupPoint withDepth(double swivel, double height) const {
-    if (!request_.core_diameter) return {swivel, height, request_.depth};
-    return {swivel, height, trial_.depthFor(swivel, height, *request_.core_diameter / 2)};
-  }
-
-  std::vector<LineRoot> line(const Unknowns& unknowns, double u) const {
-    return lineRoots([&](double v) { return rakeError(unknowns.point(u, v), 0); }, unknowns.v, kTolerance);
-  }
-
-  double rakeError(const SetupPoint& point, double x) const { return trial_.rake(point, x) - request_.rake; }
-
-  double secondError(const SetupPoint& point) const {
-    if (!isCylinder()) return rakeError(point, request_.cutter.flute_length);
-    return 2 * trial_.coreRadius(trial_.sweep(point), 0) / *request_.core_diameter - 1;
-  }
-
-  const SetupTrial& trial_;
-  const SetupRequest& request_;
-  double radius_;
-};
+constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
+constexpr double kBeyond = 1e-5;   ///< added to the overtravel, for the precision of an extremum's place [m]
+/// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
+/// A wheel in the plane of the helix may give the largest rake on a cylinder, and that be the asked one.
+const std::vector<double> kFirstSwivels{4 * units::kDegree};
+const std::vector<double> kOtherSwivels{-4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
+const std::vector<double> kSwivelsOfCylinder{0, 4 * units::kDegree, -4 * units::kDegree};
+constexpr int kStartHeights = 4;                    ///< from which they start, on either side of the axis
+constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< of the deepest, where it is found and no core is asked
+constexpr int kSmallerWheels = 15;                  ///< that are tried, each by a twentieth of the diameter less
+constexpr double kLessWheel = 0.05;
+constexpr int kWiderCores = 12;  ///< times that their tolerance is widened
+constexpr double kWider = 1.4;
+constexpr double kAtLimit = 5 * units::kDegree;  ///< of the swivel, that may have stopped a fit
+constexpr double kWithin = 0.98;                 ///< of the tolerances: the figures are rounded, and the wheel wears
 
 void requireFinite(const char* name, double value, bool good, const char* allowed) {
   if (good && std::isfinite(value)) return;
@@ -252,34 +89,29 @@ double leastPitch(const std::vector<double>& angles) {
 struct Judged {
   SolvedSetup solved;
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
+  double error = 0;           ///< the largest over the flute, by its tolerance
+  bool is_facet = false;      ///< the rake is that of a facet at the edge, with another angle behind it
   bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
   std::optional<SetupProblem> problem;
 };
 
-/// One end of the range over which the flute is complete, between a place where it is and one where it is not.
-double completeEnd(const SetupTrial& trial, const WheelSweep& sweep, double complete, double incomplete) {
-  for (int i = 0; i < kFluteHalvings; ++i) {
-    const double middle = (complete + incomplete) / 2;
-    (trial.reach(sweep, middle).complete ? complete : incomplete) = middle;
-  }
-  return complete;
-}
-
-void measureReach(const SetupTrial& trial, const WheelSweep& sweep, SolvedSetup& solved) {
+/// The stroke that the flute needs, and where it is then complete by the plan's own measure.
+void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup& solved) {
   const double length = trial.cutter().geometry().flute_length;
-  solved.complete_to = length;
+  const WheelSweep longest = trial.sweep(point);
   for (const double x : {0.0, length / 2, length}) {
-    const auto reach = trial.reach(sweep, x);
+    const auto reach = trial.reach(longest, x);
     solved.overtravel[0] = std::max(solved.overtravel[0], -reach.from);
     solved.overtravel[1] = std::max(solved.overtravel[1], reach.to - length);
-    if (reach.complete) continue;
-    if (x <= length / 2) solved.complete_from = completeEnd(trial, sweep, length, x);
-    if (x == length) solved.complete_to = completeEnd(trial, sweep, 0, x);
   }
   // As precise as an extremum's place is known.
   for (double& beyond : solved.overtravel) {
     if (beyond > 0) beyond += kBeyond;
   }
+  const WheelSweep stroke = trial.sweep(point, {-solved.overtravel[0], length + solved.overtravel[1]});
+  const auto complete = GroundCutter(trial.cutter(), {{stroke}}, {{0, 0}}).completeRange(0, length);
+  solved.complete_from = complete ? complete->from : length / 2;
+  solved.complete_to = complete ? complete->to : length / 2;
 }
 
 void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
@@ -312,6 +144,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
       return judged;
     }
     const double rake = std::atan(-r * high->slope);
+    const auto below = sweep.wall(x, kBelowEdge * r, true);
+    if (!below || !(std::abs(std::atan(-kBelowEdge * r * below->slope) - rake) < kSameFace)) judged.is_facet = true;
     s.least_rake = std::min(s.least_rake, rake);
     s.largest_rake = std::max(s.largest_rake, rake);
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
@@ -319,10 +153,10 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   }
   s.core_diameter = 2 * trial.coreRadius(sweep, 0);
   s.core_diameter_end = 2 * trial.coreRadius(sweep, request.cutter.flute_length);
-  measureReach(trial, sweep, s);
+  measureReach(trial, point, s);
   const double tan_cone = trial.cutter().tanCone(), toward_apex = s.overtravel[tan_cone >= 0 ? 0 : 1];
-  judged.cut_short = s.complete_from > 0 || s.complete_to < request.cutter.flute_length ||
-                     toward_apex * std::abs(tan_cone) > kNearApex * trial.cutter().radius(0);
+  const bool is_complete = s.complete_from <= 0 && s.complete_to >= request.cutter.flute_length;
+  judged.cut_short = !is_complete || toward_apex * std::abs(tan_cone) > kNearApex * trial.cutter().radius(0);
   findLimit(request, pitch, s);
   if (!(judged.formed_by_face >= kFormedByFace)) {
     judged.problem = SetupProblem::kWall;
@@ -330,30 +164,30 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     judged.problem = SetupProblem::kCore;
   } else if (!(s.land > 0)) {
     judged.problem = SetupProblem::kLand;
+  } else if (!is_complete && !request.incomplete_ok) {
+    judged.problem = SetupProblem::kIncomplete;
   }
   return judged;
 }
 
-/// The better of two: with the lesser problem, then with a complete flute, then with the steadier rake, then with more
-/// of the rake face formed by the wheel's face. Differences of the rake that cannot be measured do not count.
+/// The better of two: with the lesser problem, then with a complete flute, nearer to what is asked, with the steadier
+/// rake, then with more of the rake face formed by the wheel's face. Differences of the rake that cannot be measured do
+/// not count.
 bool isBetter(const Judged& a, const Judged& b) {
   const auto order = [](const Judged& j) {
     const SolvedSetup& s = j.solved;
     const double spread = s.largest_rake - s.least_rake;
-    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short,
-                      std::floor(spread / kSameRake), -j.formed_by_face, spread);
+    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short, j.is_facet,
+                      std::floor(j.error / kSameError), std::floor(spread / kSameRake), -j.formed_by_face, spread);
   };
   return order(a) < order(b);
 }
 
-std::optional<Judged> best(const SetupTrial& trial, const SetupRequest& request,
-                           const std::vector<SetupPoint>& points) {
-  std::optional<Judged> best;
-  for (const SetupPoint& point : points) {
-    const Judged judged = judge(trial, request, point);
-    if (!best || isBetter(judged, *best)) best = judged;
-  }
-  return best;
+/// Whether two fits came to the same.
+bool isSame(const SetupPoint& a, const SetupPoint& b, double radius) {
+  return std::abs(a.swivel - b.swivel) < kSame && std::abs(a.taper - b.taper) < kSame &&
+         std::max({std::abs(a.height - b.height), std::abs(a.depth - b.depth), std::abs(a.lead - b.lead)}) <
+             kSame * radius;
 }
 
 /// With a lead by which the wheel's centre is ahead of where it forms the edge amid the flute.
@@ -365,24 +199,42 @@ std::optional<SetupPoint> withLead(const SetupTrial& trial, SetupPoint point) {
   return trial.cutter().radius(-point.lead) > 0 ? std::optional(point) : std::nullopt;
 }
 
-bool asksEdge(const SetupRequest& request) { return request.asks_spiral || request.core_diameter_end; }
+/// The depths from which fits start with a wheel at a swivel and a height.
+std::vector<double> startDepths(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& p) {
+  if (!findsDepth(trial, request)) return {request.depth};
+  if (request.core_diameter) return {trial.depthFor(p.swivel, p.height, *request.core_diameter / 2)};
+  std::vector<double> depths;
+  for (const double part : kStartDepths) depths.push_back(part * trial.deepest());
+  return depths;
+}
 
 /// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a lead.
-std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request) {
+/// @param swivels less the spiral angle [rad].
+std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request,
+                                 const std::vector<double>& swivels) {
   const double radius = request.cutter.end_diameter / 2;
-  const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : request.depth;
-  SetupPoint p;
-  p.swivel = std::clamp(request.cutter.spiral_angle + kBesideSpiral, request.least_swivel, request.largest_swivel);
-  if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
-  const double highest = radius + std::sqrt(2 * trial.wheel().largestRadius() * depth) * std::abs(std::sin(p.swivel));
+  const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : std::min(request.depth, radius);
   std::vector<SetupPoint> starts;
-  for (int i = -kStartHeights; i <= kStartHeights; ++i) {
-    p.height = highest * i / kStartHeights - trial.wheel().upperFace() / std::cos(p.swivel);
-    if (request.keep == SetupFigure::kHeight) p.height = request.kept.height;
-    p.depth = request.core_diameter ? trial.depthFor(p.swivel, p.height, *request.core_diameter / 2) : depth;
-    if (!std::isfinite(p.depth)) continue;
-    starts.push_back(p);
-    if (const auto ahead = withLead(trial, p)) starts.push_back(*ahead);
+  for (const double swivel : swivels) {
+    SetupPoint p;
+    p.swivel = std::clamp(request.cutter.spiral_angle + swivel, request.least_swivel, request.largest_swivel);
+    if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
+    const double highest = radius + std::sqrt(2 * trial.wheel().largestRadius() * depth) * std::abs(std::sin(p.swivel));
+    const bool has_heights = request.keep != SetupFigure::kHeight && !isHeightTied(trial, request);
+    const int heights = has_heights ? kStartHeights : 0;
+    for (int i = -heights; i <= heights; ++i) {
+      p.height = request.keep == SetupFigure::kHeight ? request.kept.height
+                 : has_heights ? highest * i / heights - trial.wheel().upperFace() / std::cos(p.swivel)
+                               : tiedHeight(trial, request, p.swivel);
+      for (const double start_depth : startDepths(trial, request, p)) {
+        if (!std::isfinite(start_depth)) continue;
+        p.depth = start_depth;
+        starts.push_back(p);
+        const auto ahead = hasLead(trial, request) ? withLead(trial, p) : std::nullopt;
+        if (ahead) starts.push_back(*ahead);
+      }
+    }
+    if (request.keep == SetupFigure::kSwivel) break;
   }
   return starts;
 }
@@ -395,12 +247,13 @@ bool hasTolerances(const SetupRequest& request) {
          (c.spiral_tolerance > 0 || !request.asks_spiral) && (c.core_tolerance > 0 || !asks_core);
 }
 
-/// The best set-up of a cone with all that is asked: exact, or else within the tolerances. If there is none, the
-/// nearest.
+/// The best set-up with all that is asked: exact, or else within the tolerances. If there is none, the nearest.
 struct Fitted {
   std::optional<Judged> best;
   std::optional<SetupPoint> nearest;
   double error = std::numeric_limits<double>::infinity();  ///< of the nearest one, by the tolerances
+
+  bool isGood() const { return best && !best->problem && !best->cut_short && !best->is_facet; }
 };
 
 /// Fits all that is asked from some starts. @param fitted what others came to.
@@ -410,13 +263,20 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
   const auto worst = [&](const SetupPoint& p) {
     return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
   };
-  std::vector<SetupPoint> fits;
+  std::vector<SetupPoint> seen;
+  const auto take = [&](const SetupPoint& fit) {
+    const auto same = [&](const SetupPoint& other) { return isSame(fit, other, trial.cutter().radius(0)); };
+    if (std::any_of(seen.begin(), seen.end(), same)) return;
+    seen.push_back(fit);
+    Judged judged = judge(trial, request, fit);
+    if (has_tolerances) judged.error = worst(fit);
+    if (!fitted.best || isBetter(judged, *fitted.best)) fitted.best = judged;
+  };
   for (const SetupPoint& start : starts) {
     const auto fit = fitSetup(trial, request, start);
-    if (fit && !(has_tolerances && worst(*fit) > 1)) fits.push_back(*fit);
+    if (fit && !(has_tolerances && !(worst(*fit) <= kWithin))) take(*fit);
   }
-  fitted.best = best(trial, request, fits);
-  if (fitted.best && !fitted.best->problem && !fitted.best->cut_short) return;
+  if (fitted.isGood()) return;
   for (const SetupPoint& start : starts) {
     const auto fit = nearestSetup(trial, request, start);
     if (!fit) continue;
@@ -425,13 +285,56 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
       fitted.error = here;
       fitted.nearest = fit;
     }
-    if (here <= 1) fits.push_back(*fit);
+    if (here <= kWithin) take(*fit);
   }
-  fitted.best = best(trial, request, fits);
 }
 
-/// Without lead and taper.
-SetupPoint pointOf(const SolvedSetup& s) { return {s.setup.swivel, s.setup.height, s.depth}; }
+/// @param everywhere starts from the other swivels, too, if the first ones lead nowhere.
+Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywhere) {
+  Fitted all;
+  const bool asks_edge = request.asks_spiral || request.core_diameter_end;
+  const bool is_alone = !trial.isCylinder() && asks_edge;
+  fitAll(trial, request, startsOf(trial, request, is_alone ? kFirstSwivels : kSwivelsOfCylinder), all);
+  if (everywhere && !all.isGood()) fitAll(trial, request, startsOf(trial, request, kOtherSwivels), all);
+  return all;
+}
+
+/// The nearest set-up with a changed request, if it is one, and leads on to the next change.
+std::optional<SolvedSetup> changed(const SetupRequest& request, SetupPoint& nearest) {
+  const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
+  const auto fit = nearestSetup(trial, request, nearest);
+  if (!fit) return std::nullopt;
+  nearest = *fit;
+  if (!(setupErrors(trial, request, nearest, SetupTrial::kSections).worst(request) <= kWithin)) return std::nullopt;
+  const Judged judged = judge(trial, request, nearest);
+  return judged.problem ? std::nullopt : std::optional(judged.solved);
+}
+
+/// What would mend it: the largest of some smaller wheels, else the cores that can be had.
+SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest) {
+  SetupPoint here = nearest;
+  const double diameter = 2 * request.wheel.largestRadius();
+  for (int i = 1; i <= kSmallerWheels; ++i) {
+    SetupRequest smaller = request;
+    const double of_new = diameter * (1 - kLessWheel * i);
+    smaller.wheel = request.wheel.withDiameter(of_new);
+    smaller.nominal_radius = request.nominal_radius - (diameter - of_new) / 2;
+    if (changed(smaller, here)) return {of_new, {}};
+  }
+  here = nearest;
+  for (int i = 1; i <= kWiderCores && request.core_diameter; ++i) {
+    SetupRequest wider = request;
+    wider.cutter.core_tolerance *= std::pow(kWider, i);
+    if (const auto solved = changed(wider, here)) return {0, {solved->core_diameter, solved->core_diameter_end}};
+  }
+  if (!request.core_diameter || !request.core_diameter_end) return {};
+  SetupRequest even = request;
+  even.core_diameter_end.reset();
+  even.y_per_x = 0;
+  const Fitted all = fitted(SetupTrial(ConicalCutter(even.cutter), even.wheel, even.nominal_radius, 0), even, false);
+  if (!all.best || all.best->problem) return {};
+  return {0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
+}
 
 /// That what is asked cannot be had within its tolerances.
 SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
@@ -444,6 +347,7 @@ SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const
   refusal.nearest = {range(errors.rake, request.rake),
                      range(errors.spiral, request.cutter.spiral_angle),
                      {2 * trial.coreRadius(sweep, 0), 2 * trial.coreRadius(sweep, request.cutter.flute_length)}};
+  refusal.mend = mendOf(request, nearest);
   return refusal;
 }
 
@@ -471,8 +375,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return result;
   }
   const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
-  const Search search(trial, request);
-  if (!search.isCylinder() && request.core_diameter && request.keep) return SetupRefusal{SetupProblem::kOverdetermined};
+  if (!trial.isCylinder() && request.core_diameter && request.keep) return SetupRefusal{SetupProblem::kOverdetermined};
   const auto beyond = [&](double swivel) {
     return SetupRefusal{SetupProblem::kSwivel, swivel, request.least_swivel, request.largest_swivel};
   };
@@ -480,32 +383,21 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
       !(request.kept.swivel >= request.least_swivel && request.kept.swivel <= request.largest_swivel)) {
     return beyond(request.kept.swivel);
   }
-  const bool asks_edge = !search.isCylinder() && asksEdge(request);
-  Fitted all;
-  if (asks_edge) fitAll(trial, request, startsOf(trial, request), all);
-  std::vector<SetupPoint> solutions;
-  if (!all.best) solutions = search.solutions(request.least_swivel, request.largest_swivel);
-  // Where the other starts lead nowhere, a set-up without the edge may lead to one.
-  if (asks_edge && !all.best) fitAll(trial, request, solutions, all);
-  if (all.best && !all.best->problem) return all.best->solved;
-  if (all.best) return refusal(request, *all.best);
-  const auto here = best(trial, request, solutions);
-  const bool good = here && !here->problem;
-  if (good && asks_edge) return refusal(trial, request, all.nearest.value_or(pointOf(here->solved)));
-  if (good) {
-    const SolvedSetup& s = here->solved;
-    const auto even = search.isCylinder() ? std::nullopt : fitSetup(trial, request, pointOf(s));
-    const auto fit = even ? std::optional(judge(trial, request, *even)) : std::nullopt;
-    return fit && !fit->problem && !(fit->cut_short && !here->cut_short) ? fit->solved : s;
+  const Fitted here = fitted(trial, request, true);
+  if (here.best && !here.best->problem) return here.best->solved;
+  // What the machine's range does not stop is not beyond it either.
+  const double nearest = here.nearest ? here.nearest->swivel : request.largest_swivel;
+  const double to_limit = std::min(nearest - request.least_swivel, request.largest_swivel - nearest);
+  if (request.keep != SetupFigure::kSwivel && to_limit < kAtLimit) {
+    SetupRequest wide = request;
+    wide.least_swivel = -kWidestSwivel;
+    wide.largest_swivel = kWidestSwivel;
+    const Fitted anywhere = fitted(trial, wide, false);
+    if (anywhere.best && !anywhere.best->problem) return beyond(anywhere.best->solved.setup.swivel);
   }
-  for (const auto& [least, largest] :
-       {std::pair{-kWidestSwivel, request.least_swivel}, std::pair{request.largest_swivel, kWidestSwivel}}) {
-    if (!(least < largest)) continue;
-    const auto there = best(trial, request, search.solutions(least, largest));
-    if (there && !there->problem) return beyond(there->solved.setup.swivel);
-  }
-  if (all.nearest) return refusal(trial, request, *all.nearest);
-  return here ? refusal(request, *here) : search.unreachable();
+  if (here.best) return refusal(request, *here.best);
+  if (here.nearest) return refusal(trial, request, *here.nearest);
+  return SetupRefusal{SetupProblem::kReach};
 }
 
 }  // namespace flute_grinder

@@ -13,8 +13,11 @@ constexpr double kOfApex = 0.98;   ///< of the way to the apex, the stroke may g
 constexpr double kShortOf = 0.01;  ///< of the way to where a longer stroke spoils the flute, it ends before
 constexpr int kWallRings = 10;     ///< of a wall, on which is asked what forms it
 constexpr int kRingsOfReach = 6;
-constexpr double kFloor = 1e-5;   ///< of the depth: where a wall passes into the floor
-constexpr double kOnFace = 1e-8;  ///< how far below the edge still is the edge [m]
+constexpr double kFloor = 1e-5;     ///< of the depth: where a wall passes into the floor
+constexpr double kEdgeStep = 1e-4;  ///< of the radius, for the slope of the edge
+constexpr double kCylinder = 1e-6;
+constexpr double kMinDepth = 1e-6;  ///< that a job may have [m]
+constexpr double kOnFace = 1e-8;    ///< how far below the edge still is the edge [m]
 
 }  // namespace
 
@@ -28,32 +31,37 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       far_(4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length),
       face_from_(wheel.largestPlace().to) {}
 
+bool SetupTrial::isCylinder() const noexcept {
+  return std::abs(cutter_.tanCone()) < kCylinder && std::abs(y_per_x_) < kCylinder;
+}
+
 bool SetupTrial::isSound(const SetupPoint& p) const noexcept {
   const double length = cutter_.geometry().flute_length;
   const double at_end = p.depth - (y_per_x_ + p.taper) * length;
-  return p.depth > 0 && p.depth < cutter_.radius(0) && at_end > 0 && at_end < cutter_.radius(length);
+  return p.depth > kMinDepth && p.depth < cutter_.radius(0) && at_end > kMinDepth && at_end < cutter_.radius(length);
 }
 
 WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
-  const auto over = [&](const std::array<double, 2>& ends) -> WheelSweep {
-    return {cutter_,
-            wheel_,
-            nominal_radius_,
-            {p.swivel, p.height, p.lead},
-            {ends[0], ends[1], -p.depth, y_per_x_ + p.taper, 0}};
-  };
   // A stroke ends before the cutter's apex, and before that of the stroke's curve, which is moved by the lead.
   const bool opens = cutter_.tanCone() >= 0;
   const double apex = -cutter_.radius(0) / cutter_.tanCone() + (opens ? std::max(0.0, p.lead) : std::min(0.0, p.lead));
   std::array<double, 2> ends{-far_, far_};
   if (cutter_.tanCone() > 0) ends[0] = std::max(-far_, kOfApex * apex);
   if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
-  WheelSweep longest = over(ends);
+  WheelSweep longest = sweep(p, ends);
   const double nearest = opens ? 0 : cutter_.geometry().flute_length;
   const auto spoils = longest.overcutStart(nearest, cutter_.radius(nearest));
   if (!spoils) return longest;
   ends[opens ? 0 : 1] = *spoils + kShortOf * (nearest - *spoils);
-  return over(ends);
+  return sweep(p, ends);
+}
+
+WheelSweep SetupTrial::sweep(const SetupPoint& p, const std::array<double, 2>& ends) const {
+  return {cutter_,
+          wheel_,
+          nominal_radius_,
+          {p.swivel, p.height, p.lead},
+          {ends[0], ends[1], -p.depth, y_per_x_ + p.taper, 0}};
 }
 
 SetupTrial::Edge SetupTrial::edge(const WheelSweep& sweep, double x) const {
@@ -62,8 +70,9 @@ SetupTrial::Edge SetupTrial::edge(const WheelSweep& sweep, double x) const {
   return wall ? Edge{wall->angle, std::atan(-r * wall->slope)} : Edge{kNowhere, kNowhere};
 }
 
-double SetupTrial::rake(const SetupPoint& point, double x) const {
-  return std::isnan(point.depth) ? kNowhere : edge(sweep(point), x).rake;
+double SetupTrial::spiral(const WheelSweep& sweep, double x) const {
+  const double r = cutter_.radius(x), h = kEdgeStep * r;
+  return std::atan(r * (edge(sweep, x + h).angle - edge(sweep, x - h).angle) / (2 * h));
 }
 
 double SetupTrial::coreRadius(const WheelSweep& sweep, double x) const {

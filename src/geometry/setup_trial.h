@@ -30,11 +30,16 @@ class SetupTrial {
   /// X of the sections in which a flute is judged, from 0 at the small end to kSections at the flute's end [m].
   double section(int i) const noexcept { return cutter_.geometry().flute_length * i / kSections; }
 
+  /// Whether the flute is the same everywhere: a radius that changes by less than a millionth of the length is none.
+  bool isCylinder() const noexcept;
+
   /// Whether the depth is one, and leaves the cutter's axis, at both ends of the flute.
   bool isSound(const SetupPoint& point) const noexcept;
   double deepest() const noexcept { return deepest_; }  ///< where the axis is reached, at one of the ends [m]
 
   WheelSweep sweep(const SetupPoint& point) const;
+  /// With a stroke of its own. @param ends X [m].
+  WheelSweep sweep(const SetupPoint& point, const std::array<double, 2>& ends) const;
 
   /// The edge that a wheel leaves, NaN where it does not reach the outer circle.
   struct Edge {
@@ -42,8 +47,8 @@ class SetupTrial {
   };
   Edge edge(const WheelSweep& sweep, double x) const;
 
-  /// Radial, at the edge; NaN where the wheel does not reach the outer circle, or the point is none [rad].
-  double rake(const SetupPoint& point, double x) const;
+  /// Of the edge, in a section as GroundCutter has it; NaN as Edge [rad].
+  double spiral(const WheelSweep& sweep, double x) const;
 
   /// Of a section; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
   double coreRadius(const WheelSweep& sweep, double x) const;

@@ -294,6 +294,48 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
 }
 
+// The published motion grinds the paper's cutter with a spiral of 27 deg.
+TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
+  GrindJob job = jobOf("paper");
+  SetupRequest request;
+  request.cutter = job.cutter;
+  request.wheel = wheelOf(job);
+  request.nominal_radius = job.process.wheel_diameter / 2;
+  brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 200, 100};
+  bench.lead = job.process.setup_lead;
+  bench.taper = (job.process.depth - job.process.depthEnd()) / job.cutter.flute_length;
+  double least = 1e9, largest = -1e9;
+  for (int i = 0; i <= 8; ++i) {
+    const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
+    least = std::min(least, off), largest = std::max(largest, off);
+  }
+  EXPECT_NEAR(checkGroundCutter(job).figures.edge, (largest - least) / 2, 1e-4);
+}
+
+// Straight flutes on a cylinder: the lower face passes 2.5 mm above the axis, so that the core is a hyperbola.
+TEST(GroundJob, TheCoreIsJudgedBetweenTheEnds) {
+  GrindJob job = cylinder(0);
+  job.cutter.spiral_angle = 0;
+  job.process.setup_height = 2.5 * kMillimetre + job.process.wheel_width / 2;
+  job.process.depth = 1 * kMillimetre;
+  job.process.depth_end = 2 * kMillimetre;
+  job.process.infeed = 2 * kMillimetre;
+  const double slope = 1.0 / 30, deeper = job.process.wheel_diameter / 2 * (std::sqrt(1 + slope * slope) - 1);
+  const auto core = [&](double depth) { return 2 * std::hypot(2.5e-3, 5e-3 - depth - deeper); };
+  job.cutter.core_diameter = core(1e-3);
+  job.cutter.core_diameter_end = core(2e-3);
+  const double off = (core(1e-3) + core(2e-3)) / 2 - core(1.5e-3);
+  EXPECT_GT(off, 15e-6);
+  for (const double more : {1.02, 0.98}) {
+    job.cutter.core_tolerance = more * off;
+    const CutterCheck check = checkGroundCutter(job);
+    const bool refused = std::any_of(check.reasons.begin(), check.reasons.end(),
+                                     [](const core::Reason& r) { return r.kind == ReasonKind::kCoreSize; });
+    EXPECT_EQ(refused, more < 1);
+  }
+  EXPECT_NEAR(reasonOf(checkGroundCutter(job), ReasonKind::kCoreSize).x, job.cutter.flute_length / 2, 1e-9);
+}
+
 /// A cone of which the wheel still reaches the small end where it is nearly at the apex, 12.0 mm beyond.
 GrindJob nearApex(double overtravel_mm) {
   GrindJob job = cylinder(-3.8939);

@@ -292,10 +292,62 @@ TEST(JobSetup, EdgeAndCoresThatCannotBeHadAreRefusedWithHowNearTheyCome) {
   job.cutter.spiral_tolerance = 0.3 * kDegree;
   const std::string text = refused(job);
   for (const char* part :
-       {"within its tolerance; change process.wheel.diameter_mm; the nearest one gives for",
+       {"within its tolerance; the nearest one gives for", "It would be set up with ",
         "cutter.rake_angle_deg = 6 deg within 0.5 deg: ", "cutter.spiral_angle_deg = -30 deg within 0.3 deg: -",
         "cutter.core_diameter_mm = 5.6 mm", "cutter.core_diameter_end_mm = 7 mm within 0.02 mm: "}) {
     expectContains(text, part);
+  }
+}
+
+/// The number behind a text.
+double numberBehind(const std::string& text, const std::string& name) {
+  const std::size_t at = text.rfind(name + " = ");
+  EXPECT_NE(at, std::string::npos) << text;
+  return at == std::string::npos ? 0 : std::stod(text.substr(at + name.size() + 3));
+}
+
+TEST(JobSetup, WhatARefusalNamesMendsIt) {
+  GrindJob job = shipped("left_hand_d8_t3");
+  job.cutter.core_diameter_end = 7 * kMillimetre;
+  std::string text = refused(job);
+  if (text.find("set up with process.wheel") != std::string::npos) {
+    job.process.wheel_diameter = numberBehind(text, "process.wheel.diameter_mm") * kMillimetre;
+  } else {
+    job.cutter.core_diameter = numberBehind(text, "cutter.core_diameter_mm") * kMillimetre;
+    job.cutter.core_diameter_end = numberBehind(text, "cutter.core_diameter_end_mm") * kMillimetre;
+  }
+  EXPECT_TRUE(solved(job).check.reasons.empty()) << text;
+}
+
+// With the wheel over the axis the core is 6.8 mm and no other; elsewhere it is more.
+TEST(JobSetup, ACylindersCoreMayDifferByItsTolerance) {
+  GrindJob job = shipped("roughing_d10_t4");
+  job.process.depth = 1.6 * kMillimetre;
+  for (const double core : {6.8, 6.785}) {
+    job.cutter.core_diameter = job.cutter.core_diameter_end = core * kMillimetre;
+    const JobSetup setup = solved(job, SetupFigure::kDepth);
+    EXPECT_EQ(setup.job.process.depth, job.process.depth);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    EXPECT_NEAR(setup.check.figures.core_diameter[0], core * kMillimetre, job.cutter.core_tolerance);
+  }
+}
+
+TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
+  struct Case {
+    double diameter, cone, spiral, rake, length, core, core_end, wheel, width;
+  };
+  for (const Case& c : {Case{2.516, 9.49, 7.3, 4.1, 4.158, 1.806, 2.664, 125, 0.25},
+                        Case{4.272, 2.09, 20.1, 11.4706, 9.89, 3.158, 3.64, 125, 0.37},
+                        Case{1.143, 10.5, 10.1, 2.3, 2.336, 0.695, 1.205, 100, 0.2}}) {
+    GrindJob job = steep(c.diameter, c.cone, c.spiral, c.rake, c.length, c.core, c.wheel, c.width);
+    job.cutter.core_diameter_end = c.core_end * kMillimetre;
+    job.cutter.core_tolerance = 0.05 * kMillimetre;
+    job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
+    const auto result = solveJobSetup(job, kMachine, std::nullopt);
+    const auto* setup = std::get_if<JobSetup>(&result);
+    if (setup) {
+      EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons, UnitSystem::kShop);
+    }
   }
 }
 

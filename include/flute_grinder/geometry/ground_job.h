@@ -32,8 +32,10 @@ GroundCutter groundCutterOf(const GrindJob& job);
 /// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
 struct CutterFigures {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Range rake{kNone, kNone};                           ///< least and largest, where the flutes are complete [rad]
-  Range spiral{kNone, kNone};                         ///< the same of the edge [rad]
+  Range rake{kNone, kNone};    ///< least and largest, where the flutes are complete [rad]
+  Range spiral{kNone, kNone};  ///< the same of the edge [rad]
+  /// How far an edge departs from the asked helix, turned to where it departs the least either way [rad].
+  double edge = kNone;
   std::array<double, 2> core_diameter{kNone, kNone};  ///< at X = 0 and at the flute's end [m]
   double land = kNone;                                ///< least, along the circle; 0 if a tooth has none [m]
 };
@@ -47,7 +49,10 @@ struct CutterCheck {
 
 /// Measures the ground cutter in nine sections, from one end of the flute to the other: every tooth has a land, the
 /// core is whole, rake, spiral angle and core are within the job's tolerances, and the flutes are complete over their
-/// length unless the job allows otherwise. Takes some milliseconds.
+/// length unless the job allows otherwise. The spiral tolerance holds for the edge's own angle in a section and for how
+/// far it turns from each to the next, so that the edge departs from the asked helix by no more than the tolerance
+/// makes over the travel. A core that is asked at both ends is asked along the straight line between them. Takes some
+/// milliseconds.
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 
 /// The same of the cutter that a job grinds; teeth share a flute where the wheel's wear between them does not count. A

@@ -18,7 +18,7 @@ struct AskedAndGround {
   std::string text;
 };
 
-/// Rake, spiral angle and core of a tool. @param ground figures that are NaN are left out.
+/// Rake, spiral angle, edge and core of a tool. @param ground figures that are NaN are left out.
 std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigures& ground);
 
 /// The set-up sheet for the operator, in mm and deg: what to set, what to touch and what the axes then read, what comes

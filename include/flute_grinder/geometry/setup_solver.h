@@ -32,6 +32,7 @@ struct SetupRequest {
   std::optional<double> core_diameter;                      ///< at X = 0, in place of the depth [m]
   std::optional<double> core_diameter_end;                  ///< at the flute's end, in place of y_per_x [m]
   bool asks_spiral = false;                                 ///< the edge's angle between the ends, by a lead
+  bool incomplete_ok = false;                               ///< the flute may end before its ends
   double least_swivel = 0, largest_swivel = 0;              ///< that the machine allows [rad]
   /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then
   /// passes the axis at the height R sin r.
@@ -67,11 +68,12 @@ struct SolvedSetup {
 enum class SetupProblem : std::uint8_t {
   kOverdetermined,  ///< rake and core take all three figures; none can be kept
   kSwivel,          ///< only beyond the machine's swivel: asked is the nearest, reachable the machine's
-  kRake,            ///< asked is the rake at both ends, reachable what the far end gets with it at the small end
-  kCore,            ///< asked is the core's diameter, reachable those with this wheel at a depth short of the axis
+  kReach,           ///< the wheel reaches the cutter in no set-up
+  kCore,            ///< the wheel cuts through it
   kWall,            ///< the wheel's circumference forms the rake face, not its face or edge
   kTolerance,       ///< not all that is asked can be had within its tolerance
   kLand,            ///< the flutes meet: asked is a land above 0, reachable what is left, negative
+  kIncomplete,      ///< near the cone's apex no overtravel makes the flute complete
 };
 
 /// A problem's name, and the job's field whose change helps.
@@ -81,17 +83,17 @@ struct SetupProblemRow : EnumRow<SetupProblem> {
 constexpr SetupProblemRow kSetupProblems[] = {
     {{SetupProblem::kOverdetermined, "overdetermined"}, "cutter.core_diameter"},
     {{SetupProblem::kSwivel, "swivel"}, "cutter.spiral_angle"},
-    {{SetupProblem::kRake, "rake"}, "cutter.rake_angle"},
-    {{SetupProblem::kCore, "core"}, "process.wheel_diameter"},
+    {{SetupProblem::kReach, "reach"}, "process.wheel_diameter"},
+    {{SetupProblem::kCore, "core"}, "process.depth"},
     {{SetupProblem::kWall, "wall"}, "process.depth"},
     {{SetupProblem::kTolerance, "tolerance"}, "process.wheel_diameter"},
-    {{SetupProblem::kLand, "land"}, "process.wheel_width"}};
+    {{SetupProblem::kLand, "land"}, "process.wheel_width"},
+    {{SetupProblem::kIncomplete, "incomplete"}, "process.wheel_diameter"}};
 constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
 
-/// No set-up gives what is asked, and what could be had: from least to largest, or if what is asked lies between them,
-/// up to least and from largest. Without a figure the last three are 0.
+/// No set-up gives what is asked, and what could be had. Without a figure the last three are 0.
 struct SetupRefusal {
-  SetupProblem problem = SetupProblem::kRake;
+  SetupProblem problem = SetupProblem::kTolerance;
   double asked = 0;               ///< [rad] or [m]
   double least = 0, largest = 0;  ///< reachable [rad] or [m]
   /// What the set-up gives that is nearest to the tolerances.
@@ -100,6 +102,13 @@ struct SetupRefusal {
     std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
   };
   Nearest nearest{};
+  /// What would be set up with all else as asked: the largest of some smaller wheels, down to a quarter; or cores. 0 if
+  /// none was found.
+  struct Mend {
+    double wheel_diameter = 0;              ///< as worn [m]
+    std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
+  };
+  Mend mend{};
 };
 
 /// Solves a set-up: the rake over the flute, as z_law says, and edge and cores if they are asked. Of

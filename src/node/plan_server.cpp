@@ -68,6 +68,7 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   const CutterFigures& ground = plan.figures;
   response.rake = {ground.rake.from, ground.rake.to};
   response.spiral_angle = {ground.spiral.from, ground.spiral.to};
+  response.edge = ground.edge;
   response.core_diameter = {ground.core_diameter[0], ground.core_diameter[1]};
   if (plan.closest) {
     response.closest_bodies = {plan.closest->first, plan.closest->second};

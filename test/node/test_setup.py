@@ -188,10 +188,11 @@ class TestRefusals(TestSetup):
 
 
     def test_what_a_plan_refuses_is_not_written(self):
-        job = self.job('job.yaml', rake_tolerance_deg='0.01', setup='{swivel_deg: 31, height_mm: 2}')
+        # Each tooth has a helix of its own, and the set-up is for the middle.
+        job = self.job('job.yaml', teeth=2, spiral_angle_deg=None, cut='right_hand\n  spiral_angles_deg: [27, 33]')
         before = self.text(job)
         said = self.grind(1, 'setup', job, '--write').stderr
-        self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth 1 is ground with .*, or set '
+        self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth \d is ground with .*, or set '
                                r'process\.z_law: constant_rake\n.*job\.yaml: nothing was written\n$')
         self.assertEqual(self.text(job), before)
         self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)

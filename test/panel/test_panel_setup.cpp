@@ -84,7 +84,8 @@ TEST_F(SetupSheet, WithoutASolutionSaysWhy) {
 }
 
 TEST_F(SetupSheet, IsNotWrittenIfAPlanWouldRefuseIt) {
-  open({{kSetup, ""}, {"rake_tolerance_deg: 0.5", "rake_tolerance_deg: 0.01"}});
+  // Each tooth has a helix of its own, and the set-up is for the middle.
+  open({{kSetup, ""}, {"teeth: 1", "teeth: 2"}, {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"}});
   EXPECT_NE(sheet().find("a plan would refuse this tool: cutter.rake_angle_deg = 8 deg"), std::string::npos) << sheet();
   EXPECT_NE(sheet().find("It is not written."), std::string::npos) << sheet();
   EXPECT_FALSE(panel->enabled("write_setup"));

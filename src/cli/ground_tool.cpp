@@ -59,6 +59,9 @@ constexpr Figure kFigures[]{
     {"rake_deg", "radial rake, deg", "rake deg", kDegree, false,
      [](const Place& p) { return ifComplete(p, p.tooth().rake); },
      [](const Place& p) { return Value(p.job.cutter.rake_angle); }},
+    {"chordal_rake_deg", "chordal rake, deg", "chordal deg", kDegree, false,
+     [](const Place& p) { return ifComplete(p, p.tooth().chordal_rake); },
+     [](const Place& p) { return Value(p.job.cutter.rake_angle); }},
     {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
      [](const Place& p) { return ifComplete(p, p.tooth().normal_rake); },
      [](const Place& p) {

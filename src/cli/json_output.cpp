@@ -60,21 +60,24 @@ Json toJson(const ClosestPlace& place) {
 
 Json toJson(const GrindJob& job, const CutterFigures& ground) {
   const CutterGeometry& c = job.cutter;
-  const auto ifAsked = [](double value, double unit) { return value > 0 ? Json(value / unit) : Json(nullptr); };
   return {{"rake_min_deg", ground.rake.from / kDegree},
           {"rake_max_deg", ground.rake.to / kDegree},
           {"asked_rake_deg", c.rake_angle / kDegree},
+          {"chordal_rake_min_deg", ground.chordal_rake.from / kDegree},
+          {"chordal_rake_max_deg", ground.chordal_rake.to / kDegree},
+          {"chordal_rake_tolerance_deg", c.chordal_rake_tolerance / kDegree},
           {"rake_tolerance_deg", c.rake_tolerance / kDegree},
           {"spiral_min_deg", ground.spiral.from / kDegree},
           {"spiral_max_deg", ground.spiral.to / kDegree},
           {"asked_spiral_min_deg", askedSpiral(job).from / kDegree},
           {"asked_spiral_max_deg", askedSpiral(job).to / kDegree},
-          {"spiral_tolerance_deg", ifAsked(c.spiral_tolerance, kDegree)},
+          {"spiral_tolerance_deg", c.spiral_tolerance / kDegree},
+          {"edge_off_deg", ground.edge / kDegree},
           {"core_diameter_mm", ground.core_diameter[0] / kMillimetre},
           {"core_diameter_end_mm", ground.core_diameter[1] / kMillimetre},
-          {"asked_core_diameter_mm", ifAsked(c.core_diameter, kMillimetre)},
-          {"asked_core_diameter_end_mm", ifAsked(c.core_diameter_end, kMillimetre)},
-          {"core_tolerance_mm", ifAsked(c.core_tolerance, kMillimetre)}};
+          {"asked_core_diameter_mm", c.core_diameter / kMillimetre},
+          {"asked_core_diameter_end_mm", c.core_diameter_end / kMillimetre},
+          {"core_tolerance_mm", c.core_tolerance / kMillimetre}};
 }
 
 Json toJson(const PlannedJob& plan) {

@@ -163,8 +163,11 @@ int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal, const GrindJob& j
   }
   const bool somewhere = plan->complete_from <= plan->complete_to;  // not so for NaN
   const auto range = [](const auto& ends) { return Range{ends[0], ends[1]}; };
-  const CutterFigures ground{
-      range(plan->rake), range(plan->spiral_angle), plan->edge, {plan->core_diameter[0], plan->core_diameter[1]}};
+  const CutterFigures ground{range(plan->rake),
+                             range(plan->chordal_rake),
+                             range(plan->spiral_angle),
+                             plan->edge,
+                             {plan->core_diameter[0], plan->core_diameter[1]}};
   printChecks(job, ground, somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt,
               closest);
   return 0;

@@ -132,6 +132,7 @@ double SetupErrors::worst(const SetupRequest& request) const {
   const CutterGeometry& c = request.cutter;
   return std::max({largest(rake) / allowed(c.rake_tolerance),
                    std::max(largest(turn), largest(spiral)) / allowed(c.spiral_tolerance),
+                   c.chordal_rake_tolerance > 0 ? largest(chord) / c.chordal_rake_tolerance : 0,
                    largest(core) / allowed(c.core_tolerance / c.end_diameter)});
 }
 
@@ -149,17 +150,18 @@ double tiedHeight(const SetupTrial& trial, const SetupRequest& request, double s
 }
 
 bool findsDepth(const SetupTrial& trial, const SetupRequest& request) {
-  if (request.core_diameter) return !(trial.isCylinder() && request.keep == SetupFigure::kDepth);
+  if (request.core_diameter) return request.keep != SetupFigure::kDepth;
   return !trial.isCylinder() && (request.keep == SetupFigure::kSwivel || request.keep == SetupFigure::kHeight);
 }
 
 SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps) {
+  const bool judges = steps > 1;
   if (trial.isCylinder()) steps = 0;
   const WheelSweep sweep = trial.sweep(point);
   const double length = request.cutter.flute_length, diameter = request.cutter.end_diameter;
   const LogCurve travel(2 * trial.cutter().tanCone() / diameter, 2 / diameter);  // of an edge at 45 deg
   const auto &core = request.core_diameter, &core_end = request.core_diameter_end;
-  std::vector<double> rakes, turns, spirals, cores;
+  std::vector<double> rakes, turns, spirals, chords, cores;
   double before = 0;
   for (int i = 0; i <= steps; ++i) {
     const double part = steps > 0 ? static_cast<double>(i) / steps : 0, x = part * length;
@@ -169,6 +171,7 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
       const double turn = (edge.angle - before) / (travel.a(x) - travel.a(length * (i - 1) / steps));
       turns.push_back(std::atan(turn) - request.cutter.spiral_angle);
     }
+    if (judges) chords.push_back(trial.chordalRake(sweep, x) - request.rake);
     if (steps > 1 && request.asks_spiral) spirals.push_back(trial.spiral(sweep, x) - request.cutter.spiral_angle);
     before = edge.angle;
     if (!(core && core_end ? true : core ? i == 0 : core_end && i == steps)) continue;
@@ -178,7 +181,7 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
   const auto array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
     return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   };
-  return {array(rakes), array(turns), array(spirals), array(cores)};
+  return {array(rakes), array(turns), array(spirals), array(chords), array(cores)};
 }
 
 std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
@@ -207,9 +210,12 @@ std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupReque
   const CutterGeometry& c = request.cutter;
   const auto errors_of = [&](const SetupPoint& point) {
     const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
-    Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + e.core.size());
+    // Chords count only where they are beyond their tolerance: within it the rake at the edge is to be as asked.
+    const double chord = c.chordal_rake_tolerance;
+    const Eigen::ArrayXd off = chord > 0 ? Eigen::ArrayXd((e.chord.abs() / chord - 1).max(0)) : Eigen::ArrayXd();
+    Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + off.size() + e.core.size());
     all << e.rake / allowed(c.rake_tolerance), e.turn / allowed(c.spiral_tolerance),
-        e.spiral / allowed(c.spiral_tolerance), e.core / allowed(c.core_tolerance / c.end_diameter);
+        e.spiral / allowed(c.spiral_tolerance), off, e.core / allowed(c.core_tolerance / c.end_diameter);
     return all;
   };
   const DampedFit fit(trial, request);

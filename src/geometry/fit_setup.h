@@ -14,6 +14,7 @@ struct SetupErrors {
   Eigen::ArrayXd rake;    ///< in sections at equal distances, the flute's ends among them [rad]
   Eigen::ArrayXd turn;    ///< of the edge from each section to the next, as a spiral angle [rad]
   Eigen::ArrayXd spiral;  ///< of the edge in the sections; none if they are the ends alone [rad]
+  Eigen::ArrayXd chord;   ///< the chordal rake in the sections; none if they are the ends alone [rad]
   Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end; if both are asked, in the sections
 
   /// The largest error by its tolerance: 1 or less is within them; infinite if there is none.

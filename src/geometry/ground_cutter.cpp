@@ -13,8 +13,9 @@ namespace {
 
 /// For the slope of the edge, of the blank's radius: small against the curvature, large against rounding.
 constexpr double kDifference = 1e-4;
-constexpr int kRings = 64;        ///< for the area of a section
-constexpr int kRingsOfDepth = 6;  ///< on which a flute must be complete
+constexpr int kRings = 64;             ///< for the area of a section
+constexpr double kChordalDepth = 0.1;  ///< of the flute's depth
+constexpr int kRingsOfDepth = 6;       ///< on which a flute must be complete
 constexpr double kRangeAccuracy = 10e-6;
 constexpr double kSameEnd = 1e-6;  ///< of arcs of several strokes [m]
 
@@ -41,6 +42,14 @@ double covered(std::vector<Arc>& arcs) {
 }
 
 }  // namespace
+
+double chordDepth(const CutterGeometry& cutter, double flute_depth) noexcept {
+  return cutter.chordal_rake_depth > 0 ? cutter.chordal_rake_depth : kChordalDepth * flute_depth;
+}
+
+double chordAngle(double outer, double inner, double turn) noexcept {
+  return std::atan2(inner * std::sin(turn), outer - inner * std::cos(turn));
+}
 
 GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth)
     : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
@@ -74,15 +83,22 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
   return all;
 }
 
-std::optional<Wall> GroundCutter::rakeFace(const Flute& flute, double x) const {
+std::optional<Wall> GroundCutter::rakeFace(const Flute& flute, double x, double r) const {
   const bool high = direction() == CutDirection::kRightHand;
   std::optional<Wall> outermost;
   for (const WheelSweep& sweep : flute) {
-    const auto wall = sweep.wall(x, cutter_.radius(x), high);
+    const auto wall = sweep.wall(x, r, high);
     if (!wall) continue;
     if (!outermost || (high ? wall->angle > outermost->angle : wall->angle < outermost->angle)) outermost = wall;
   }
   return outermost;
+}
+
+std::optional<double> GroundCutter::chordalRake(const Flute& flute, double x, double depth, double edge) const {
+  const double outer = cutter_.radius(x), inner = outer - chordDepth(cutter_.geometry(), depth);
+  const auto face = rakeFace(flute, x, inner);
+  if (!face) return std::nullopt;
+  return chordAngle(outer, inner, direction() == CutDirection::kRightHand ? face->angle - edge : edge - face->angle);
 }
 
 double GroundCutter::coreRadius(const Flute& flute, double x) const {
@@ -148,12 +164,14 @@ ToothSection GroundCutter::measure(const Flute& flute, double x) const {
   const double core = coreRadius(flute, x);
   section.depth = r - core;
   const auto at = arc(flute, x, r);
-  const auto face = rakeFace(flute, x);
+  const auto face = rakeFace(flute, x, r);
   if (!at || !face) return section;
   section.edge = face->angle;
   section.rake = std::atan(direction() == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
+  section.chordal_rake = chordalRake(flute, x, section.depth, face->angle);
   section.flute = at->high - at->low;
-  const auto ahead = rakeFace(flute, x + h), behind = rakeFace(flute, x - h);
+  const auto ahead = rakeFace(flute, x + h, cutter_.radius(x + h)),
+             behind = rakeFace(flute, x - h, cutter_.radius(x - h));
   if (ahead && behind) {
     section.spiral = std::atan(r * (ahead->angle - behind->angle) / (2 * h));
     section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));

@@ -57,6 +57,7 @@ void add(CutterFigures& figures, const GroundSection& section) {
     figures.land = std::fmin(figures.land, tooth.land.value_or(0) * section.radius);
     if (!tooth.complete) continue;
     widen(figures.rake, *tooth.rake);
+    if (tooth.chordal_rake) widen(figures.chordal_rake, *tooth.chordal_rake);
     if (tooth.spiral) widen(figures.spiral, *tooth.spiral);
   }
 }
@@ -93,15 +94,13 @@ class Checker {
       const ToothSection& tooth = section.teeth[i];
       const int number = static_cast<int>(i);
       if (tooth.flute && !tooth.land) add(ReasonKind::kLand, section.x, number, Unit::kRadian, *tooth.flute, pitch(i));
-      if (!tooth.complete) continue;
-      const double asked = job_.cutter.rake_angle, tolerance = job_.cutter.rake_tolerance;
-      if (std::abs(*tooth.rake - asked) <= tolerance) continue;
-      add(ReasonKind::kRake, section.x, number, Unit::kRadian, *tooth.rake, asked, tolerance);
+      if (tooth.complete) checkRake(section.x, number, tooth);
     }
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
       if (section.teeth[i].complete) checkSpiral(section.x, i, section.teeth[i].spiral);
     }
-    checkCore(section);
+    const auto complete = [](const ToothSection& tooth) { return tooth.complete; };
+    if (std::all_of(section.teeth.begin(), section.teeth.end(), complete)) checkCore(section);
   }
 
   /// How far the edges turn between two sections. Where each is within the tolerance everywhere, so is this.
@@ -144,28 +143,32 @@ class Checker {
   std::vector<core::Reason> take() { return std::move(reasons_); }
 
  private:
+  void checkRake(double x, int number, const ToothSection& tooth) {
+    const CutterGeometry& c = job_.cutter;
+    if (!(std::abs(*tooth.rake - c.rake_angle) <= c.rake_tolerance)) {
+      add(ReasonKind::kRake, x, number, Unit::kRadian, *tooth.rake, c.rake_angle, c.rake_tolerance);
+    }
+    const double chord = tooth.chordal_rake.value_or(CutterFigures::kNone);
+    if (!(std::abs(chord - c.rake_angle) <= c.chordal_rake_tolerance)) {
+      add(ReasonKind::kChordalRake, x, number, Unit::kRadian, chord, c.rake_angle, c.chordal_rake_tolerance);
+    }
+  }
+
   void checkSpiral(double x, std::size_t tooth, const std::optional<double>& spiral) {
     const double tolerance = job_.cutter.spiral_tolerance;
     const int number = static_cast<int>(tooth);
     const double asked = cutterOf(job_, number).spiral_angle;
-    if (!(tolerance > 0) || !spiral || std::abs(*spiral - asked) <= tolerance) return;
+    if (!spiral || std::abs(*spiral - asked) <= tolerance) return;
     add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
   }
 
-  /// At an end of the flute where a core is asked; if at both, in between, too.
+  /// Asked between the ends is what lies on a straight line between the diameters there.
   void checkCore(const GroundSection& section) {
     const CutterGeometry& c = job_.cutter;
-    const bool at_small_end = section.x == 0, at_end = section.x == c.flute_length;
-    const bool asks_both = c.core_diameter > 0 && c.core_diameter_end > 0;
-    const double between = c.core_diameter + (c.core_diameter_end - c.core_diameter) * section.x / c.flute_length;
-    const double asked = asks_both ? between : at_small_end ? c.core_diameter : at_end ? c.core_diameter_end : 0;
+    const double asked = c.core_diameter + (c.core_diameter_end - c.core_diameter) * section.x / c.flute_length;
     const double core = 2 * section.core_radius;
-    if (!(asked > 0 && c.core_tolerance > 0) || std::abs(core - asked) <= c.core_tolerance) return;
-    const std::size_t before = reasons_.size();
+    if (std::abs(core - asked) <= c.core_tolerance) return;
     add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, c.core_tolerance);
-    if (reasons_.size() > before) {
-      reasons_.back().field = at_end ? "cutter.core_diameter_end" : "cutter.core_diameter";
-    }
   }
 
   /// From a tooth to the one whose flute bounds its land [rad].

@@ -14,11 +14,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr int kMaxSolves = 16;                ///< for a depth with which the taper toward the flute's end agrees
-constexpr int kMaxLengthenings = 4;           ///< of the overtravel
-constexpr double kRoom = 0.02;                ///< of the flute's length, for a law of Z
-constexpr double kSameDepth = 0.3e-6;         ///< [m]
-constexpr double kNear = 3 * units::kDegree;  ///< within which the swivel of a slightly other depth is
+constexpr int kMaxLengthenings = 4;  ///< of the overtravel
+constexpr double kRoom = 0.02;       ///< of the flute's length, for a law of Z
 
 // Decimals in a file. The rake changes by up to 1/R for a height, 0.0006 deg for 10 nm at a radius of 1 mm, and by a
 // few times as much as the swivel.
@@ -58,20 +55,18 @@ std::string range(const SetupRefusal& r, Unit unit) {
 
 std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
-  const auto line = [](const char* path, double value, const Range& had, double tolerance, Unit unit) {
+  const auto line = [](const std::string& name, double value, const Range& had, double tolerance, Unit unit) {
     const auto shown = [&](double si) { return text({si, unit}, UnitSystem::kShop, 3); };
-    return "\n  " + asked(path, value, unit) + " within " + shown(tolerance) + ": " + shown(had.from) +
-           (had.to == had.from ? "" : " to " + shown(had.to));
+    return "\n  " + name + " = " + text(Quantity{value, unit}, UnitSystem::kShop, 5) + " within " + shown(tolerance) +
+           ": " + shown(had.from) + (had.to == had.from ? "" : " to " + shown(had.to));
   };
-  const auto& [core, core_end] = nearest.core_diameter;
-  std::string all = line("cutter.rake_angle", c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian);
-  if (nearest.spiral.from != nearest.spiral.to)
-    all += line("cutter.spiral_angle", c.spiral_angle, nearest.spiral, c.spiral_tolerance, Unit::kRadian);
-  if (c.core_diameter > 0)
-    all += line("cutter.core_diameter", c.core_diameter, {core, core}, c.core_tolerance, Unit::kMetre);
-  if (c.core_diameter_end > 0)
-    all += line("cutter.core_diameter_end", c.core_diameter_end, {core_end, core_end}, c.core_tolerance, Unit::kMetre);
-  return all;
+  const auto key = [](const char* path) { return fieldName(path, UnitSystem::kShop); };
+  const auto& [core, end] = nearest.core_diameter;
+  return line(key("cutter.rake_angle"), c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian) +
+         line("chordal rake", c.rake_angle, nearest.chordal_rake, c.chordal_rake_tolerance, Unit::kRadian) +
+         line(key("cutter.spiral_angle"), c.spiral_angle, nearest.spiral, c.spiral_tolerance, Unit::kRadian) +
+         line(key("cutter.core_diameter"), c.core_diameter, {core, core}, c.core_tolerance, Unit::kMetre) +
+         line(key("cutter.core_diameter_end"), c.core_diameter_end, {end, end}, c.core_tolerance, Unit::kMetre);
 }
 
 std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
@@ -92,9 +87,6 @@ std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
 std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
   const std::string change = "; change " + fieldName(rowOf(r.problem).change, UnitSystem::kShop);
   switch (r.problem) {
-    case SetupProblem::kOverdetermined:
-      return "rake and core take swivel, height and depth together; allowed: no --keep, or no " +
-             fieldName(rowOf(r.problem).change, UnitSystem::kShop);
     case SetupProblem::kSwivel:
       return keep == SetupFigure::kSwivel
                  ? asked("process.setup_swivel", r.asked, Unit::kRadian) + "; the machine swivels " +
@@ -130,63 +122,19 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   r.wheel = wheelOf(job).worn(p.wheel_wear);
   r.nominal_radius = p.wheel_diameter / 2 - p.wheel_wear;  // Y follows the wear
   r.depth = p.depth;
-  if (job.cutter.core_diameter > 0) r.core_diameter = job.cutter.core_diameter;
-  if (job.cutter.core_diameter_end > 0) {
-    const double core = job.cutter.core_diameter;
-    r.core_diameter_end = job.cutter.core_diameter_end;
-    // A taper to begin with: that of the asked core.
-    if (core > 0)
-      r.y_per_x = (*r.core_diameter_end - core) / 2 / job.cutter.flute_length - std::tan(job.cutter.cone_angle);
-  }
+  const CutterGeometry& c = job.cutter;
+  r.core_diameter = c.core_diameter;
+  r.core_diameter_end = c.core_diameter_end;
+  // A taper to begin with: that of the asked core.
+  r.y_per_x = (c.core_diameter_end - c.core_diameter) / 2 / c.flute_length - std::tan(c.cone_angle);
   r.incomplete_ok = p.incomplete_ok;
-  r.asks_spiral = job.cutter.spiral_tolerance > 0 || p.setup_lead != 0;
+  r.asks_spiral = true;
   r.least_swivel = swivel.from;
   r.largest_swivel = swivel.to;
   r.keep = keep;
   r.kept = {p.setup_swivel, p.setup_height};
   r.z_law = p.z_law;
   return r;
-}
-
-/// Solves a request whose taper is that from its depth to the job's at the flute's end: the taper follows the depth,
-/// and the depth the taper.
-/// @return what solveSetup() does; nothing if no depth agrees with its taper.
-std::optional<std::variant<SolvedSetup, SetupRefusal>> solveTapered(const GrindJob& job, const SetupRequest& request) {
-  if (!(job.process.depth_end > 0) || request.core_diameter_end) return solveSetup(request);
-  double depth = request.depth;
-  const auto solve = [&](const Range& swivel) {
-    SetupRequest tapered = request;
-    tapered.y_per_x = (depth - job.process.depth_end) / job.cutter.flute_length;
-    tapered.least_swivel = swivel.from;
-    tapered.largest_swivel = swivel.to;
-    return solveSetup(tapered);
-  };
-  const auto agrees = [&](const SolvedSetup& found) { return std::abs(found.depth - depth) <= kSameDepth; };
-  const Range whole{request.least_swivel, request.largest_swivel};
-  auto result = solve(whole);
-  for (int i = 0; i < kMaxSolves; ++i) {
-    const auto* found = std::get_if<SolvedSetup>(&result);
-    if (!found || agrees(*found)) break;
-    depth = found->depth;
-    const double swivel = found->setup.swivel;
-    const bool kept = request.keep == SetupFigure::kSwivel;
-    result = solve(kept ? whole : Range{std::max(whole.from, swivel - kNear), std::min(whole.to, swivel + kNear)});
-  }
-  // The limits are those of the whole range.
-  result = solve(whole);
-  const auto* found = std::get_if<SolvedSetup>(&result);
-  if (found && !agrees(*found)) return std::nullopt;
-  return result;
-}
-
-std::variant<SolvedSetup, std::string> solved(const GrindJob& job, const SetupRequest& request) {
-  const auto result = solveTapered(job, request);
-  if (!result) {
-    return "no depth agrees with " + fieldName("process.depth_end", UnitSystem::kShop) + "; change it, or keep " +
-           fieldName("process.depth", UnitSystem::kShop);
-  }
-  if (const auto* refusal = std::get_if<SetupRefusal>(&*result)) return textOf(*refusal, job, request.keep);
-  return std::get<SolvedSetup>(*result);
 }
 
 /// Puts a figure into the job as it is read from a file, and an edit that writes it there.
@@ -216,9 +164,8 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
     takeFigure(setup, path, field, value, scale, decimals);
   };
-  // A depth that stays keeps the file's decimals; one for a core may be missing there.
-  const bool for_core = setup.job.cutter.core_diameter > 0 && keep != SetupFigure::kDepth;
-  if (for_core || solved.depth != p.depth)
+  // A depth that stays keeps the file's decimals.
+  if (keep != SetupFigure::kDepth || solved.depth != p.depth)
     take("process.depth", p.depth, solved.depth, units::kMillimetre, kLengthDecimals);
   if (keep != SetupFigure::kSwivel) {
     take("process.setup_swivel", p.setup_swivel, solved.setup.swivel, units::kDegree, kAngleDecimals);
@@ -227,7 +174,7 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
     take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
   }
   // A flute of the same depth everywhere needs no other one at its end.
-  if (setup.job.cutter.core_diameter_end > 0 && (p.depth_end > 0 || solved.depth_end != solved.depth)) {
+  if (p.depth_end > 0 || solved.depth_end != solved.depth) {
     take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
   }
   if (solved.setup.lead != p.setup_lead) {
@@ -284,8 +231,8 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
                                                   std::optional<SetupFigure> keep) {
   try {
-    const auto result = solved(job, requestOf(job, swivel, keep));
-    if (const auto* refusal = std::get_if<std::string>(&result)) return *refusal;
+    const auto result = solveSetup(requestOf(job, swivel, keep));
+    if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
     JobSetup setup;
     setup.job = job;
     take(std::get<SolvedSetup>(result), keep, setup);

@@ -83,8 +83,7 @@ std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_
 std::string askedText(double asked, const char* between, double other, double tolerance, const char* unit) {
   std::string text = format("; asked %g %s", asked, unit);
   if (other != asked) text += format(" %s %g %s", between, other, unit);
-  if (tolerance > 0) text += format(" within %g %s", tolerance, unit);
-  return text;
+  return text + format(" within %g %s", tolerance, unit);
 }
 
 std::string angleText(const Range& ground, const Range& asked, double tolerance) {
@@ -93,10 +92,8 @@ std::string angleText(const Range& ground, const Range& asked, double tolerance)
 }
 
 std::string coreText(const std::array<double, 2>& ground, const CutterGeometry& c) {
-  const std::string text = format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(ground[0]), mm(ground[1]));
-  if (!(c.core_diameter > 0)) return text;
-  const double end = c.core_diameter_end > 0 ? c.core_diameter_end : c.core_diameter;
-  return text + askedText(mm(c.core_diameter), "and", mm(end), mm(c.core_tolerance), "mm");
+  return format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(ground[0]), mm(ground[1])) +
+         askedText(mm(c.core_diameter), "and", mm(c.core_diameter_end), mm(c.core_tolerance), "mm");
 }
 
 std::string whatComesOut(const JobSetup& setup) {
@@ -137,6 +134,10 @@ std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigu
   std::vector<AskedAndGround> all;
   if (!std::isnan(ground.rake.from)) {
     all.push_back({"rake", angleText(ground.rake, {c.rake_angle, c.rake_angle}, c.rake_tolerance)});
+  }
+  if (!std::isnan(ground.chordal_rake.from)) {
+    const Range asked{c.rake_angle, c.rake_angle};
+    all.push_back({"chordal rake", angleText(ground.chordal_rake, asked, c.chordal_rake_tolerance)});
   }
   if (!std::isnan(ground.spiral.from)) {
     all.push_back({"spiral angle", angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});

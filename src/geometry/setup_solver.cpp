@@ -21,6 +21,8 @@ constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the w
 constexpr double kSame = 1e-4;         ///< [rad], of the taper and of the radius: of two fits that came to the same
 constexpr double kBelowEdge = 0.998;   ///< of the radius: where the rake face still has the edge's rake
 constexpr double kSameFace = 2 * units::kDegree;
+constexpr double kNotThere = std::numeric_limits<double>::infinity();
+constexpr double kSameChord = 2 * units::kDegree;
 constexpr double kSameError = 0.5;  ///< of the tolerances
 constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
@@ -91,6 +93,7 @@ struct Judged {
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
   double error = 0;           ///< the largest over the flute, by its tolerance
   bool is_facet = false;      ///< the rake is that of a facet at the edge, with another angle behind it
+  double chord_off = 0;       ///< largest difference of the chordal rake from the asked rake [rad]
   bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
   std::optional<SetupProblem> problem;
 };
@@ -146,6 +149,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     const double rake = std::atan(-r * high->slope);
     const auto below = sweep.wall(x, kBelowEdge * r, true);
     if (!below || !(std::abs(std::atan(-kBelowEdge * r * below->slope) - rake) < kSameFace)) judged.is_facet = true;
+    const double chord_off = std::abs(trial.chordalRake(sweep, x) - request.rake);
+    judged.chord_off = std::max(judged.chord_off, std::isnan(chord_off) ? kNotThere : chord_off);
     s.least_rake = std::min(s.least_rake, rake);
     s.largest_rake = std::max(s.largest_rake, rake);
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
@@ -171,14 +176,15 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
 }
 
 /// The better of two: with the lesser problem, then with a complete flute, nearer to what is asked, with the steadier
-/// rake, then with more of the rake face formed by the wheel's face. Differences of the rake that cannot be measured do
-/// not count.
+/// rake, the better chord, then with more of the rake face formed by the wheel's face. Differences of the rake that
+/// cannot be measured do not count.
 bool isBetter(const Judged& a, const Judged& b) {
   const auto order = [](const Judged& j) {
     const SolvedSetup& s = j.solved;
     const double spread = s.largest_rake - s.least_rake;
     return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short, j.is_facet,
-                      std::floor(j.error / kSameError), std::floor(spread / kSameRake), -j.formed_by_face, spread);
+                      std::floor(j.error / kSameError), std::floor(spread / kSameRake),
+                      std::floor(j.chord_off / kSameChord), -j.formed_by_face, spread);
   };
   return order(a) < order(b);
 }
@@ -289,9 +295,30 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
   }
 }
 
+/// The set-up that would be without the figure that is kept, with that figure: near it are those with it.
+std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest request) {
+  const auto keep = request.keep;
+  if (!keep || trial.isCylinder() || !request.core_diameter) return {};
+  request.keep.reset();
+  Fitted free;
+  fitAll(trial, request, startsOf(trial, request, kFirstSwivels), free);
+  if (!free.best) return {};
+  const SolvedSetup& s = free.best->solved;
+  SetupPoint point{s.setup.swivel, s.setup.height, s.depth, s.setup.lead};
+  point.taper = (s.depth - s.depth_end) / request.cutter.flute_length - request.y_per_x;
+  switch (*keep) {
+    case SetupFigure::kSwivel: point.swivel = request.kept.swivel; break;
+    case SetupFigure::kHeight: point.height = request.kept.height; break;
+    case SetupFigure::kDepth: point.depth = request.depth; break;
+  }
+  return {point};
+}
+
 /// @param everywhere starts from the other swivels, too, if the first ones lead nowhere.
 Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywhere) {
   Fitted all;
+  fitAll(trial, request, startsBesideFree(trial, request), all);
+  if (all.isGood()) return all;
   const bool asks_edge = request.asks_spiral || request.core_diameter_end;
   const bool is_alone = !trial.isCylinder() && asks_edge;
   fitAll(trial, request, startsOf(trial, request, is_alone ? kFirstSwivels : kSwivelsOfCylinder), all);
@@ -345,6 +372,7 @@ SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const
   const WheelSweep sweep = trial.sweep(nearest);
   SetupRefusal refusal{SetupProblem::kTolerance};
   refusal.nearest = {range(errors.rake, request.rake),
+                     range(errors.chord, request.rake),
                      range(errors.spiral, request.cutter.spiral_angle),
                      {2 * trial.coreRadius(sweep, 0), 2 * trial.coreRadius(sweep, request.cutter.flute_length)}};
   refusal.mend = mendOf(request, nearest);
@@ -375,7 +403,6 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     return result;
   }
   const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
-  if (!trial.isCylinder() && request.core_diameter && request.keep) return SetupRefusal{SetupProblem::kOverdetermined};
   const auto beyond = [&](double swivel) {
     return SetupRefusal{SetupProblem::kSwivel, swivel, request.least_swivel, request.largest_swivel};
   };

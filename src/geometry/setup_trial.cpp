@@ -1,5 +1,7 @@
 #include "geometry/setup_trial.h"
 
+#include "flute_grinder/geometry/ground_cutter.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -73,6 +75,13 @@ SetupTrial::Edge SetupTrial::edge(const WheelSweep& sweep, double x) const {
 double SetupTrial::spiral(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x), h = kEdgeStep * r;
   return std::atan(r * (edge(sweep, x + h).angle - edge(sweep, x - h).angle) / (2 * h));
+}
+
+double SetupTrial::chordalRake(const WheelSweep& sweep, double x) const {
+  const double r = cutter_.radius(x);
+  const double inner = r - chordDepth(cutter_.geometry(), r - coreRadius(sweep, x));
+  const auto edge = sweep.wall(x, r, true), face = sweep.wall(x, inner, true);
+  return edge && face ? chordAngle(r, inner, face->angle - edge->angle) : kNowhere;
 }
 
 double SetupTrial::coreRadius(const WheelSweep& sweep, double x) const {

@@ -50,6 +50,9 @@ class SetupTrial {
   /// Of the edge, in a section as GroundCutter has it; NaN as Edge [rad].
   double spiral(const WheelSweep& sweep, double x) const;
 
+  /// Of the rake face, as ToothSection has it; NaN as Edge [rad].
+  double chordalRake(const WheelSweep& sweep, double x) const;
+
   /// Of a section; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
   double coreRadius(const WheelSweep& sweep, double x) const;
 

@@ -179,11 +179,10 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   checker.below("cutter.core_diameter", c.core_diameter, c.end_diameter, "the cutter's diameter at the small end");
   checker.below("cutter.core_diameter_end", c.core_diameter_end, 2 * radius(c.flute_length),
                 "the cutter's diameter at the flute's end");
-  // Alone, they would ask for nothing.
-  for (const auto& [name, value] : {std::pair("cutter.core_diameter_end", c.core_diameter_end),
-                                    std::pair("cutter.core_tolerance", c.core_tolerance)}) {
-    if (c.core_diameter > 0 || !(value > 0)) continue;
-    checker.refuse(ReasonKind::kNotAllowed, name, {value, Unit::kMetre}, "0 without cutter.core_diameter");
+  if (c.chordal_rake_depth > 0) {
+    checker.below("cutter.chordal_rake_depth", c.chordal_rake_depth,
+                  std::min(c.end_diameter - c.core_diameter, 2 * radius(c.flute_length) - c.core_diameter_end) / 2,
+                  "the asked depth of the flute");
   }
   checkWheel(checker, p);
   const double deepest = p.deepest();
@@ -297,12 +296,10 @@ std::vector<double> wearOfPasses(const GrindJob& job) {
 }
 
 double askedDepth(const GrindJob& job, double x) {
-  const GrindProcess& p = job.process;
   const CutterGeometry& c = job.cutter;
-  const double at_end = c.core_diameter > 0 ? (c.end_diameter - c.core_diameter) / 2 : p.depth;
+  const double at_end = (c.end_diameter - c.core_diameter) / 2;
   const double radius = c.end_diameter / 2 + c.flute_length * std::tan(c.cone_angle);  // at the flute's end
-  const double more = c.core_diameter_end > 0 ? radius - c.core_diameter_end / 2 - at_end : p.depthEnd() - p.depth;
-  return at_end + more * x / c.flute_length;
+  return at_end + (radius - c.core_diameter_end / 2 - at_end) * x / c.flute_length;
 }
 
 DepthLaw depthLaw(const GrindJob& job, double depth) {

@@ -97,19 +97,15 @@ void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job
 }
 
 constexpr const char* kDepth = "process.depth";
-constexpr const char* kCoreKey = "cutter.core_diameter_mm";
 
 /// Whether a file omits a figure that is yet to be found.
 bool isToBeFound(const FlatFile& file, const JobField& field, const std::vector<std::string>& unsolved) {
-  if (file.has(field.file_key) || std::find(unsolved.begin(), unsolved.end(), field.path) == unsolved.end())
-    return false;
-  return field.path != std::string_view(kDepth) || file.mentions(kCoreKey);
+  return !file.has(field.file_key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
 }
 
 /// How a missing figure is found; nothing for most.
 std::string remedy(std::string_view path) {
-  if (path == kDepth) return std::string("; 'grind setup --write' finds it for a ") + kCoreKey;
-  return path.substr(0, path.find('_')) == "process.setup" ? "; 'grind setup --write' finds it" : "";
+  return path == kDepth || path.substr(0, path.find('_')) == "process.setup" ? "; 'grind setup --write' finds it" : "";
 }
 
 /// Whether a file omits a number that it may omit. The elements of a pair are omitted together.

@@ -38,14 +38,19 @@ class Writer {
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
                " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
                " of it; change " + name("process.setup_swivel") + " or " + name("process.setup_height");
+      case ReasonKind::kChordalRake:
+        return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " has a chordal rake of " +
+               value() + " at X = " + x() + "; allowed: within " +
+               flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of it; change " +
+               name("process.wheel_diameter") + " or " + name("process.wheel_width");
       case ReasonKind::kSpiral:
         return name("cutter.spiral_angle") + " = " + limit() + ": the edge of tooth " + tooth() + " is ground with " +
                value() + " at X = " + x() + "; allowed: within " +
                flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of it; change " + name("process.setup_lead");
       case ReasonKind::kCoreSize:
-        return name(r_.field) + " = " + limit() + ": the core is " + value() + " at X = " + x() + "; allowed: within " +
-               flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of it; change " + name("process.depth") +
-               " or " + name("process.depth_end");
+        return name("cutter.core_diameter") + ", " + name("cutter.core_diameter_end") + ": the core is " + value() +
+               " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " of " + limit() + "; change " + name("process.depth") + " or " + name("process.depth_end");
       case ReasonKind::kLand:
         return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
                ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");

@@ -67,6 +67,7 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   response.complete_to = complete.to;
   const CutterFigures& ground = plan.figures;
   response.rake = {ground.rake.from, ground.rake.to};
+  response.chordal_rake = {ground.chordal_rake.from, ground.chordal_rake.to};
   response.spiral_angle = {ground.spiral.from, ground.spiral.to};
   response.edge = ground.edge;
   response.core_diameter = {ground.core_diameter[0], ground.core_diameter[1]};

@@ -32,10 +32,12 @@ QString line(const QString& text, bool good) {
 }
 
 QString rakeLine(const CutterSection& section) {
-  std::vector<double> rakes;
-  bool good = true, complete = true;
+  std::vector<double> rakes, chords;
+  bool good = true, chords_good = true, complete = true;
   for (const ToothSection& tooth : section.ground.teeth) {
     if (tooth.rake) rakes.push_back(*tooth.rake / kDegree);
+    if (tooth.chordal_rake) chords.push_back(*tooth.chordal_rake / kDegree);
+    chords_good = chords_good && section.chordIsWithin(tooth);
     good = good && tooth.rake && section.rakeIsWithin(tooth);
     complete = complete && tooth.complete;
   }
@@ -46,21 +48,20 @@ QString rakeLine(const CutterSection& section) {
                   .arg((section.asked_rake - section.rake_tolerance) / kDegree, 0, 'f', 2)
                   .arg((section.asked_rake + section.rake_tolerance) / kDegree, 0, 'f', 2),
               good) +
+         (chords.empty() ? "" : line(", chordal " + *rangeText(chords) + " deg", chords_good)) +
          line(complete ? "" : "; flute not complete", complete);
 }
 
 QString coreLine(const CutterSection& section) {
   const auto shown = [](double diameter) { return QString::number(diameter / kMillimetre, 'f', 3); };
-  QString asked = ", asked " + shown(2 * section.asked_core);
-  if (section.core_tolerance > 0) asked += QString(" within %1").arg(section.core_tolerance / kMillimetre);
   return line(section.outline.empty() ? "Core cut through" : "Core " + shown(2 * section.ground.core_radius) + " mm",
               section.coreIsWithin()) +
-         asked + " mm";
+         QString(", asked %1 within %2 mm")
+             .arg(shown(2 * section.asked_core))
+             .arg(section.core_tolerance / kMillimetre);
 }
 
-/// Nothing where the job asks for no spiral angle.
 QString spiralLine(const CutterSection& section) {
-  if (!(section.spiral_tolerance > 0)) return "";
   std::vector<double> spirals, asked;
   bool good = true;
   for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
@@ -92,17 +93,22 @@ QString landLine(const CutterSection& section) {
 
 bool CutterSection::coreIsWithin() const {
   const double off = 2 * std::abs(ground.core_radius - asked_core);
-  return !outline.empty() && (core_tolerance == 0 || off <= core_tolerance);
+  return !outline.empty() && off <= core_tolerance;
 }
 
 bool CutterSection::spiralIsWithin(std::size_t tooth) const {
   const ToothSection& measured = ground.teeth[tooth];
-  if (!measured.complete || !measured.spiral || spiral_tolerance == 0) return true;
+  if (!measured.complete || !measured.spiral) return true;
   return std::abs(*measured.spiral - asked_spirals[tooth]) <= spiral_tolerance;
 }
 
 bool CutterSection::rakeIsWithin(const ToothSection& tooth) const {
   return !tooth.rake || std::abs(*tooth.rake - asked_rake) <= rake_tolerance;
+}
+
+bool CutterSection::chordIsWithin(const ToothSection& tooth) const {
+  if (!tooth.complete || !tooth.chordal_rake) return true;
+  return std::abs(*tooth.chordal_rake - asked_rake) <= chordal_rake_tolerance;
 }
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }
@@ -114,6 +120,7 @@ CutterSection cutterSection(const GrindJob& job, double x) {
   made.cut = job.cutter.cut;
   made.asked_rake = job.cutter.rake_angle;
   made.rake_tolerance = job.cutter.rake_tolerance;
+  made.chordal_rake_tolerance = job.cutter.chordal_rake_tolerance;
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(job, x));
   made.core_tolerance = job.cutter.core_tolerance;
   made.spiral_tolerance = job.cutter.spiral_tolerance;

@@ -16,15 +16,17 @@ struct CutterSection {
   CutDirection cut = CutDirection::kRightHand;
   double asked_rake = 0;              ///< [rad]
   double rake_tolerance = 0;          ///< [rad]
+  double chordal_rake_tolerance = 0;  ///< [rad]
   double asked_core = 0;              ///< radius [m]
-  double core_tolerance = 0;          ///< of the diameter; 0: any core [m]
+  double core_tolerance = 0;          ///< of the diameter [m]
   std::vector<double> asked_spirals;  ///< of every tooth [rad]
-  double spiral_tolerance = 0;        ///< 0: any spiral angle [rad]
+  double spiral_tolerance = 0;        ///< [rad]
 
   bool coreIsWithin() const;
   bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here
-  bool spiralIsWithin(std::size_t tooth) const;        ///< or the tooth's flute is not complete here
-  bool hasLand(const ToothSection& tooth) const;       ///< or nothing is ground here
+  bool chordIsWithin(const ToothSection& tooth) const;
+  bool spiralIsWithin(std::size_t tooth) const;   ///< or the tooth's flute is not complete here
+  bool hasLand(const ToothSection& tooth) const;  ///< or nothing is ground here
 };
 
 /// Takes milliseconds for each tooth with a flute of its own.

@@ -13,6 +13,7 @@ from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, p
 
 # Key, asked key, title; of the section or of each tooth.
 CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
+          ('chordal_rake_deg', 'asked_rake_deg', 'chordal rake [deg]'),
           ('core_diameter_mm', 'asked_core_diameter_mm', 'core diameter [mm]'),
           ('land_mm', None, 'land [mm]'),
           ('spiral_deg', 'asked_spiral_deg', 'spiral angle [deg]')]

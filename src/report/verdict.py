@@ -8,9 +8,7 @@ from cutter import largest_radius
 from record import DEG, SourceError
 
 ALLOWED = {
-    'core_diameter_mm': 'difference of the core diameter from the one asked',
     'land_mm': 'least land',
-    'spiral_angle_deg': 'difference of the spiral angle from the one asked',
     'following_error_um': 'following error in the strokes, of A at the largest radius',
     'feed_percent': 'difference of the feed from the job\'s, between the ends of the flute',
     'late_cycles_percent': 'late control cycles'}
@@ -38,13 +36,12 @@ def read_tolerances(path):
 
 class Criterion:
     """One line of the verdict. All in `unit`; asked, measured and place may be None. tolerance: largest difference from what
-    is asked; None: `asked` is the least allowed. is_asked: whether the job asks for it at all. digits: behind the point, or
-    None: three in all."""
+    is asked; None: `asked` is the least allowed. digits: behind the point, or None: three in all."""
 
-    def __init__(self, name, unit, digits, asked, tolerance, is_asked=True):
+    def __init__(self, name, unit, digits, asked, tolerance):
         self.name, self.unit, self.digits, self.asked, self.tolerance = name, unit, digits, asked, tolerance
         self.measured, self.place, self.remark = None, '', ''
-        self._is_asked, self._worst = is_asked, -math.inf
+        self._worst = -math.inf
 
     def add(self, value, place, asked=None):
         """A measured value; the one that is farthest off remains. None: there is nothing to measure where there should be."""
@@ -56,16 +53,13 @@ class Criterion:
 
     @property
     def result(self):
-        if not self._is_asked:
-            return 'not asked'
         if self._worst == -math.inf:
             return 'not measured'
         return 'passed' if self._worst <= (self.tolerance or 0) else 'failed'
 
     def head(self):
-        asked, tolerance = (self.asked, self.tolerance) if self._is_asked else (None, None)
-        return {'name': self.name, 'unit': self.unit, 'digits': self.digits, 'asked': asked, 'measured': self.measured,
-                'tolerance': tolerance, 'place': self.place, 'result': self.result, 'remark': self.remark}
+        return {'name': self.name, 'unit': self.unit, 'digits': self.digits, 'asked': self.asked, 'measured': self.measured,
+                'tolerance': self.tolerance, 'place': self.place, 'result': self.result, 'remark': self.remark}
 
 
 def place_of(stroke, x=None):
@@ -104,29 +98,28 @@ def of_tool(job_file, tool, tolerances):
     """tool: as ground, or None if it was not measured."""
     cutter = job_file['cutter']
     rake = Criterion('rake', 'deg', 3, cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])
-    # At the ends, where the job asks for it.
-    core = Criterion('core diameter', 'mm', 3, cutter.get('core_diameter_mm'),
-                     cutter.get('core_tolerance_mm') or tolerances['core_diameter_mm'], bool(cutter.get('core_diameter_mm')))
+    chord = Criterion('chordal rake', 'deg', 3, cutter['rake_angle_deg'], cutter['chordal_rake_tolerance_deg'])
+    core = Criterion('core diameter', 'mm', 3, None, cutter['core_tolerance_mm'])
     land = Criterion('land', 'mm', 3, tolerances['land_mm'], None)
-    spiral = Criterion('spiral angle', 'deg', 3, None, cutter.get('spiral_tolerance_deg') or tolerances['spiral_angle_deg'])
+    spiral = Criterion('spiral angle', 'deg', 3, None, cutter['spiral_tolerance_deg'])
     sections = tool['sections'] if tool else []
-    for section in sections[:1] + (sections[-1:] if cutter.get('core_diameter_end_mm') else []):
-        core.add(section['core_diameter_mm'], 'X = %.3f mm' % section['x_mm'], section['asked_core_diameter_mm'])
     for section in sections:
+        core.add(section['core_diameter_mm'], 'X = %.3f mm' % section['x_mm'], section['asked_core_diameter_mm'])
         for i, tooth in enumerate(section['teeth'], 1):
             place = 'tooth %d, X = %.3f mm' % (i, section['x_mm'])
             # A job may allow an incomplete flute, which has no rake face at its end.
             if tooth['complete'] or not job_file['process'].get('incomplete_ok'):
                 rake.add(tooth['rake_deg'], place)
+                chord.add(tooth['chordal_rake_deg'], place)
             land.add(tooth['land_mm'], place)
             spiral.add(tooth['spiral_deg'], place, tooth['asked_spiral_deg'])
-    return rake, core, land, spiral
+    return rake, chord, core, land, spiral
 
 
-def of_gouges(tool, tolerances):
+def of_gouges(job_file, tool):
     """tool: of a record, as far as it was ground; or None."""
     # The core's tolerance, which is of a diameter, holds for the whole flute.
-    gouge = Criterion('gouge', 'mm', 3, 0, tolerances['core_diameter_mm'] / 2)
+    gouge = Criterion('gouge', 'mm', 3, 0, job_file['cutter']['core_tolerance_mm'] / 2)
     if not tool or tool['gouges'] is None:
         return gouge
     gouge.add(0, '')
@@ -163,7 +156,7 @@ def criteria(data, tolerances):
     # A record of the grinder has no positions of which a tool could be computed: its tool is the one that the job asks for.
     recorded = None if data['kind'] == 'record' else data.get('tool')
     ground = recorded if recorded and all_teeth_ground(recorded) else None
-    return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), of_gouges(recorded, tolerances), following,
+    return [c.head() for c in (deviation, *of_tool(job_file, ground, tolerances), of_gouges(job_file, recorded), following,
                                feed, late)]
 
 

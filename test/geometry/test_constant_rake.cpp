@@ -54,6 +54,7 @@ std::optional<GrindJob> jobFor(const Shop& s) {
   GrindJob job = test_support::paperJob();
   job.cutter = requestFor(s).cutter;
   job.cutter.rake_tolerance = 2 * kDegree;
+  test_support::askForRakeAlone(job.cutter);
   job.cutter.shank_diameter = 10 * kMillimetre;
   job.process.wheel_diameter = s.wheel * kMillimetre;
   job.process.wheel_width = s.width * kMillimetre;

@@ -67,6 +67,7 @@ TEST(GroundCutter, AStraightFluteIsAsTheWheelIs) {
     ASSERT_TRUE(s.teeth[0].rake.has_value()) << i;
     EXPECT_NEAR(*s.teeth[0].edge, std::asin(c.face / r), 1e-12) << i;
     EXPECT_NEAR(*s.teeth[0].rake, std::asin(c.face / r), kMicrodegree) << i;
+    EXPECT_NEAR(*s.teeth[0].chordal_rake, std::asin(c.face / r), kMicrodegree) << i;  // the rake face is plane
     EXPECT_NEAR(*s.teeth[0].spiral, 0, 1e-9) << i;
     // The floor lies at R - depth if the wheel stands over the axis, else at the nearer corner.
     const double z = c.face < 0 ? c.face : std::max(0.0, c.face - c.width);
@@ -280,6 +281,10 @@ TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
     EXPECT_LT(rake_off, 0.005 * kDegree) << "case " << i;
     EXPECT_NEAR(*tooth.edge, edge, 0.001 * kDegree) << "case " << i;
     EXPECT_NEAR(*tooth.flute, edge - low, 0.001 * kDegree) << "case " << i;
+    const double inner = k->outer - tooth.depth / 10;
+    const double inward = bruteEnd(*k, inner, sweep.arc(k->x, inner)->high, true) - edge;
+    const double chord = std::atan(inner * std::sin(inward) / (k->outer - inner * std::cos(inward)));
+    EXPECT_NEAR(*tooth.chordal_rake, chord, 0.01 * kDegree) << "case " << i;
   }
   EXPECT_EQ(checked, 200);
 }

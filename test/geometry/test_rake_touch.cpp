@@ -1,5 +1,6 @@
 // Where a ball touches the first tooth's rake face, against a plane and against membership in the swept wheel.
 
+#include "any_tool.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_touch.h"
@@ -28,8 +29,12 @@ constexpr double kNearly = 1e-6;  ///< [rad]
 
 GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
-/// The paper's cutter by its published motion.
-GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+/// The paper's cutter by its published motion; any edge and core will do.
+GrindJob paper() {
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
+  test_support::askForRakeAlone(job.cutter);
+  return job;
+}
 
 /// A ball at a distance and an angle about the axis.
 struct Ball {

@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -23,8 +24,8 @@ constexpr Range kMachine{-60 * units::kDegree, 60 * units::kDegree};
 class SetupFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string text = textOf("test/jobs/paper.yaml");
-    text.replace(text.find("31.769"), 6, "31");
+    std::string text = textOf("jobs/paper.yaml");
+    text.replace(text.find("32.34"), 5, "31");
     write(text);
     fs::permissions(job_, fs::perms(0640));
   }
@@ -65,7 +66,8 @@ TEST_F(SetupFile, IsReadBackAsSolved) {
   EXPECT_EQ(read.process.setup_swivel, solved.job.process.setup_swivel);
   EXPECT_EQ(read.process.setup_height, solved.job.process.setup_height);
   EXPECT_NE(textOf(job_), before);
-  EXPECT_EQ(textOf(job_).size(), before.size() + 6);  // 31 to 31.769, 2.788 to 2.78841
+  const std::regex number("-?[0-9.]+");
+  EXPECT_EQ(std::regex_replace(textOf(job_), number, "#"), std::regex_replace(before, number, "#"));
   EXPECT_EQ(filesInFolder(), 1);
   EXPECT_EQ(fs::status(job_).permissions(), fs::perms(0640));
 }
@@ -75,7 +77,7 @@ TEST_F(SetupFile, ALinkToItStays) {
   fs::create_symlink("job.yaml", link);
   writeSetup(link, setup());
   EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_NE(textOf(job_).find("31.769"), std::string::npos);
+  EXPECT_NE(textOf(job_).find("32.34"), std::string::npos);
 }
 
 TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
@@ -85,7 +87,7 @@ TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
   write(text);
   const std::string said = refusal(job_, solved);
   EXPECT_NE(said.find("has changed"), std::string::npos) << said;
-  EXPECT_NE(said.find("process.setup.swivel_deg: 31.769"), std::string::npos) << said;
+  EXPECT_NE(said.find("process.setup.swivel_deg: 32.34"), std::string::npos) << said;
   EXPECT_EQ(textOf(job_), text);
 }
 
@@ -94,8 +96,8 @@ TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreTold) {
   text.replace(text.find("swivel_deg: "), 12, "swivel_deg: !!float ");
   write(text);
   const std::string said = refusal(job_, setup());
-  EXPECT_NE(said.find(":28: has a value that is not written as a plain number"), std::string::npos) << said;
-  EXPECT_NE(said.find("process.setup.height_mm: 2.78841"), std::string::npos) << said;
+  EXPECT_NE(said.find(":35: has a value that is not written as a plain number"), std::string::npos) << said;
+  EXPECT_NE(said.find("process.setup.height_mm: 5.88"), std::string::npos) << said;
   EXPECT_EQ(textOf(job_), text);
   EXPECT_EQ(filesInFolder(), 1);
 }

@@ -100,7 +100,7 @@ class TestHoming(unittest.TestCase):
         state = self.grinder.fresh_state()
         self.assertEqual((state.state, state.homed), (GrinderState.READY, False))
         first = RECORDER.now()
-        job = gc.package_file('jobs/paper.yaml')
+        job = gc.package_file('test/jobs/paper.yaml')
         self.grinder.confirm_swivel(gc.PAPER['process.setup_swivel'])
         refused = gc.grind('run', job, '--ignore-offset-check')
         self.assertEqual(refused.returncode, 1, refused.stdout)

@@ -226,16 +226,15 @@ TEST(GrindJob, TakesAsMuchWearAsTheWheelHas) {
   EXPECT_TRUE(validate(job).empty());
 }
 
-TEST(GrindJob, RefusesFiguresOfACoreThatIsNotAsked) {
+TEST(GrindJob, RefusesAChordThatIsLongerThanTheFluteIsDeep) {
   GrindJob job = paperJob();
-  job.cutter.core_diameter_end = 4e-3;
-  job.cutter.core_tolerance = 0.02e-3;
+  job.cutter.core_diameter = 7e-3;
+  job.cutter.core_diameter_end = 9e-3;  // 1.5 mm deep, and more at the flute's end
+  job.cutter.chordal_rake_depth = 1.5e-3;
   const auto errors = refusals(job);
-  ASSERT_EQ(errors.size(), 2u);
-  EXPECT_EQ(errors[0].field, "cutter.core_diameter_end");
-  EXPECT_EQ(errors[1].field, "cutter.core_tolerance");
-  EXPECT_EQ(errors[1].allowed, "0 without cutter.core_diameter");
-  job.cutter.core_diameter = 3e-3;
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].field, "cutter.chordal_rake_depth");
+  job.cutter.chordal_rake_depth = 1.499e-3;
   EXPECT_TRUE(validate(job).empty());
 }
 
@@ -348,7 +347,6 @@ TEST(PassOrder, IsThatOfTeethOrOfPasses) {
   EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
 }
 
-// The wheel may reach deeper than its depth, so that a set-up for a core of 3.9 mm may leave a depth of 1.058 mm.
 TEST(ShankCut, IsByHowMuchTheShankStandsOut) {
   CutterGeometry cutter{10e-3, 5 * units::kDegree, 0.5, 0, 30e-3};
   cutter.shank_diameter = 16e-3;
@@ -360,15 +358,13 @@ TEST(ShankCut, IsByHowMuchTheShankStandsOut) {
   EXPECT_EQ(shankCut(cutter), 0);
 }
 
-TEST(AskedDepth, IsThatOfTheCoreWhereOneIsAsked) {
+TEST(AskedDepth, IsThatOfTheCore) {
   GrindJob job = paperJob();
+  job.cutter.cone_angle = 0;
   job.cutter.end_diameter = 6e-3;
   job.cutter.flute_length = 20e-3;
-  job.process.depth = 1.058e-3;
-  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.058e-3);
   job.cutter.core_diameter = 3.9e-3;
-  EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
-  job.process.depth_end = 1.558e-3;
+  job.cutter.core_diameter_end = 2.9e-3;
   EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
   EXPECT_DOUBLE_EQ(askedDepth(job, 10e-3), 1.3e-3);
   EXPECT_DOUBLE_EQ(askedDepth(job, 20e-3), 1.55e-3);

@@ -33,30 +33,35 @@ const char* const kGood =
     "  teeth: 4\n"                                   // 7
     "  cut: left_hand\n"                             // 8
     "  rake_tolerance_deg: 0.25\n"                   // 9
-    "  shank_diameter_mm: 10\n"                      // 10
-    "process:\n"                                     // 11
-    "  feed_mm_min: 200\n"                           // 12
-    "  depth_mm: 1.5\n"                              // 13
-    "  infeed_mm: 0.5\n"                             // 14
-    "  finish_infeed_mm: 0.05\n"                     // 15
-    "  spark_out: 1\n"                               // 16
-    "  clearance_mm: 5\n"                            // 17
-    "  overtravel_mm: [1, 2]\n"                      // 18
-    "  order: pass_major\n"                          // 19
-    "  direction: to_end\n"                          // 20
-    "  wheel:\n"                                     // 21
-    "    diameter_mm: 100\n"                         // 22
-    "    width_mm: 8\n"                              // 23
-    "    wear_mm: 0.3\n"                             // 24
-    "    profile: angled\n"                          // 25
-    "    angle_deg: 20\n"                            // 26
-    "    side: lower\n"                              // 27
-    "    corner_radius_mm: [0.1, 0.2]\n"             // 28
-    "  setup: {swivel_deg: -46, height_mm: 1.25}\n"  // 29
-    "interpolation:\n"                               // 30
-    "  even_step: third_order\n"                     // 31
-    "  tolerance_um: 2\n"                            // 32
-    "  rotary_scale_mm_per_rad: 1.5\n";              // 33
+    "  chordal_rake_tolerance_deg: 5\n"              // 10
+    "  spiral_tolerance_deg: 0.5\n"                  // 11
+    "  core_diameter_mm: 3.5\n"                      // 12
+    "  core_diameter_end_mm: 3\n"                    // 13
+    "  core_tolerance_mm: 0.05\n"                    // 14
+    "  shank_diameter_mm: 10\n"                      // 15
+    "process:\n"                                     // 16
+    "  feed_mm_min: 200\n"                           // 17
+    "  depth_mm: 1.5\n"                              // 18
+    "  infeed_mm: 0.5\n"                             // 19
+    "  finish_infeed_mm: 0.05\n"                     // 20
+    "  spark_out: 1\n"                               // 21
+    "  clearance_mm: 5\n"                            // 22
+    "  overtravel_mm: [1, 2]\n"                      // 23
+    "  order: pass_major\n"                          // 24
+    "  direction: to_end\n"                          // 25
+    "  wheel:\n"                                     // 26
+    "    diameter_mm: 100\n"                         // 27
+    "    width_mm: 8\n"                              // 28
+    "    wear_mm: 0.3\n"                             // 29
+    "    profile: angled\n"                          // 30
+    "    angle_deg: 20\n"                            // 31
+    "    side: lower\n"                              // 32
+    "    corner_radius_mm: [0.1, 0.2]\n"             // 33
+    "  setup: {swivel_deg: -46, height_mm: 1.25}\n"  // 34
+    "interpolation:\n"                               // 35
+    "  even_step: third_order\n"                     // 36
+    "  tolerance_um: 2\n"                            // 37
+    "  rotary_scale_mm_per_rad: 1.5\n";              // 38
 
 /// The good text with one piece of it replaced.
 std::string with(const std::string& piece, const std::string& replacement) {
@@ -165,13 +170,10 @@ TEST(JobFile, LeavesOutTheSetUpThatIsYetToBeFound) {
   EXPECT_THROW(parseJob(with(", height_mm: 1.25", ""), "job.yaml", {"process.setup_swivel"}), JobFileError);
 }
 
-TEST(JobFile, LeavesOutTheDepthOnlyBesideACore) {
-  const auto parse = [](const std::string& core) {
-    std::string text = with("  depth_mm: 1.5\n", "");
-    return parseJob(text.insert(text.find("process:"), core), "job.yaml", kUnsolved);
-  };
-  EXPECT_DOUBLE_EQ(parse("  core_diameter_mm: 3.5\n").process.depth, 0.00125);
-  EXPECT_THROW(parse(""), JobFileError);
+TEST(JobFile, LeavesOutADepthThatIsToBeFound) {
+  const std::string text = with("  depth_mm: 1.5\n", "");
+  EXPECT_DOUBLE_EQ(parseJob(text, "job.yaml", kUnsolved).process.depth, 0.00125);
+  EXPECT_THROW(parseJob(text, "job.yaml"), JobFileError);
 }
 
 TEST(JobFile, NamesTheKeyThatIsNearestToAnUnknownOne) {
@@ -262,28 +264,28 @@ INSTANTIATE_TEST_SUITE_P(
     All, JobFileMistake,
     ::testing::Values(
         Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:30", "paint"}},
+        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:35", "paint"}},
         Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", {"job.yaml:8", "cutter.colour"}},
         Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", {"job.yaml:8", "cutter.colour"}},
         Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:18", "process.overtravel_mm[2]"}},
+        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:23", "process.overtravel_mm[2]"}},
         Mistake{"MissingKey", "  depth_mm: 1.5\n", "", {"job.yaml", "process.depth_mm", "missing", "0.001 to 50 mm"}},
         Mistake{"DuplicateKey",
                 "  depth_mm: 1.5\n",
                 "  depth_mm: 1.5\n  depth_mm: 1.6\n",
-                {"job.yaml:14", "process.depth_mm", "appears twice"}},
+                {"job.yaml:19", "process.depth_mm", "appears twice"}},
         Mistake{"DuplicateKeySameValue",
                 "  depth_mm: 1.5\n",
                 "  depth_mm: 1.5\n  depth_mm: 1.5\n",
-                {"job.yaml:14", "process.depth_mm", "appears twice"}},
+                {"job.yaml:19", "process.depth_mm", "appears twice"}},
         Mistake{"NumberWithUnit",
                 "feed_mm_min: 200",
                 "feed_mm_min: 200mm/min",
-                {"job.yaml:12", "process.feed_mm_min = 200mm/min is not a number", "0.1 to 10000 mm/min"}},
+                {"job.yaml:17", "process.feed_mm_min = 200mm/min is not a number", "0.1 to 10000 mm/min"}},
         Mistake{"NoValue",
                 "feed_mm_min: 200",
                 "feed_mm_min:",
-                {"job.yaml:12", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
+                {"job.yaml:17", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
         Mistake{"BrokenTeeth",
                 "teeth: 4",
                 "teeth: 4.5",
@@ -307,31 +309,31 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"HexadecimalFigure",
                 "depth_mm: 1.5",
                 "depth_mm: 0x1",
-                {"job.yaml:13", "process.depth_mm = 0x1", "0.001 to 50 mm"}},
+                {"job.yaml:18", "process.depth_mm = 0x1", "0.001 to 50 mm"}},
         Mistake{"SecondDocument",
                 "interpolation:",
                 "---\ninterpolation:",
-                {"job.yaml:30", "a second document begins here", "allowed: one"}},
+                {"job.yaml:35", "a second document begins here", "allowed: one"}},
         Mistake{"EmptySecondDocument",
                 "rotary_scale_mm_per_rad: 1.5\n",
                 "rotary_scale_mm_per_rad: 1.5\n---\n",
-                {"job.yaml:34", "a second document begins here"}},
-        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", {"job.yaml:13", "anchor", "allowed: none"}},
+                {"job.yaml:39", "a second document begins here"}},
+        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", {"job.yaml:18", "anchor", "allowed: none"}},
         Mistake{"AnchorOfASection", "cutter:", "cutter: &cutter", {"job.yaml:", "anchor", "allowed: none"}},
-        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", {"job.yaml:13", "anchor"}},
-        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", {"job.yaml:19", "process.order = pass?major"}},
+        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", {"job.yaml:18", "anchor"}},
+        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", {"job.yaml:24", "process.order = pass?major"}},
         Mistake{"NotANumber",
                 "depth_mm: 1.5",
                 "depth_mm: .nan",
-                {"job.yaml:13", "process.depth_mm", "nan", "0.001 to 50 mm"}},
+                {"job.yaml:18", "process.depth_mm", "nan", "0.001 to 50 mm"}},
         Mistake{"Infinite",
                 "depth_mm: 1.5",
                 "depth_mm: .inf",
-                {"job.yaml:13", "process.depth_mm", "inf", "0.001 to 50 mm"}},
+                {"job.yaml:18", "process.depth_mm", "inf", "0.001 to 50 mm"}},
         Mistake{"TooLargeForANumber",
                 "depth_mm: 1.5",
                 "depth_mm: 1e999",
-                {"job.yaml:13", "process.depth_mm", "0.001 to 50 mm"}},
+                {"job.yaml:18", "process.depth_mm", "0.001 to 50 mm"}},
         Mistake{"OutOfRange",
                 "cone_angle_deg: -1",
                 "cone_angle_deg: 31",
@@ -339,11 +341,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"WearPerPassTakesAllOfTheWheel",
                 "    wear_mm: 0.3\n",
                 "    wear_mm: 47\n    wear_per_pass_mm: 0.5\n",
-                {"job.yaml:25", "process.wheel.wear_per_pass_mm", "0.5 mm", "less than 0.15 mm"}},
+                {"job.yaml:30", "process.wheel.wear_per_pass_mm", "0.5 mm", "less than 0.15 mm"}},
         Mistake{"OvertravelOutOfRange",
                 "[1, 2]",
                 "[1, 200]",
-                {"job.yaml:18", "process.overtravel_mm[1]", "200 mm", "0 to 100 mm"}},
+                {"job.yaml:23", "process.overtravel_mm[1]", "200 mm", "0 to 100 mm"}},
         Mistake{"TwoWaysOfTeeth",
                 "  teeth: 4\n",
                 "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
@@ -357,11 +359,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"SideOfAStraightWheel",
                 "    profile: angled\n    angle_deg: 20\n",
                 "    profile: straight\n",
-                {"job.yaml:26", "process.wheel.side", "not a key"}},
+                {"job.yaml:31", "process.wheel.side", "not a key"}},
         Mistake{"AngleOfAStraightWheel",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: straight\n    angle_deg: 20\n",
-                {"job.yaml:26", "process.wheel.angle_deg", "20 deg", "0 for this profile"}},
+                {"job.yaml:31", "process.wheel.angle_deg", "20 deg", "0 for this profile"}},
         Mistake{"AngledWithoutAnAngle",
                 "    angle_deg: 20\n",
                 "",
@@ -369,11 +371,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"CornersWiderThanTheWheel",
                 "[0.1, 0.2]",
                 "[4, 4.5]",
-                {"job.yaml:28", "process.wheel.corner_radius_mm[0]", "8.5 mm", "wheel's width", "8 mm"}},
+                {"job.yaml:33", "process.wheel.corner_radius_mm[0]", "8.5 mm", "wheel's width", "8 mm"}},
         Mistake{"CornerOfARoundedWheel",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: full_radius\n",
-                {"job.yaml:26", "process.wheel.corner_radius_mm[0]", "0.3 mm", "allowed: 0 for this profile"}},
+                {"job.yaml:31", "process.wheel.corner_radius_mm[0]", "0.3 mm", "allowed: 0 for this profile"}},
         Mistake{"OneCorner", "[0.1, 0.2]", "[0.1]", {"job.yaml", "process.wheel.corner_radius_mm[1]", "missing"}},
         Mistake{"PointsWithoutPoints",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
@@ -382,15 +384,15 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"PointsOfAnotherWidth",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-3, 50], [3, 49]]\n",
-                {"job.yaml:23", "process.wheel.width_mm", "8 mm", "its points", "6 mm"}},
+                {"job.yaml:28", "process.wheel.width_mm", "8 mm", "its points", "6 mm"}},
         Mistake{"PointsNotAscending",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-4, 50], [-4, 49], [4, 50]]\n",
-                {"job.yaml:26", "process.wheel.points_mm", "-4 mm", "ascending"}},
+                {"job.yaml:31", "process.wheel.points_mm", "-4 mm", "ascending"}},
         Mistake{"HalfAPoint",
                 "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
-                {"job.yaml:26", "process.wheel.points_mm[1]", "not a pair"}},
+                {"job.yaml:31", "process.wheel.points_mm[1]", "not a pair"}},
         Mistake{"TwoWaysOfSpirals",
                 "  spiral_angle_deg: -45\n",
                 "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
@@ -406,11 +408,11 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"DeeperThanTheCutter",
                 "depth_mm: 1.5",
                 "depth_mm: 2.8",
-                {"job.yaml:13", "process.depth_mm", "2.8 mm", "less than 2.56", "radius at the flute's end"}},
+                {"job.yaml:18", "process.depth_mm", "2.8 mm", "less than 2.56", "radius at the flute's end"}},
         Mistake{"FinishAboveDepth",
                 "finish_infeed_mm: 0.05",
                 "finish_infeed_mm: 2",
-                {"job.yaml:15", "process.finish_infeed_mm", "2 mm", "1.5 mm"}}),
+                {"job.yaml:20", "process.finish_infeed_mm", "2 mm", "1.5 mm"}}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(JobFile, TellsAllOfSeveralErrors) {
@@ -419,9 +421,9 @@ TEST(JobFile, TellsAllOfSeveralErrors) {
   text += "extra: 1\n";
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 3) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:13", "process.depth_mm", "deep"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:19", "process.order", "any"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:34", "extra"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:18", "process.depth_mm", "deep"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:24", "process.order", "any"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:39", "extra"}));
 }
 
 TEST(JobFile, TellsAllFiguresOutOfRange) {
@@ -429,13 +431,13 @@ TEST(JobFile, TellsAllFiguresOutOfRange) {
   text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 2) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:13", "process.depth_mm", "51 mm"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:12", "process.feed_mm_min", "0 mm/min"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:18", "process.depth_mm", "51 mm"}));
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:17", "process.feed_mm_min", "0 mm/min"}));
 }
 
 TEST(JobFile, RefusesASectionThatStandsTwice) {
   const std::string error = errorOf(with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:17", "process"})) << "got: " << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:22", "process"})) << "got: " << error;
 }
 
 TEST(JobFile, RefusesAPathAsAKey) {
@@ -454,7 +456,7 @@ TEST(JobFile, RefusesASectionThatIsNotAMap) {
   const std::string text =
       std::string(kGood).substr(0, std::string(kGood).find("interpolation:")) + "interpolation: exact\n";
   const std::string error = errorOf(text);
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:30", "interpolation"})) << error;
+  EXPECT_TRUE(hasLineWith(error, {"job.yaml:35", "interpolation"})) << error;
   EXPECT_TRUE(hasLineWith(error, {"interpolation.tolerance_um", "missing"})) << error;
 }
 
@@ -472,7 +474,7 @@ TEST(JobFile, RefusesAKeyThatIsNotAWord) {
   } catch (const std::exception& e) {
     error = std::string("not a JobFileError: ") + e.what();
   }
-  EXPECT_EQ(error.find("job.yaml:34"), 0u) << error;
+  EXPECT_EQ(error.find("job.yaml:39"), 0u) << error;
 }
 
 TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
@@ -603,7 +605,7 @@ TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
 TEST(JobFile, NamesTheFileAndLineOfAnErrorInIt) {
   const std::string path = ::testing::TempDir() + "flute_grinder_bad_job.yaml";
   std::ofstream(path) << with("depth_mm: 1.5", "depth_mm: deep");
-  EXPECT_EQ(fileErrorOf(path).find(path + ":13: process.depth_mm = deep"), 0u) << fileErrorOf(path);
+  EXPECT_EQ(fileErrorOf(path).find(path + ":18: process.depth_mm = deep"), 0u) << fileErrorOf(path);
 }
 
 }  // namespace test_job_file

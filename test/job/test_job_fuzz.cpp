@@ -143,9 +143,8 @@ GrindJob allowedJob(Dice& dice) {
   if (dice.once(2)) g.cone_angle *= dice.scaled(1e-12, 1);
   const double apex = -g.end_diameter / 2 / std::tan(g.cone_angle);
   const double close = 1 - dice.scaled(1e-15, 1);
-  g.core_diameter = dice.once(2) ? g.end_diameter * dice.within(0, 0.99) : 0;
-  g.core_diameter_end = 0;
-  if (!(g.core_diameter > 0)) g.core_tolerance = 0;
+  test_support::askForRakeAlone(g);
+  g.chordal_rake_depth = 0;
   g.flute_length = dice.scaled(0.1e-3, 3e-3);
   p.overtravel_shank = dice.within(0, 1e-3);
   p.overtravel_end = dice.within(0, 1e-3);

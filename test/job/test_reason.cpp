@@ -265,15 +265,23 @@ const Row kRows[]{
      "within 0.00872665 rad of it; change process.setup_lead",
      "cutter.spiral_angle_deg = 30 deg: the edge of tooth 3 is ground with 45 deg at X = 12.3 mm; allowed: within 0.5 "
      "deg of it; change process.setup.lead_mm"},
-    {Kind::kCoreSize, "CoreSize", Unit::kMetre, 0.00713, 0.0068,
+    {Kind::kChordalRake, "ChordalRake", Unit::kRadian, 0.25 * kPi, kPi / 18,
      [](Reason& r) {
-       r.field = "cutter.core_diameter";
-       r.low = 2e-5;
+       r.low = kPi / 36;
+       r.tooth = 2;
+       r.x = 0.0123;
      },
-     "cutter.core_diameter = 0.0068 m: the core is 0.00713 m at X = 0 m; allowed: within 2e-05 m of it; change "
-     "process.depth or process.depth_end",
-     "cutter.core_diameter_mm = 6.8 mm: the core is 7.13 mm at X = 0 mm; allowed: within 0.02 mm of it; change "
-     "process.depth_mm or process.depth_end_mm"},
+     "cutter.rake_angle = 0.174533 rad: tooth 3 has a chordal rake of 0.785398 rad at X = 0.0123 m; allowed: within "
+     "0.0872665 rad of it; change process.wheel_diameter or process.wheel_width",
+     "cutter.rake_angle_deg = 10 deg: tooth 3 has a chordal rake of 45 deg at X = 12.3 mm; allowed: within 5 deg of "
+     "it; "
+     "change process.wheel.diameter_mm or process.wheel.width_mm"},
+    {Kind::kCoreSize, "CoreSize", Unit::kMetre, 0.00713, 0.0068, [](Reason& r) { r.low = 2e-5; },
+     "cutter.core_diameter, cutter.core_diameter_end: the core is 0.00713 m at X = 0 m; allowed: within 2e-05 m of "
+     "0.0068 m; change process.depth or process.depth_end",
+     "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 7.13 mm at X = 0 mm; allowed: within 0.02 mm "
+     "of "
+     "6.8 mm; change process.depth_mm or process.depth_end_mm"},
     {Kind::kLand, "Land", Unit::kRadian, 0.75 * kPi, 0.5 * kPi, [](Reason& r) { r.x = 0.0123; },
      "no land is left on tooth 1 at X = 0.0123 m: its flute takes 2.35619 rad, its pitch is 1.5708 rad; lower "
      "process.wheel_width or process.depth",

@@ -56,14 +56,16 @@ std::string errorOf(const std::string& text) {
 
 /// A job whose wheel's keys are these lines.
 std::string jobText(const std::string& wheel) {
-  return "cutter: {end_diameter_mm: 6, cone_angle_deg: -1, spiral_angle_deg: -45, rake_angle_deg: 12,\n"        // 1
-         "  flute_length_mm: 25, teeth: 4, cut: left_hand, rake_tolerance_deg: 0.25, shank_diameter_mm: 10}\n"  // 2
-         "process:\n"                                                                                           // 3
-         "  feed_mm_min: 200\n  depth_mm: 1.5\n  infeed_mm: 0.5\n  finish_infeed_mm: 0.05\n"                    // 4-7
-         "  spark_out: 1\n  clearance_mm: 5\n  overtravel_mm: [1, 2]\n  order: pass_major\n"                    // 8-11
-         "  direction: to_end\n"                                                                                // 12
-         "  wheel:\n" +                                                                                         // 13
-         wheel +                                                                                                // 14-
+  return "cutter: {end_diameter_mm: 6, cone_angle_deg: -1, spiral_angle_deg: -45, rake_angle_deg: 12,\n"  // 1
+         "  flute_length_mm: 25, teeth: 4, cut: left_hand, rake_tolerance_deg: 0.25, shank_diameter_mm: 10,"
+         "  chordal_rake_tolerance_deg: 5, spiral_tolerance_deg: 0.5, core_diameter_mm: 3.5, core_diameter_end_mm: 3,"
+         "  core_tolerance_mm: 0.05}\n"                                                       // 2
+         "process:\n"                                                                         // 3
+         "  feed_mm_min: 200\n  depth_mm: 1.5\n  infeed_mm: 0.5\n  finish_infeed_mm: 0.05\n"  // 4-7
+         "  spark_out: 1\n  clearance_mm: 5\n  overtravel_mm: [1, 2]\n  order: pass_major\n"  // 8-11
+         "  direction: to_end\n"                                                              // 12
+         "  wheel:\n" +                                                                       // 13
+         wheel +                                                                              // 14-
          "  setup: {swivel_deg: -46, height_mm: 1.25}\n"
          "interpolation: {even_step: exact, tolerance_um: 2, rotary_scale_mm_per_rad: 1}\n";
 }

@@ -29,6 +29,7 @@ Machine machine() {
 GrindGoal goodGoal() {
   GrindJob j;
   j.cutter = {10e-3, 0.09, 0.5, 0.1, 2e-3, CutDirection::kRightHand, 0.01, 10e-3};
+  test_support::askForRakeAlone(j.cutter);
   j.tooth_angles = {0, 1};
   j.process.feed = 0.02;
   j.process.depth = 0.5e-3;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "any_tool.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/motion/axis_limits.h"
@@ -69,6 +70,7 @@ inline rc::Gen<CutterGeometry> cutterGeometry() {
     g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
     g.cut = *rc::gen::arbitrary<bool>() ? CutDirection::kLeftHand : CutDirection::kRightHand;
     g.rake_tolerance = 0.5 * units::kDegree;
+    askForRakeAlone(g);
     g.shank_diameter = 10e-3;
     return g;
   });
@@ -222,8 +224,10 @@ inline rc::Gen<Work> correctedWork(double cycles) {
 
 /// The paper's cutter: D1 10 mm, S 30 deg, C 5 deg, r 8 deg, 30 mm.
 inline CutterGeometry paperCutter() {
-  return {10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
-          30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
+  CutterGeometry g{10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
+                   30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
+  askForRakeAlone(g);
+  return g;
 }
 
 /// The paper's cutter at 600 mm/min in one pass.

@@ -52,6 +52,12 @@ PAPER = {
     'cutter.flute_length': 30 * MM,
     'cutter.cut': 0,
     'cutter.rake_tolerance': 0.5 * DEG,
+    'cutter.chordal_rake_tolerance': 6 * DEG,
+    'cutter.chordal_rake_depth': 0.0,
+    'cutter.spiral_tolerance': 4 * DEG,
+    'cutter.core_diameter': 7.1 * MM,
+    'cutter.core_diameter_end': 12.4 * MM,
+    'cutter.core_tolerance': 0.1 * MM,
     'cutter.shank_diameter': 16 * MM,
     'cutter.neck_length': 0.0,
     'cutter.tooth_angles': [0.0],
@@ -85,11 +91,20 @@ PAPER = {
 }
 
 
+# What any tool has.
+ANY_TOOL = {'rake_tolerance_deg': 180, 'chordal_rake_tolerance_deg': 180, 'spiral_tolerance_deg': 180, 'core_diameter_mm': 0.01,
+            'core_diameter_end_mm': 0.01, 'core_tolerance_mm': 100}
+
 # The same for tests of the motion: shallow and with a short stroke, whatever tool comes out will do, and the shank is out of
 # the wheel's way.
 MOTION = dict(PAPER, **{
     'cutter.shank_diameter': 1 * MM,
     'cutter.rake_tolerance': 180 * DEG,
+    'cutter.chordal_rake_tolerance': 180 * DEG,
+    'cutter.spiral_tolerance': 180 * DEG,
+    'cutter.core_diameter': 0.01 * MM,
+    'cutter.core_diameter_end': 0.01 * MM,
+    'cutter.core_tolerance': 100 * MM,
     'process.depth': 0.5 * MM,
     'process.infeed': 0.5 * MM,
     'process.overtravel_shank': 1 * MM,
@@ -164,10 +179,12 @@ def job_from_file(path):
         'cutter.flute_length': cutter['flute_length_mm'] * MM,
         'cutter.cut': ['right_hand', 'left_hand'].index(cutter['cut']),
         'cutter.rake_tolerance': cutter['rake_tolerance_deg'] * DEG,
-        'cutter.spiral_tolerance': cutter.get('spiral_tolerance_deg', 0) * DEG,
-        'cutter.core_diameter': cutter.get('core_diameter_mm', 0) * MM,
-        'cutter.core_diameter_end': cutter.get('core_diameter_end_mm', 0) * MM,
-        'cutter.core_tolerance': cutter.get('core_tolerance_mm', 0) * MM,
+        'cutter.chordal_rake_tolerance': cutter['chordal_rake_tolerance_deg'] * DEG,
+        'cutter.chordal_rake_depth': cutter.get('chordal_rake_depth_mm', 0) * MM,
+        'cutter.spiral_tolerance': cutter['spiral_tolerance_deg'] * DEG,
+        'cutter.core_diameter': cutter['core_diameter_mm'] * MM,
+        'cutter.core_diameter_end': cutter['core_diameter_end_mm'] * MM,
+        'cutter.core_tolerance': cutter['core_tolerance_mm'] * MM,
         'cutter.shank_diameter': cutter['shank_diameter_mm'] * MM,
         'cutter.neck_length': cutter.get('neck_length_mm', 0) * MM,
         'cutter.tooth_angles': [angle * DEG for angle in angles],
@@ -204,7 +221,8 @@ def job_file(path, **changes):
     with open(package_file('test/jobs/paper.yaml')) as original:
         text = original.read()
     if changes:
-        changes = dict({'rake_tolerance_deg': 180, 'shank_diameter_mm': 1, 'depth_mm': 0.5, 'infeed_mm': 0.5, 'overtravel_mm': '[1, 1]'}, **changes)
+        motion = dict(ANY_TOOL, shank_diameter_mm=1, depth_mm=0.5, infeed_mm=0.5, overtravel_mm='[1, 1]')
+        changes = dict(motion, **changes)
         text = text.replace('  direction:', '  incomplete_ok: true\n  direction:')
     for key, value in changes.items():
         text, count = re.subn(r'(?m)^( +%s:) *(\[.*?\]|\{.*?\}|[^ #\n]+)' % key, r'\g<1> %s' % value, text)

@@ -176,21 +176,23 @@ class TestPlan(CommandLine):
         # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
         self.assertAlmostEqual(told['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
         self.assertRegex(self.grind(0, 'plan', PAPER_JOB).stdout, r'cut out of the shank 0\.375 mm more than the infeed, .* X 30\.000 mm')
-        self.assertEqual(len(told), 33)
+        self.assertEqual(len(told), 37)
 
     def test_what_is_asked_stands_beside_what_is_ground(self):
         with open(PAPER_JOB) as file:
-            job = self.write('core.yaml', file.read().replace('  teeth: 1\n', (
-                '  teeth: 1\n  core_diameter_mm: 7\n  core_diameter_end_mm: 12.3\n  core_tolerance_mm: 0.1\n'
-                '  spiral_tolerance_deg: 4\n')))
+            text = file.read()
+        for key, value in (('core_diameter_mm', 7), ('core_diameter_end_mm', 12.3), ('chordal_rake_tolerance_deg', 5)):
+            text, count = re.subn(r'(?m)^( +%s:).*$' % key, r'\g<1> %g' % value, text)
+            self.assertEqual(count, 1, key)
+        job = self.write('core.yaml', text)
         told, printed = self.json(0, 'plan', job)[0], self.grind(0, 'plan', job).stdout
         sections = self.json(0, 'simulate', job, '--sections', '9')[0]['sections']
-        for name, asked, tolerance in (('rake', 8, 0.5), ('spiral', 30, 4)):
+        for name, asked, tolerance in (('rake', 8, 0.5), ('chordal_rake', 8, 5), ('spiral', 30, 4)):
             ground = [tooth[name + '_deg'] for section in sections for tooth in section['teeth']]
             self.assertEqual([told[name + end] for end in ('_min_deg', '_max_deg')], [min(ground), max(ground)])
             self.assertEqual(told[name + '_tolerance_deg'], tolerance)
             self.assertRegex(printed, r'(?m)^%s.* %.3f to %.3f deg; asked %g deg within %g deg$' % (
-                name, min(ground), max(ground), asked, tolerance))
+                name.replace('_', ' '), min(ground), max(ground), asked, tolerance))
         ends = [sections[i]['core_diameter_mm'] for i in (0, -1)]
         self.assertEqual([told['core_diameter_mm'], told['core_diameter_end_mm']], ends)
         self.assertRegex(printed, r"(?m)^core  .* %.3f mm at X = 0, %.3f mm at the flute's end; "

@@ -1,5 +1,6 @@
 #include "flute_grinder/record/job_record.h"
 
+#include "any_tool.h"
 #include "control/fixtures.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/record_name.h"
@@ -33,6 +34,7 @@ const core::MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive
 /// Two unequal teeth of a short cone in two passes.
 GrindJob shortJob() {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
+  test_support::askForRakeAlone(job.cutter);
   job.cutter.flute_length = 2e-3;
   job.process.overtravel_shank = 1e-3;
   job.process.feed = 0.05;

@@ -177,8 +177,8 @@ class Attacked(unittest.TestCase):
         request = PlanRequest(gc.goal_of(gc.paper()))
         text = io.BytesIO()
         request.serialize(text)
-        # The claim is behind twelve numbers and a choice of the cutter.
-        at = 12 * 8 + 1
+        # The claim is behind fourteen numbers and a choice of the cutter.
+        at = 14 * 8 + 1
         text = bytearray(text.getvalue())
         self.assertEqual(struct.unpack_from('<Id', text, at), (1, 0.0))
         struct.pack_into('<I', text, at, teeth)

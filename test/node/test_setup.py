@@ -13,10 +13,11 @@ import rostest
 import yaml
 
 import grinder_client as gc
-from grind_command import PAPER_JOB, CommandLine
+from grind_command import CommandLine
 from grinder_client import DEG
 
 JOBS = gc.package_file('jobs')
+PAPER_JOB = os.path.join(JOBS, 'paper.yaml')
 URDF = gc.package_file('urdf/grinder.urdf')
 
 
@@ -42,8 +43,9 @@ class TestSetup(CommandLine):
         sections = self.json(0, 'simulate', job, '--at', ','.join(str(x) for x in at))[0]['sections']
         return [tooth['rake_deg'] for section in sections for tooth in section['teeth']]
 
-    def core(self, job):
-        return self.json(0, 'simulate', job, '--at', '0')[0]['sections'][0]['core_diameter_mm']
+    def cores(self, job):
+        """At both ends of the flute."""
+        return [section['core_diameter_mm'] for section in self.json(0, 'simulate', job, '--sections', '2')[0]['sections']]
 
     def check(self, job):
         """The written job is ground with the rake that it asks for, off by as much to one side as to the other over the flute,
@@ -62,16 +64,13 @@ class TestFigures(TestSetup):
         job = self.job('job.yaml', setup=None)
         self.assertIn("'grind setup --write' finds it", self.grind(2, 'plan', job).stderr)
         found = self.setup(job, '--write')
-        self.assertAlmostEqual(found['swivel_deg'], 31.769, delta=0.01)
-        self.assertAlmostEqual(found['height_mm'], 2.788, delta=0.01)
-        self.assertAlmostEqual(found['upper_face_mm'], 4.552, delta=0.01)
-        self.assertEqual(found['depth_mm'], 1.6)
-        self.assertAlmostEqual(found['rake_min_deg'], 7.989, delta=0.003)
-        self.assertAlmostEqual(found['rake_max_deg'], 8.011, delta=0.003)
-        # Printed in the design for X = 1, 17 and 29 mm, where its program makes it right at X = 2 and 28 mm; here the error is
-        # shared out.
-        for rake, printed in zip(self.rakes(job, 1, 17, 29), (7.999, 8.019, 7.999)):
-            self.assertAlmostEqual(rake, printed - 0.0085, delta=0.003)
+        # Of another program, which is good to 0.02 deg and 0.02 mm.
+        for key, figure in (('swivel_deg', 32.350), ('height_mm', 5.880), ('lead_mm', 11.847), ('depth_mm', 2.656),
+                            ('depth_end_mm', 2.616)):
+            self.assertAlmostEqual(found[key], figure, delta=0.02, msg=key)
+        self.assertAlmostEqual(found['upper_face_mm'], found['height_mm'] + 1.5 / math.cos(found['swivel_deg'] * DEG), delta=1e-6)
+        for core, asked in zip(self.cores(job), (6.8, 12.05)):
+            self.assertAlmostEqual(core, asked, delta=0.001)
         self.check(job)
         self.assertEqual(self.setup(job), found)
 
@@ -91,16 +90,17 @@ class TestFigures(TestSetup):
                 self.assertEqual(re.sub(number, '#', self.text(job)), re.sub(number, '#', before))
 
     def test_core_together_with_the_rake(self):
-        for core in (7.3, 6.8):
-            job = self.job('job.yaml', depth_mm=None, setup=None, infeed_mm=2.5,
-                           spiral_angle_deg='30\n  core_diameter_mm: %g' % core)
+        for asked in ((7.3, 12.5), (6.8, 12.05)):
+            changes = dict(setup=None, infeed_mm=3, overtravel_mm='[1, 8]', core_diameter_mm=asked[0], core_diameter_end_mm=asked[1])
+            job = self.job('job.yaml', depth_mm=None, **changes)
             found = self.setup(job, '--write')
-            self.assertAlmostEqual(found['core_diameter_mm'], core, delta=0.001)
-            self.assertAlmostEqual(self.core(job), core, delta=0.001)
+            told = found['core_diameter_mm'], found['core_diameter_end_mm']
+            for core, measured, wanted in zip(told, self.cores(job), asked):
+                self.assertAlmostEqual(core, wanted, delta=0.001)
+                self.assertAlmostEqual(measured, wanted, delta=0.001)
             self.check(job)
             # In the place of a depth, too.
-            beside = self.job('beside.yaml', setup=None, infeed_mm=2.5, spiral_angle_deg='30\n  core_diameter_mm: %g' % core)
-            self.assertEqual(self.setup(beside), found)
+            self.assertEqual(self.setup(self.job('beside.yaml', **changes)), found)
 
     def test_cylinder_keeps_what_it_shall(self):
         source = os.path.join(JOBS, 'roughing_d10_t4.yaml')
@@ -121,8 +121,16 @@ class TestFigures(TestSetup):
             with self.subTest(keep):
                 job = self.job('job.yaml', source, setup=setup, core_diameter_mm=6.82, core_diameter_end_mm=6.82)
                 self.setup(job, '--keep', keep, '--write')
-                self.assertAlmostEqual(self.core(job), 6.82, delta=0.001)
+                for core in self.cores(job):
+                    self.assertAlmostEqual(core, 6.82, delta=0.001)
                 self.check(job)
+
+    def test_cone_keeps_what_it_shall(self):
+        for keep, key, figure in (('swivel', 'swivel_deg', 32.34), ('height', 'height_mm', 5.882), ('depth', 'depth_mm', 2.6575)):
+            with self.subTest(keep):
+                job = self.job('job.yaml')
+                self.assertEqual(self.setup(job, '--keep', keep, '--write')[key], figure)
+                self.grind(0, 'plan', job)
 
     def test_mirrored_tool_has_the_mirrored_setup(self):
         for source, spiral in ((PAPER_JOB, 30), (os.path.join(JOBS, 'roughing_d10_t4.yaml'), 35)):
@@ -131,6 +139,7 @@ class TestFigures(TestSetup):
             found = self.setup(left, '--write')
             self.assertAlmostEqual(found['swivel_deg'], -right['swivel_deg'], delta=0.001)
             self.assertAlmostEqual(found['height_mm'], -right['height_mm'], delta=0.001)
+            self.assertAlmostEqual(found['lead_mm'], right['lead_mm'], delta=0.001)
             self.check(left)
 
     def test_overtravel_is_lengthened_where_it_is_too_short(self):
@@ -145,10 +154,19 @@ class TestFigures(TestSetup):
         self.check(job)
 
     def test_sheet(self):
-        sheet = self.grind(0, 'setup', PAPER_JOB).stdout
-        for line in (r'swivel +31\.76\d deg; the machine.s range is -60 to 60 deg', r'height +2\.788 mm', r'0\.1498 mm less per mm of the wheel.s middle above the swivel.s centre', r'upper face 4\.55[23] mm',
-                     r'reads D/2 - 1\.288 mm: 3\.712 mm for D = 10 mm', r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm',
-                     r'rake +7\.989 to 8\.011 deg; asked 8 deg within 0\.5 deg', r'flutes complete X 0\.000 to 30\.000 mm'):
+        sheet, found = self.grind(0, 'setup', PAPER_JOB).stdout, self.setup(PAPER_JOB)
+        swivel, height = found['swivel_deg'] * DEG, found['height_mm']
+        lines = [r"swivel +%.3f deg; the machine's range is -60 to 60 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
+                 'lead +%.3f mm' % found['lead_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
+                 r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
+                 r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),
+                 r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete X 0\.000 to 30\.000 mm',
+                 r"core +6\.800 mm at X = 0, 12\.050 mm at the flute's end; asked 6\.8 mm and 12\.05 mm within 0\.02 mm"]
+        for name, key, asked in (('rake', 'rake', '8 deg within 0.5'), ('chordal rake', 'chordal_rake', '8 deg within 7'),
+                                 ('spiral angle', 'spiral', '30 deg within 0.3')):
+            ends = found[key + '_min_deg'], found[key + '_max_deg']
+            lines.append(r'(?m)^  %s +%.3f to %.3f deg; asked %s deg$' % (name, *ends, asked))
+        for line in lines:
             self.assertRegex(sheet, line)
 
 
@@ -164,11 +182,11 @@ class TestRefusals(TestSetup):
         job, urdf = self.job('job.yaml'), self.narrow()
         before = self.text(job)
         said = self.grind(1, 'setup', job, '--write', '--urdf', urdf).stderr
-        self.assertRegex(said, r'^the set-up takes a swivel of 31\.7\d* deg; the machine swivels -28\.648 to 28\.648 deg; '
+        self.assertRegex(said, r'^the set-up takes a swivel of 32\.3\d* deg; the machine swivels -28\.648 to 28\.648 deg; '
                                r'change cutter\.spiral_angle_deg\n$')
         self.assertEqual(self.text(job), before)
         said = self.grind(1, 'plan', job, '--urdf', urdf).stderr
-        self.assertIn('process.setup.swivel_deg = 31.769 deg; allowed: -28.64788976 to 28.64788976 deg', said)
+        self.assertIn('process.setup.swivel_deg = 32.34 deg; allowed: -28.64788976 to 28.64788976 deg', said)
 
     def test_no_room_for_the_teeth(self):
         said = self.grind(1, 'setup', self.job('job.yaml', teeth=8)).stderr
@@ -179,7 +197,8 @@ class TestRefusals(TestSetup):
         for keep, key in (('swivel', 'process.setup.swivel_deg'), ('height', 'process.setup.height_mm')):
             said = self.grind(2, 'setup', self.job('job.yaml', setup=None), '--keep', keep).stderr
             self.assertRegex(said, r'job\.yaml:1: %s is missing' % re.escape(key))
-        self.assertRegex(self.grind(2, 'setup', self.job('job.yaml', depth_mm=None)).stderr, 'depth_mm is missing')
+        said = self.grind(2, 'setup', self.job('job.yaml', depth_mm=None), '--keep', 'depth').stderr
+        self.assertRegex(said, 'depth_mm is missing')
         self.assertRegex(self.grind(2, 'setup', PAPER_JOB, '--keep', 'rake').stderr, 'rake')
 
     def test_urdf_without_a_swivel(self):
@@ -193,17 +212,18 @@ class TestRefusals(TestSetup):
         before = self.text(job)
         said = self.grind(1, 'setup', job, '--write').stderr
         self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth \d is ground with .*, or set '
-                               r'process\.z_law: constant_rake\n.*job\.yaml: nothing was written\n$')
+                               r'process\.z_law: constant_rake\n(a plan would refuse this tool: .*\n)*.*job\.yaml: nothing was written\n$')
         self.assertEqual(self.text(job), before)
         self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)
-        job = self.job('job.yaml', rake_tolerance_deg='0.01', depth_mm='1.6\n  z_law: constant_rake')
+        job = self.job('job.yaml', rake_tolerance_deg='0.01', depth_mm='2.6575\n  z_law: constant_rake')
         self.setup(job, '--write')
         self.grind(0, 'plan', job)
 
     def test_depth_beyond_the_axis_is_none(self):
         # Solved with a depth of 3.6 mm, which the job then refused.
         job = self.job('job.yaml', end_diameter_mm=4.957, cone_angle_deg=1.44, rake_angle_deg=13.02, flute_length_mm=14.26,
-                       spiral_angle_deg='19.45\n  core_diameter_mm: 2.088', diameter_mm=88.5, width_mm=0.77)
+                       spiral_angle_deg=19.45, core_diameter_mm=2.088, core_diameter_end_mm=2.805, depth_mm=None,
+                       depth_end_mm=1.6, diameter_mm=88.5, width_mm=0.77, infeed_mm=1.6, setup=None)
         self.assertRegex(self.grind(1, 'setup', job).stderr, r'^no set-up gives all that is asked within its tolerance;')
 
 
@@ -229,9 +249,11 @@ class TestFile(TestSetup):
         job = self.job('job.yaml', setup='{swivel_deg: !!float 30, height_mm: 2}')
         before = self.text(job)
         said = self.grind(2, 'setup', job, '--write').stderr
-        self.assertRegex(said, r'job\.yaml:28: has a value that is not written as a plain number; nothing was written, '
-                               r'write by hand:\n'
-                               r'  process\.setup\.swivel_deg: 31\.76\d*\n  process\.setup\.height_mm: 2\.78\d*\n')
+        self.assertRegex(said, r'job\.yaml:35: has a value that is not written as a plain number; nothing was written, '
+                               r'write by hand:\n(  process\.[a-z_.]+: [\d.]+\n)+$')
+        told = {key: float(figure) for key, figure in re.findall(r'process\.(?:setup\.)?(\w+): (\S+)\n', said)}
+        figures = self.setup(PAPER_JOB)
+        self.assertEqual(told, {key: figures[key] for key in ('swivel_deg', 'height_mm', 'lead_mm', 'depth_mm', 'depth_end_mm')})
         self.assertEqual(self.text(job), before)
         self.assertEqual(os.listdir(self.folder), ['job.yaml'])
 

@@ -22,7 +22,7 @@ CYLINDER = {'cutter': {'cone_angle_deg': 0, 'rake_tolerance_deg': 0.5}, 'process
             'wheel': {'width_mm': 6}}
 # The paper's with a stroke so long that its ends do not matter.
 LONG_PAPER = {'cutter': {}, 'process': {'overtravel_mm': [56, 60]}, 'wheel': {'width_mm': 3}}
-NULLABLE = {'edge_deg', 'rake_deg', 'normal_rake_deg', 'flute_deg', 'land_deg', 'land_mm', 'spiral_deg'}
+NULLABLE = {'edge_deg', 'rake_deg', 'chordal_rake_deg', 'normal_rake_deg', 'flute_deg', 'land_deg', 'land_mm', 'spiral_deg'}
 
 
 def face_at(face, width, swivel):
@@ -32,14 +32,7 @@ def face_at(face, width, swivel):
 
 def paper_goal():
     """The goal of test/jobs/paper.yaml."""
-    goal = gc.goal_of(gc.job_from_file(PAPER_JOB))
-    with open(PAPER_JOB) as file:
-        job = yaml.safe_load(file)
-    setup = job['process']['setup']
-    goal.process.setup_swivel, goal.process.setup_height = setup['swivel_deg'] * DEG, setup['height_mm'] * MM
-    goal.cutter.rake_tolerance = job['cutter']['rake_tolerance_deg'] * DEG
-    goal.cutter.shank_diameter = job['cutter']['shank_diameter_mm'] * MM
-    return goal
+    return gc.goal_of(gc.job_from_file(PAPER_JOB))
 
 
 class TestSimulate(CommandLine):
@@ -48,7 +41,8 @@ class TestSimulate(CommandLine):
         with open(PAPER_JOB) as file:
             job = yaml.safe_load(file)
         case = case or {}
-        job['cutter'].update(case.get('cutter', {}))
+        if 'cutter' in case:
+            job['cutter'].update(dict(gc.ANY_TOOL, rake_tolerance_deg=0.5), **case['cutter'])
         job['process'].update(case.get('process', {}))
         job['process']['wheel'].update(case.get('wheel', {}))
         job['process']['setup'].update(setup)

@@ -34,7 +34,7 @@ class StandIn:
         rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
         rospy.Service('grinder/lift', Trigger, self.on_lift)
         rospy.Service('grinder/plan', Plan, lambda _: PlanResponse(
-            valid=True, complete_from=0, complete_to=0.03, rake=NONE, spiral_angle=NONE, edge=NONE[0], core_diameter=NONE))
+            valid=True, complete_from=0, complete_to=0.03, rake=NONE, chordal_rake=NONE, spiral_angle=NONE, edge=math.nan, core_diameter=NONE))
         self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
         self.server.start()
         threading.Thread(target=self.tell, daemon=True).start()

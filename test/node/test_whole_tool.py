@@ -33,6 +33,11 @@ cutter:
   spiral_angle_deg: 30
   rake_angle_deg: 8
   rake_tolerance_deg: 180
+  chordal_rake_tolerance_deg: 180
+  spiral_tolerance_deg: 180
+  core_diameter_mm: 0.01
+  core_diameter_end_mm: 0.01
+  core_tolerance_mm: 100
   cut: right_hand
   flute_length_mm: 5
   shank_diameter_mm: 1
@@ -427,6 +432,7 @@ class TestShortTool(WholeTool, unittest.TestCase):
 # A steep cone, whose rake is half a degree off amid the flute by the published law of Z.
 STEEP_TOOL = """
 cutter: {end_diameter_mm: 5, cone_angle_deg: 10, spiral_angle_deg: 20, rake_angle_deg: 14, rake_tolerance_deg: 0.1, cut: right_hand,
+  chordal_rake_tolerance_deg: 180, spiral_tolerance_deg: 180, core_diameter_mm: 0.01, core_diameter_end_mm: 0.01, core_tolerance_mm: 100,
   flute_length_mm: 15, shank_diameter_mm: 12, teeth: 2}
 process:
   feed_mm_min: 1200

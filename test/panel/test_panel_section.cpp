@@ -28,6 +28,9 @@ const char* const kRed = "color:#b00020";
 constexpr double kRadius = 5, kDepth = 1.6;  // [mm]
 const double kFace = kRadius * std::sin(8 * M_PI / 180);
 
+/// The core that test/jobs/paper.yaml asks for at X [mm].
+double paperCore(double x) { return 7.1 + (12.4 - 7.1) * x / 30; }
+
 /// The closed form of the flute's angle that a wheel leaves [deg].
 double flute(double width) {
   const double half_floor = std::acos((kRadius - kDepth) / kRadius);
@@ -45,6 +48,8 @@ class SectionOnStage : public ::testing::Test {
     return changedJob(kPaper, folder.filePath("cylinder.yaml"),
                       {{"cone_angle_deg: 5", "cone_angle_deg: 0"},
                        {"spiral_angle_deg: 30", "spiral_angle_deg: 0"},
+                       {"core_diameter_mm: 7.1", "core_diameter_mm: 6.8"},
+                       {"core_diameter_end_mm: 12.4", "core_diameter_end_mm: 6.8"},
                        {"teeth: 1", "teeth: " + QByteArray::number(teeth)},
                        {"width_mm: 3", "width_mm: " + QByteArray::number(width)},
                        {"overtravel_mm: [1, 7]", "overtravel_mm: [20, 20]"},
@@ -88,13 +93,15 @@ TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
   openSection(panel);
   WAIT_FOR(shows(panel, "Rake "));
   EXPECT_EQ(x(panel), 15) << "the middle";
-  EXPECT_TRUE(shows(panel, "Rake 8.00 deg, asked 7.50 to 8.50 deg<br>Core 6.800 mm, asked 6.800 mm<br>Land "))
+  // The rake face is a plane, so that the chord has its angle.
+  EXPECT_TRUE(shows(panel, "Rake 8.00 deg, asked 7.50 to 8.50 deg, chordal 8.00 deg<br>"
+                           "Core 6.800 mm, asked 6.800 within 0.1 mm<br>Spiral "))
       << panel.label("section_figures");
   const double land = 360 - flute(3);
   const std::vector<double> shown = numbers(panel);
-  ASSERT_EQ(shown.size(), 7U) << panel.label("section_figures");
-  EXPECT_NEAR(shown[5], land, 0.0051);
-  EXPECT_NEAR(shown[6], kRadius * land * M_PI / 180, 0.0051);
+  ASSERT_EQ(shown.size(), 11U) << panel.label("section_figures");
+  EXPECT_NEAR(shown[9], land, 0.0051);
+  EXPECT_NEAR(shown[10], kRadius * land * M_PI / 180, 0.0051);
   EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
 }
 
@@ -108,8 +115,7 @@ TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {
   for (const auto& [place, rake] : {std::pair{1.0, 7.999}, {17.0, 8.019}, {29.0, 7.999}}) {
     auto& box = panel.the<QDoubleSpinBox>("section_x");
     box.setValue(place);
-    const double asked_core = 2 * (5 + place * std::tan(5 * M_PI / 180) - 1.6);
-    WAIT_FOR(shows(panel, "asked " + QString::number(asked_core, 'f', 3).toStdString() + " mm"));
+    WAIT_FOR(shows(panel, "asked " + QString::number(paperCore(place), 'f', 3).toStdString() + " within 0.1 mm"));
     EXPECT_NEAR(numbers(panel).at(0), rake, 0.006) << place;
     EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
   }
@@ -128,8 +134,8 @@ TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   openSection(panel);
   WAIT_FOR(shows(panel, "Land "));
   const std::vector<double> shown = numbers(panel);
-  ASSERT_EQ(shown.size(), 13U) << panel.label("section_figures");
-  EXPECT_NEAR(shown[10] - shown[9], (*largest - *least) * 180 / M_PI, 0.02);
+  ASSERT_EQ(shown.size(), 14U) << panel.label("section_figures");
+  EXPECT_NEAR(shown[11] - shown[10], (*largest - *least) * 180 / M_PI, 0.02);
   panel.picture("section_of_a_tool");
 }
 
@@ -149,15 +155,15 @@ TEST_F(SectionOnStage, WhatIsNotAsAskedIsRed) {
   panel.picture("section_wrong_rake");
 }
 
-TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
-  const auto job = [&](const QString& name, const QByteArray& core, const QByteArray& spiral) {
-    return changedJob(
-        kPaper, folder.filePath(name),
-        {{"rake_tolerance_deg: 0.5", "rake_tolerance_deg: 0.5\n  core_diameter_mm: " + core +
-                                         "\n  core_tolerance_mm: 0.1\n  spiral_tolerance_deg: " + spiral}});
+TEST_F(SectionOnStage, CoreSpiralAndChordHaveTheirTolerances) {
+  const auto job = [&](const QString& name, const QByteArray& core, const QByteArray& spiral, const QByteArray& chord) {
+    return changedJob(kPaper, folder.filePath(name),
+                      {{"core_diameter_mm: 7.1", "core_diameter_mm: " + core},
+                       {"spiral_tolerance_deg: 4", "spiral_tolerance_deg: " + spiral},
+                       {"chordal_rake_tolerance_deg: 6", "chordal_rake_tolerance_deg: " + chord}});
   };
   {
-    Panel good("cell/stage", job("good.yaml", "7.1", "5"));
+    Panel good("cell/stage", job("good.yaml", "7.1", "5", "6"));
     openSection(good);
     WAIT_FOR(shows(good, "Core "));
     good.the<QDoubleSpinBox>("section_x").setValue(0);
@@ -166,13 +172,14 @@ TEST_F(SectionOnStage, CoreAndSpiralHaveTheirTolerances) {
     EXPECT_FALSE(shows(good, kRed)) << good.label("section_figures");
     good.picture("section_with_tolerances");
   }
-  Panel off("cell/stage", job("off.yaml", "7.4", "0.0001"));
+  Panel off("cell/stage", job("off.yaml", "7.4", "0.001", "1"));
   openSection(off);
   WAIT_FOR(shows(off, "Core "));
   off.the<QDoubleSpinBox>("section_x").setValue(0);
   WAIT_FOR(shows(off, "asked 7.400 within 0.1 mm"));
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 7.0")) << off.label("section_figures");
   EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Spiral ")) << off.label("section_figures");
+  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">, chordal ")) << off.label("section_figures");
   off.picture("section_core_off");
 }
 
@@ -185,8 +192,7 @@ TEST_F(SectionOnStage, ItFollowsTheWheel) {
   follow(panel);
   WAIT_FOR(x(panel) == 12.35 || x(panel) == 12.34);
   EXPECT_FALSE(panel.enabled("section_x"));
-  const double core = 2 * (5 + 12.34 * std::tan(5 * M_PI / 180) - 1.6);
-  WAIT_FOR(numbers(panel).size() == 7 && std::abs(numbers(panel)[4] - core) < 0.003);
+  WAIT_FOR(numbers(panel).size() == 11 && std::abs(numbers(panel)[5] - paperCore(12.345)) < 0.003);
   standAt(-0.05);
   WAIT_FOR(x(panel) == 0);
   standAt(0.2);

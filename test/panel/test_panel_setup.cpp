@@ -1,5 +1,7 @@
 // The set-up sheet in the panel: solved for the machine of the running grinder, and written into the job file.
 
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/job_file.h"
 #include "panel_fixture.h"
 
 #include <ros/package.h>
@@ -7,19 +9,22 @@
 #include <QComboBox>
 #include <QDialog>
 #include <QFile>
+#include <QRegularExpression>
 #include <QTemporaryDir>
+
+#include <cmath>
 
 namespace flute_grinder {
 namespace test_panel_setup {
 
 const QString kPackage = QString::fromStdString(ros::package::getPath("flute_grinder"));
-const QString kPaper = kPackage + "/test/jobs/paper.yaml";
-const QByteArray kSetup = "  setup: {swivel_deg: 31.769, height_mm: 2.788}";
+const QString kPaper = kPackage + "/jobs/paper.yaml";
+const QByteArray kSetup = "  setup: {swivel_deg: 32.34, height_mm: 5.882, lead_mm: 11.853}";
 
 class SetupSheet : public ::testing::Test {
  protected:
-  void open(const std::vector<std::pair<QByteArray, QByteArray>>& changes) {
-    file = changedJob(kPaper, folder.filePath("job.yaml"), changes);
+  void open(const std::vector<std::pair<QByteArray, QByteArray>>& changes, const QString& source = kPaper) {
+    file = changedJob(source, folder.filePath("job.yaml"), changes);
     panel = std::make_unique<Panel>("grinder", file);
     WAIT_FOR(panel->state() != "" && panel->enabled("setup"));
     panel->click("setup");
@@ -28,6 +33,12 @@ class SetupSheet : public ::testing::Test {
   }
   QDialog* dialog() { return panel->widget().findChild<QDialog*>("setup_dialog"); }
   std::string sheet() { return panel->text("setup_sheet"); }
+  /// The number behind these words of the sheet.
+  double figure(const QString& words) {
+    const auto match = QRegularExpression(words + R"( +(-?\d+\.\d+))").match(QString::fromStdString(sheet()));
+    EXPECT_TRUE(match.hasMatch()) << words.toStdString() << '\n' << sheet();
+    return match.captured(1).toDouble();
+  }
   QByteArray text() {
     QFile read(file);
     EXPECT_TRUE(read.open(QFile::ReadOnly));
@@ -43,34 +54,47 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   open({{kSetup, ""}});
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
   EXPECT_NE(panel->text("verdict").find("'grind setup --write' finds it"), std::string::npos) << panel->text("verdict");
-  EXPECT_NE(sheet().find("31.769 deg; the machine's range is -60 to 60 deg"), std::string::npos) << sheet();
-  EXPECT_NE(sheet().find("reads D/2 - 1.288 mm"), std::string::npos) << sheet();
+  // Of another program, which is good to 0.02 deg and 0.02 mm.
+  EXPECT_NEAR(figure("swivel"), 32.350, 0.02);
+  EXPECT_NEAR(figure("height"), 5.880, 0.02);
+  EXPECT_NEAR(figure("lead"), 11.847, 0.02);
+  EXPECT_NEAR(figure("depth"), 2.656, 0.02);
+  EXPECT_NEAR(figure("reads D/2 -"), figure("height") - 1.5, 0.0011) << "half of the wheel's width";
   const QByteArray before = text();
   WAIT_FOR(panel->enabled("write_setup"));
   panel->click("write_setup");
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
   EXPECT_FALSE(panel->enabled("write_setup"));
   EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U);
-  QByteArray after = text();
-  EXPECT_EQ(after.count("setup: {swivel_deg: 31.769, height_mm: 2.78841}"), 1);
-  EXPECT_EQ(after.replace("  setup: {swivel_deg: 31.769, height_mm: 2.78841}\n", "").size(), before.size());
+  const GrindProcess written = readJobFile(file.toStdString()).process;
+  EXPECT_NEAR(written.setup_swivel, figure("swivel") * units::kDegree, 0.0005 * units::kDegree);
+  EXPECT_NEAR(written.setup_height, figure("height") * units::kMillimetre, 0.0005 * units::kMillimetre);
+  EXPECT_NEAR(written.setup_lead, figure("lead") * units::kMillimetre, 0.0005 * units::kMillimetre);
+  // All else is as before.
+  const auto rest = [](QString job) { return job.remove(QRegularExpression("\n  setup: .*|[\\d.]")); };
+  EXPECT_EQ(rest(text()), rest(before));
   panel->click("close_setup");
   WAIT_FOR(!dialog());
 }
 
 TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
-  open({{"swivel_deg: 31.769", "swivel_deg: 31"}});
-  EXPECT_NE(sheet().find("31.769 deg; the machine's range"), std::string::npos) << sheet();
+  // On a cylinder, of which one figure may stay.
+  open({{"swivel_deg: 43.32", "swivel_deg: 43"}}, QString(kPaper).replace("paper", "roughing_d10_t4"));
+  EXPECT_NEAR(figure("upper face"), 5 * std::sin(8 * units::kDegree), 0.00051) << "where nothing is kept: R sin r";
   auto& keep = panel->the<QComboBox>("keep_figure");
   ASSERT_EQ(keep.currentText(), "nothing");
   QTest::keyClick(&keep, Qt::Key_Down);
   EXPECT_EQ(keep.currentText(), "swivel");
   EXPECT_FALSE(panel->enabled("write_setup"));
   WAIT_FOR(panel->enabled("write_setup"));
-  EXPECT_NE(sheet().find("31.000 deg; the machine's range"), std::string::npos) << sheet();
+  EXPECT_EQ(figure("swivel"), 43);
+  const double height = figure("height");
+  EXPECT_NE(height, -1.366);
   panel->click("write_setup");
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
-  EXPECT_EQ(text().count("setup: {swivel_deg: 31, height_mm: 1.64"), 1) << text().toStdString();
+  const GrindProcess written = readJobFile(file.toStdString()).process;
+  EXPECT_DOUBLE_EQ(written.setup_swivel, 43 * units::kDegree);
+  EXPECT_NEAR(written.setup_height, height * units::kMillimetre, 0.0005 * units::kMillimetre);
   QTest::keyClick(&keep, Qt::Key_Down);  // and once more
   WAIT_FOR(panel->enabled("write_setup"));
   panel->click("close_setup");

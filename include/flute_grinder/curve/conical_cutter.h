@@ -25,11 +25,13 @@ struct CutterGeometry {
   CutDirection cut = CutDirection::kRightHand;
   double rake_tolerance = 0;     ///< largest allowed difference of the ground rake from the asked one [rad]
   double shank_diameter = 0;     ///< [m]
-  double core_diameter = 0;      ///< asked at the small end; 0: whatever the depth leaves [m]
+  double core_diameter = 0;      ///< asked at the small end [m]
   double neck_length = 0;        ///< from the flute's end to the shank; 0: not known [m]
-  double core_diameter_end = 0;  ///< asked at the flute's end; 0: whatever the depth leaves [m]
-  double core_tolerance = 0;     ///< largest allowed difference of the ground core from the asked one; 0: any [m]
-  double spiral_tolerance = 0;   ///< the same of the edge's spiral angle; 0: any [rad]
+  double core_diameter_end = 0;  ///< asked at the flute's end [m]
+  double core_tolerance = 0;     ///< largest allowed difference of the ground core's diameter from the asked one [m]
+  double spiral_tolerance = 0;   ///< the same of the edge's spiral angle [rad]
+  double chordal_rake_tolerance = 0;  ///< the same of the ground chordal rake from the asked rake [rad]
+  double chordal_rake_depth = 0;  ///< below the edge, where the chord ends; 0: a tenth of the flute's depth [m]
 };
 
 /// Of a figure: X [m], an angle [rad], as its user says.

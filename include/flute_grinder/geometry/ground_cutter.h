@@ -13,12 +13,22 @@ struct ToothSection {
   std::optional<double> edge;         ///< angle of the cutting edge, counted as A is [rad]
   std::optional<double> rake;         ///< radial, at the edge [rad]
   std::optional<double> normal_rake;  ///< normal to the edge [rad]
-  std::optional<double> flute;        ///< angle that the flute takes at the outer circle [rad]
-  std::optional<double> land;         ///< angle between this flute and the next one behind its edge [rad]
-  std::optional<double> spiral;       ///< of the ground edge against the axis [rad]
-  double depth = 0;                   ///< of the flute below the outer circle [m]
-  bool complete = false;              ///< over its whole depth, as a longer stroke would leave it
+  /// Radial, of the chord from the edge to the rake face at CutterGeometry::chordal_rake_depth: what a measuring
+  /// machine finds, where the rake is the tangent at the edge, and may be that of a narrow facet [rad].
+  std::optional<double> chordal_rake;
+  std::optional<double> flute;   ///< angle that the flute takes at the outer circle [rad]
+  std::optional<double> land;    ///< angle between this flute and the next one behind its edge [rad]
+  std::optional<double> spiral;  ///< of the ground edge against the axis [rad]
+  double depth = 0;              ///< of the flute below the outer circle [m]
+  bool complete = false;         ///< over its whole depth, as a longer stroke would leave it
 };
+
+/// How far below the edge the chord of a rake face ends. @param flute_depth [m].
+double chordDepth(const CutterGeometry& cutter, double flute_depth) noexcept;
+
+/// The radial angle of a chord of a right-hand rake face. @param outer,inner radii of its ends [m].
+/// @param turn from the outer end to the inner one [rad].
+double chordAngle(double outer, double inner, double turn) noexcept;
 
 constexpr double kMinCore = 1e-6;  ///< radius of a core that still holds the teeth together [m]
 
@@ -70,8 +80,8 @@ class GroundCutter {
   const std::vector<GroundTooth>& teeth() const noexcept { return teeth_; }
 
  private:
-  /// The rake face at the blank's radius.
-  std::optional<Wall> rakeFace(const Flute& flute, double x) const;
+  std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const;
+  std::optional<double> chordalRake(const Flute& flute, double x, double depth, double edge) const;
   double coreRadius(const Flute& flute, double x) const;
   double coreRadius(double x) const;
   double areaRemoved(double x, double core_radius) const;

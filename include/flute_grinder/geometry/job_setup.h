@@ -28,11 +28,10 @@ struct JobSetup {
 /// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 
-/// Solves the set-up of a job: the rake over the flute, and the core at X = 0 if the job asks for one. The
+/// Solves the set-up of a job: rake and edge over the flute, and the cores at its ends. The
 /// wheel is taken with its wear at the job's start, and of unequal spirals the middle. The figures are rounded to what
 /// is written into a file, and measured as such, and the overtravel is lengthened to what the job's law of Z needs.
-/// Takes up to some tenths of a second; a job with both a depth at the flute's end and a depth to be found takes
-/// several times as long.
+/// Takes up to some tenths of a second, and seconds if it is refused.
 /// @param job read with unsolvedFields().
 /// @param swivel that the machine allows [rad].
 /// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.

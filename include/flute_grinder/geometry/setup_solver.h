@@ -66,29 +66,26 @@ struct SolvedSetup {
 
 /// Why there is no set-up.
 enum class SetupProblem : std::uint8_t {
-  kOverdetermined,  ///< rake and core take all three figures; none can be kept
-  kSwivel,          ///< only beyond the machine's swivel: asked is the nearest, reachable the machine's
-  kReach,           ///< the wheel reaches the cutter in no set-up
-  kCore,            ///< the wheel cuts through it
-  kWall,            ///< the wheel's circumference forms the rake face, not its face or edge
-  kTolerance,       ///< not all that is asked can be had within its tolerance
-  kLand,            ///< the flutes meet: asked is a land above 0, reachable what is left, negative
-  kIncomplete,      ///< near the cone's apex no overtravel makes the flute complete
+  kSwivel,      ///< only beyond the machine's swivel: asked is the nearest, reachable the machine's
+  kReach,       ///< the wheel reaches the cutter in no set-up
+  kCore,        ///< the wheel cuts through it
+  kWall,        ///< the wheel's circumference forms the rake face, not its face or edge
+  kTolerance,   ///< not all that is asked can be had within its tolerance
+  kLand,        ///< the flutes meet: asked is a land above 0, reachable what is left, negative
+  kIncomplete,  ///< near the cone's apex no overtravel makes the flute complete
 };
 
 /// A problem's name, and the job's field whose change helps.
 struct SetupProblemRow : EnumRow<SetupProblem> {
   const char* change = "";
 };
-constexpr SetupProblemRow kSetupProblems[] = {
-    {{SetupProblem::kOverdetermined, "overdetermined"}, "cutter.core_diameter"},
-    {{SetupProblem::kSwivel, "swivel"}, "cutter.spiral_angle"},
-    {{SetupProblem::kReach, "reach"}, "process.wheel_diameter"},
-    {{SetupProblem::kCore, "core"}, "process.depth"},
-    {{SetupProblem::kWall, "wall"}, "process.depth"},
-    {{SetupProblem::kTolerance, "tolerance"}, "process.wheel_diameter"},
-    {{SetupProblem::kLand, "land"}, "process.wheel_width"},
-    {{SetupProblem::kIncomplete, "incomplete"}, "process.wheel_diameter"}};
+constexpr SetupProblemRow kSetupProblems[] = {{{SetupProblem::kSwivel, "swivel"}, "cutter.spiral_angle"},
+                                              {{SetupProblem::kReach, "reach"}, "process.wheel_diameter"},
+                                              {{SetupProblem::kCore, "core"}, "process.depth"},
+                                              {{SetupProblem::kWall, "wall"}, "process.depth"},
+                                              {{SetupProblem::kTolerance, "tolerance"}, "process.wheel_diameter"},
+                                              {{SetupProblem::kLand, "land"}, "process.wheel_width"},
+                                              {{SetupProblem::kIncomplete, "incomplete"}, "process.wheel_diameter"}};
 constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
 
 /// No set-up gives what is asked, and what could be had. Without a figure the last three are 0.
@@ -98,7 +95,7 @@ struct SetupRefusal {
   double least = 0, largest = 0;  ///< reachable [rad] or [m]
   /// What the set-up gives that is nearest to the tolerances.
   struct Nearest {
-    Range rake, spiral;                     ///< over the flute [rad]; the spiral angle only if it is asked
+    Range rake, chordal_rake, spiral;       ///< over the flute [rad]; the spiral angle only if it is asked
     std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
   };
   Nearest nearest{};

@@ -37,11 +37,13 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.flute_length", "cutter.flute_length_mm", mm, 0.1, 500}, [](auto& j) -> auto& { return j.cutter.flute_length; });
   visit(F{"cutter.rake_tolerance", "cutter.rake_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.rake_tolerance; });
   visit(F{"cutter.shank_diameter", "cutter.shank_diameter_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.cutter.shank_diameter; });
-  visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter; });
+  visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0.001, 100}, [](auto& j) -> auto& { return j.cutter.core_diameter; });
   visit(F{"cutter.neck_length", "cutter.neck_length_mm", mm, 0, 500, true}, [](auto& j) -> auto& { return j.cutter.neck_length; });
-  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
-  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0, 100, true}, [](auto& j) -> auto& { return j.cutter.core_tolerance; });
-  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0, 180, true}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
+  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0.001, 100}, [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
+  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0.0001, 100}, [](auto& j) -> auto& { return j.cutter.core_tolerance; });
+  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
+  visit(F{"cutter.chordal_rake_tolerance", "cutter.chordal_rake_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.chordal_rake_tolerance; });
+  visit(F{"cutter.chordal_rake_depth", "cutter.chordal_rake_depth_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.chordal_rake_depth; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return j.process.feed; });
   visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50}, [](auto& j) -> auto& { return j.process.depth; });
   visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.depth_end; });

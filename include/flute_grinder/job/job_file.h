@@ -12,8 +12,8 @@ namespace flute_grinder {
 /// file that it may name, relative to the job file.
 /// @param path the file.
 /// @param unsolved fields that the file may omit because they are yet to be found: process.setup_swivel,
-///        process.setup_height, which are then 0, and process.depth beside cutter.core_diameter, which is then what
-///        leaves that core under an upright wheel.
+///        process.setup_height, which are then 0, and process.depth, which is then what leaves the asked core under an
+///        upright wheel.
 /// @return the job in SI.
 /// @throw JobFileError if the file cannot be read, a key is missing, unknown or duplicated, or a value has the wrong
 ///        type, is not finite or is not allowed.

@@ -55,6 +55,7 @@ enum class ReasonKind : std::uint8_t {
   kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
   kSpiral,      ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kCoreSize,    ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
+  kChordalRake,       ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
 };
 
 /// The name is that of the message's constant, in small letters.
@@ -101,6 +102,7 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kUnevenRake, "uneven_rake"}},
     {{ReasonKind::kSpiral, "spiral"}},
     {{ReasonKind::kCoreSize, "core_size"}},
+    {{ReasonKind::kChordalRake, "chordal_rake"}},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();

@@ -64,7 +64,7 @@ JobBox::JobBox(QWidget* parent)
     : QWidget(parent),
       name_(new QLabel),
       choose_(button("choose", "Open...", "Choose a job file")),
-      setup_(button("setup", "Set up...", "Find out how to set the wheel for the job's rake and core")),
+      setup_(button("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
       continue_(new QCheckBox(kContinue)),
       zeros_(new QLabel),
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),

@@ -43,8 +43,9 @@ void addPlan(Commands& commands) {
 
 void addSetup(Commands& commands) {
   const auto options = std::make_shared<SetupOptions>();
-  auto& command = commands.add("setup", "solve swivel, height and depth of the wheel for the job's rake and core",
-                               "jobs/paper.yaml --write", [options] { return runSetup(*options); });
+  auto& command =
+      commands.add("setup", "solve swivel, height and depth of the wheel for the tool that the job asks for",
+                   "jobs/paper.yaml --write", [options] { return runSetup(*options); });
   addJob(command, options->job);
   addChoice(command, "--keep", options->keep, "leave this figure as it is in the job file");
   command.add_flag("--write", options->write, "write the set-up into the job file; all else in it stays as it is");

@@ -94,8 +94,9 @@ TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
   WAIT_FOR(shows(panel, "Rake "));
   EXPECT_EQ(x(panel), 15) << "the middle";
   // The rake face is a plane, so that the chord has its angle.
-  EXPECT_TRUE(shows(panel, "Rake 8.00 deg, asked 7.50 to 8.50 deg, chordal 8.00 deg<br>"
-                           "Core 6.800 mm, asked 6.800 within 0.1 mm<br>Spiral "))
+  EXPECT_TRUE(shows(panel,
+                    "Rake 8.00 deg, asked 7.50 to 8.50 deg, chordal 8.00 deg<br>"
+                    "Core 6.800 mm, asked 6.800 within 0.1 mm<br>Spiral "))
       << panel.label("section_figures");
   const double land = 360 - flute(3);
   const std::vector<double> shown = numbers(panel);

@@ -31,7 +31,7 @@ struct CutterGeometry {
   double core_tolerance = 0;     ///< largest allowed difference of the ground core's diameter from the asked one [m]
   double spiral_tolerance = 0;   ///< the same of the edge's spiral angle [rad]
   double chordal_rake_tolerance = 0;  ///< the same of the ground chordal rake from the asked rake [rad]
-  double chordal_rake_depth = 0;  ///< below the edge, where the chord ends; 0: a tenth of the flute's depth [m]
+  double chordal_rake_depth = 0;      ///< below the edge, where the chord ends; 0: a tenth of the flute's depth [m]
 };
 
 /// Of a figure: X [m], an angle [rad], as its user says.

@@ -46,16 +46,16 @@ enum class ReasonKind : std::uint8_t {
   kInterlock,  ///< see `detail`; the job did not begin within `limit`
   kCanceled,
   // Why a job would grind an unusable tool.
-  kRake,        ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
-  kLand,        ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
-  kCore,        ///< the wheel cuts through the core; at `x`
-  kIncomplete,  ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
-  kCollision,   ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
-  kSwivel,      ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
-  kUnevenRake,  ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
-  kSpiral,      ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
-  kCoreSize,    ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
-  kChordalRake,       ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
+  kRake,         ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kLand,         ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
+  kCore,         ///< the wheel cuts through the core; at `x`
+  kIncomplete,   ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
+  kCollision,    ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
+  kSwivel,       ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
+  kUnevenRake,   ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
+  kSpiral,       ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
+  kChordalRake,  ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
 };
 
 /// The name is that of the message's constant, in small letters.

@@ -46,6 +46,13 @@ double pathStep(const GrindProgram& program) {
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
+/// Whether a place of the edge is within the stroke's range. With a lead the stroke is as far beside the edge, and what
+/// it would form beyond the cutter is not shown. @param from,to of the stroke [m].
+bool isWithin(double x, double from, double to) {
+  constexpr double rounding = 1e-9;
+  return x >= std::min(from, to) - rounding && x <= std::max(from, to) + rounding;
+}
+
 /// Rounds down to 1, 2, 5, 10, ...
 double roundDown(double value) {
   const double decade = std::pow(10, std::floor(std::log10(value)));
@@ -119,6 +126,7 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
+      if (!isWithin(edge_.x(x(i)), from_, to_)) continue;
       m.points.push_back(atRadius(edge_.x(x(i)), edge_.radius(x(i)), flute.angle + flute.curve.a(x(i))));
       if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
     }
@@ -163,10 +171,17 @@ void ExecutedPath::append(MarkerArray& array) const {
   m.points.push_back(last_);
 }
 
+PathErrorMarkers::PathErrorMarkers(const GrindJob& job)
+    : edge_{ConicalCutter(job.cutter), job.process.setup_lead},
+      from_(-job.process.overtravel_end),
+      to_(job.cutter.flute_length + job.process.overtravel_shank),
+      tolerance_(job.interpolation.tolerance) {}
+
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone) return;
   const double deviation = edge_.deviation(p.position[kX], -p.path_error);
   if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
+  if (!isWithin(edge_.x(p.position[kX]), from_, to_)) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();

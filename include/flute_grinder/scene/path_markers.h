@@ -81,8 +81,7 @@ class ExecutedPath {
 /// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
-  explicit PathErrorMarkers(const GrindJob& job)
-      : edge_{ConicalCutter(job.cutter), job.process.setup_lead}, tolerance_(job.interpolation.tolerance) {}
+  explicit PathErrorMarkers(const GrindJob& job);
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
@@ -102,6 +101,7 @@ class PathErrorMarkers {
   void thinOut();
 
   FormedEdge edge_;
+  double from_, to_;  ///< of the stroke [m]
   double tolerance_;  ///< [m]
   std::optional<std::uint32_t> move_;
   std::vector<Point> points_;

@@ -101,8 +101,10 @@ def tool_facts(cutter):
     angles = cutter.get('tooth_angles_deg')
     teeth = len(tooth_angles(cutter))
     return [('end diameter', '%g mm' % cutter['end_diameter_mm']), ('flute length', '%g mm' % cutter['flute_length_mm']),
-            ('cone', '%g deg' % cutter['cone_angle_deg']), ('spiral angle', ', '.join('%g' % s for s in spiral_angles(cutter)) + ' deg'),
+            ('cone', '%g deg' % cutter['cone_angle_deg']),
+            ('spiral angle', '%s ± %g deg' % (', '.join('%g' % s for s in spiral_angles(cutter)), cutter['spiral_tolerance_deg'])),
             ('rake', '%g ± %g deg' % (cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])),
+            ('core', '%g to %g ± %g mm' % (cutter['core_diameter_mm'], cutter['core_diameter_end_mm'], cutter['core_tolerance_mm'])),
             ('teeth', '%d%s' % (teeth, ' at ' + ', '.join('%g' % a for a in angles) + ' deg' if angles else '')),
             ('cut', cutter['cut'].replace('_', ' ')), ('shank', '%g mm' % cutter['shank_diameter_mm'])]
 
@@ -115,7 +117,8 @@ def process_facts(job_file):
                 PROFILES.get(wheel['profile'], wheel['profile']), wheel['diameter_mm'], wheel['width_mm'], *corners,
                 ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')),
             ('wear', '%g mm of the radius' % wheel['wear_mm']),
-            ('set-up', 'swivel %g deg, height %g mm' % (setup['swivel_deg'], setup['height_mm'])),
+            ('set-up', 'swivel %g deg, height %g mm%s' % (
+                setup['swivel_deg'], setup['height_mm'], ', lead %g mm' % setup['lead_mm'] if setup.get('lead_mm') else '')),
             ('depth', '%g mm%s, infeed %g mm' % (
                 process['depth_mm'], ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '',
                 process['infeed_mm'])),

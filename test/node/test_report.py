@@ -468,6 +468,7 @@ class TestBag(ReportCase):
         package = xml.parse(gc.package_file('package.xml'))
         machine = xml.parse(gc.package_file('urdf/grinder.urdf')).getroot().get('name')
         for row, told in (('end diameter', '10 mm'), ('flute length', '30 mm'), ('cone', '5 deg'), ('rake', '8 ± 0.5 deg'),
+                          ('spiral angle', '30 ± 4 deg'), ('core', '7.1 to 12.4 ± 0.1 mm'),
                           ('shank', '16 mm'), ('set-up', 'swivel 31.769 deg, height 2.788 mm'), ('grinder', '/recorded'),
                           ('wheel', 'straight, Ø 100 mm, 3 mm wide, corners 0 and 0 mm'),
                           ('machine', machine), ('software', 'flute_grinder ' + package.findtext('version'))):

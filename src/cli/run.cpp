@@ -14,7 +14,7 @@
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 
-#include <actionlib/client/simple_action_client.h>
+#include <actionlib/client/action_client.h>
 
 #include <cstdio>
 #include <mutex>
@@ -25,7 +25,8 @@ namespace flute_grinder {
 
 namespace {
 
-using Client = actionlib::SimpleActionClient<GrindAction>;
+// SimpleActionClient knows no answer that comes before its sendGoal() returns, and says so in the progress bar.
+using Client = actionlib::ActionClient<GrindAction>;
 
 /// State of a goal. Shown by another thread than the one that receives it, so that a blocked terminal cannot stop
 /// reception. Thread safe.
@@ -201,7 +202,7 @@ int runJob(const std::string& node, const RunOptions& options) {
   Recorder recorder(nh, options.csv);
   const StateWatch watch(nh);
   GoalWatch watched;
-  Client client(nh, "grind", false);
+  Client client(nh, "grind");
   StopKeys keys(nh, watch);
   if (!await(kPatience,
              [&] { return watch.begun() && client.isServerConnected() && recorder.connected() && keys.connected(); })) {
@@ -215,13 +216,14 @@ int runJob(const std::string& node, const RunOptions& options) {
   ProgressBar bar(static_cast<int>(job.tooth_angles.size()), static_cast<int>(passDepths(job.process).size()));
   catchInterrupts();
   catchHolds();
-  client.sendGoal(
+  Client::GoalHandle running = client.sendGoal(
       goal,
-      [&](const actionlib::SimpleClientGoalState& state, const GrindResultConstPtr& result) {
-        watched.onDone(state == actionlib::SimpleClientGoalState::SUCCEEDED, result);
+      [&](Client::GoalHandle handle) {
+        if (handle.getCommState() != actionlib::CommState::DONE) return;
+        watched.onDone(handle.getTerminalState() == actionlib::TerminalState::SUCCEEDED, handle.getResult());
       },
-      Client::SimpleActiveCallback(), [&](const GrindFeedbackConstPtr& feedback) { watched.onFeedback(feedback); });
-  keys.start([&] { client.cancelGoal(); });
+      [&](const Client::GoalHandle&, const GrindFeedbackConstPtr& feedback) { watched.onFeedback(feedback); });
+  keys.start([&] { running.cancel(); });
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
   int status = printOutcome(watched, connected, recorder);

@@ -116,6 +116,17 @@ TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
   EXPECT_FALSE(checked(job).reasons.empty());
 }
 
+TEST(GroundJob, AChordOffByMoreThanItsToleranceIsRefused) {
+  GrindJob job = cylinder(38);
+  const double off = std::abs(*groundCutterOf(job).section(0).teeth[0].chordal_rake - 8 * kDegree);
+  job.cutter.chordal_rake_tolerance = 1.001 * off;
+  EXPECT_TRUE(checked(job).reasons.empty());
+  job.cutter.chordal_rake_tolerance = 0.999 * off;
+  const core::Reason reason = reasonOf(checked(job), ReasonKind::kChordalRake);
+  EXPECT_NEAR(std::abs(reason.value - 8 * kDegree), off, 1e-9);
+  EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
+}
+
 TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   GrindJob job = paper();
   job.process.overtravel_shank = 1 * kMillimetre;

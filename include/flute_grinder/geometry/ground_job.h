@@ -49,11 +49,11 @@ struct CutterCheck {
 };
 
 /// Measures the ground cutter in nine sections, from one end of the flute to the other: every tooth has a land, the
-/// core is whole, rake, spiral angle and core are within the job's tolerances, and the flutes are complete over their
-/// length unless the job allows otherwise. The spiral tolerance holds for the edge's own angle in a section and for how
-/// far it turns from each to the next, so that the edge departs from the asked helix by no more than the tolerance
-/// makes over the travel. A core that is asked at both ends is asked along the straight line between them. Takes some
-/// milliseconds.
+/// core is whole, rake, chordal rake, spiral angle and core are within the job's tolerances, and the flutes are
+/// complete over their length unless the job allows otherwise. The spiral tolerance holds for the edge's own angle in a
+/// section and for how far it turns from each to the next, so that the edge departs from the asked helix by no more
+/// than the tolerance makes over the travel. The core is asked along the straight line between the diameters at the
+/// ends. Takes some milliseconds.
 CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 
 /// The same of the cutter that a job grinds; teeth share a flute where the wheel's wear between them does not count. A

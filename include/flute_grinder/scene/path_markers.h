@@ -11,7 +11,7 @@ namespace flute_grinder {
 
 /// The edges of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
 /// one being ground bright, and a finished one coloured point by point by the error measured in its last pass, red at
-/// the job's tolerance. With a lead they are where the edge is formed, not at X of the wheel's centre.
+/// the job's tolerance. With a lead they are on the asked helix, at X - lead, see FormedEdge.
 class ToolPath {
  public:
   explicit ToolPath(const GrindProgram& program);

@@ -167,6 +167,7 @@ ToothSection GroundCutter::measure(const Flute& flute, double x) const {
   const auto face = rakeFace(flute, x, r);
   if (!at || !face) return section;
   section.edge = face->angle;
+  section.edge_wheel_x = face->axis_x;
   section.rake = std::atan(direction() == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
   section.chordal_rake = chordalRake(flute, x, section.depth, face->angle);
   section.flute = at->high - at->low;

@@ -83,6 +83,20 @@ double edgeOff(const GrindJob& job, std::size_t tooth, const std::vector<GroundS
   return (off.to - off.from) / 2;
 }
 
+/// The edge of a tooth, in the sections that have one.
+GroundEdge edgeOf(const GrindJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
+  const LogCurve curve(ConicalCutter(cutterOf(job, static_cast<int>(tooth))), job.process.setup_lead);
+  std::vector<GroundEdge::Place> places;
+  for (const GroundSection& section : sections) {
+    const ToothSection& at = section.teeth[tooth];
+    if (!at.edge) continue;
+    // Where the stroke's end forms several sections, their extrema are no more exact than that.
+    const double wheel_x = places.empty() ? at.edge_wheel_x : std::max(at.edge_wheel_x, places.back().wheel_x);
+    places.push_back({section.x, wheel_x, *at.edge - job.tooth_angles[tooth] - curve.a(wheel_x)});
+  }
+  return GroundEdge(std::move(places));
+}
+
 /// Collects what is wrong with a cutter.
 class Checker {
  public:
@@ -266,20 +280,22 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
     add(figures, section);
     for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
   }
+  std::vector<GroundEdge> edges;
   for (std::size_t i = 0; i < cutter.teeth().size(); ++i) {
     figures.edge = std::fmax(figures.edge, edgeOff(job, i, sections));
+    edges.push_back(edgeOf(job, i, sections));
   }
   const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
   checker.checkOvertravel(cutter);
   checker.checkRange(range);
-  return {range, checker.take(), figures};
+  return {range, checker.take(), figures, std::move(edges)};
 }
 
 CutterCheck checkGroundCutter(const GrindJob& job) {
   try {
     return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {
-    return {std::nullopt, {core::otherReason(error.what())}, {}};
+    return {std::nullopt, {core::otherReason(error.what())}, {}, {}};
   }
 }
 

@@ -93,16 +93,18 @@ void Frames::publishSetUp(const ros::Time& stamp) {
 
 void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   // A faulty drive may report NaN. tf complains of a stamp that it knows, as of a loop that stalls.
-  if (!std::isfinite(x) || stamp == contact_stamp_) return;
+  const GroundEdge& edge = edges_[static_cast<std::size_t>(tooth)];
+  if (!std::isfinite(x) || stamp == contact_stamp_ || edge.empty()) return;
   contact_stamp_ = stamp;
-  const auto [from, to] = std::minmax({program_->strokeFrom(), program_->strokeTo()});
-  const double at = std::clamp(x, from, to);
-  const FormedEdge& edge = program_->helix(tooth).edge;
-  const ConicalCutter& cutter = edge.cutter;
-  Eigen::Isometry3d pose(Eigen::Translation3d(edge.x(at), edge.radius(at), 0));
-  pose.linear().col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
-  pose.linear().col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
-  pose.linear().col(2) = pose.linear().col(0).cross(pose.linear().col(1));
+  const GroundEdge::Place at = edge.at(std::clamp(edge.formedAt(x).x, edge.from(), edge.to()));
+  const ConicalCutter& cutter = program_->cutter(tooth);
+  Eigen::Matrix3d unturned;
+  unturned.col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
+  unturned.col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
+  unturned.col(2) = unturned.col(0).cross(unturned.col(1));
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(at.turn, Eigen::Vector3d::UnitX()) *
+                         Eigen::Translation3d(at.x, cutter.radius(at.x), 0));
+  pose.rotate(unturned);
   moving_frames_.sendTransform(transformMessage(kWork, kContact, pose, stamp));
 }
 

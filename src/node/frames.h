@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/geometry/ground_edge.h"
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/first_view.h"
@@ -12,18 +13,18 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace flute_grinder {
 
 /// Tells tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again with every
 /// change:
-/// - `work` in the axis_x table: the cutter's small end, not turning. Here the wheel's centre stands at X, D1/2 + Dw/2
-/// +
-///   Y, and the height of the set-up + Z, in work coordinates.
+/// - `work` in the axis_x table: the cutter's small end, not turning. Here the wheel's centre is at X, D1/2 + Dw/2 + Y,
+///   and the height of the set-up + Z, in work coordinates.
 /// - `cutter` in the chuck: it turns in `work` by -A.
 /// - the child links of the robot description's joints y_zero, z_zero and wheel_swivel, the last of which is `wheel`.
-/// And, on `tf`, `contact` in `work`: where the wheel forms the edge, at the X of the axes less the lead, with X along
-/// the flute and Y away from the cutter.
+/// And, on `tf`, `contact` in `work`: where the wheel forms the edge, at the X of the axes, with X along the edge and Y
+/// away from the cutter.
 /// Not thread safe; not for the control thread.
 class Frames {
  public:
@@ -34,7 +35,11 @@ class Frames {
 
   /// From now on the frames are those of this job. Without one they are those of the first view's blank and wheel, not
   /// swivelled, and there is no contact.
-  void show(std::shared_ptr<const GrindProgram> program) { program_ = std::move(program); }
+  /// @param edges of the teeth; of one that is empty there is no contact either.
+  void show(std::shared_ptr<const GrindProgram> program, std::vector<GroundEdge> edges) {
+    program_ = std::move(program);
+    edges_ = std::move(edges);
+  }
 
   /// Publishes what has changed, and the contact.
   /// @param position of the axes in machine coordinates [m], A [rad].
@@ -63,6 +68,7 @@ class Frames {
   tf2_ros::StaticTransformBroadcaster set_up_frames_;
   tf2_ros::TransformBroadcaster moving_frames_;
   std::shared_ptr<const GrindProgram> program_;
+  std::vector<GroundEdge> edges_;
   std::optional<SetUp> published_;
   ros::Time contact_stamp_;  ///< of the latest
 };

@@ -121,8 +121,9 @@ void Telemetry::clearScene() {
 
 void Telemetry::showJob(const Preview& preview) {
   last_change_ = ros::SteadyTime::now();
-  frames_.show(preview.plan->program);
-  scene_.show(preview.plan->program, preview.plan->digest, preview.plan->first);
+  const PlannedJob& plan = *preview.plan;
+  frames_.show(plan.program, plan.edges);
+  scene_.show(plan.program, plan.edges, plan.digest, plan.first);
 }
 
 void Telemetry::tick() {

@@ -42,11 +42,12 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<core::Reason>& rea
 PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
                         const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,
                         const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}, {}};
+  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
-  const CutterCheck cutter = checkGroundCutter(planned.program->job());
+  CutterCheck cutter = checkGroundCutter(planned.program->job());
   planned.complete = cutter.complete;
   planned.figures = cutter.figures;
+  planned.edges = std::move(cutter.edges);
   refuse(planned, PlanFault::kTool, cutter.reasons);
   const CollisionResult collision = checkCollision(*planned.program, shapes);
   planned.closest = collision.closest;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace flute_grinder {
 
@@ -39,19 +40,15 @@ double pathStep(const GrindProgram& program) {
   double turning = 0;  // of the steepest helix
   for (const Helix& helix : program.helices()) {
     const ConicalCutter& cutter = helix.edge.cutter;
-    const double radius = std::min(helix.edge.radius(program.strokeFrom()), helix.edge.radius(program.strokeTo()));
+    const double radius = std::min(cutter.radius(0), cutter.radius(cutter.geometry().flute_length));
     turning =
         std::max(turning, std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius);
   }
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
-/// Whether a place of the edge is within the stroke's range. With a lead the stroke is as far beside the edge, and what
-/// it would form beyond the cutter is not shown. @param from,to of the stroke [m].
-bool isWithin(double x, double from, double to) {
-  constexpr double rounding = 1e-9;
-  return x >= std::min(from, to) - rounding && x <= std::max(from, to) + rounding;
-}
+/// Whether a place is on an edge, and not beyond its ends, where the stroke's overtravel forms none.
+bool isOn(const GroundEdge& edge, double x) { return x >= edge.from() && x <= edge.to(); }
 
 /// Rounds down to 1, 2, 5, 10, ...
 double roundDown(double value) {
@@ -62,21 +59,19 @@ double roundDown(double value) {
 
 }  // namespace
 
-ToolPath::ToolPath(const GrindProgram& program)
-    : edge_(program.helix(0).edge),
+ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges)
+    : formed_(program.helix(0).edge),
       tolerance_(program.job().interpolation.tolerance),
-      from_(program.strokeFrom()),
-      to_(program.strokeTo()),
-      steps_(std::min(kMostSteps, static_cast<std::size_t>(std::ceil(std::abs(to_ - from_) / pathStep(program))))),
+      steps_(std::min(kMostSteps,
+                      static_cast<std::size_t>(std::ceil(program.job().cutter.flute_length / pathStep(program))))),
       measured_(steps_ + 1, -1) {
-  const std::vector<double>& angles = program.job().tooth_angles;
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    flutes_.push_back({angles[i], program.helix(static_cast<int>(i)).curve, {}});
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    flutes_.push_back({program.job().tooth_angles[i], program.helix(static_cast<int>(i)).curve, edges[i], {}});
   }
 }
 
-double ToolPath::x(std::size_t i) const {
-  return from_ + (to_ - from_) * (static_cast<double>(i) / static_cast<double>(steps_));
+double ToolPath::x(const GroundEdge& edge, std::size_t i) const {
+  return edge.from() + (edge.to() - edge.from()) * (static_cast<double>(i) / static_cast<double>(steps_));
 }
 
 bool ToolPath::add(const Setpoint& p, const Axes& actual) {
@@ -92,14 +87,17 @@ bool ToolPath::add(const Setpoint& p, const Axes& actual) {
 }
 
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
-  const double around = flutes_[p.tooth].angle + flutes_[p.tooth].curve.a(actual[kX]) - actual[kA];
-  const double error = edge_.deviation(actual[kX], std::abs(around));
+  const Flute& flute = flutes_[p.tooth];
+  const double error = formed_.deviation(actual[kX], std::abs(flute.angle + flute.curve.a(actual[kX]) - actual[kA]));
   // A faulty drive may report NaN, or a position beyond the cone's apex.
   if (!(error <= kFarthest)) return;
-  const double at = (actual[kX] - from_) / (to_ - from_) * static_cast<double>(steps_);
-  float& largest = measured_[static_cast<std::size_t>(std::lround(std::clamp(at, 0.0, static_cast<double>(steps_))))];
-  largest = std::max(largest, static_cast<float>(error));
   largest_ = std::max(largest_, error);
+  if (flute.edge.empty()) return;
+  const double x = flute.edge.formedAt(actual[kX]).x;
+  if (!isOn(flute.edge, x)) return;
+  const double at = (x - flute.edge.from()) / (flute.edge.to() - flute.edge.from()) * static_cast<double>(steps_);
+  float& largest = measured_[static_cast<std::size_t>(std::lround(at))];
+  largest = std::max(largest, static_cast<float>(error));
 }
 
 void ToolPath::finishPass(Flute& flute) {
@@ -120,14 +118,16 @@ void ToolPath::deactivate() {
 
 void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
+  if (flute.edge.empty()) return;
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(edge_.cutter));
+    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(formed_.cutter));
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
-      if (!isWithin(edge_.x(x(i)), from_, to_)) continue;
-      m.points.push_back(atRadius(edge_.x(x(i)), edge_.radius(x(i)), flute.angle + flute.curve.a(x(i))));
+      const GroundEdge::Place at = flute.edge.at(x(flute.edge, i));
+      m.points.push_back(
+          atRadius(at.x, formed_.cutter.radius(at.x), flute.angle + flute.curve.a(at.wheel_x) + at.turn));
       if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
     }
   }
@@ -139,20 +139,22 @@ MarkerArray ToolPath::markers() const {
   return array;
 }
 
-ExecutedPath::ExecutedPath(const GrindProgram& program) : cutter_(program.cutter()) {
+ExecutedPath::ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges)
+    : cutter_(program.cutter()), edges_(std::move(edges)) {
   for (const Move& move : program.moves()) wear_of_move_.push_back(move.wear);
 }
 
 void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
-  if (p.move != MoveKind::kStroke) return;
+  if (p.move != MoveKind::kStroke || edges_[p.tooth].empty()) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();
     taken_ = 0;
     every_ = 1;
   }
-  const geometry_msgs::Point at =
-      atRadius(actual[kX], cutter_.radius(0) + actual[kY] + wear_of_move_[p.move_index], actual[kA]);
+  const GroundEdge::Place place = edges_[p.tooth].formedAt(actual[kX]);
+  const double height = actual[kY] + wear_of_move_[p.move_index] - actual[kX] * cutter_.tanCone();
+  const geometry_msgs::Point at = atRadius(place.x, cutter_.radius(place.x) + height, actual[kA] + place.turn);
   if (!isNear(at)) return;
   last_ = at;
   if (taken_++ % every_ != 0) return;
@@ -171,17 +173,17 @@ void ExecutedPath::append(MarkerArray& array) const {
   m.points.push_back(last_);
 }
 
-PathErrorMarkers::PathErrorMarkers(const GrindJob& job)
-    : edge_{ConicalCutter(job.cutter), job.process.setup_lead},
-      from_(-job.process.overtravel_end),
-      to_(job.cutter.flute_length + job.process.overtravel_shank),
+PathErrorMarkers::PathErrorMarkers(const GrindJob& job, std::vector<GroundEdge> edges)
+    : formed_{ConicalCutter(job.cutter), job.process.setup_lead},
+      edges_(std::move(edges)),
       tolerance_(job.interpolation.tolerance) {}
 
 void PathErrorMarkers::add(const Setpoint& p) {
-  if (p.step == StepKind::kNone) return;
-  const double deviation = edge_.deviation(p.position[kX], -p.path_error);
+  if (p.step == StepKind::kNone || edges_[p.tooth].empty()) return;
+  const double deviation = formed_.deviation(p.position[kX], -p.path_error);
   if (!(std::abs(deviation) <= kFarthest && p.position.isFinite().all())) return;
-  if (!isWithin(edge_.x(p.position[kX]), from_, to_)) return;
+  const GroundEdge::Place place = edges_[p.tooth].formedAt(p.position[kX]);
+  if (!isOn(edges_[p.tooth], place.x)) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();
@@ -192,7 +194,7 @@ void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kOdd) ++pairs_;
   largest_ = std::max(largest_, std::abs(deviation));
   if ((pairs_ - 1) % every_ != 0) return;
-  points_.push_back({p.position[kX], p.position[kA], deviation});
+  points_.push_back({place.x, p.position[kA] + place.turn, deviation});
   if (points_.size() >= kMaxArrows && p.step == StepKind::kEven) thinOut();
 }
 
@@ -211,15 +213,15 @@ double PathErrorMarkers::scale() const {
   if (points_.empty()) return 0;
   // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
   const double largest = std::max(largest_, kMinDrawn * tolerance_);
-  return roundDown(kMaxArrow * fineness(edge_.cutter) / largest);
+  return roundDown(kMaxArrow * fineness(formed_.cutter) / largest);
 }
 
 MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
-  Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(edge_.cutter));
+  Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(formed_.cutter));
   // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
-  const ConicalCutter& cutter = edge_.cutter;
+  const ConicalCutter& cutter = formed_.cutter;
   const double around = cutter.cosHelixToGeneratrix();
   const double along = std::copysign(std::sqrt(1 - around * around), cutter.tanSpiral());
   const double cos_cone = 1 / std::hypot(1, cutter.tanCone());
@@ -227,7 +229,7 @@ MarkerArray PathErrorMarkers::markers() const {
   const double factor = scale();
   for (const Point& p : points_) {
     const double offset = factor * p.deviation;
-    const geometry_msgs::Point from = atRadius(edge_.x(p.x), edge_.radius(p.x), p.a);
+    const geometry_msgs::Point from = atRadius(p.x, cutter.radius(p.x), p.a);
     geometry_msgs::Point to = from;
     to.x -= offset * along * cos_cone;
     to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));

@@ -8,6 +8,7 @@
 #include "motion/generators.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -98,6 +99,51 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     ++jobs;
   }
   EXPECT_GE(jobs, 8);
+}
+
+/// How deep a point is in the wheel of a tooth's deepest stroke while its centre is at `wheel_x`; negative beside it
+/// [m].
+/// @param angle of the point in the machine.
+double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, double x, double angle) {
+  const GrindJob& job = program.job();
+  const DepthLaw depth = depthLaw(job, job.process.deepest());
+  const double y = wheel_x * (std::tan(job.cutter.cone_angle) + depth.taper) - depth.at_end;
+  const double r = program.cutter().radius(x), swivel = job.process.setup_swivel;
+  const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + y,
+                               job.process.setup_height + program.helix(tooth).z(wheel_x));
+  const Eigen::Vector3d axis(-std::sin(swivel), 0, std::cos(swivel));
+  const Eigen::Vector3d from_centre = Eigen::Vector3d(x, r * std::cos(angle), r * std::sin(angle)) - centre;
+  const WheelProfile wheel = wheelOf(job);
+  const double w = from_centre.dot(axis);
+  return std::min({w - wheel.lowerFace(), wheel.upperFace() - w, wheel.radius(w) - from_centre.cross(axis).norm()});
+}
+
+TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
+  constexpr double kLinear = 5e-6;  // between the sections that are known
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
+    GrindJob job = readJobFile(entry.path());
+    job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
+    const GrindProgram program(job, roomyMachine(), roomyMachine().park);
+    const CutterCheck check = checkGroundCutter(job);
+    ASSERT_EQ(check.edges.size(), job.tooth_angles.size());
+    for (std::size_t tooth = 0; tooth < check.edges.size(); ++tooth) {
+      const GroundEdge& edge = check.edges[tooth];
+      EXPECT_EQ(edge.from(), 0);
+      EXPECT_EQ(edge.to(), job.cutter.flute_length);
+      const int number = static_cast<int>(tooth);
+      const LogCurve& curve = program.helix(number).curve;
+      for (int i = 0; i <= 21; ++i) {
+        SCOPED_TRACE(::testing::Message() << entry.path() << " tooth " << tooth << " place " << i);
+        const GroundEdge::Place at = edge.at(i / 21.0 * job.cutter.flute_length);
+        EXPECT_NEAR(edge.formedAt(at.wheel_x).x, at.x, 1e-12);
+        EXPECT_NEAR(depthInWheel(program, number, at.wheel_x, at.x, at.turn), 0, kLinear);
+        for (double off = -3e-3; off < 3.1e-3; off += 0.5e-3) {
+          const double wheel_x = at.wheel_x + off, turned = curve.a(at.wheel_x) - curve.a(wheel_x);
+          EXPECT_LT(depthInWheel(program, number, wheel_x, at.x, at.turn + turned), kLinear) << off;
+        }
+      }
+    }
+  }
 }
 
 TEST(GroundJob, AWheelSwivelledToTheSpiralAngleIsRefusedForItsRake) {

@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 import grinder_client as gc
 import path_checks as checks
-from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z, grinder
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder
 
 OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
 SWIVEL, HEIGHT, LEAD = 20 * DEG, 3 * MM, -15 * MM
@@ -108,7 +108,7 @@ class Story:
     def look(self, batch):
         """The last setpoint of a batch was written with a joint state of the same stamp."""
         found = {(frame, within): self.frames.find(frame, within, batch.end_stamp)
-                 for frame, within in (('wheel', 'cutter'), ('wheel', 'work'), ('contact', 'cutter'))}
+                 for frame, within in (('wheel', 'cutter'), ('wheel', 'work'), ('contact', 'work'))}
         self.seen.append(dict(found, setpoint=batch.setpoints[-1], stamp=batch.end_stamp))
 
 
@@ -165,20 +165,25 @@ class TestStroke(unittest.TestCase):
             self.check(at, about_x(setpoint[A]) @ centre, sum(tolerance[:3]) + tolerance[A] * numpy.linalg.norm(centre))
             self.check(turned[:, 2], about_x(setpoint[A]) @ axis, tolerance[A])
 
-    def test_contact_runs_along_the_edge_on_the_cutters_surface(self):
+    def test_contact_is_where_the_wheel_touches_the_cutters_surface(self):
+        touching = 0
         for seen in self.strokes():
-            x, a = (seen['setpoint'].actual[axis] for axis in (X, A))
-            at, turned = seen['contact', 'cutter']
-            to_cutter = about_x(a)
-            radius = HELIX.radius(x - LEAD)
-            self.check(at, to_cutter @ [x - LEAD, radius, 0], seen['delta'])
-            along = to_cutter @ [1, HELIX.tan_cone, HELIX.tan_spiral]
-            self.check(turned[:, 0], along / numpy.linalg.norm(along), seen['turn'])
-            outward = to_cutter @ [-HELIX.tan_cone, 1, 0]
-            self.check(turned[:, 1], outward / numpy.linalg.norm(outward), seen['turn'])
-            # As far as the axes follow, it is on the theoretical edge.
-            flute = TEETH[1] + HELIX.a(x)
-            self.check(at[1:], [radius * math.cos(flute), radius * math.sin(flute)], 0.05 * MM)
+            at, turned = seen['contact', 'work']
+            radius = HELIX.radius(at[0])
+            self.assertAlmostEqual(math.hypot(at[1], at[2]), radius, delta=seen['delta'])
+            centre, axis = wheel_in_work(seen['setpoint'].actual)
+            beside = abs((at - centre) @ axis) - JOB['process.wheel_width'] / 2
+            beyond = numpy.linalg.norm(numpy.cross(at - centre, axis)) - JOB['process.wheel_diameter'] / 2
+            # Beyond the ends of the cutter the wheel touches no edge.
+            if 1 * UM < at[0] < JOB['cutter.flute_length'] - 1 * UM:
+                self.assertAlmostEqual(max(beside, beyond), 0, delta=5 * UM + seen['delta'])
+                touching += 1
+            turn = about_x(math.atan2(at[2], at[1]))
+            along = turn @ [1, HELIX.tan_cone, HELIX.tan_spiral]
+            self.check(turned[:, 0], along / numpy.linalg.norm(along), seen['turn'] + 1e-9)
+            outward = turn @ [-HELIX.tan_cone, 1, 0]
+            self.check(turned[:, 1], outward / numpy.linalg.norm(outward), seen['turn'] + 1e-9)
+        self.assertGreater(touching, 10)
 
 
 class TestSetUp(unittest.TestCase):

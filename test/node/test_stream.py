@@ -380,19 +380,12 @@ class TestMarkers(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.helix = checks.Helix(gc.MOTION)
-        cls.setpoints = stream(600).setpoints
         grinder().make_ready_at_park()
         # The one shown last may be of another test's job.
         grinder().send(gc.MOTION, dry_run=True).wait()
         cls.path = rospy.wait_for_message('/grinder/tool_path', MarkerArray, gc.PATIENCE).markers
         cls.error = rospy.wait_for_message('/grinder/path_error', MarkerArray, gc.PATIENCE).markers
         cls.legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
-
-    def off_helix(self, point):
-        radius = math.hypot(point.y, point.z)
-        angle = math.remainder(math.atan2(point.z, point.y) - self.helix.a(point.x), 2 * math.pi)
-        return max(abs(radius - self.helix.radius(point.x)), abs(angle) * radius)
 
     def test_what_was_shown_before_is_deleted_first(self):
         for markers in (self.path, self.error):
@@ -407,61 +400,10 @@ class TestMarkers(unittest.TestCase):
         self.assertEqual({(m.header.frame_id, m.type) for m in self.path[1:]}, {('cutter', Marker.LINE_STRIP)})
         self.assertTrue(all(m.frame_locked for m in self.path[1:]))
 
-    def test_tool_path_is_the_whole_stroke(self):
-        xs = [p.x for m in self.path[1:] for p in m.points]
-        self.assertAlmostEqual(xs[0], -1 * MM, delta=1e-9)
-        self.assertAlmostEqual(xs[-1], 31 * MM, delta=1e-9)
-        self.assertTrue(all(a <= b for a, b in zip(xs, xs[1:])))
-
-    def test_tool_path_lies_on_the_helix(self):
-        for marker in self.path[1:]:
-            for a, b in zip(marker.points, marker.points[1:]):
-                self.assertLess(self.off_helix(a), 1e-9)
-                middle = type(a)((a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2)
-                self.assertLess(self.off_helix(middle), 0.1e-6)
-
-    def error_lines(self):
-        marker, = [m for m in self.error[1:] if m.header.frame_id == 'cutter']
-        self.assertEqual(marker.type, Marker.LINE_LIST)
-        self.assertEqual(len(marker.colors), len(marker.points))
-        return list(zip(marker.points[::2], marker.points[1::2]))
-
     def test_legend_is_that_of_the_job(self):
         self.assertEqual(self.legend.cutter, gc.goal_of(gc.MOTION).cutter)
         self.assertEqual(self.legend.tolerance, gc.MOTION['interpolation.tolerance'])
         self.assertEqual(self.legend.largest_error, 0)
-
-    def test_path_error_lines_start_on_the_commanded_points(self):
-        commanded = {s.position[X]: s.position[A] for s in self.setpoints if s.move == STROKE}
-        for start, _ in self.error_lines():
-            self.assertIn(start.x, commanded)
-            angle = math.remainder(math.atan2(start.z, start.y) - commanded[start.x], 2 * math.pi)
-            self.assertAlmostEqual(angle, 0, delta=1e-9)
-            self.assertAlmostEqual(math.hypot(start.y, start.z), self.helix.radius(start.x), delta=1e-9)
-
-    def test_path_error_lines_are_the_errors_exaggerated_across_the_helix(self):
-        factor = self.legend.arrow_scale
-        errors = {s.position[X]: s.path_error for s in self.setpoints if s.move == STROKE}
-        lines = self.error_lines()
-        self.assertGreaterEqual(len(lines), 90)
-        for start, end in lines:
-            a = math.atan2(start.z, start.y)
-            line = (end.x - start.x, end.y - start.y, end.z - start.z)
-            deviation = -errors[start.x] * self.helix.radius(start.x) * self.helix.normal
-            rounding = 1e-9 * abs(deviation * factor) + 1e-15
-            tan_cone, tan_spiral = self.helix.tan_cone, self.helix.tan_spiral
-            around = (0, -math.sin(a), math.cos(a))
-            along_helix = (1, tan_cone * math.cos(a) - tan_spiral * math.sin(a),
-                           tan_cone * math.sin(a) + tan_spiral * math.cos(a))
-            off_surface = (-tan_cone, math.cos(a), math.sin(a))
-            self.assertAlmostEqual(math.hypot(*line), abs(deviation * factor), delta=rounding)
-            self.assertAlmostEqual(dot(line, around), deviation * factor * self.helix.normal, delta=rounding)
-            self.assertAlmostEqual(dot(line, along_helix), 0, delta=rounding)
-            self.assertAlmostEqual(dot(line, off_surface), 0, delta=rounding)
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
 
 
 if __name__ == '__main__':

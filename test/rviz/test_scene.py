@@ -25,7 +25,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'
 
 import grinder_client as gc  # noqa: E402
 import path_checks as checks  # noqa: E402
-from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, grinder  # noqa: E402
+from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, grinder  # noqa: E402
 
 # Unequal teeth in two passes, over soon, with all that moves the wheel: cone, rake, wear.
 TEETH = [0, 88 * DEG, 180 * DEG, 268 * DEG]
@@ -340,11 +340,6 @@ class TestFrames(unittest.TestCase):
         cls.held = story().during
         cls.at = cls.held.positions
         cls.markers = cls.held.markers
-        cls.path = points_of(of_namespace(cls.markers['tool_path'], 'tool_path')[HELD])
-        # On the helix of the tooth, where the axes are.
-        a = TEETH[HELD] + HELIX.a(cls.at[X])
-        r = HELIX.radius(cls.at[X])
-        cls.place = numpy.array([cls.at[X], r * math.cos(a), r * math.sin(a), 1])
         cls.wheel = of_namespace(cls.markers['scene'], 'wheel')
         rim = numpy.vstack([points_of(m) for m in cls.wheel])
         cls.wheel_radius = numpy.hypot(rim[:, 0], rim[:, 1]).max()
@@ -387,24 +382,12 @@ class TestFrames(unittest.TestCase):
             deepest = (HELIX.radius(x[within]) - radii[within]).max()
             self.assertGreater(deepest, 0.8 * DEPTHS[1])
 
-    def test_path_lies_on_the_cutter_where_the_axes_are(self):
-        nearest = abs(self.path[:, 0] - self.at[X]).argmin()
-        self.assertLess(numpy.linalg.norm(self.path[nearest] - self.place[:3]), 0.2 * MM)
-
     def test_wheel_has_the_true_size(self):
         self.assertEqual({m.header.frame_id for m in self.wheel}, {'wheel'})
         self.assertAlmostEqual(self.wheel_radius, 50 * MM - 0.02 * MM, delta=1e-9)
         self.assertAlmostEqual(self.half_width, JOB['process.wheel_width'] / 2, delta=1e-9)
         # Two faces, a straight rim and the hub's two faces: each point costs time in every frame.
         self.assertLess(sum(len(m.points) for m in self.wheel), 5000)
-
-    def test_wheel_touches_the_cutter_where_the_path_says(self):
-        x, y, z, _ = self.in_wheel(self.place)[0]
-        # The wheel is in the work by the pass' depth; it is worn by more than it was when the job began.
-        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius - DEPTHS[1], delta=6 * UM)
-        # Z keeps the rake angle: the place is that much below the wheel's middle.
-        self.assertAlmostEqual(abs(z), HELIX.z(self.at[X]) * math.cos(38 * DEG), delta=2 * UM)
-        self.assertLess(abs(z), self.half_width)
 
     def test_wheel_is_swivelled_along_the_helix(self):
         a = TEETH[HELD] + HELIX.a(self.at[X])
@@ -413,25 +396,6 @@ class TestFrames(unittest.TestCase):
         direction = self.in_wheel(tangent / numpy.linalg.norm(tangent))[0]
         self.assertAlmostEqual(direction[2], 0, delta=1e-4)
         self.assertGreater(direction[0], 0.99)
-
-    def executed(self):
-        marker, = of_namespace(self.markers['executed_path'], 'executed_path')
-        self.assertEqual((marker.type, marker.header.frame_id), (Marker.LINE_STRIP, 'cutter'))
-        return points_of(marker)
-
-    def test_executed_path_is_that_of_this_stroke(self):
-        points = self.executed()
-        self.assertLessEqual(len(points), 2001)
-        self.assertAlmostEqual(points[0, 0], -1 * MM, delta=0.05 * MM)
-        self.assertAlmostEqual(points[-1, 0], self.at[X], delta=1 * UM)
-        for x, y, z in points:
-            self.assertAlmostEqual(math.hypot(y, z), HELIX.radius(x) - DEPTHS[1], delta=2 * UM)
-            angle = math.remainder(math.atan2(z, y) - TEETH[HELD] - HELIX.a(x), 2 * math.pi)
-            self.assertAlmostEqual(angle, 0, delta=1e-4)
-
-    def test_executed_path_ends_at_the_wheel(self):
-        x, y, z, _ = self.in_wheel(numpy.append(self.executed()[-1], 1))[0]
-        self.assertAlmostEqual(math.hypot(x, y), self.wheel_radius, delta=6 * UM)
 
 
 class TestFlutes(unittest.TestCase):
@@ -487,16 +451,6 @@ class TestFlutes(unittest.TestCase):
         for moment, setpoints in ((story().during, story().setpoints_when_held), (story().after, story().run.setpoints)):
             largest = max(error for _, error in measured(setpoints))
             self.assertAlmostEqual(moment.legend.largest_error, largest, delta=0.01 * largest)
-
-    def test_legend_tells_how_long_the_arrows_are(self):
-        for moment in (story().before, story().during, story().after):
-            arrows, = of_namespace(moment.markers['path_error'], 'path_error')
-            points = points_of(arrows)
-            longest = numpy.linalg.norm(points[1::2] - points[::2], axis=1).max()
-            planned = max(abs(s.path_error) * HELIX.radius(s.position[X]) * HELIX.normal
-                          for s in story().run.setpoints if s.move == STROKE)
-            self.assertLessEqual(longest, moment.legend.arrow_scale * planned * (1 + 1e-6))
-            self.assertGreater(longest, 0.2 * moment.legend.arrow_scale * planned)
 
 
 class TestPictures(unittest.TestCase):
@@ -558,6 +512,9 @@ class TestPictures(unittest.TestCase):
         seen = 0
         for marker in of_namespace(story().after.markers['tool_path'], 'tool_path'):
             places, chosen = self.seen(story().after, points_of(marker))
+            # One may be all on the far side.
+            if len(places) == 0:
+                continue
             colours = [255 * numpy.array([marker.colors[i].r, marker.colors[i].g, marker.colors[i].b]) for i in chosen]
 
             def like_its_colour(i, *pixel):

@@ -1,6 +1,7 @@
 #include "flute_grinder/scene/path_markers.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"
 
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -23,6 +25,8 @@ GrindProgram program() {
   const auto machine = test_support::plainMachine();
   return GrindProgram(readJobFile("test/jobs/paper.yaml"), machine, machine.park);
 }
+
+std::vector<GroundEdge> edgesOf(const GrindProgram& program) { return checkGroundCutter(program.job()).edges; }
 
 /// What a drive must never say, and may all the same.
 std::vector<double> hostileValues() {
@@ -47,8 +51,8 @@ struct Shown {
 
 Shown show(int every, int axis, double value) {
   const GrindProgram job = program();
-  ToolPath flutes(job);
-  ExecutedPath executed(job);
+  ToolPath flutes(job, edgesOf(job));
+  ExecutedPath executed(job, edgesOf(job));
   SetpointStream stream(job);
   Shown result;
   for (Setpoint p; stream.next(p);) {
@@ -99,7 +103,7 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
     const GrindProgram job = program();
-    PathErrorMarkers errors(job.job());
+    PathErrorMarkers errors(job.job(), edgesOf(job));
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
       if (p.cycle % 7 == 0) p.path_error = value;
@@ -128,56 +132,110 @@ TEST(PathMarkers, AreLinesOfAWidth) {
   expectLinesOfAWidth(shown.flutes);
   expectLinesOfAWidth(shown.executed);
   const GrindProgram job = program();
-  PathErrorMarkers errors(job.job());
+  PathErrorMarkers errors(job.job(), edgesOf(job));
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) errors.add(p);
   expectLinesOfAWidth(errors.markers());
 }
 
-// With a lead, A at X of the wheel's centre is that of the edge at X - lead.
-TEST(PathMarkers, AreAtTheEdgeThatIsFormed) {
-  GrindJob job = readJobFile("jobs/paper.yaml");
-  job.cutter.cone_angle = 9.6 * units::kDegree;
-  const double b = 2 * std::tan(job.cutter.cone_angle) / job.cutter.end_diameter;
-  const double turn = std::tan(job.cutter.spiral_angle) / std::tan(job.cutter.cone_angle);
-  const double normal = std::cos(std::atan(std::tan(job.cutter.spiral_angle) * std::cos(job.cutter.cone_angle)));
-  for (const double lead : {0.0, -15e-3, 11.847e-3}) {
-    SCOPED_TRACE(lead);
-    job.process.setup_lead = lead;
-    const GrindProgram of_lead(job, test_support::plainMachine(), test_support::plainMachine().park);
-    const auto expect_at_edge = [&](const geometry_msgs::Point& p, double delta) {
-      const double r = job.cutter.end_diameter / 2 + p.x * std::tan(job.cutter.cone_angle);
-      const double a = turn * std::log1p(b * p.x);
-      EXPECT_NEAR(std::hypot(p.y - r * std::cos(a), p.z - r * std::sin(a)), 0, delta);
-    };
-    ToolPath flutes(of_lead);
-    const MarkerArray edges = flutes.markers();
-    ASSERT_GT(edges.markers.size(), 1u);
-    const std::vector<geometry_msgs::Point>& edge = edges.markers[1].points;
-    // What would be formed beyond the cutter, by as much as the lead, is not shown.
-    EXPECT_NEAR(edge.front().x, of_lead.strokeFrom() + std::max(0.0, -lead), 1e-3);
-    EXPECT_NEAR(edge.back().x, of_lead.strokeTo() - std::max(0.0, lead), 1e-3);
-    for (const geometry_msgs::Point& p : edge) expect_at_edge(p, 1e-12);
+/// The edge of the first tooth at a section, by the groove's wall.
+geometry_msgs::Point groundAt(const GroundCutter& cutter, double x) {
+  const double r = cutter.cutter().radius(x), a = cutter.flutes()[0][0].wall(x, r, true)->angle;
+  return point(x, r * std::cos(a), r * std::sin(a));
+}
 
-    PathErrorMarkers errors(job);
-    SetpointStream stream(of_lead);
+double distance(const geometry_msgs::Point& a, const geometry_msgs::Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
+
+// From one end of the cutter to the other, and nothing beyond.
+TEST(PathMarkers, AreWhereTheEdgeIsGround) {
+  constexpr double kLinear = 5e-6;  // between the sections of the edge that are known
+  for (const char* name : {"jobs/paper.yaml", "test/jobs/paper.yaml", "jobs/taper_d6_t6.yaml"}) {
+    SCOPED_TRACE(name);
+    GrindJob job = readJobFile(name);
+    job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
+    auto machine = test_support::plainMachine();
+    machine.park << -0.02, 0.08, 0, 0;
+    const GrindProgram of_job(job, machine, machine.park);
+    const GroundCutter cutter = groundCutterOf(job);
+    const std::vector<GroundEdge> edges = edgesOf(of_job);
+    ToolPath flutes(of_job, edges);
+    const MarkerArray strips = flutes.markers();
+    ASSERT_EQ(strips.markers.size(), 1 + job.tooth_angles.size());
+    const std::vector<geometry_msgs::Point>& edge = strips.markers[1].points;
+    EXPECT_EQ(edge.front().x, 0);
+    EXPECT_DOUBLE_EQ(edge.back().x, job.cutter.flute_length);
+    for (std::size_t i = 0; i < edge.size(); i += 100)
+      EXPECT_LT(distance(edge[i], groundAt(cutter, edge[i].x)), kLinear);
+
+    ExecutedPath executed(of_job, edges);
+    PathErrorMarkers errors(job, edges);
+    SetpointStream stream(of_job);
     double largest = 0;
-    for (Setpoint p; stream.next(p) && p.pass == 0 && p.tooth == 0;) {
+    const double normal = std::cos(std::atan(std::tan(job.cutter.spiral_angle) * std::cos(job.cutter.cone_angle)));
+    for (Setpoint p; stream.next(p) && p.tooth == 0 && p.move != MoveKind::kRetract;) {
       errors.add(p);
+      executed.add(p, p.position);
       Axes off = p.position;
       off[kA] += 1e-5;
       flutes.add(p, off);
       if (p.step == StepKind::kNone) continue;
-      const double x = p.position[kX] - lead;
-      const double error = std::abs(turn * std::log1p(b * x) - off[kA]);
-      largest = std::max(largest, error * (job.cutter.end_diameter / 2 + x * std::tan(job.cutter.cone_angle)) * normal);
+      const double error = std::abs(of_job.helix(0).curve.a(p.position[kX]) - off[kA]);
+      largest = std::max(largest, error * cutter.cutter().radius(p.position[kX] - job.process.setup_lead) * normal);
     }
     EXPECT_NEAR(flutes.largestMeasured(), largest, 1e-15);
     const MarkerArray arrows = errors.markers();
     ASSERT_EQ(arrows.markers.size(), 2u);
     const std::vector<geometry_msgs::Point>& ends = arrows.markers[1].points;
     ASSERT_GT(ends.size(), 100u);
-    for (std::size_t i = 0; i < ends.size(); i += 2) expect_at_edge(ends[i], 1e-6);
+    for (std::size_t i = 0; i < ends.size(); i += 2) EXPECT_LT(distance(ends[i], groundAt(cutter, ends[i].x)), kLinear);
+
+    MarkerArray path;
+    executed.append(path);
+    ASSERT_EQ(path.markers.size(), 1u);
+    const DepthLaw depth = depthLaw(job, passDepths(job.process)[0]);
+    int on_cutter = 0;
+    for (const geometry_msgs::Point& p : path.markers[0].points) {
+      if (p.x < 0 || p.x > job.cutter.flute_length) continue;
+      ++on_cutter;
+      const double below = depth.at_end - depth.taper * edges[0].at(p.x).wheel_x;
+      const double to_surface = 1 + below / std::hypot(p.y, p.z);
+      EXPECT_LT(distance(point(p.x, p.y * to_surface, p.z * to_surface), groundAt(cutter, p.x)), kLinear);
+    }
+    EXPECT_GT(on_cutter, 100);
+  }
+}
+
+// Across the helix in the plane that touches the cone there, all by the same factor.
+TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
+  const GrindProgram job = program();
+  const ConicalCutter& cutter = job.cutter();
+  const double length = job.job().cutter.flute_length;
+  // An edge under the wheel's centre: the arrows begin on the commanded points.
+  PathErrorMarkers errors(job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  std::map<double, Setpoint> commanded;
+  SetpointStream stream(job);
+  for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
+    errors.add(p);
+    commanded[p.position[kX]] = p;
+  }
+  const double factor = errors.scale(), normal = cutter.cosHelixToGeneratrix();
+  const std::vector<geometry_msgs::Point> ends = errors.markers().markers.at(1).points;
+  ASSERT_GE(ends.size(), 180u);
+  for (std::size_t i = 0; i < ends.size(); i += 2) {
+    const Setpoint& p = commanded.lower_bound(ends[i].x - 1e-12)->second;
+    const double r = cutter.radius(ends[i].x), a = p.position[kA], deviation = -p.path_error * r * normal;
+    EXPECT_LT(distance(ends[i], point(ends[i].x, r * std::cos(a), r * std::sin(a))), 1e-12);
+    const Eigen::Vector3d arrow(ends[i + 1].x - ends[i].x, ends[i + 1].y - ends[i].y, ends[i + 1].z - ends[i].z);
+    const double tan_cone = cutter.tanCone(), tan_spiral = cutter.tanSpiral(),
+                 rounding = 1e-9 * std::abs(deviation * factor) + 1e-15;
+    EXPECT_NEAR(arrow.norm(), std::abs(deviation * factor), rounding);
+    EXPECT_NEAR(arrow.dot(Eigen::Vector3d(0, -std::sin(a), std::cos(a))), deviation * factor * normal, rounding);
+    EXPECT_NEAR(arrow.dot(Eigen::Vector3d(-tan_cone, std::cos(a), std::sin(a))), 0, rounding);
+    EXPECT_NEAR(arrow.dot(Eigen::Vector3d(1, tan_cone * std::cos(a) - tan_spiral * std::sin(a),
+                                          tan_cone * std::sin(a) + tan_spiral * std::cos(a))),
+                0, rounding);
   }
 }
 
@@ -185,8 +243,9 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
   job.process.depth = job.process.infeed = 0.01e-3;
-  const MarkerArray array =
-      ToolPath(GrindProgram(job, test_support::plainMachine(), test_support::plainMachine().park)).markers();
+  const GrindProgram program(job, test_support::plainMachine(), test_support::plainMachine().park);
+  const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
+  const MarkerArray array = ToolPath(program, {edge}).markers();
   std::size_t points = 0;
   for (const Marker& m : array.markers) points += m.points.size();
   EXPECT_GT(points, 1000u);

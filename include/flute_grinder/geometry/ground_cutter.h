@@ -11,6 +11,7 @@ namespace flute_grinder {
 /// away, is left out.
 struct ToothSection {
   std::optional<double> edge;         ///< angle of the cutting edge, counted as A is [rad]
+  double edge_wheel_x = 0;            ///< X of the wheel's centre as it forms that edge [m]
   std::optional<double> rake;         ///< radial, at the edge [rad]
   std::optional<double> normal_rake;  ///< normal to the edge [rad]
   /// Radial, of the chord from the edge to the rake face at CutterGeometry::chordal_rake_depth: what a measuring

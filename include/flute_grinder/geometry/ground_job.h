@@ -1,10 +1,12 @@
 #pragma once
 
 #include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/geometry/ground_edge.h"
 #include "flute_grinder/job/grind_job.h"
 
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -46,6 +48,7 @@ struct CutterCheck {
   std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
   std::vector<core::Reason> reasons;  ///< why it is refused
   CutterFigures figures;
+  std::vector<GroundEdge> edges;  ///< of the teeth
 };
 
 /// Measures the ground cutter in nine sections, from one end of the flute to the other: every tooth has a land, the

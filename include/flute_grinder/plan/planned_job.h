@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -32,6 +33,7 @@ struct PlannedJob : JobPlan {
   ToothPass first;                      ///< to grind
   std::optional<Range> complete;        ///< where the flutes would be complete, if that was checked
   CutterFigures figures;                ///< of the tool that it grinds, if that was checked
+  std::vector<GroundEdge> edges;        ///< of its teeth, if that was checked
   std::optional<ClosestPlace> closest;  ///< of wheel, machine and cutter, if that was checked; its leg is a move
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/geometry/ground_edge.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/markers.h"
 
@@ -9,12 +10,13 @@
 
 namespace flute_grinder {
 
-/// The edges of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned one is grey, the
-/// one being ground bright, and a finished one coloured point by point by the error measured in its last pass, red at
-/// the job's tolerance. With a lead they are on the asked helix, at X - lead, see FormedEdge.
+/// The edges of all teeth, where the wheel grinds them, as line strips in the frame `cutter`, so that they turn with A:
+/// a planned one is grey, the one being ground bright, and a finished one coloured point by point by the error measured
+/// in its last pass, red at the job's tolerance.
 class ToolPath {
  public:
-  explicit ToolPath(const GrindProgram& program);
+  /// @param edges of the teeth; one that is empty is not shown, like all that is about it.
+  ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges);
 
   /// Adds a measured position; positions off the stroke are ignored.
   /// @param setpoint that reached the axes; its tooth is active until the end of the stroke.
@@ -34,19 +36,19 @@ class ToolPath {
 
  private:
   struct Flute {
-    double angle;               ///< of the tooth [rad]
-    LogCurve curve;             ///< A over X of a tooth at angle 0
+    double angle;    ///< of the tooth [rad]
+    LogCurve curve;  ///< A over X of a tooth at angle 0
+    GroundEdge edge;
     std::vector<float> errors;  ///< per point of the strip [m]; empty until a pass is finished
   };
 
-  double x(std::size_t i) const;  ///< of the wheel's centre at a point of a strip [m]
+  double x(const GroundEdge& edge, std::size_t i) const;  ///< of a point of its strip [m]
   void measure(const Setpoint& setpoint, const Axes& actual);
   void finishPass(Flute& flute);
   void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
-  FormedEdge edge_;
+  FormedEdge formed_;
   double tolerance_;   ///< where the colour scale ends [m]
-  double from_, to_;   ///< of the stroke [m]
   std::size_t steps_;  ///< between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
@@ -54,12 +56,12 @@ class ToolPath {
   double largest_ = 0;           ///< [m]
 };
 
-/// Path of the wheel's lowest point in the current stroke, from measured positions, as a line strip in the frame
-/// `cutter`: below the planned path by the depth of the pass, and ahead of it in X by the lead. Thinned out as it
-/// grows.
+/// Where the wheel has gone along the edge in the current stroke, from measured positions, as a line strip in the frame
+/// `cutter`: below the edge by the depth of the pass. Thinned out as it grows.
 class ExecutedPath {
  public:
-  explicit ExecutedPath(const GrindProgram& program);
+  /// @param edges of the teeth.
+  ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges);
 
   /// Adds a measured position; the first of a stroke starts a new path, and positions off the stroke are ignored.
   void add(const Setpoint& setpoint, const Axes& actual);
@@ -69,6 +71,7 @@ class ExecutedPath {
 
  private:
   ConicalCutter cutter_;
+  std::vector<GroundEdge> edges_;
   std::vector<double> wear_of_move_;  ///< of the wheel's radius, by the program's moves [m]
   std::optional<std::uint32_t> move_;
   std::vector<geometry_msgs::Point> points_;
@@ -81,7 +84,8 @@ class ExecutedPath {
 /// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
-  explicit PathErrorMarkers(const GrindJob& job);
+  /// @param edges of the teeth.
+  PathErrorMarkers(const GrindJob& job, std::vector<GroundEdge> edges);
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
@@ -94,14 +98,14 @@ class PathErrorMarkers {
 
  private:
   struct Point {
-    double x;          ///< of the wheel's centre [m]
-    double a;          ///< [rad]
+    double x;          ///< of the edge [m]
+    double a;          ///< its angle [rad]
     double deviation;  ///< commanded - theory, normal to the helix [m]
   };
   void thinOut();
 
-  FormedEdge edge_;
-  double from_, to_;  ///< of the stroke [m]
+  FormedEdge formed_;
+  std::vector<GroundEdge> edges_;
   double tolerance_;  ///< [m]
   std::optional<std::uint32_t> move_;
   std::vector<Point> points_;

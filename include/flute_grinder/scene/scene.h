@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace flute_grinder {
 
@@ -25,8 +26,10 @@ class Scene {
 
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
   /// measurements are kept.
-  /// @param program not null. @param digest of its job, see jobDigest(). @param first first pass to grind.
-  void show(const std::shared_ptr<const GrindProgram>& program, const std::string& digest, const ToothPass& first);
+  /// @param program not null. @param edges of the teeth that it grinds. @param digest of its job, see jobDigest().
+  /// @param first first pass to grind.
+  void show(const std::shared_ptr<const GrindProgram>& program, const std::vector<GroundEdge>& edges,
+            const std::string& digest, const ToothPass& first);
 
   /// Adds a setpoint of the job shown.
   /// @param actual position of the axes in work coordinates [m], A [rad].

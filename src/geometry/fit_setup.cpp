@@ -61,9 +61,8 @@ class DampedFit {
 
  private:
   Eigen::VectorXd at(const SetupPoint& p, const Errors& errors_of) const {
-    const bool is_setup = p.swivel >= request_.least_swivel && p.swivel <= request_.largest_swivel &&
-                          std::abs(p.lead) < trial_.wheel().largestRadius() && trial_.cutter().radius(-p.lead) > 0 &&
-                          trial_.isSound(p);
+    const bool is_setup =
+        std::abs(p.lead) < trial_.wheel().largestRadius() && trial_.cutter().radius(-p.lead) > 0 && trial_.isSound(p);
     return is_setup ? Eigen::VectorXd(errors_of(p)) : Eigen::VectorXd::Constant(1, std::nan(""));
   }
 
@@ -75,6 +74,8 @@ class DampedFit {
   SetupPoint moved(SetupPoint point, const Eigen::VectorXd& step) const {
     for (std::size_t k = 0; k < figures_.size(); ++k)
       point.*figures_[k] += step[static_cast<Eigen::Index>(k)] * unit(k);
+    // At the end of the machine's range the others go on.
+    point.swivel = std::clamp(point.swivel, request_.least_swivel, request_.largest_swivel);
     if (is_height_tied_) point.height = tiedHeight(trial_, request_, point.swivel);
     return point;
   }
@@ -84,9 +85,12 @@ class DampedFit {
     const auto count = static_cast<Eigen::Index>(figures_.size());
     Eigen::MatrixXd by_figure(errors.size(), count);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::VectorXd there = at(moved(point, kFigureStep * Eigen::VectorXd::Unit(count, k)), errors_of);
+      const bool at_limit = figures_[static_cast<std::size_t>(k)] == &SetupPoint::swivel &&
+                            point.swivel + kFigureStep > request_.largest_swivel;
+      const double off = at_limit ? -kFigureStep : kFigureStep;
+      const Eigen::VectorXd there = at(moved(point, off * Eigen::VectorXd::Unit(count, k)), errors_of);
       if (!there.allFinite()) return false;
-      by_figure.col(k) = (there - errors) / kFigureStep;
+      by_figure.col(k) = (there - errors) / off;
     }
     const Eigen::MatrixXd squares = by_figure.transpose() * by_figure;
     for (; damping <= kMostDamping; damping *= kDampingFactor) {
@@ -112,9 +116,9 @@ class DampedFit {
   std::vector<double SetupPoint::*> figures_;  ///< that are free
 };
 
-/// The errors at the ends of the flute, as many as figures are free, with a rake that both ends shall have.
-std::optional<SetupPoint> exact(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
-                                double rake) {
+/// @param rake that both ends shall have.
+std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                               double rake) {
   const auto errors_of = [&](const SetupPoint& point) {
     const SetupErrors e = setupErrors(trial, request, point, 1);
     const Eigen::ArrayXd turn = hasLead(trial, request) ? e.turn : Eigen::ArrayXd();
@@ -123,7 +127,21 @@ std::optional<SetupPoint> exact(const SetupTrial& trial, const SetupRequest& req
     return all;
   };
   const auto found = DampedFit(trial, request).solve(start, errors_of, kExact);
-  return found && largest(errors_of(*found)) <= kExact ? found : std::nullopt;
+  if (!found) return std::nullopt;
+  return EndsFit{*found, largest(errors_of(*found)) <= kExact};
+}
+
+/// All errors over the flute, each by its tolerance.
+Eigen::ArrayXd weighedErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
+  const CutterGeometry& c = request.cutter;
+  const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
+  // Chords count only where they are beyond their tolerance: within it the rake at the edge is to be as asked.
+  const double chord = c.chordal_rake_tolerance;
+  const Eigen::ArrayXd off = chord > 0 ? Eigen::ArrayXd((e.chord.abs() / chord - 1).max(0)) : Eigen::ArrayXd();
+  Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + off.size() + e.core.size());
+  all << e.rake / allowed(c.rake_tolerance), e.turn / allowed(c.spiral_tolerance),
+      e.spiral / allowed(c.spiral_tolerance), off, e.core / allowed(c.core_tolerance / c.end_diameter);
+  return all;
 }
 
 }  // namespace
@@ -159,7 +177,6 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
   if (trial.isCylinder()) steps = 0;
   const WheelSweep sweep = trial.sweep(point);
   const double length = request.cutter.flute_length, diameter = request.cutter.end_diameter;
-  const LogCurve travel(2 * trial.cutter().tanCone() / diameter, 2 / diameter);  // of an edge at 45 deg
   const auto &core = request.core_diameter, &core_end = request.core_diameter_end;
   std::vector<double> rakes, turns, spirals, chords, cores;
   double before = 0;
@@ -168,8 +185,8 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
     const SetupTrial::Edge edge = trial.edge(sweep, x);
     rakes.push_back(edge.rake - request.rake);
     if (i > 0 && request.asks_spiral) {
-      const double turn = (edge.angle - before) / (travel.a(x) - travel.a(length * (i - 1) / steps));
-      turns.push_back(std::atan(turn) - request.cutter.spiral_angle);
+      const double mean = meanSpiral(trial.cutter(), length * (i - 1) / steps, x, edge.angle - before);
+      turns.push_back(mean - request.cutter.spiral_angle);
     }
     if (judges) chords.push_back(trial.chordalRake(sweep, x) - request.rake);
     if (steps > 1 && request.asks_spiral) spirals.push_back(trial.spiral(sweep, x) - request.cutter.spiral_angle);
@@ -184,11 +201,11 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
   return {array(rakes), array(turns), array(spirals), array(chords), array(cores)};
 }
 
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
-  auto best = exact(trial, request, start, request.rake);
-  if (!best || request.z_law != ZLaw::kPublished) return best;
-  const auto rakeErrors = [&](const SetupPoint& p) {
-    return setupErrors(trial, request, p, SetupTrial::kSections).rake;
+std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
+  auto best = fitEnds(trial, request, start, request.rake);
+  if (!best || !best->is_exact || request.z_law != ZLaw::kPublished) return best;
+  const auto rakeErrors = [&](const EndsFit& fit) {
+    return setupErrors(trial, request, fit.point, SetupTrial::kSections).rake;
   };
   double rake = request.rake;
   Eigen::ArrayXd here = rakeErrors(*best);
@@ -196,8 +213,8 @@ std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& 
     const double middle = (here.minCoeff() + here.maxCoeff()) / 2;
     if (std::abs(middle) <= kEven) break;
     rake -= middle;
-    const auto next = exact(trial, request, *best, rake);
-    if (!next) break;
+    const auto next = fitEnds(trial, request, best->point, rake);
+    if (!next || !next->is_exact) break;
     const Eigen::ArrayXd there = rakeErrors(*next);
     if (!(largest(there) < largest(here))) break;
     best = next;
@@ -207,24 +224,15 @@ std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& 
 }
 
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
-  const CutterGeometry& c = request.cutter;
-  const auto errors_of = [&](const SetupPoint& point) {
-    const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
-    // Chords count only where they are beyond their tolerance: within it the rake at the edge is to be as asked.
-    const double chord = c.chordal_rake_tolerance;
-    const Eigen::ArrayXd off = chord > 0 ? Eigen::ArrayXd((e.chord.abs() / chord - 1).max(0)) : Eigen::ArrayXd();
-    Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + off.size() + e.core.size());
-    all << e.rake / allowed(c.rake_tolerance), e.turn / allowed(c.spiral_tolerance),
-        e.spiral / allowed(c.spiral_tolerance), off, e.core / allowed(c.core_tolerance / c.end_diameter);
-    return all;
-  };
-  const DampedFit fit(trial, request);
-  const auto found = fit.solve(start, errors_of, 0);
-  const double error = found ? largest(errors_of(*found)) : 0;
-  if (!(error > 1 && error < kNearEnough)) return found;
-  // Cubed, the largest error counts most.
-  const auto cubed = [&](const SetupPoint& point) -> Eigen::ArrayXd { return errors_of(point).cube(); };
-  return fit.solve(*found, cubed, 1);
+  const auto errors_of = [&](const SetupPoint& point) { return weighedErrors(trial, request, point); };
+  return DampedFit(trial, request).solve(start, errors_of, 0);
+}
+
+SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
+  const auto cubed = [&](const SetupPoint& p) -> Eigen::ArrayXd { return weighedErrors(trial, request, p).cube(); };
+  const double error = largest(weighedErrors(trial, request, nearest));
+  if (!(error > 1 && error < kNearEnough)) return nearest;
+  return DampedFit(trial, request).solve(nearest, cubed, 1).value_or(nearest);
 }
 
 }  // namespace flute_grinder

@@ -38,16 +38,25 @@ double tiedHeight(const SetupTrial& trial, const SetupRequest& request, double s
 /// Whether the depth is looked for.
 bool findsDepth(const SetupTrial& trial, const SetupRequest& request);
 
-/// The set-up that gives all that is asked: the rake at both ends, the angle of the edge between them, and
-/// the cores. By the published law of Z the rake rises or falls between the ends, so the same error of the other sign
-/// is given to both: the set-up with the least largest error over the flute.
-/// @param trial, request as of setupErrors(). @param start from which it is looked for.
-/// @return nothing if none is found from there.
-std::optional<SetupPoint> fitSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+/// What a fit to the flute's ends has come to.
+struct EndsFit {
+  SetupPoint point;
+  bool is_exact = false;  ///< gives all that is asked at the ends; else it comes near it
+};
 
-/// The set-up near a start with the least sum of squares of all errors over the flute, each by its tolerance; or
-/// of higher powers, where one error is beyond its tolerance.
+/// Fits a set-up to what is asked at the ends: the rake at both, the angle of the edge between them, and the cores. By
+/// the published law of Z the rake rises or falls between the ends, so an exact one gives both the same error of the
+/// other sign: the set-up with the smallest largest error over the flute.
+/// @param trial, request as of setupErrors(). @param start from which it is looked for.
+/// @return nothing if the start gives no tool.
+std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+
+/// The set-up near a start with the least sum of squares of all errors over the flute, each by its tolerance.
 /// @return nothing if the start gives no tool.
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+
+/// The same with the least sum of sixth powers, in which the largest error counts most: what it takes to bring the last
+/// error within its tolerance. As it is where all are, or one is far beyond.
+SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest);
 
 }  // namespace flute_grinder

@@ -51,6 +51,12 @@ double chordAngle(double outer, double inner, double turn) noexcept {
   return std::atan2(inner * std::sin(turn), outer - inner * std::cos(turn));
 }
 
+double meanSpiral(const ConicalCutter& cutter, double from, double to, double turn) noexcept {
+  const double diameter = cutter.geometry().end_diameter;
+  const LogCurve at_45_deg(2 * cutter.tanCone() / diameter, 2 / diameter);
+  return std::atan(turn / (at_45_deg.a(to) - at_45_deg.a(from)));
+}
+
 GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth)
     : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
   for (const Flute& flute : flutes_) {

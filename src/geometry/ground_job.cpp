@@ -62,16 +62,6 @@ void add(CutterFigures& figures, const GroundSection& section) {
   }
 }
 
-/// How far an edge turns between two sections: as that of a spiral angle, which is the mean of the edge's own.
-std::optional<double> meanSpiral(const GrindJob& job, std::size_t tooth, const GroundSection& from,
-                                 const GroundSection& to) {
-  const auto &edge = to.teeth[tooth].edge, &before = from.teeth[tooth].edge;
-  if (!edge || !before) return std::nullopt;
-  const double diameter = job.cutter.end_diameter;
-  const LogCurve at_45_deg(2 * std::tan(job.cutter.cone_angle) / diameter, 2 / diameter);
-  return std::atan((*edge - *before) / (at_45_deg.a(to.x) - at_45_deg.a(from.x)));
-}
-
 /// As CutterFigures::edge, of one tooth.
 double edgeOff(const GrindJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
   const LogCurve asked(ConicalCutter(cutterOf(job, static_cast<int>(tooth))));
@@ -121,7 +111,8 @@ class Checker {
   void checkTurn(const GroundSection& from, const GroundSection& to) {
     for (std::size_t i = 0; i < to.teeth.size(); ++i) {
       if (!from.teeth[i].complete || !to.teeth[i].complete) continue;
-      checkSpiral((from.x + to.x) / 2, i, meanSpiral(job_, i, from, to));
+      const double turn = *to.teeth[i].edge - *from.teeth[i].edge;
+      checkSpiral((from.x + to.x) / 2, i, meanSpiral(ConicalCutter(job_.cutter), from.x, to.x, turn));
     }
   }
 

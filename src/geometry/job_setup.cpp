@@ -77,11 +77,12 @@ std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
     return "\nIt would be set up with " +
            figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process.wheel_wear);
   }
+  if (mend.wheel_width > 0) return "\nIt would be set up with " + figure("process.wheel_width", mend.wheel_width);
   if (mend.core_diameter[0] > 0) {
     return "\nIt would be set up with " + figure("cutter.core_diameter", mend.core_diameter[0]) + " and " +
            figure("cutter.core_diameter_end", mend.core_diameter[1]);
   }
-  return "\nNo smaller wheel and no other core was found to mend it";
+  return "\nNo smaller or narrower wheel and no other core was found to mend it";
 }
 
 std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
@@ -104,7 +105,7 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
              textOf(r.nearest, job) + textOf(r.mend, job);
     case SetupProblem::kLand:
       return "no land is left: the flutes overlap by " + text(Quantity{-r.least, Unit::kMetre}, UnitSystem::kShop, 3) +
-             " along the circle" + change;
+             " along the circle" + change + (r.mend.wheel_width > 0 ? textOf(r.mend, job) : "");
     case SetupProblem::kIncomplete:
       return "near the cone's apex no overtravel makes the flute complete" + change + ", or set " +
              fieldName("process.incomplete_ok", UnitSystem::kShop);

@@ -2,14 +2,14 @@
 
 #include "flute_grinder/curve/units.h"
 #include "geometry/fit_setup.h"
-#include "geometry/setup_trial.h"
+#include "geometry/setup_judge.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <stdexcept>
-#include <tuple>
 
 namespace flute_grinder {
 
@@ -17,16 +17,9 @@ namespace {
 
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr double kQuarter = units::kPi / 2;
-constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
-constexpr double kSame = 1e-4;         ///< [rad], of the taper and of the radius: of two fits that came to the same
-constexpr double kBelowEdge = 0.998;   ///< of the radius: where the rake face still has the edge's rake
-constexpr double kSameFace = 2 * units::kDegree;
-constexpr double kNotThere = std::numeric_limits<double>::infinity();
-constexpr double kSameChord = 2 * units::kDegree;
-constexpr double kSameError = 0.5;  ///< of the tolerances
-constexpr double kSameRake = 0.1 * units::kDegree;
-constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
-constexpr double kBeyond = 1e-5;   ///< added to the overtravel, for the precision of an extremum's place [m]
+constexpr double kSame = 1e-4;   ///< [rad], of the taper and of the radius: of two fits that came to the same
+constexpr double kAlike = 0.02;  ///< likewise, of two that lead on to the same
+constexpr int kMostEvened = 8;   ///< of those nearest to the tolerances
 /// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
 /// A wheel in the plane of the helix may give the largest rake on a cylinder, and that be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
@@ -36,6 +29,8 @@ constexpr int kStartHeights = 4;                    ///< from which they start, 
 constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< of the deepest, where it is found and no core is asked
 constexpr int kSmallerWheels = 15;                  ///< that are tried, each by a twentieth of the diameter less
 constexpr double kLessWheel = 0.05;
+constexpr int kNarrowerWheels = 7;  ///< likewise, each by a tenth of the width less
+constexpr double kLessWidth = 0.1;
 constexpr int kWiderCores = 12;  ///< times that their tolerance is widened
 constexpr double kWider = 1.4;
 constexpr double kAtLimit = 5 * units::kDegree;  ///< of the swivel, that may have stopped a fit
@@ -81,119 +76,11 @@ SetupRequest mirrored(SetupRequest r) {
   return r;
 }
 
-double leastPitch(const std::vector<double>& angles) {
-  double least = angles.front() + 2 * units::kPi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) least = std::min(least, angles[i] - angles[i - 1]);
-  return least;
-}
-
-/// The tool that a set-up grinds, and what is wrong with it.
-struct Judged {
-  SolvedSetup solved;
-  double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
-  double error = 0;           ///< the largest over the flute, by its tolerance
-  bool is_facet = false;      ///< the rake is that of a facet at the edge, with another angle behind it
-  double chord_off = 0;       ///< largest difference of the chordal rake from the asked rake [rad]
-  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
-  std::optional<SetupProblem> problem;
-};
-
-/// The stroke that the flute needs, and where it is then complete by the plan's own measure.
-void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup& solved) {
-  const double length = trial.cutter().geometry().flute_length;
-  const WheelSweep longest = trial.sweep(point);
-  for (const double x : {0.0, length / 2, length}) {
-    const auto reach = trial.reach(longest, x);
-    solved.overtravel[0] = std::max(solved.overtravel[0], -reach.from);
-    solved.overtravel[1] = std::max(solved.overtravel[1], reach.to - length);
-  }
-  // As precise as an extremum's place is known.
-  for (double& beyond : solved.overtravel) {
-    if (beyond > 0) beyond += kBeyond;
-  }
-  const WheelSweep stroke = trial.sweep(point, {-solved.overtravel[0], length + solved.overtravel[1]});
-  const auto complete = GroundCutter(trial.cutter(), {{stroke}}, {{0, 0}}).completeRange(0, length);
-  solved.complete_from = complete ? complete->from : length / 2;
-  solved.complete_to = complete ? complete->to : length / 2;
-}
-
-void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
-  const double swivel = std::min(s.setup.swivel - request.least_swivel, request.largest_swivel - s.setup.swivel);
-  const double radius = request.cutter.end_diameter / 2;
-  const std::pair<SetupLimit, double> margins[] = {
-      {SetupLimit::kSwivel, swivel / (request.largest_swivel - request.least_swivel)},
-      {SetupLimit::kLand, s.land / (pitch * radius)},
-      {SetupLimit::kCore, s.core_diameter / 2 / radius}};
-  std::tie(s.limit, s.margin) = *std::min_element(std::begin(margins), std::end(margins),
-                                                  [](const auto& a, const auto& b) { return a.second < b.second; });
-}
-
-Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
-  const double pitch = leastPitch(request.tooth_angles);
-  const WheelSweep sweep = trial.sweep(point);
-  Judged judged;
-  SolvedSetup& s = judged.solved;
-  s.setup = {point.swivel, point.height, point.lead};
-  s.depth = point.depth;
-  s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
-  s.least_rake = s.land = std::numeric_limits<double>::infinity();
-  s.largest_rake = -s.least_rake;
-  for (int i = 0; i <= SetupTrial::kSections; ++i) {
-    const double x = trial.section(i);
-    const double r = trial.cutter().radius(x);
-    const auto high = sweep.wall(x, r, true), low = sweep.wall(x, r, false);
-    if (!high || !low) {
-      judged.problem = SetupProblem::kWall;
-      return judged;
-    }
-    const double rake = std::atan(-r * high->slope);
-    const auto below = sweep.wall(x, kBelowEdge * r, true);
-    if (!below || !(std::abs(std::atan(-kBelowEdge * r * below->slope) - rake) < kSameFace)) judged.is_facet = true;
-    const double chord_off = std::abs(trial.chordalRake(sweep, x) - request.rake);
-    judged.chord_off = std::max(judged.chord_off, std::isnan(chord_off) ? kNotThere : chord_off);
-    s.least_rake = std::min(s.least_rake, rake);
-    s.largest_rake = std::max(s.largest_rake, rake);
-    s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
-    judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
-  }
-  s.core_diameter = 2 * trial.coreRadius(sweep, 0);
-  s.core_diameter_end = 2 * trial.coreRadius(sweep, request.cutter.flute_length);
-  measureReach(trial, point, s);
-  const double tan_cone = trial.cutter().tanCone(), toward_apex = s.overtravel[tan_cone >= 0 ? 0 : 1];
-  const bool is_complete = s.complete_from <= 0 && s.complete_to >= request.cutter.flute_length;
-  judged.cut_short = !is_complete || toward_apex * std::abs(tan_cone) > kNearApex * trial.cutter().radius(0);
-  findLimit(request, pitch, s);
-  if (!(judged.formed_by_face >= kFormedByFace)) {
-    judged.problem = SetupProblem::kWall;
-  } else if (!(s.core_diameter > 0)) {
-    judged.problem = SetupProblem::kCore;
-  } else if (!(s.land > 0)) {
-    judged.problem = SetupProblem::kLand;
-  } else if (!is_complete && !request.incomplete_ok) {
-    judged.problem = SetupProblem::kIncomplete;
-  }
-  return judged;
-}
-
-/// The better of two: with the lesser problem, then with a complete flute, nearer to what is asked, with the steadier
-/// rake, the better chord, then with more of the rake face formed by the wheel's face. Differences of the rake that
-/// cannot be measured do not count.
-bool isBetter(const Judged& a, const Judged& b) {
-  const auto order = [](const Judged& j) {
-    const SolvedSetup& s = j.solved;
-    const double spread = s.largest_rake - s.least_rake;
-    return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short, j.is_facet,
-                      std::floor(j.error / kSameError), std::floor(spread / kSameRake),
-                      std::floor(j.chord_off / kSameChord), -j.formed_by_face, spread);
-  };
-  return order(a) < order(b);
-}
-
-/// Whether two fits came to the same.
-bool isSame(const SetupPoint& a, const SetupPoint& b, double radius) {
-  return std::abs(a.swivel - b.swivel) < kSame && std::abs(a.taper - b.taper) < kSame &&
+/// Whether two fits came to the same. @param difference up to which they are [rad], of the taper and of the radius.
+bool isSame(const SetupPoint& a, const SetupPoint& b, double difference, double radius) {
+  return std::abs(a.swivel - b.swivel) < difference && std::abs(a.taper - b.taper) < difference &&
          std::max({std::abs(a.height - b.height), std::abs(a.depth - b.depth), std::abs(a.lead - b.lead)}) <
-             kSame * radius;
+             difference * radius;
 }
 
 /// With a lead by which the wheel's centre is ahead of where it forms the edge amid the flute.
@@ -269,29 +156,41 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
   const auto worst = [&](const SetupPoint& p) {
     return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
   };
-  std::vector<SetupPoint> seen;
+  std::vector<SetupPoint> seen, ends, nearest;
+  const auto isNew = [&](const SetupPoint& fit, std::vector<SetupPoint>& others, double difference) {
+    const auto same = [&](const SetupPoint& other) { return isSame(fit, other, difference, trial.cutter().radius(0)); };
+    if (std::any_of(others.begin(), others.end(), same)) return false;
+    others.push_back(fit);
+    return true;
+  };
   const auto take = [&](const SetupPoint& fit) {
-    const auto same = [&](const SetupPoint& other) { return isSame(fit, other, trial.cutter().radius(0)); };
-    if (std::any_of(seen.begin(), seen.end(), same)) return;
-    seen.push_back(fit);
+    if (!isNew(fit, seen, kSame)) return;
     Judged judged = judge(trial, request, fit);
     if (has_tolerances) judged.error = worst(fit);
     if (!fitted.best || isBetter(judged, *fitted.best)) fitted.best = judged;
   };
   for (const SetupPoint& start : starts) {
-    const auto fit = fitSetup(trial, request, start);
-    if (fit && !(has_tolerances && !(worst(*fit) <= kWithin))) take(*fit);
+    const auto fit = fitEnds(trial, request, start);
+    if (!fit) continue;
+    isNew(fit->point, ends, kAlike);
+    if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
   }
   if (fitted.isGood()) return;
-  for (const SetupPoint& start : starts) {
+  for (const SetupPoint& start : ends) {
     const auto fit = nearestSetup(trial, request, start);
-    if (!fit) continue;
-    const double here = worst(*fit);
+    if (fit) isNew(*fit, nearest, kAlike);
+  }
+  std::map<double, SetupPoint> by_error;
+  for (const SetupPoint& fit : nearest) by_error.emplace(worst(fit), fit);
+  int evened = 0;
+  for (const auto& [error, fit] : by_error) {
+    const SetupPoint best = error > kWithin && evened++ < kMostEvened ? evenedSetup(trial, request, fit) : fit;
+    const double here = worst(best);
     if (here < fitted.error || !fitted.nearest) {
       fitted.error = here;
-      fitted.nearest = fit;
+      fitted.nearest = best;
     }
-    if (here <= kWithin) take(*fit);
+    if (here <= kWithin) take(best);
   }
 }
 
@@ -303,9 +202,7 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
   Fitted free;
   fitAll(trial, request, startsOf(trial, request, kFirstSwivels), free);
   if (!free.best) return {};
-  const SolvedSetup& s = free.best->solved;
-  SetupPoint point{s.setup.swivel, s.setup.height, s.depth, s.setup.lead};
-  point.taper = (s.depth - s.depth_end) / request.cutter.flute_length - request.y_per_x;
+  SetupPoint point = free.best->point;
   switch (*keep) {
     case SetupFigure::kSwivel: point.swivel = request.kept.swivel; break;
     case SetupFigure::kHeight: point.height = request.kept.height; break;
@@ -331,28 +228,48 @@ std::optional<SolvedSetup> changed(const SetupRequest& request, SetupPoint& near
   const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
   const auto fit = nearestSetup(trial, request, nearest);
   if (!fit) return std::nullopt;
-  nearest = *fit;
+  nearest = evenedSetup(trial, request, *fit);
   if (!(setupErrors(trial, request, nearest, SetupTrial::kSections).worst(request) <= kWithin)) return std::nullopt;
   const Judged judged = judge(trial, request, nearest);
   return judged.problem ? std::nullopt : std::optional(judged.solved);
 }
 
-/// What would mend it: the largest of some smaller wheels, else the cores that can be had.
-SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest) {
-  SetupPoint here = nearest;
+/// The widest of some narrower wheels that mends it; 0 if none does [m].
+double mendingWidth(const SetupRequest& request, SetupPoint nearest) {
+  const double width = request.wheel.upperFace() - request.wheel.lowerFace();
+  for (int i = 1; i <= kNarrowerWheels; ++i) {
+    const double of_new = width * (1 - kLessWidth * i);
+    const auto wheel = request.wheel.withWidth(of_new);
+    if (!wheel) return 0;
+    SetupRequest narrower = request;
+    narrower.wheel = *wheel;
+    if (changed(narrower, nearest)) return of_new;
+  }
+  return 0;
+}
+
+/// The largest of some smaller wheels that mends it; 0 if none does [m].
+double mendingDiameter(const SetupRequest& request, SetupPoint nearest) {
   const double diameter = 2 * request.wheel.largestRadius();
   for (int i = 1; i <= kSmallerWheels; ++i) {
     SetupRequest smaller = request;
     const double of_new = diameter * (1 - kLessWheel * i);
     smaller.wheel = request.wheel.withDiameter(of_new);
     smaller.nominal_radius = request.nominal_radius - (diameter - of_new) / 2;
-    if (changed(smaller, here)) return {of_new, {}};
+    if (changed(smaller, nearest)) return of_new;
   }
-  here = nearest;
+  return 0;
+}
+
+/// What would mend it: a smaller wheel, else a narrower one, else the cores that can be had.
+SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest) {
+  if (const double diameter = mendingDiameter(request, nearest); diameter > 0) return {diameter, 0, {}};
+  if (const double width = mendingWidth(request, nearest); width > 0) return {0, width, {}};
+  SetupPoint here = nearest;
   for (int i = 1; i <= kWiderCores && request.core_diameter; ++i) {
     SetupRequest wider = request;
     wider.cutter.core_tolerance *= std::pow(kWider, i);
-    if (const auto solved = changed(wider, here)) return {0, {solved->core_diameter, solved->core_diameter_end}};
+    if (const auto solved = changed(wider, here)) return {0, 0, {solved->core_diameter, solved->core_diameter_end}};
   }
   if (!request.core_diameter || !request.core_diameter_end) return {};
   SetupRequest even = request;
@@ -360,7 +277,7 @@ SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest
   even.y_per_x = 0;
   const Fitted all = fitted(SetupTrial(ConicalCutter(even.cutter), even.wheel, even.nominal_radius, 0), even, false);
   if (!all.best || all.best->problem) return {};
-  return {0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
+  return {0, 0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
 }
 
 /// That what is asked cannot be had within its tolerances.
@@ -381,7 +298,11 @@ SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const
 
 SetupRefusal refusal(const SetupRequest& request, const Judged& judged) {
   switch (*judged.problem) {
-    case SetupProblem::kLand: return {SetupProblem::kLand, 0, judged.solved.land, judged.solved.land};
+    case SetupProblem::kLand: {
+      SetupRefusal refusal{SetupProblem::kLand, 0, judged.solved.land, judged.solved.land};
+      refusal.mend.wheel_width = mendingWidth(request, judged.point);
+      return refusal;
+    }
     case SetupProblem::kCore: return {SetupProblem::kCore, request.core_diameter.value_or(0), 0, 0};
     default: return {*judged.problem};
   }

@@ -130,4 +130,10 @@ WheelProfile WheelProfile::worn(double wear) const {
 
 WheelProfile WheelProfile::withDiameter(double diameter) const { return worn(largest_radius_ - diameter / 2); }
 
+std::optional<WheelProfile> WheelProfile::withWidth(double width) const {
+  const bool is_straight = corners_.size() == 2 && corners_[0].radius == corners_[1].radius;
+  if (!is_straight || !(corner_radii_[0] + corner_radii_[1] <= width)) return std::nullopt;
+  return straight(2 * largest_radius_, width, corner_radii_);
+}
+
 }  // namespace flute_grinder

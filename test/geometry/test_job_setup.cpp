@@ -282,6 +282,21 @@ double numberBehind(const std::string& text, const std::string& name) {
   return at == std::string::npos ? 0 : std::stod(text.substr(at + name.size() + 3));
 }
 
+TEST(JobSetup, TheWidthThatARefusalNamesLeavesALand) {
+  GrindJob job = steep(6.46, 7.62, 41.7, 1.2, 12.53, 4.421, 50, 1.89);
+  job.tooth_angles.clear();
+  for (int i = 0; i < 6; ++i) job.tooth_angles.push_back(i * units::kTurn / 6);
+  job.cutter.core_diameter_end = 7.158 * kMillimetre;
+  job.cutter.core_tolerance = 0.05 * kMillimetre;
+  job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
+  const std::string text = refused(job);
+  EXPECT_NE(text.find("no land is left"), std::string::npos) << text;
+  const double width = numberBehind(text, "process.wheel.width_mm") * kMillimetre;
+  ASSERT_GT(width, 0.5e-3) << text;
+  job.process.wheel_width = width;
+  EXPECT_TRUE(solved(job).check.reasons.empty());
+}
+
 TEST(JobSetup, WhatARefusalNamesMendsIt) {
   GrindJob job = shipped("left_hand_d8_t3");
   job.cutter.core_diameter_end = 7 * kMillimetre;
@@ -312,6 +327,7 @@ TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
   struct Case {
     double diameter, cone, spiral, rake, length, core, core_end, wheel, width;
   };
+  int set_up = 0;
   for (const Case& c : {Case{2.516, 9.49, 7.3, 4.1, 4.158, 1.806, 2.664, 125, 0.25},
                         Case{4.272, 2.09, 20.1, 11.4706, 9.89, 3.158, 3.64, 125, 0.37},
                         Case{1.143, 10.5, 10.1, 2.3, 2.336, 0.695, 1.205, 100, 0.2}}) {
@@ -321,10 +337,11 @@ TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
     job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
     const auto result = solveJobSetup(job, kMachine, std::nullopt);
     const auto* setup = std::get_if<JobSetup>(&result);
-    if (setup) {
-      EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons, UnitSystem::kShop);
-    }
+    if (!setup) continue;
+    ++set_up;
+    EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons, UnitSystem::kShop);
   }
+  EXPECT_GT(set_up, 0);
 }
 
 TEST(SetupSheet, TellsHowHighTheWheelStands) {

@@ -31,6 +31,10 @@ double chordDepth(const CutterGeometry& cutter, double flute_depth) noexcept;
 /// @param turn from the outer end to the inner one [rad].
 double chordAngle(double outer, double inner, double turn) noexcept;
 
+/// The spiral angle with which an edge would turn as far between two sections: the mean of its own there.
+/// @param from,to X of the sections, not the same [m]. @param turn [rad].
+double meanSpiral(const ConicalCutter& cutter, double from, double to, double turn) noexcept;
+
 constexpr double kMinCore = 1e-6;  ///< radius of a core that still holds the teeth together [m]
 
 /// A section of the ground cutter, normal to its axis.

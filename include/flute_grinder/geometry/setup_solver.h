@@ -99,10 +99,11 @@ struct SetupRefusal {
     std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
   };
   Nearest nearest{};
-  /// What would be set up with all else as asked: the largest of some smaller wheels, down to a quarter; or cores. 0 if
-  /// none was found.
+  /// What would be set up with all else as asked: the largest of some smaller wheels, down to a quarter, or the widest
+  /// of some narrower ones; or cores. 0 if none was found. Where no land is left, only the width is looked for.
   struct Mend {
     double wheel_diameter = 0;              ///< as worn [m]
+    double wheel_width = 0;                 ///< [m]
     std::array<double, 2> core_diameter{};  ///< at the flute's ends [m]
   };
   Mend mend{};

@@ -3,6 +3,7 @@
 #include "flute_grinder/job/grind_job.h"
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace flute_grinder {
@@ -52,6 +53,9 @@ class WheelProfile {
 
   /// The wheel with the same profile farther out or in, so that its largest diameter is this [m].
   WheelProfile withDiameter(double diameter) const;
+
+  /// A straight wheel of another width. @return nothing if the profile is another, or its corners do not fit.
+  std::optional<WheelProfile> withWidth(double width) const;
 
  private:
   /// Where a circle rounds the profile off.

@@ -23,7 +23,7 @@ constexpr int kMostEvened = 8;   ///< of those nearest to the tolerances
 /// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
 /// A wheel in the plane of the helix may give the largest rake on a cylinder, and that be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
-const std::vector<double> kOtherSwivels{-4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
+const std::vector<double> kOtherSwivels{0, -4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
 const std::vector<double> kSwivelsOfCylinder{0, 4 * units::kDegree, -4 * units::kDegree};
 constexpr int kStartHeights = 4;                    ///< from which they start, on either side of the axis
 constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< of the deepest, where it is found and no core is asked

@@ -181,9 +181,7 @@ TEST_F(PaperJob, RunsAgain) {
 
 TEST(ControlLoopRecords, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
   Rig<FakeDrive> rig;
-  const ros::Duration period(0.001);
-  ros::Time time(1000);
-  for (int i = 0; i < 8192 + 7; ++i) rig.loop->cycle(time += period, period);
+  rig.runUnseen(8192 + 7);
   EXPECT_EQ(rig.drive.status.feedback_count, 8192u + 7);
   CycleRecord record;
   int taken = 0;
@@ -203,8 +201,7 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
   ASSERT_TRUE(rig.loop->startJob(&stream));
-  const ros::Duration period(0.001);
-  for (std::size_t i = 0; i < planned + 8192; ++i) rig.loop->cycle(ros::Time(2000), period);
+  rig.runUnseen(planned + 8192);
   CycleRecord record;
   while (rig.loop->pop(record)) {
   }
@@ -220,10 +217,9 @@ TEST(ControlLoopRecords, TheEndOfAJobIsToldEvenIfItsOwnRecordWasLost) {
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
-  const ros::Duration period(0.001);
-  for (int i = 0; i < 8192; ++i) rig.loop->cycle(ros::Time(2000), period);  // no room for any record of the job
+  rig.runUnseen(8192);  // no room for any record of the job
   ASSERT_TRUE(rig.loop->startJob(&stream));
-  for (std::size_t i = 0; i < planned + 10; ++i) rig.loop->cycle(ros::Time(2000), period);
+  rig.runUnseen(planned + 10);
   CycleRecord record;
   while (rig.loop->pop(record)) EXPECT_FALSE(record.job_ended);
   EXPECT_TRUE(rig.cycle().job_ended);

@@ -286,6 +286,11 @@ TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
 class LostOnTheSimulatedDrive : public testing::TestWithParam<std::tuple<SimulatedDrive::Fault, Interlock>> {
  protected:
   void SetUp() override {
+    if (std::get<1>(GetParam()) == Interlock::kSwivel) {
+      SimulatedDrive::Equipment encoder = equipment();
+      encoder.swivel = kPaperSwivel;
+      rig_.drive.init(driveModel(), encoder);
+    }
     rig_.cycle();
     rig_.startPaper();
     rig_.runTo(MoveKind::kStroke);
@@ -331,7 +336,8 @@ TEST_P(LostOnTheSimulatedDrive, CancelLetsTheMachineHomeAndGrindAgain) {
 INSTANTIATE_TEST_SUITE_P(, LostOnTheSimulatedDrive,
                          testing::Values(std::tuple(SimulatedDrive::Fault::kReferenceLost, Interlock::kNotHomed),
                                          std::tuple(SimulatedDrive::Fault::kSpindleLost, Interlock::kSpindle),
-                                         std::tuple(SimulatedDrive::Fault::kCoolantLost, Interlock::kCoolant)),
+                                         std::tuple(SimulatedDrive::Fault::kCoolantLost, Interlock::kCoolant),
+                                         std::tuple(SimulatedDrive::Fault::kSwivelSlipped, Interlock::kSwivel)),
                          [](const testing::TestParamInfo<std::tuple<SimulatedDrive::Fault, Interlock>>& info) {
                            return std::string(parts()[static_cast<std::size_t>(std::get<1>(info.param)) - 1].name);
                          });

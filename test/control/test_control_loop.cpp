@@ -154,28 +154,6 @@ TEST_F(PaperJob, WritesEverySetpointInACycleOfItsOwnWithoutGaps) {
   EXPECT_GT(expected, 3000u);
 }
 
-TEST_F(PaperJob, EndsReadyAtTheParkPosition) {
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == machineConfig().machine.park).all()) << rig_.last().command.transpose();
-  rig_.run(50);
-  EXPECT_TRUE((rig_.last().position == machineConfig().machine.park).all()) << rig_.last().position.transpose();
-}
-
-TEST_F(PaperJob, EndsOnce) {
-  rig_.run(100);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_FALSE(rig_.last().has_setpoint);
-}
-
-TEST_F(PaperJob, RunsAgain) {
-  const std::vector<Setpoint> first = rig_.setpoints();
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_TRUE(rig_.askToStart(*rig_.stream).accepted);
-  rig_.runToEnd();
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), first));
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Records
 

@@ -70,38 +70,7 @@ TEST_P(HoldAt, ResumeBeforeItRestsGoesOnWithoutARest) {
   for (std::size_t i = before_; i + 1 < rig_.log.size(); ++i) ASSERT_TRUE(rig_.log[i].has_setpoint) << "record " << i;
 }
 
-TEST_P(HoldAt, AgainAndAgainCompletesToo) {
-  for (int i = 0; i < 5; ++i) {
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-    rig_.run(7);
-    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-    rig_.run(31);
-    const RequestReply answer = rig_.ask(E::kHold);
-    if (!answer.accepted) break;  // the job has ended
-  }
-  if (rig_.jobsEnded() == 0) {
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-    rig_.runToEnd();
-  }
-  expectCompleted(rig_);
-}
-
 INSTANTIATE_TEST_SUITE_P(, HoldAt, testing::ValuesIn(moments({0, 300, 500, 990})), momentName);
-
-TEST(Hold, BeforeTheFirstSetpointKeepsTheAxesWhereTheyAre) {
-  Rig<SimulatedDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
-  rig.run(100);
-  EXPECT_TRUE(sameBits(rig.last().command, machineConfig().machine.park));
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
-  EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
-}
 
 TEST(Hold, TwiceIsAsGoodAsOnce) {
   Rig<FakeDrive> rig;

@@ -247,18 +247,6 @@ TEST(Told, SpindleAndCoolantThroughAWholeJob) {
   EXPECT_EQ(rig.last().state, S::kReady);
 }
 
-TEST(Told, SpindleAndCoolantAreOffOnceACanceledJobHasComeToRest) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
-  while (rig.cycle().state == S::kCanceling) {
-    ASSERT_TRUE(rig.drive.written_drive.spindle);
-    ASSERT_TRUE(rig.drive.written_drive.coolant);
-  }
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
-  EXPECT_FALSE(rig.drive.written_drive.coolant);
-}
-
 TEST(Told, NothingIsOnForAStartThatIsRefused) {
   Rig<FakeDrive> rig;
   rig.cycle();

@@ -68,15 +68,6 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel does not stand in the work");
 }
 
-TEST_F(InTheWork, AJobRunsAfterTheLift) {
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  rig_.runUntil(S::kReady);
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
-}
-
 TEST_F(InTheWork, StaysSoWithoutPowerAndThroughFaults) {
   ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
   rig_.run(20);

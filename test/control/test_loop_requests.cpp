@@ -265,19 +265,6 @@ TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Start
 
-TEST(ControlLoopStart, IsRefusedWhenTheAxesAreNotHomed) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
-  rig.drive.status.homed = false;
-  SetpointStream stream = rig.paperStream();
-  const RequestReply answer = rig.askToStart(stream);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_CONTAINS(answer.text, "not homed");
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_TRUE(rig.setpoints().empty());
-}
-
 class StartAfterMoving : public testing::TestWithParam<int> {};
 
 TEST_P(StartAfterMoving, IsRefused) {

@@ -251,22 +251,6 @@ TEST_P(LostPart, AgainAfterResumeRetractsAgain) {
   expectCompleted(rig_);
 }
 
-TEST_P(LostPart, DoesNotLetANewJobInheritTheReason) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.runUntil(S::kRetracted);
-  rig_.drive.on_read = restoreParts;
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.log.front().job_ended = false;
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  expectCompleted(rig_);
-  for (const CycleRecord& record : rig_.log) ASSERT_EQ(record.interlock, Interlock::kNone);
-}
-
 INSTANTIATE_TEST_SUITE_P(, LostPart, testing::ValuesIn(parts()), partName);
 
 TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {

@@ -171,6 +171,8 @@ TEST(CancelWithLift, LiftsTheWheelWhileSpindleAndCoolantRunAlsoWithoutThem) {
       ASSERT_TRUE(rig.drive.written_drive.coolant);
     }
     EXPECT_EQ(rig.last().state, S::kReady);
+    EXPECT_FALSE(rig.drive.written_drive.spindle);
+    EXPECT_FALSE(rig.drive.written_drive.coolant);
     EXPECT_NEAR(rig.last().command[kY], kClearanceHeight, 1e-12);
     EXPECT_FALSE(rig.last().wheel_in_work);
     EXPECT_TRUE(smooth(rig.log));

@@ -221,10 +221,10 @@ TEST_P(RequestWithoutEffect, IsAcceptedAndChangesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
-                         testing::Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kReady, E::kEnable},
-                                         RequestCase{S::kHolding, E::kHold}, RequestCase{S::kHeld, E::kHold},
-                                         RequestCase{S::kStarting, E::kHold}, RequestCase{S::kStarting, E::kResume},
-                                         RequestCase{S::kCanceling, E::kCancel},
+                         testing::Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kDisabled, E::kReset},
+                                         RequestCase{S::kReady, E::kEnable}, RequestCase{S::kHolding, E::kHold},
+                                         RequestCase{S::kHeld, E::kHold}, RequestCase{S::kStarting, E::kHold},
+                                         RequestCase{S::kStarting, E::kResume}, RequestCase{S::kCanceling, E::kCancel},
                                          RequestCase{S::kCanceling, E::kDisable}, RequestCase{S::kCanceling, E::kHold},
                                          RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
                                          RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable},

@@ -123,6 +123,18 @@ class Rig {
     start(*stream);
   }
 
+  /// Holds the job and runs until the axes rest.
+  void hold() {
+    ASSERT_TRUE(ask(MachineEvent::kHold).accepted);
+    if (last().state != MachineState::kHeld) runUntil(MachineState::kHeld);
+  }
+
+  /// Takes the wheel of a held job off the work.
+  void retract() {
+    ASSERT_TRUE(ask(MachineEvent::kRetract).accepted);
+    if (last().state != MachineState::kRetracted) runUntil(MachineState::kRetracted);
+  }
+
   /// Runs until a state is reached.
   void runUntil(MachineState state) {
     for (int i = 0; i < 100000; ++i) {

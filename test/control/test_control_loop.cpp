@@ -180,6 +180,9 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   const std::size_t planned = allSetpoints(stream).size();
   ASSERT_TRUE(rig.loop->startJob(&stream));
   rig.runUnseen(planned + 8192);
+  EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
+  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
+  EXPECT_EQ(rig.loop->status().setpoints_written, planned);
   CycleRecord record;
   while (rig.loop->pop(record)) {
   }

@@ -111,10 +111,8 @@ TEST_F(FeedOverrideOfZero, CanBeHeldAndResumed) {
 }
 
 TEST_F(FeedOverrideOfZero, CanBeRetractedAndRestsAboveTheWorkOnTheWayBack) {
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-  rig_.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
+  ASSERT_NO_FATAL_FAILURE(rig_.retract());
   EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12) << "a lift is no feed";
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.run(2000);

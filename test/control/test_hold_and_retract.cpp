@@ -75,8 +75,7 @@ INSTANTIATE_TEST_SUITE_P(, HoldAt, testing::ValuesIn(moments({0, 300, 500, 990})
 TEST(Hold, TwiceIsAsGoodAsOnce) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kHolding));
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  rig.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
   const std::size_t held = rig.log.size() - 1;
   ASSERT_TRUE(rig.ask(E::kHold).accepted);
   rig.run(50);
@@ -108,12 +107,10 @@ class RetractAt : public testing::TestWithParam<Moment> {
     rig_.cycle();
     rig_.startPaper();
     ASSERT_NO_FATAL_FAILURE(rig_.runToCycle(GetParam().cycle() - 1));
-    ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+    ASSERT_NO_FATAL_FAILURE(rig_.hold());
     rig_.run(10);
     held_ = rig_.log.size() - 1;
-    ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-    if (rig_.last().state != S::kRetracted) rig_.runUntil(S::kRetracted);
+    ASSERT_NO_FATAL_FAILURE(rig_.retract());
   }
 
   Rig<SimulatedDrive> rig_;
@@ -192,8 +189,7 @@ class OnTheDetour : public testing::TestWithParam<int> {
 TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLift) {
   rig_.run(GetParam());
   ASSERT_EQ(rig_.last().state, S::kRetracting);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   const std::size_t held = rig_.log.size() - 1;
   rig_.run(200);
   EXPECT_TRUE(atRestFrom(rig_.log, held));
@@ -203,8 +199,7 @@ TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLift) {
 
 TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
   rig_.run(GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
   EXPECT_EQ(rig_.last().state, S::kRetracting);
   rig_.runUntil(S::kRetracted);
@@ -216,8 +211,7 @@ TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
 
 TEST_P(OnTheDetour, ResumeAfterThatGoesBackAllTheWay) {
   rig_.run(GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().state, S::kResuming);
   rig_.runToEnd();
@@ -229,8 +223,7 @@ TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOn) {
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.run(4 * GetParam());
   ASSERT_EQ(rig_.last().state, S::kResuming);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   const std::size_t held = rig_.log.size() - 1;
   rig_.run(100);
   EXPECT_TRUE(atRestFrom(rig_.log, held));
@@ -244,10 +237,8 @@ TEST_P(OnTheDetour, RetractWhileResumingLiftsAgain) {
   rig_.runUntil(S::kRetracted);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.run(4 * GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-  if (rig_.last().state != S::kRetracted) rig_.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
+  ASSERT_NO_FATAL_FAILURE(rig_.retract());
   EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
@@ -263,10 +254,8 @@ TEST(Retract, SeveralTimesInOneStrokeCompletesTheJob) {
   rig.runTo(MoveKind::kStroke);
   for (int i = 0; i < 5; ++i) {
     rig.run(400);
-    ASSERT_TRUE(rig.ask(E::kHold).accepted);
-    rig.runUntil(S::kHeld);
-    ASSERT_TRUE(rig.ask(E::kRetract).accepted);
-    rig.runUntil(S::kRetracted);
+    ASSERT_NO_FATAL_FAILURE(rig.hold());
+    ASSERT_NO_FATAL_FAILURE(rig.retract());
     ASSERT_TRUE(rig.ask(E::kResume).accepted);
     rig.runUntil(S::kRunning);
   }

@@ -427,10 +427,8 @@ TEST_P(JogRetractedAt, TheJobIsCompletedOnTheSamePath) {
   rig.cycle();
   rig.startPaper();
   ASSERT_NO_FATAL_FAILURE(rig.runToCycle(GetParam().cycle() - 1));
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
-  ASSERT_TRUE(rig.ask(E::kRetract).accepted);
-  if (rig.last().state != S::kRetracted) rig.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
+  ASSERT_NO_FATAL_FAILURE(rig.retract());
   const std::size_t retracted = rig.log.size() - 1;
   std::mt19937 random(static_cast<unsigned>(GetParam().cycle()));
   std::uniform_real_distribution<> chance(-1, 1);

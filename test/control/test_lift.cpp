@@ -1,17 +1,13 @@
 #include "control/checks.h"
+#include "control/paper_job.h"
 #include "control/rig.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
 namespace flute_grinder::test_support {
 namespace test_lift {
-
-const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
-const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0016;
 
 /// Ready, with the wheel in the work after a fault.
 void bringIntoTheWork(Rig<FakeDrive>& rig) {

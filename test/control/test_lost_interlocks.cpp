@@ -119,7 +119,7 @@ TEST_P(Lost, TakesTheWheelOffTheWorkByItself) {
   EXPECT_TRUE(smooth(rig_.log));
 }
 
-TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
+TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBackAndThenCompletesTheJob) {
   const auto expectRefused = [&] {
     const RequestReply answer = rig_.ask(E::kResume);
     EXPECT_FALSE(answer.accepted);
@@ -130,25 +130,11 @@ TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
   expectRefused();
   rig_.run(100);
   expectRefused();
-  EXPECT_EQ(rig_.last().state, S::kRetracted);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, NothingMovesByItselfWhenItIsBack) {
-  awaitRetracted();
-  const std::size_t lifted = rig_.log.size() - 1;
   rig_.drive.on_read = restoreParts;
   rig_.run(200);
   EXPECT_EQ(rig_.last().state, S::kRetracted);
   EXPECT_EQ(rig_.last().interlock, part_.interlock) << "told until the job is resumed";
   EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, ResumeCompletesTheJobOnceItIsBack) {
-  awaitRetracted();
-  rig_.drive.on_read = restoreParts;
-  rig_.run(20);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
   if (rig_.jobsEnded() == 0) rig_.runToEnd();

@@ -186,7 +186,7 @@ class OnTheDetour : public testing::TestWithParam<int> {
   Rig<FakeDrive> rig_;
 };
 
-TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLift) {
+TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLiftAndRetractLiftsTheRest) {
   rig_.run(GetParam());
   ASSERT_EQ(rig_.last().state, S::kRetracting);
   ASSERT_NO_FATAL_FAILURE(rig_.hold());
@@ -195,11 +195,6 @@ TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLift) {
   EXPECT_TRUE(atRestFrom(rig_.log, held));
   EXPECT_LT(rig_.last().command[kY], kClearanceHeight - 1e-4);
   EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
-  rig_.run(GetParam());
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
   EXPECT_EQ(rig_.last().state, S::kRetracting);
   rig_.runUntil(S::kRetracted);
@@ -209,7 +204,7 @@ TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
   expectCompleted(rig_);
 }
 
-TEST_P(OnTheDetour, ResumeAfterThatGoesBackAllTheWay) {
+TEST_P(OnTheDetour, ResumeAfterAHoldInTheLiftGoesBackAllTheWay) {
   rig_.run(GetParam());
   ASSERT_NO_FATAL_FAILURE(rig_.hold());
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
@@ -218,29 +213,22 @@ TEST_P(OnTheDetour, ResumeAfterThatGoesBackAllTheWay) {
   expectCompleted(rig_);
 }
 
-TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOn) {
+TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOnOrRetractsAgain) {
   rig_.runUntil(S::kRetracted);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.run(4 * GetParam());
-  ASSERT_EQ(rig_.last().state, S::kResuming);
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
-  const std::size_t held = rig_.log.size() - 1;
-  rig_.run(100);
-  EXPECT_TRUE(atRestFrom(rig_.log, held));
+  for (const bool retracts : {true, false}) {
+    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+    rig_.run(4 * GetParam());
+    ASSERT_EQ(rig_.last().state, S::kResuming);
+    ASSERT_NO_FATAL_FAILURE(rig_.hold());
+    const std::size_t held = rig_.log.size() - 1;
+    rig_.run(100);
+    EXPECT_TRUE(atRestFrom(rig_.log, held));
+    if (!retracts) break;
+    ASSERT_NO_FATAL_FAILURE(rig_.retract());
+    EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
+  }
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().state, S::kResuming);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(OnTheDetour, RetractWhileResumingLiftsAgain) {
-  rig_.runUntil(S::kRetracted);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.run(4 * GetParam());
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
-  ASSERT_NO_FATAL_FAILURE(rig_.retract());
-  EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
   expectCompleted(rig_);
 }

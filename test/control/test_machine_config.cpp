@@ -1,11 +1,11 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "temp_folder.h"
 #include "yaml_parameters.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -26,14 +26,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // ---------------------------------------------------------------------------------------------------------------------
 // The package's own files, as roslaunch would load them
 
-std::string fileText(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  EXPECT_TRUE(file) << path;
-  return text.str();
-}
-
 LoopConfig read(const std::string& urdf, const XmlRpcValue& parameters) {
   return readMachineConfig(urdf, ParameterReader(parameters, "/grinder"));
 }
@@ -44,7 +36,7 @@ void expectAxes(const Axes& axes, const Axes& expected) {
 
 TEST(MachineConfig, TakesTheShippedMachineWithTheLimitsOfItsUrdf) {
   const LoopConfig config =
-      read(fileText("urdf/grinder.urdf"), test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")));
+      read(test_support::readFile("urdf/grinder.urdf"), test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")));
   expectAxes(config.machine.limits.min_position, {-0.1, -0.02, -0.05, -125.663706});
   expectAxes(config.machine.limits.max_position, {0.3, 0.15, 0.1, 125.663706});
   expectAxes(config.machine.limits.max_velocity, {0.2, 0.1, 0.1, 12.566});

@@ -97,12 +97,6 @@ core::Reason refusalOf(const GrindJob& job) {
   return {};
 }
 
-Machine roomyMachine() {
-  Machine machine = test_support::plainMachine();
-  machine.park << -0.02, 0.08, 0, 0;
-  return machine;
-}
-
 TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
   std::mt19937 dice(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(dice); };
@@ -247,11 +241,12 @@ TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
 TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
   RecordedStrokes strokes(withZLaw(job));
-  Axes actual = roomyMachine().park;
-  const JobPlan plan = planJob(withZLaw(job), roomyMachine(), roomyMachine().park, {}, [&](const Setpoint& p) {
-    strokes.add(p, actual);
-    actual = p.position;
-  });
+  Axes actual = test_support::roomyMachine().park;
+  const JobPlan plan = planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, {},
+                               [&](const Setpoint& p) {
+                                 strokes.add(p, actual);
+                                 actual = p.position;
+                               });
   strokes.finish();
   ASSERT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
   const GrindJob& with_law = plan.program->job();

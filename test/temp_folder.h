@@ -4,10 +4,20 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace flute_grinder::test_support {
+
+inline std::string readFile(const std::filesystem::path& path) {
+  const std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  EXPECT_TRUE(file) << path;
+  return text.str();
+}
 
 /// A folder of its own for a test; it goes with this object. A member ahead of all that writes there.
 class TempFolder {

@@ -12,17 +12,10 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 
 // What commands print and write, without a machine.
 namespace flute_grinder {
 namespace test_texts {
-
-std::string contents(const std::filesystem::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 TEST(TimeText, IsToTheSecond) {
   setenv("TZ", "Europe/Berlin", 1);
@@ -104,7 +97,7 @@ TEST_F(Csv, HasEveryBit) {
   table.write(7, point, 0.3);
   table.close();
   double x = 0, a = 0, theory = 0, error = 0;
-  const std::string text = contents(path("table.csv"));
+  const std::string text = test_support::readFile(path("table.csv"));
   const std::string head = "point,x_mm,a_rad,a_theory_rad,error_rad\n7,";
   ASSERT_EQ(text.substr(0, head.size()), head);
   ASSERT_EQ(std::sscanf(text.c_str() + head.size(), "%lf,%lf,%lf,%lf", &x, &a, &theory, &error), 4);
@@ -120,10 +113,10 @@ TEST_F(Csv, OfNothingLeavesTheFilesAsTheyWere) {
     const TableCsv kept(path("old.csv"));
     const TableCsv none(path("new.csv"));
   }
-  EXPECT_EQ(contents(path("old.csv")), "old");
+  EXPECT_EQ(test_support::readFile(path("old.csv")), "old");
   EXPECT_FALSE(std::filesystem::exists(path("new.csv")));
   TableCsv(path("old.csv")).close();
-  EXPECT_EQ(contents(path("old.csv")), "point,x_mm,a_rad,a_theory_rad,error_rad\n");
+  EXPECT_EQ(test_support::readFile(path("old.csv")), "point,x_mm,a_rad,a_theory_rad,error_rad\n");
 }
 
 TEST_F(Csv, ThatCannotBeWrittenIsNamed) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "control/fixtures.h"
+#include "control/heap.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -14,6 +15,7 @@
 namespace flute_grinder::test_support {
 
 /// A drive and its loop; every cycle's record is popped into the log. The swivel is confirmed for the paper's job.
+/// Neither a cycle nor a request may use the heap.
 template <typename Drive>
 class Rig {
  public:
@@ -34,12 +36,17 @@ class Rig {
   /// @param periods since the last cycle.
   const CycleRecord& cycle(double periods = 1) {
     const ros::Duration period(periods * config_.machine.period);
-    time_ += period;
-    loop->cycle(time_, period);
+    unseen(period);
     CycleRecord record;
     if (!loop->pop(record)) ADD_FAILURE() << "a cycle left no record";
     log.push_back(record);
     return log.back();
+  }
+
+  /// Runs cycles whose records nobody takes.
+  void runUnseen(std::size_t cycles) {
+    const ros::Duration period(config_.machine.period);
+    for (std::size_t i = 0; i < cycles; ++i) unseen(period);
   }
 
   const CycleRecord& run(int cycles) {
@@ -53,28 +60,29 @@ class Rig {
     if (event == MachineEvent::kStart) return askToStart(*job);
     if (event == MachineEvent::kJog) return jog({kY, false, 0.02, 0.05});
     if (isStop(event)) {
-      const std::uint32_t ticket = loop->postStopWithReply(event);
+      std::uint32_t ticket = 0;
+      useNoHeap([&] { ticket = loop->postStopWithReply(event); });
       return answerOf([&] { return loop->stopReply(event, ticket); });
     }
-    EXPECT_TRUE(loop->post(event)) << "the request was not taken";
+    post([&] { return loop->post(event); }, "the request");
     return answerOf([&] { return loop->reply(); });
   }
 
   /// Requests to start a job and runs cycles until the request is answered.
   RequestReply askToStart(SetpointStream& job) {
-    EXPECT_TRUE(loop->startJob(&job)) << "the start was not taken";
+    post([&] { return loop->startJob(&job); }, "the start");
     return answerOf([&] { return loop->startJobReply(); });
   }
 
   /// Confirms the swivel and runs cycles until that is answered.
   RequestReply confirm(double angle) {
-    EXPECT_TRUE(loop->postSwivel(angle)) << "the confirmation was not taken";
+    post([&] { return loop->postSwivel(angle); }, "the confirmation");
     return answerOf([&] { return loop->swivelReply(); });
   }
 
   /// Requests a jog and runs the cycle that answers it.
   RequestReply jog(const JogRequest& request) {
-    EXPECT_TRUE(loop->postJog(request)) << "the jog was not taken";
+    post([&] { return loop->postJog(request); }, "the jog");
     return answerOf([&] { return loop->jogReply(); });
   }
 
@@ -113,6 +121,18 @@ class Rig {
     enable();
     stream.emplace(paperStream());
     start(*stream);
+  }
+
+  /// Holds the job and runs until the axes rest.
+  void hold() {
+    ASSERT_TRUE(ask(MachineEvent::kHold).accepted);
+    if (last().state != MachineState::kHeld) runUntil(MachineState::kHeld);
+  }
+
+  /// Takes the wheel of a held job off the work.
+  void retract() {
+    ASSERT_TRUE(ask(MachineEvent::kRetract).accepted);
+    if (last().state != MachineState::kRetracted) runUntil(MachineState::kRetracted);
   }
 
   /// Runs until a state is reached.
@@ -173,8 +193,34 @@ class Rig {
   std::optional<SetpointStream> stream;
 
  private:
+  void unseen(const ros::Duration& period) {
+    time_ += period;
+    useNoHeap([&] {
+      loop->cycle(time_, period);
+      status_ = loop->status();  // as any thread reads it
+    });
+  }
+
+  template <typename Request>
+  void post(const Request& request, const char* name) {
+    bool taken = false;
+    useNoHeap([&] { taken = request(); });
+    EXPECT_TRUE(taken) << name << " was not taken";
+  }
+
+  /// One failure tells enough of a loop that uses the heap in every cycle.
+  template <typename Work>
+  void useNoHeap(const Work& work) {
+    if (!heapUse(work).any() || heap_told_) return;
+    heap_told_ = true;
+    ADD_FAILURE() << "the heap was used by cycle " << log.size()
+                  << " or a request before it; state: " << toString(status_.state);
+  }
+
   LoopConfig config_;
   ros::Time time_{1000};
+  LoopStatus status_;
+  bool heap_told_ = false;
 };
 
 /// Names a test by its state.

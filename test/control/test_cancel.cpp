@@ -2,7 +2,7 @@
 #include "control/paper_job.h"
 #include "control/rig.h"
 
-#include <cmath>
+#include <algorithm>
 #include <tuple>
 
 // Cancel.
@@ -55,28 +55,6 @@ TEST_P(Cancel, IsCancelingUntilTheAxesRestThenReady) {
   EXPECT_FALSE(rig_.last().has_setpoint);
 }
 
-TEST_P(Cancel, EndsTheJobOnceAndRests) {
-  rig_.runToEnd();
-  const Axes rest = rig_.last().command;
-  rig_.run(100);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_TRUE(sameBits(rig_.last().command, rest));
-  EXPECT_EQ(rig_.last().state, S::kReady);
-}
-
-TEST_P(Cancel, StopsWithinTheLimitsOfAcceleration) {
-  rig_.runToEnd();
-  rig_.run(4);
-  // Over pairs, since within one the odd-even steps are not the path's.
-  const Axes limit = machineConfig().machine.limits.max_acceleration;
-  const std::size_t last = rig_.log.size() - 1;
-  // An even number of setpoints after the first: the log's last setpoint ends a pair, and so does every second before.
-  for (std::size_t i = last - 4; i > last - 44; i -= 2) {
-    const Axes bend = rig_.log[i + 1].command - 2 * rig_.log[i - 1].command + rig_.log[i - 3].command;
-    ASSERT_TRUE((bend.abs() / (0.002 * 0.002) <= limit * 1.001).all()) << bend.transpose() / (0.002 * 0.002);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(, Cancel,
                          testing::Combine(testing::Values(MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach,
                                                           MoveKind::kInfeed, MoveKind::kStroke, MoveKind::kRetract,
@@ -86,44 +64,6 @@ INSTANTIATE_TEST_SUITE_P(, Cancel,
                            return std::string(toString(std::get<0>(info.param))) +
                                   (std::get<1>(info.param) ? "_mid_pair" : "_pair_end");
                          });
-
-TEST(ControlLoopCancel, RestsOnTheHelix) {
-  Rig<SimulatedDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  rig.runTo(MoveKind::kStroke);
-  rig.run(500);
-  ASSERT_TRUE(rig.ask(E::kCancel).accepted);
-  rig.runToEnd();
-  const Axes rest = rig.last().command;
-  ASSERT_GT(rest[kX], 0.001) << "cancelled well within the flute";
-  ASSERT_LT(rest[kX], 0.030);
-  const double a = kK / kB * std::log1p(kB * rest[kX]);
-  // 1 um across the helix, at the largest radius of the flute, which gives the least angle.
-  const double radius = 0.005 + 0.030 * kTanCone;
-  EXPECT_NEAR(rest[kA], a, 1e-6 / (radius * std::cos(30 * kDegree)) * 1.2);
-}
-
-TEST(ControlLoopCancel, LeavesTheWheelInTheWorkIfAHoldStopsItsLift) {
-  Rig<SimulatedDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
-  rig.run(100);
-  ASSERT_TRUE(rig.ask(E::kCancel).accepted);
-  for (int i = 0; i < 1000 && rig.last().setpoint.move != MoveKind::kLift; ++i) rig.cycle();
-  ASSERT_EQ(rig.last().setpoint.move, MoveKind::kLift);
-  rig.run(10);
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  rig.runToEnd();
-  rig.run(100);
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_LT(rig.last().command[kY], kClearanceHeight);
-  EXPECT_TRUE(rig.last().wheel_in_work);
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-}
 
 class CancelIn : public testing::TestWithParam<S> {
  protected:

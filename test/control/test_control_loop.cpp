@@ -154,36 +154,12 @@ TEST_F(PaperJob, WritesEverySetpointInACycleOfItsOwnWithoutGaps) {
   EXPECT_GT(expected, 3000u);
 }
 
-TEST_F(PaperJob, EndsReadyAtTheParkPosition) {
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == machineConfig().machine.park).all()) << rig_.last().command.transpose();
-  rig_.run(50);
-  EXPECT_TRUE((rig_.last().position == machineConfig().machine.park).all()) << rig_.last().position.transpose();
-}
-
-TEST_F(PaperJob, EndsOnce) {
-  rig_.run(100);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_FALSE(rig_.last().has_setpoint);
-}
-
-TEST_F(PaperJob, RunsAgain) {
-  const std::vector<Setpoint> first = rig_.setpoints();
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_TRUE(rig_.askToStart(*rig_.stream).accepted);
-  rig_.runToEnd();
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), first));
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Records
 
 TEST(ControlLoopRecords, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
   Rig<FakeDrive> rig;
-  const ros::Duration period(0.001);
-  ros::Time time(1000);
-  for (int i = 0; i < 8192 + 7; ++i) rig.loop->cycle(time += period, period);
+  rig.runUnseen(8192 + 7);
   EXPECT_EQ(rig.drive.status.feedback_count, 8192u + 7);
   CycleRecord record;
   int taken = 0;
@@ -203,8 +179,10 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
   ASSERT_TRUE(rig.loop->startJob(&stream));
-  const ros::Duration period(0.001);
-  for (std::size_t i = 0; i < planned + 8192; ++i) rig.loop->cycle(ros::Time(2000), period);
+  rig.runUnseen(planned + 8192);
+  EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
+  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
+  EXPECT_EQ(rig.loop->status().setpoints_written, planned);
   CycleRecord record;
   while (rig.loop->pop(record)) {
   }
@@ -220,10 +198,9 @@ TEST(ControlLoopRecords, TheEndOfAJobIsToldEvenIfItsOwnRecordWasLost) {
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
-  const ros::Duration period(0.001);
-  for (int i = 0; i < 8192; ++i) rig.loop->cycle(ros::Time(2000), period);  // no room for any record of the job
+  rig.runUnseen(8192);  // no room for any record of the job
   ASSERT_TRUE(rig.loop->startJob(&stream));
-  for (std::size_t i = 0; i < planned + 10; ++i) rig.loop->cycle(ros::Time(2000), period);
+  rig.runUnseen(planned + 10);
   CycleRecord record;
   while (rig.loop->pop(record)) EXPECT_FALSE(record.job_ended);
   EXPECT_TRUE(rig.cycle().job_ended);

@@ -109,62 +109,22 @@ class FaultWhileRunning : public testing::TestWithParam<FaultCase> {
   Axes last_written_ = Axes::Zero();
 };
 
-TEST_P(FaultWhileRunning, IsSeenInTheSameCycle) {
-  EXPECT_EQ(rig_.last().state, S::kFault);
-  EXPECT_EQ(rig_.last().fault.kind, GetParam().kind);
+TEST_P(FaultWhileRunning, EndsTheJobInItsCycleAndStays) {
   EXPECT_EQ(rig_.last().fault.axis, GetParam().axis);
-}
-
-TEST_P(FaultWhileRunning, SwitchesPowerOffInTheSameCycle) { EXPECT_FALSE(rig_.drive.written_drive.enable); }
-
-TEST_P(FaultWhileRunning, LeavesTheCommandsAsLastWritten) {
-  EXPECT_FALSE(rig_.last().has_setpoint);
-  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), last_written_));
-  EXPECT_TRUE(sameBits(rig_.last().command, last_written_));
-}
-
-TEST_P(FaultWhileRunning, NoSetpointIsEverWrittenAfterIt) {
-  for (int i = 0; i < 100; ++i) {
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kFault);
-    ASSERT_FALSE(rig_.last().has_setpoint);
-    ASSERT_FALSE(rig_.drive.written_drive.enable);
-    ASSERT_TRUE(sameBits(toAxes(rig_.drive.written), last_written_));
-  }
-}
-
-TEST_P(FaultWhileRunning, EndsTheJobOnce) {
-  EXPECT_TRUE(rig_.last().job_ended);
-  rig_.run(100);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-}
-
-TEST_P(FaultWhileRunning, IsToldInWords) {
   for (const std::string& word : GetParam().words) EXPECT_CONTAINS(rig_.last().fault.text(), word);
-}
-
-TEST_P(FaultWhileRunning, StaysWhenItsCauseGoesAway) {
-  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
-  rig_.run(100);
-  EXPECT_EQ(rig_.last().state, S::kFault);
-  EXPECT_EQ(rig_.last().fault.kind, GetParam().kind);
-  EXPECT_FALSE(rig_.drive.written_drive.enable);
-}
-
-TEST_P(FaultWhileRunning, NothingMovesAfterReset) {
-  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
-  rig_.cycle();
-  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  EXPECT_EQ(rig_.last().state, S::kDisabled);
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-  const std::size_t written = rig_.setpoints().size();
-  const Axes rest = toAxes(rig_.drive.position);
-  for (int i = 0; i < 100; ++i) {
+  EXPECT_TRUE(rig_.last().job_ended);
+  for (int i = 0; i < 200; ++i) {
+    ASSERT_EQ(rig_.last().state, S::kFault) << i;
+    ASSERT_EQ(rig_.last().fault.kind, GetParam().kind) << i;
+    ASSERT_FALSE(rig_.last().has_setpoint) << i;
+    ASSERT_FALSE(rig_.drive.written_drive.enable) << i;
+    // Once it has gone, the commands follow the positions.
+    ASSERT_TRUE(i > 100 || sameBits(toAxes(rig_.drive.written), last_written_)) << i;
+    ASSERT_TRUE(i > 100 || sameBits(rig_.last().command, last_written_)) << i;
+    if (i == 100) rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
     rig_.cycle();
-    ASSERT_FALSE(rig_.drive.written_drive.enable);
-    ASSERT_TRUE(sameBits(toAxes(rig_.drive.written), rest) || !rest.isFinite().all());
   }
-  EXPECT_EQ(rig_.setpoints().size(), written);
+  EXPECT_EQ(rig_.jobsEnded(), 1);
 }
 
 TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
@@ -189,25 +149,6 @@ TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
 
 INSTANTIATE_TEST_SUITE_P(, FaultWhileRunning, testing::ValuesIn(faultCases()),
                          [](const testing::TestParamInfo<FaultCase>& info) { return info.param.name; });
-
-TEST(ControlLoopFault, IsSeenWhileCancelingToo) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
-  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
-  rig.cycle();
-  EXPECT_EQ(rig.last().state, S::kFault);
-  EXPECT_TRUE(rig.last().job_ended);
-  EXPECT_FALSE(rig.last().has_setpoint);
-}
-
-TEST(ControlLoopFault, AtRestEndsNoJob) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kReady));
-  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
-  rig.run(10);
-  EXPECT_EQ(rig.last().state, S::kFault);
-  EXPECT_EQ(rig.jobsEnded(), 0);
-}
 
 TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
   Rig<FakeDrive> rig;

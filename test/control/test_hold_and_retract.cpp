@@ -70,44 +70,12 @@ TEST_P(HoldAt, ResumeBeforeItRestsGoesOnWithoutARest) {
   for (std::size_t i = before_; i + 1 < rig_.log.size(); ++i) ASSERT_TRUE(rig_.log[i].has_setpoint) << "record " << i;
 }
 
-TEST_P(HoldAt, AgainAndAgainCompletesToo) {
-  for (int i = 0; i < 5; ++i) {
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-    rig_.run(7);
-    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-    rig_.run(31);
-    const RequestReply answer = rig_.ask(E::kHold);
-    if (!answer.accepted) break;  // the job has ended
-  }
-  if (rig_.jobsEnded() == 0) {
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-    rig_.runToEnd();
-  }
-  expectCompleted(rig_);
-}
-
 INSTANTIATE_TEST_SUITE_P(, HoldAt, testing::ValuesIn(moments({0, 300, 500, 990})), momentName);
-
-TEST(Hold, BeforeTheFirstSetpointKeepsTheAxesWhereTheyAre) {
-  Rig<SimulatedDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
-  rig.run(100);
-  EXPECT_TRUE(sameBits(rig.last().command, machineConfig().machine.park));
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
-  EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
-}
 
 TEST(Hold, TwiceIsAsGoodAsOnce) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kHolding));
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  rig.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
   const std::size_t held = rig.log.size() - 1;
   ASSERT_TRUE(rig.ask(E::kHold).accepted);
   rig.run(50);
@@ -139,12 +107,10 @@ class RetractAt : public testing::TestWithParam<Moment> {
     rig_.cycle();
     rig_.startPaper();
     ASSERT_NO_FATAL_FAILURE(rig_.runToCycle(GetParam().cycle() - 1));
-    ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-    if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+    ASSERT_NO_FATAL_FAILURE(rig_.hold());
     rig_.run(10);
     held_ = rig_.log.size() - 1;
-    ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-    if (rig_.last().state != S::kRetracted) rig_.runUntil(S::kRetracted);
+    ASSERT_NO_FATAL_FAILURE(rig_.retract());
   }
 
   Rig<SimulatedDrive> rig_;
@@ -220,22 +186,15 @@ class OnTheDetour : public testing::TestWithParam<int> {
   Rig<FakeDrive> rig_;
 };
 
-TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLift) {
+TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLiftAndRetractLiftsTheRest) {
   rig_.run(GetParam());
   ASSERT_EQ(rig_.last().state, S::kRetracting);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   const std::size_t held = rig_.log.size() - 1;
   rig_.run(200);
   EXPECT_TRUE(atRestFrom(rig_.log, held));
   EXPECT_LT(rig_.last().command[kY], kClearanceHeight - 1e-4);
   EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
-  rig_.run(GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
   ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
   EXPECT_EQ(rig_.last().state, S::kRetracting);
   rig_.runUntil(S::kRetracted);
@@ -245,42 +204,31 @@ TEST_P(OnTheDetour, RetractAfterThatLiftsTheRest) {
   expectCompleted(rig_);
 }
 
-TEST_P(OnTheDetour, ResumeAfterThatGoesBackAllTheWay) {
+TEST_P(OnTheDetour, ResumeAfterAHoldInTheLiftGoesBackAllTheWay) {
   rig_.run(GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().state, S::kResuming);
   rig_.runToEnd();
   expectCompleted(rig_);
 }
 
-TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOn) {
+TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOnOrRetractsAgain) {
   rig_.runUntil(S::kRetracted);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.run(4 * GetParam());
-  ASSERT_EQ(rig_.last().state, S::kResuming);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-  const std::size_t held = rig_.log.size() - 1;
-  rig_.run(100);
-  EXPECT_TRUE(atRestFrom(rig_.log, held));
+  for (const bool retracts : {true, false}) {
+    ASSERT_TRUE(rig_.ask(E::kResume).accepted);
+    rig_.run(4 * GetParam());
+    ASSERT_EQ(rig_.last().state, S::kResuming);
+    ASSERT_NO_FATAL_FAILURE(rig_.hold());
+    const std::size_t held = rig_.log.size() - 1;
+    rig_.run(100);
+    EXPECT_TRUE(atRestFrom(rig_.log, held));
+    if (!retracts) break;
+    ASSERT_NO_FATAL_FAILURE(rig_.retract());
+    EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
+  }
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().state, S::kResuming);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
-TEST_P(OnTheDetour, RetractWhileResumingLiftsAgain) {
-  rig_.runUntil(S::kRetracted);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.run(4 * GetParam());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-  if (rig_.last().state != S::kRetracted) rig_.runUntil(S::kRetracted);
-  EXPECT_GE(rig_.last().command[kY], kClearanceHeight - 1e-12);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
   expectCompleted(rig_);
 }
@@ -294,10 +242,8 @@ TEST(Retract, SeveralTimesInOneStrokeCompletesTheJob) {
   rig.runTo(MoveKind::kStroke);
   for (int i = 0; i < 5; ++i) {
     rig.run(400);
-    ASSERT_TRUE(rig.ask(E::kHold).accepted);
-    rig.runUntil(S::kHeld);
-    ASSERT_TRUE(rig.ask(E::kRetract).accepted);
-    rig.runUntil(S::kRetracted);
+    ASSERT_NO_FATAL_FAILURE(rig.hold());
+    ASSERT_NO_FATAL_FAILURE(rig.retract());
     ASSERT_TRUE(rig.ask(E::kResume).accepted);
     rig.runUntil(S::kRunning);
   }

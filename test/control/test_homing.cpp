@@ -92,37 +92,6 @@ TEST_F(Incremental, AxesStandAfterHoming) {
   EXPECT_TRUE((rig_.last().command == home_).all());
 }
 
-TEST_F(Incremental, AJumpOfThePositionsToTheReferenceIsNoFollowingError) {
-  ASSERT_NO_FATAL_FAILURE(home());
-  rig_.run(5);
-  Axes jump = Axes::Zero();
-  for (std::size_t i = 1; i < rig_.log.size(); ++i) {
-    jump = jump.max((rig_.log[i].position - rig_.log[i - 1].position).abs());
-    ASSERT_TRUE(rig_.log[i].state != S::kHoming || sameBits(rig_.log[i].command, rig_.log[i].position));
-  }
-  EXPECT_TRUE((jump.head<3>() > machineConfig().following_error.head<3>()).all()) << jump.transpose();
-  EXPECT_GT(jump[kA], machineConfig().following_error[kA]);
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-}
-
-TEST_F(Incremental, AJobRunsAfterHoming) {
-  ASSERT_NO_FATAL_FAILURE(home());
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == home_).all()) << "the park position is the home position here";
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_F(Incremental, CanBeHomedAgain) {
-  ASSERT_NO_FATAL_FAILURE(home());
-  ASSERT_NO_FATAL_FAILURE(home());
-  EXPECT_TRUE(rig_.last().drive.homed);
-  EXPECT_TRUE((rig_.last().position == home_).all());
-}
-
 TEST_F(Incremental, DisableEndsHomingAtOnce) {
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   rig_.run(20);

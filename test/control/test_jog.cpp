@@ -427,10 +427,8 @@ TEST_P(JogRetractedAt, TheJobIsCompletedOnTheSamePath) {
   rig.cycle();
   rig.startPaper();
   ASSERT_NO_FATAL_FAILURE(rig.runToCycle(GetParam().cycle() - 1));
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
-  ASSERT_TRUE(rig.ask(E::kRetract).accepted);
-  if (rig.last().state != S::kRetracted) rig.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
+  ASSERT_NO_FATAL_FAILURE(rig.retract());
   const std::size_t retracted = rig.log.size() - 1;
   std::mt19937 random(static_cast<unsigned>(GetParam().cycle()));
   std::uniform_real_distribution<> chance(-1, 1);
@@ -471,25 +469,6 @@ TEST_P(JogRetractedAt, TheJobIsCompletedOnTheSamePath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, JogRetractedAt, testing::ValuesIn(moments({30, 500})), momentName);
-
-TEST(JogRetracted, AfterwardsEverySetpointIsThatOfTheJobThatWasNotJogged) {
-  Rig<FakeDrive> jogged, plain;
-  for (Rig<FakeDrive>* rig : {&jogged, &plain}) ASSERT_NO_FATAL_FAILURE(bringTo(*rig, S::kRetracted));
-  ASSERT_TRUE(jogged.jog(step(kX, 0.02)).accepted);
-  jogged.runUntil(S::kRetracted);
-  std::vector<Axes> paths[2];
-  for (Rig<FakeDrive>* rig : {&jogged, &plain}) {
-    ASSERT_TRUE(rig->ask(E::kResume).accepted);
-    const std::size_t from = rig->log.size() - 1;
-    rig->runToEnd();
-    for (std::size_t i = from; i < rig->log.size(); ++i) {
-      if (rig->log[i].has_setpoint) paths[rig == &plain].push_back(rig->log[i].setpoint.position);
-    }
-  }
-  ASSERT_GT(paths[0].size(), paths[1].size());
-  const std::size_t way = paths[0].size() - paths[1].size();
-  for (std::size_t i = 0; i < paths[1].size(); ++i) ASSERT_TRUE(sameBits(paths[0][way + i], paths[1][i])) << i;
-}
 
 TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
   Rig<FakeDrive> rig;

@@ -1,17 +1,13 @@
 #include "control/checks.h"
+#include "control/paper_job.h"
 #include "control/rig.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
 namespace flute_grinder::test_support {
 namespace test_lift {
-
-const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
-const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0016;
 
 /// Ready, with the wheel in the work after a fault.
 void bringIntoTheWork(Rig<FakeDrive>& rig) {
@@ -66,15 +62,6 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   EXPECT_EQ(rig_.loop->status().jobs_started, 1u);
   EXPECT_TRUE(smooth({rig_.log.begin() + static_cast<std::ptrdiff_t>(before), rig_.log.end()}));
   EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel does not stand in the work");
-}
-
-TEST_F(InTheWork, AJobRunsAfterTheLift) {
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  rig_.runUntil(S::kReady);
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
 }
 
 TEST_F(InTheWork, StaysSoWithoutPowerAndThroughFaults) {

@@ -221,10 +221,10 @@ TEST_P(RequestWithoutEffect, IsAcceptedAndChangesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
-                         testing::Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kReady, E::kEnable},
-                                         RequestCase{S::kHolding, E::kHold}, RequestCase{S::kHeld, E::kHold},
-                                         RequestCase{S::kStarting, E::kHold}, RequestCase{S::kStarting, E::kResume},
-                                         RequestCase{S::kCanceling, E::kCancel},
+                         testing::Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kDisabled, E::kReset},
+                                         RequestCase{S::kReady, E::kEnable}, RequestCase{S::kHolding, E::kHold},
+                                         RequestCase{S::kHeld, E::kHold}, RequestCase{S::kStarting, E::kHold},
+                                         RequestCase{S::kStarting, E::kResume}, RequestCase{S::kCanceling, E::kCancel},
                                          RequestCase{S::kCanceling, E::kDisable}, RequestCase{S::kCanceling, E::kHold},
                                          RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
                                          RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable},
@@ -264,19 +264,6 @@ TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Start
-
-TEST(ControlLoopStart, IsRefusedWhenTheAxesAreNotHomed) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
-  rig.drive.status.homed = false;
-  SetpointStream stream = rig.paperStream();
-  const RequestReply answer = rig.askToStart(stream);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_CONTAINS(answer.text, "not homed");
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_TRUE(rig.setpoints().empty());
-}
 
 class StartAfterMoving : public testing::TestWithParam<int> {};
 

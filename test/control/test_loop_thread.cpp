@@ -36,18 +36,6 @@ class ControlLoopThread : public testing::Test {
   std::unique_ptr<ControlLoop> loop_;
 };
 
-TEST_F(ControlLoopThread, RunsCyclesWithMonotonicPositivePeriods) {
-  loop_->startThread();
-  CycleRecord record;
-  double last = 0;
-  for (int i = 0; i < 30; ++i) {
-    ASSERT_TRUE(popInTime(record)) << "after " << i << " records";
-    EXPECT_GT(record.period, 0);
-    EXPECT_GE(record.time, last);
-    last = record.time;
-  }
-}
-
 TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   loop_->startThread();
   CycleRecord record;
@@ -56,6 +44,7 @@ TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   double sum = 0;
   for (int i = 0; i < 30; ++i) {
     ASSERT_TRUE(popInTime(record));
+    EXPECT_GT(record.period, 0);
     sum += record.period;
   }
   // Seconds since 1970 have a resolution of a quarter of a microsecond as a double.

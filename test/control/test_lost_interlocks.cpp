@@ -119,7 +119,7 @@ TEST_P(Lost, TakesTheWheelOffTheWorkByItself) {
   EXPECT_TRUE(smooth(rig_.log));
 }
 
-TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
+TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBackAndThenCompletesTheJob) {
   const auto expectRefused = [&] {
     const RequestReply answer = rig_.ask(E::kResume);
     EXPECT_FALSE(answer.accepted);
@@ -130,25 +130,11 @@ TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBack) {
   expectRefused();
   rig_.run(100);
   expectRefused();
-  EXPECT_EQ(rig_.last().state, S::kRetracted);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock);
-  EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, NothingMovesByItselfWhenItIsBack) {
-  awaitRetracted();
-  const std::size_t lifted = rig_.log.size() - 1;
   rig_.drive.on_read = restoreParts;
   rig_.run(200);
   EXPECT_EQ(rig_.last().state, S::kRetracted);
   EXPECT_EQ(rig_.last().interlock, part_.interlock) << "told until the job is resumed";
   EXPECT_TRUE(atRestFrom(rig_.log, lifted));
-}
-
-TEST_P(Lost, ResumeCompletesTheJobOnceItIsBack) {
-  awaitRetracted();
-  rig_.drive.on_read = restoreParts;
-  rig_.run(20);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
   if (rig_.jobsEnded() == 0) rig_.runToEnd();
@@ -251,22 +237,6 @@ TEST_P(LostPart, AgainAfterResumeRetractsAgain) {
   expectCompleted(rig_);
 }
 
-TEST_P(LostPart, DoesNotLetANewJobInheritTheReason) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
-  rig_.drive.on_read = GetParam().lose;
-  rig_.runUntil(S::kRetracted);
-  rig_.drive.on_read = restoreParts;
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.log.front().job_ended = false;
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  rig_.runToEnd();
-  expectCompleted(rig_);
-  for (const CycleRecord& record : rig_.log) ASSERT_EQ(record.interlock, Interlock::kNone);
-}
-
 INSTANTIATE_TEST_SUITE_P(, LostPart, testing::ValuesIn(parts()), partName);
 
 TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
@@ -286,6 +256,11 @@ TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
 class LostOnTheSimulatedDrive : public testing::TestWithParam<std::tuple<SimulatedDrive::Fault, Interlock>> {
  protected:
   void SetUp() override {
+    if (std::get<1>(GetParam()) == Interlock::kSwivel) {
+      SimulatedDrive::Equipment encoder = equipment();
+      encoder.swivel = kPaperSwivel;
+      rig_.drive.init(driveModel(), encoder);
+    }
     rig_.cycle();
     rig_.startPaper();
     rig_.runTo(MoveKind::kStroke);
@@ -331,7 +306,8 @@ TEST_P(LostOnTheSimulatedDrive, CancelLetsTheMachineHomeAndGrindAgain) {
 INSTANTIATE_TEST_SUITE_P(, LostOnTheSimulatedDrive,
                          testing::Values(std::tuple(SimulatedDrive::Fault::kReferenceLost, Interlock::kNotHomed),
                                          std::tuple(SimulatedDrive::Fault::kSpindleLost, Interlock::kSpindle),
-                                         std::tuple(SimulatedDrive::Fault::kCoolantLost, Interlock::kCoolant)),
+                                         std::tuple(SimulatedDrive::Fault::kCoolantLost, Interlock::kCoolant),
+                                         std::tuple(SimulatedDrive::Fault::kSwivelSlipped, Interlock::kSwivel)),
                          [](const testing::TestParamInfo<std::tuple<SimulatedDrive::Fault, Interlock>>& info) {
                            return std::string(parts()[static_cast<std::size_t>(std::get<1>(info.param)) - 1].name);
                          });

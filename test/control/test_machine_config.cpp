@@ -1,11 +1,11 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "temp_folder.h"
 #include "yaml_parameters.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -26,14 +26,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // ---------------------------------------------------------------------------------------------------------------------
 // The package's own files, as roslaunch would load them
 
-std::string fileText(const std::string& path) {
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  EXPECT_TRUE(file) << path;
-  return text.str();
-}
-
 LoopConfig read(const std::string& urdf, const XmlRpcValue& parameters) {
   return readMachineConfig(urdf, ParameterReader(parameters, "/grinder"));
 }
@@ -44,7 +36,7 @@ void expectAxes(const Axes& axes, const Axes& expected) {
 
 TEST(MachineConfig, TakesTheShippedMachineWithTheLimitsOfItsUrdf) {
   const LoopConfig config =
-      read(fileText("urdf/grinder.urdf"), test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")));
+      read(test_support::readFile("urdf/grinder.urdf"), test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")));
   expectAxes(config.machine.limits.min_position, {-0.1, -0.02, -0.05, -125.663706});
   expectAxes(config.machine.limits.max_position, {0.3, 0.15, 0.1, 125.663706});
   expectAxes(config.machine.limits.max_velocity, {0.2, 0.1, 0.1, 12.566});
@@ -396,13 +388,6 @@ std::string readerError(const std::function<void(const ParameterReader&)>& use) 
   return "";
 }
 
-TEST(ParameterReader, FindsWhatIsNested) {
-  const ParameterReader reader(nested(), "/ns");
-  EXPECT_EQ(reader.number("a/b/number", 0, 10), 2.5);
-  EXPECT_FALSE(reader.flag("a/flag"));
-  EXPECT_EQ(reader.text("a/text"), "word");
-}
-
 TEST(ParameterReader, KnowsWhatIsThere) {
   const ParameterReader reader(nested(), "/ns");
   EXPECT_TRUE(reader.has("a/b/number"));
@@ -421,16 +406,11 @@ TEST(ParameterReader, LeavesTheParametersAsTheyAre) {
   EXPECT_FALSE(reader.has("a/b/other")) << "made by looking for it";
 }
 
-TEST(ParameterReader, TakesNothingElseForANumber) {
+TEST(ParameterReader, TakesFiniteNumbersOnly) {
   for (const double value : {kNan, kInfinity, -kInfinity}) {
     XmlRpcValue p;
     p["number"] = value;
     EXPECT_THROW(ParameterReader(p, "/ns").number("number", -1e9, 1e9), ParameterError) << value;
-  }
-  for (const char* path : {"a/flag", "a/text", "a/b"}) {
-    const std::string error = readerError([&](const ParameterReader& r) { r.number(path, 0, 1); });
-    EXPECT_EQ(error.find(std::string("parameter /ns/") + path + " = "), 0U) << error;
-    EXPECT_NE(error.find("; allowed: a number"), std::string::npos) << error;
   }
 }
 

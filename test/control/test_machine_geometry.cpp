@@ -1,5 +1,6 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/machine/machine_geometry.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <urdf/model.h>
@@ -7,10 +8,8 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <random>
-#include <sstream>
 #include <string>
 
 /// @file
@@ -22,11 +21,8 @@ namespace test_machine_geometry {
 const double kDegree = std::acos(-1.0) / 180;
 
 urdf::Model urdfModel() {
-  std::ifstream file("urdf/grinder.urdf");
-  std::ostringstream text;
-  text << file.rdbuf();
   urdf::Model model;
-  EXPECT_TRUE(model.initString(text.str()));
+  EXPECT_TRUE(model.initString(test_support::readFile("urdf/grinder.urdf")));
   return model;
 }
 

@@ -1,16 +1,13 @@
 #include "control/checks.h"
+#include "control/paper_job.h"
 #include "control/rig.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 
 // Stops in every state, and the job in the loop's status.
 namespace flute_grinder::test_support {
 namespace test_stops {
-
-const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearanceHeight = 0.037 * kTanCone + 0.005;  // of the paper's job
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Hold before the first setpoint
@@ -171,6 +168,8 @@ TEST(CancelWithLift, LiftsTheWheelWhileSpindleAndCoolantRunAlsoWithoutThem) {
       ASSERT_TRUE(rig.drive.written_drive.coolant);
     }
     EXPECT_EQ(rig.last().state, S::kReady);
+    EXPECT_FALSE(rig.drive.written_drive.spindle);
+    EXPECT_FALSE(rig.drive.written_drive.coolant);
     EXPECT_NEAR(rig.last().command[kY], kClearanceHeight, 1e-12);
     EXPECT_FALSE(rig.last().wheel_in_work);
     EXPECT_TRUE(smooth(rig.log));
@@ -367,14 +366,12 @@ TEST(Status, AStrokeThatHasEndedStaysEndedWhenARetractionEntersItAgain) {
   rig.cycle();
   rig.startPaper();
   rig.runToCycle(last - 2);
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  if (rig.last().state != S::kHeld) rig.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
   rig.cycle();
   ASSERT_EQ(rig.last().setpoint.move, MoveKind::kStroke);
   const std::uint32_t ended = rig.last().setpoint.move_index + 1;
   EXPECT_EQ(rig.loop->status().strokes_ended_at, ended);
-  ASSERT_TRUE(rig.ask(E::kRetract).accepted);
-  if (rig.last().state != S::kRetracted) rig.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig.retract());
   ASSERT_TRUE(rig.ask(E::kResume).accepted);
   bool entered_again = false;
   while (rig.last().state != S::kReady) {
@@ -434,18 +431,6 @@ TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
     EXPECT_GT(ended, 0u);
     EXPECT_EQ(rig.loop->status().end, JobEnd::kDone) << rig.last().fault.text();
   }
-}
-
-TEST(Status, IsRightThoughNobodyTakesTheRecords) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  const std::size_t planned = allSetpoints(SetpointStream(rig.stream->program())).size();
-  const ros::Duration period(0.001);
-  for (int i = 0; i < 20000; ++i) rig.loop->cycle(ros::Time(2000), period);
-  EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
-  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
-  EXPECT_EQ(rig.loop->status().setpoints_written, planned);
 }
 
 }  // namespace test_stops

@@ -161,6 +161,7 @@ TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
     const bool may_be_on = row.value == S::kReady || row.value == S::kJogging;
     for (const E event : {E::kSpindleOn, E::kCoolantOn}) EXPECT_EQ(rig.ask(event).accepted, may_be_on);
     for (const E event : {E::kSpindleOff, E::kCoolantOff}) EXPECT_EQ(rig.ask(event).accepted, !job);
+    EXPECT_EQ(rig.last().state, row.value);
   }
 }
 

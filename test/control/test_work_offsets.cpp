@@ -1,4 +1,5 @@
 #include "control/checks.h"
+#include "control/paper_job.h"
 #include "control/rig.h"
 #include "flute_grinder/motion/job_plan.h"
 
@@ -12,10 +13,6 @@
 namespace flute_grinder::test_support {
 namespace test_work_offsets {
 
-const double kTanCone = std::tan(5 * std::acos(-1.0) / 180);
-const double kClearance = 0.037 * kTanCone + 0.005;           // of the paper's job, in work coordinates
-const double kLift = kClearance + 0.001 * kTanCone + 0.0016;  // from its deepest point
-constexpr double kStrokeEnd = 0.037;                          // X, in work coordinates
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
@@ -92,7 +89,7 @@ RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
   config.machine.park << limits.min_position[kX], limits.max_position[kY], limits.min_position[kZ],
       limits.max_position[kA];
   // Where the stroke ends, by a sum that is rounded as badly as any.
-  limits.max_position[kX] = kStrokeEnd + offset[kX];
+  limits.max_position[kX] = kStrokeTo + offset[kX];
   Rig<FakeDrive> rig(config);
   rig.cycle();
   rig.enable();
@@ -115,7 +112,7 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
   // Up to which only the stroke leaves it, and not the move to its start.
   const double beyond = between(1e-9, 0.037);
   Axes offset = anyOffset();
-  offset[kX] = 0.3 - kStrokeEnd + beyond;
+  offset[kX] = 0.3 - kStrokeTo + beyond;
   const Machine machine = machineAt(offset);
   const JobPlan plan = planJob(paper(), machine, machine.park - offset);
   RC_ASSERT(plan.fault == PlanFault::kLimit);
@@ -124,7 +121,7 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
   RC_ASSERT(reason.axis == kX);
   RC_ASSERT(std::abs(reason.value - (0.3 + beyond)) < 1e-12);
   RC_ASSERT(reason.limit == 0.3);
-  RC_ASSERT(std::abs(reason.x - kStrokeEnd) < 1e-12);
+  RC_ASSERT(std::abs(reason.x - kStrokeTo) < 1e-12);
 
   offset[kX] -= 2 * beyond;
   RC_ASSERT(planJob(paper(), machineAt(offset), machine.park - offset).good());
@@ -142,7 +139,7 @@ TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
   EXPECT_EQ(rig.last().fault.axis, kX);
   EXPECT_EQ(rig.last().fault.violation.limit, 0.3);
   EXPECT_GT(rig.last().fault.violation.value, 0.3);
-  EXPECT_LT(rig.last().fault.violation.x, kStrokeEnd);
+  EXPECT_LT(rig.last().fault.violation.x, kStrokeTo);
   for (const CycleRecord& record : rig.log) ASSERT_LE(record.command[kX], 0.3);
 }
 
@@ -153,7 +150,7 @@ TEST(WorkOffsets, TheParkPositionIsTheMachines) {
   ASSERT_EQ(plan.reasons.size(), 1u);
   EXPECT_EQ(plan.reasons[0].kind, core::ReasonKind::kParkInWork);
   EXPECT_EQ(plan.reasons[0].value, 0.05);
-  EXPECT_NEAR(plan.reasons[0].limit, kClearance + 0.045, 1e-12);
+  EXPECT_NEAR(plan.reasons[0].limit, kClearanceHeight + 0.045, 1e-12);
 }
 
 TEST(WorkOffsets, UnknownOnesAreNoJobs) {
@@ -217,13 +214,11 @@ class InAShiftedStroke : public testing::Test {
 };
 
 TEST_F(InAShiftedStroke, RetractAndResume) {
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  rig_.runUntil(S::kHeld);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
   const double x = rig_.last().setpoint.position[kX];
   EXPECT_EQ(rig_.loop->status().place.x, x) << "the job's";
-  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-  rig_.runUntil(S::kRetracted);
-  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  ASSERT_NO_FATAL_FAILURE(rig_.retract());
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(rig_.last().wheel_in_work);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
@@ -233,10 +228,8 @@ TEST_F(InAShiftedStroke, RetractAndResume) {
 }
 
 TEST_F(InAShiftedStroke, AJogWhileRetracted) {
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  rig_.runUntil(S::kHeld);
-  ASSERT_TRUE(rig_.ask(E::kRetract).accepted);
-  rig_.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig_.hold());
+  ASSERT_NO_FATAL_FAILURE(rig_.retract());
   Axes at = rig_.last().command;
   for (const auto& [axis, distance] : {std::pair(kX, -0.02), std::pair(kY, 0.005), std::pair(kA, -2.0)}) {
     ASSERT_TRUE(rig_.jog({axis, false, distance, axis == kA ? 0.5 : 0.01}).accepted);
@@ -297,7 +290,7 @@ TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
   ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
   rig_.runToEnd();
   EXPECT_EQ(rig_.loop->status().end, JobEnd::kCanceled);
-  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(rig_.last().wheel_in_work);
 }
 
@@ -309,7 +302,7 @@ TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
   ASSERT_TRUE(rig_.ask(E::kLift).accepted);
   rig_.runUntil(S::kReady);
   EXPECT_TRUE(sameBits(rig_.last().command, Axes(from[kX], rig_.loop->status().wheel.clear_y, from[kZ], from[kA])));
-  EXPECT_NEAR(rig_.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(rig_.last().wheel_in_work);
 }
 
@@ -324,7 +317,7 @@ TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
   next.enable();
   ASSERT_TRUE(next.ask(E::kLift).accepted);
   next.runUntil(S::kReady);
-  EXPECT_NEAR(next.last().command[kY], kClearance + 0.0375, 1e-15);
+  EXPECT_NEAR(next.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(next.last().wheel_in_work);
 }
 

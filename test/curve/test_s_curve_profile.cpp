@@ -369,13 +369,6 @@ TEST(SCurveProfile, APlanWithoutMotionRestsAtOnce) {
   EXPECT_GT(at_the_end, 100);
 }
 
-RC_GTEST_PROP(SCurveProfileProperty, UndisturbedItTakesTheDoubleSTime, ()) {
-  const Motion m = Motion::draw();
-  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
-  const double expected = doubleSTime(m.limits, m.distance);
-  RC_ASSERT(std::abs(law.timeLeft() - expected) <= 1e-9 * expected);
-}
-
 /// One motion for each of the double-S law's four cases: velocity, and acceleration, reached or not.
 RC_GTEST_PROP(SCurveProfileProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
   const double a = *logUniform(0.01, 10);
@@ -389,14 +382,6 @@ RC_GTEST_PROP(SCurveProfileProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()
   const double v = velocity_reached ? peak : peak * *uniform(1.01, 3);
   const SCurveProfile law({v, a, j}, peak * (ramp + cruise), v);
   RC_ASSERT(std::abs(law.timeLeft() - (2 * ramp + cruise)) <= 1e-9 * (2 * ramp + cruise));
-}
-
-RC_GTEST_PROP(SCurveProfileProperty, UndisturbedItKeepsTheLimitsAndFinishes, ()) {
-  const Motion m = Motion::draw();
-  SCurveProfile law(m.limits, m.distance, m.limits.velocity * *uniform(0.05, 1));
-  const auto samples = run(law, m.dt, 100000, [](int) {});
-  checkBounds(m, samples);
-  assertFinished(law, m);
 }
 
 RC_GTEST_PROP(SCurveProfileProperty, KeepsTheLimitsAndFinishesWhateverTheTargetsWere, ()) {

@@ -74,39 +74,12 @@ class Handles : public testing::Test {
   JointStateHandle state_{"axis_x", &position_, &velocity_, &effort_};
 };
 
-TEST_F(Handles, StateReadsThroughItsPointers) {
-  position_ = 10;
-  velocity_ = 20;
-  effort_ = 30;
-  EXPECT_EQ(state_.getPosition(), 10);
-  EXPECT_EQ(state_.getVelocity(), 20);
-  EXPECT_EQ(state_.getEffort(), 30);
-}
-
 TEST_F(Handles, JointWritesThroughItsPointer) {
   JointHandle joint(state_, &command_);
   joint.setCommand(7.5);
   EXPECT_EQ(command_, 7.5);
   command_ = 8.5;
   EXPECT_EQ(joint.getCommand(), 8.5);
-}
-
-TEST_F(Handles, JointReadsItsState) {
-  const JointHandle joint(state_, &command_);
-  position_ = 11;
-  velocity_ = 21;
-  effort_ = 31;
-  EXPECT_EQ(joint.getName(), "axis_x");
-  EXPECT_EQ(joint.getPosition(), 11);
-  EXPECT_EQ(joint.getVelocity(), 21);
-  EXPECT_EQ(joint.getEffort(), 31);
-}
-
-TEST_F(Handles, CopiesShareTheMemory) {
-  JointHandle joint(state_, &command_);
-  JointHandle copy = joint;
-  copy.setCommand(5);
-  EXPECT_EQ(joint.getCommand(), 5);
 }
 
 TEST_F(Handles, EveryNullPointerOfAStateIsRefusedByName) {
@@ -117,25 +90,6 @@ TEST_F(Handles, EveryNullPointerOfAStateIsRefusedByName) {
 
 TEST_F(Handles, ANullCommandIsRefusedByName) {
   EXPECT_TRUE(contains(errorOf([&] { JointHandle(state_, nullptr); }), "'axis_x'"));
-}
-
-TEST(DriveHandle, ReadsAndWritesThroughItsPointers) {
-  DriveStatus status;
-  DriveCommand command;
-  DriveHandle handle("drive", &status, &command);
-  status.enabled = status.emergency_stop = status.fault = status.homed = true;
-  status.feedback_count = 42;
-  EXPECT_TRUE(handle.getStatus().enabled);
-  EXPECT_TRUE(handle.getStatus().emergency_stop);
-  EXPECT_TRUE(handle.getStatus().fault);
-  EXPECT_TRUE(handle.getStatus().homed);
-  EXPECT_EQ(handle.getStatus().feedback_count, 42u);
-  handle.setCommand({true, false});
-  EXPECT_TRUE(command.enable);
-  EXPECT_FALSE(command.reset);
-  handle.setCommand({false, true});
-  EXPECT_FALSE(command.enable);
-  EXPECT_TRUE(command.reset);
 }
 
 TEST(DriveHandle, NullPointersAreRefusedByName) {
@@ -160,15 +114,6 @@ TEST(DriveCommand, IsWithoutPowerUntilTold) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Interfaces
 
-TEST_F(Handles, AreFoundByName) {
-  double other = 9;
-  JointStateInterface interface;
-  interface.registerHandle(state_);
-  interface.registerHandle(JointStateHandle("axis_y", &other, &other, &other));
-  EXPECT_EQ(interface.getHandle("axis_x").getPosition(), 1);
-  EXPECT_EQ(interface.getHandle("axis_y").getPosition(), 9);
-}
-
 TEST_F(Handles, OfAnUnknownNameAreRefusedByName) {
   PositionJointInterface interface;
   interface.registerHandle(JointHandle(state_, &command_));
@@ -184,29 +129,12 @@ TEST_F(Handles, OfTheSameNameReplaceOneAnother) {
   EXPECT_EQ(interface.getNames(), std::vector<std::string>{"axis_x"});
 }
 
-TEST_F(Handles, AreListedByName) {
-  JointStateInterface interface;
-  interface.registerHandle(state_);
-  interface.registerHandle(JointStateHandle("axis_a", &position_, &velocity_, &effort_));
-  EXPECT_EQ(interface.getNames(), (std::vector<std::string>{"axis_a", "axis_x"}));
-}
-
 class EmptyDrive : public RobotHW {
  public:
   bool init(ros::NodeHandle&, ros::NodeHandle&) override { return true; }
   void read(const ros::Time&, const ros::Duration&) override {}
   void write(const ros::Time&, const ros::Duration&) override {}
 };
-
-TEST(RobotHW, GivesBackTheInterfaceOfAType) {
-  EmptyDrive drive;
-  JointStateInterface states;
-  PositionJointInterface joints;
-  drive.registerInterface(&states);
-  drive.registerInterface(&joints);
-  EXPECT_EQ(drive.get<JointStateInterface>(), &states);
-  EXPECT_EQ(drive.get<PositionJointInterface>(), &joints);
-}
 
 TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
   EmptyDrive drive;

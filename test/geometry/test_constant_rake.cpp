@@ -97,21 +97,6 @@ core::Reason refusalOf(const GrindJob& job) {
   return {};
 }
 
-Machine roomyMachine() {
-  Machine machine = test_support::plainMachine();
-  machine.park << -0.02, 0.08, 0, 0;
-  return machine;
-}
-
-// D1 5, C 10, S 20, r 14, depth 0.7, wheel 75 x 1.5: 14.61 deg amid by the published law, as another program computed.
-TEST(ConstantRake, OnASteepConeTheRakeIsTheSameOverTheWholeFlute) {
-  for (const Shop& shop : {Shop{}, Shop{6, 7, -25, 12, 18, 0.9, 80, 2, CutDirection::kLeftHand}}) {
-    const GrindJob job = jobFor(shop).value();
-    EXPECT_GT(publishedRakeError(job), 0.15);
-    EXPECT_LT(rakeError(groundCutterOf(withZLaw(job)), job), 0.005);
-  }
-}
-
 TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
   std::mt19937 dice(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(dice); };
@@ -256,11 +241,12 @@ TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
 TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
   RecordedStrokes strokes(withZLaw(job));
-  Axes actual = roomyMachine().park;
-  const JobPlan plan = planJob(withZLaw(job), roomyMachine(), roomyMachine().park, {}, [&](const Setpoint& p) {
-    strokes.add(p, actual);
-    actual = p.position;
-  });
+  Axes actual = test_support::roomyMachine().park;
+  const JobPlan plan = planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, {},
+                               [&](const Setpoint& p) {
+                                 strokes.add(p, actual);
+                                 actual = p.position;
+                               });
   strokes.finish();
   ASSERT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
   const GrindJob& with_law = plan.program->job();

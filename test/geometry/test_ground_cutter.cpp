@@ -416,39 +416,6 @@ TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
   }
 }
 
-TEST(GroundCutter, TheVolumeIsThatOfTheMembers) {
-  Case c;
-  c.cone = 5;
-  c.width = 3;
-  c.swivel = 31.769;
-  c.face = 4.552;
-  c.from = -20;
-  c.to = 40;
-  const GroundCutter ground = c.ground(2);
-  const double from = 0.005, to = 0.025;
-  const double volume = ground.volumeRemoved(from, to, 20);
-  std::mt19937 random(3);
-  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
-  const double most = c.cutter().radius(to);
-  const double box = (to - from) * 4 * most * most;
-  int inside = 0;
-  constexpr int kPoints = 3000;
-  for (int i = 0; i < kPoints; ++i) {
-    const double x = uniform(from, to), y = uniform(-most, most), z = uniform(-most, most);
-    const double r = std::hypot(y, z), phi = std::atan2(z, y);
-    if (r > c.cutter().radius(x)) continue;
-    bool in = false;
-    for (int turn = -2; turn < 6 && !in; ++turn) {
-      in = removed(c, c.profile(), x, r, phi + turn * units::kPi, 2000);
-    }
-    inside += in;
-  }
-  const double expected = box * inside / kPoints;
-  const double scatter = box * std::sqrt(inside * (1 - double(inside) / kPoints)) / kPoints;
-  EXPECT_GT(inside, 100);
-  EXPECT_NEAR(volume, expected, 4 * scatter);
-}
-
 TEST(GroundCutter, FluteAndLandShareThePitch) {
   Case c;
   c.face = faceFor(10, 8);
@@ -465,23 +432,6 @@ TEST(GroundCutter, FluteAndLandShareThePitch) {
   // Where the flutes meet no land is left.
   c.width = 10;
   EXPECT_FALSE(c.ground(4).section(0.02).teeth[0].land.has_value());
-}
-
-TEST(GroundCutter, ALeftHandCutterIsARightHandOneInTheMirror) {
-  Case c;
-  c.face = faceFor(10, 8);
-  c.swivel = 36;
-  Case mirrored = c;
-  mirrored.cut = CutDirection::kLeftHand;
-  mirrored.spiral = -c.spiral;
-  mirrored.swivel = -c.swivel;
-  mirrored.face = c.width / std::cos(c.swivel * kDegree) - c.face;  // the lower face at -face
-  const ToothSection right = c.ground(3).section(0.02).teeth[0];
-  const ToothSection left = mirrored.ground(3).section(0.02).teeth[0];
-  EXPECT_NEAR(*left.edge, -*right.edge, 1e-9);
-  EXPECT_NEAR(*left.rake, *right.rake, 1e-6);
-  EXPECT_NEAR(*left.spiral, -*right.spiral, 1e-6);
-  EXPECT_NEAR(*left.land, *right.land, 1e-9);
 }
 
 }  // namespace test_ground_cutter

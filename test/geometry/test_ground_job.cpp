@@ -19,24 +19,11 @@ namespace flute_grinder {
 namespace test_ground_job {
 
 using core::ReasonKind;
+using test_support::jobOf;
+using test_support::paper;
+using test_support::roomyMachine;
 using units::kDegree;
 using units::kMillimetre;
-
-GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
-
-/// The paper's cutter by its published motion; any edge and core will do.
-GrindJob paper() {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
-  test_support::askForRakeAlone(job.cutter);
-  return job;
-}
-
-/// A machine on which every shipped job can be planned.
-Machine roomyMachine() {
-  Machine machine = test_support::plainMachine();
-  machine.park << -0.02, 0.08, 0, 0;
-  return machine;
-}
 
 CutterCheck checked(const GrindJob& job) {
   const JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);

@@ -7,7 +7,6 @@
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>
 
@@ -21,20 +20,13 @@
 namespace flute_grinder {
 namespace test_mirror {
 
+using test_support::jobOf;
+using test_support::paper;
 using units::kDegree;
 using units::kMillimetre;
 
 constexpr double kRounding =
     1e-7;  ///< and the precision of a search, which sees a mirror image from its other end [m], [rad]
-
-GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
-
-/// The paper's cutter by its published motion; any edge and core will do.
-GrindJob paper() {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
-  test_support::askForRakeAlone(job.cutter);
-  return job;
-}
 
 /// The job in the mirror that turns Z round. The first tooth stays the first, the others change their order.
 GrindJob mirrored(GrindJob job) {

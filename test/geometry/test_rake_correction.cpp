@@ -16,12 +16,6 @@ namespace test_rake_correction {
 using units::kDegree;
 using units::kMillimetre;
 
-TEST(ZCorrection, WithoutPiecesItIsNothing) {
-  const auto v = ZCorrection{}.at(0.01);
-  EXPECT_EQ(v.z, 0);
-  EXPECT_EQ(v.third, 0);
-}
-
 TEST(ZCorrection, ItIsSmoothUpToTheThirdDerivativeWhichBelongsToZ) {
   ZCorrection c;
   c.from = -2;
@@ -59,17 +53,6 @@ TEST(ZCorrection, OutsideItsRangeItStaysAsAtTheEnds) {
       EXPECT_EQ(v.second, 0);
       EXPECT_EQ(v.third, 0);
     }
-  }
-}
-
-TEST(ZCorrection, EqualCoefficientsAreAConstant) {
-  ZCorrection c;
-  c.piece = 0.01;
-  c.pieces = 3;
-  c.coefficients.fill(0.25);
-  for (const double x : {-0.005, 0.0, 0.011, 0.03, 0.04}) {
-    EXPECT_NEAR(c.at(x).z, 0.25, 1e-12);
-    EXPECT_NEAR(c.at(x).first, 0, 1e-9);
   }
 }
 

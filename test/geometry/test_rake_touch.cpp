@@ -5,7 +5,6 @@
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/reason.h"
 
 #include <gtest/gtest.h>
@@ -21,20 +20,13 @@
 namespace flute_grinder {
 namespace test_rake_touch {
 
+using test_support::jobOf;
+using test_support::paper;
 using units::kDegree;
 using units::kMillimetre;
 using units::kPi;
 
 constexpr double kNearly = 1e-6;  ///< [rad]
-
-GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
-
-/// The paper's cutter by its published motion; any edge and core will do.
-GrindJob paper() {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
-  test_support::askForRakeAlone(job.cutter);
-  return job;
-}
 
 /// A ball at a distance and an angle about the axis.
 struct Ball {

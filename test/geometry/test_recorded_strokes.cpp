@@ -64,8 +64,7 @@ GrindJob straight() {
 
 /// All that a drive reads in a job, with errors of the axes.
 std::vector<Read> readOf(const GrindJob& job, const Error& error) {
-  Machine machine = test_support::plainMachine();
-  machine.park << -0.02, 0.08, 0, 0;
+  const Machine machine = test_support::roomyMachine();
   std::vector<Read> all;
   SetpointStream stream(std::make_shared<GrindProgram>(job, machine, machine.park));
   Setpoint p;

@@ -11,31 +11,25 @@
 #include <filesystem>
 #include <fstream>
 #include <regex>
-#include <sstream>
 #include <string>
 
 namespace flute_grinder {
 namespace test_setup_file {
 
 namespace fs = std::filesystem;
+using test_support::readFile;
 
 constexpr Range kMachine{-60 * units::kDegree, 60 * units::kDegree};
 
 class SetupFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string text = textOf("jobs/paper.yaml");
+    std::string text = readFile("jobs/paper.yaml");
     text.replace(text.find("32.34"), 5, "31");
     write(text);
     fs::permissions(job_, fs::perms(0640));
   }
 
-  static std::string textOf(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
   void write(const std::string& text) const { std::ofstream(job_, std::ios::binary) << text; }
 
   JobSetup setup() const {
@@ -60,14 +54,14 @@ class SetupFile : public ::testing::Test {
 
 TEST_F(SetupFile, IsReadBackAsSolved) {
   const JobSetup solved = setup();
-  const std::string before = textOf(job_);
+  const std::string before = readFile(job_);
   writeSetup(job_, solved);
   const GrindJob read = readJobFile(job_);
   EXPECT_EQ(read.process.setup_swivel, solved.job.process.setup_swivel);
   EXPECT_EQ(read.process.setup_height, solved.job.process.setup_height);
-  EXPECT_NE(textOf(job_), before);
+  EXPECT_NE(readFile(job_), before);
   const std::regex number("-?[0-9.]+");
-  EXPECT_EQ(std::regex_replace(textOf(job_), number, "#"), std::regex_replace(before, number, "#"));
+  EXPECT_EQ(std::regex_replace(readFile(job_), number, "#"), std::regex_replace(before, number, "#"));
   EXPECT_EQ(filesInFolder(), 1);
   EXPECT_EQ(fs::status(job_).permissions(), fs::perms(0640));
 }
@@ -77,28 +71,28 @@ TEST_F(SetupFile, ALinkToItStays) {
   fs::create_symlink("job.yaml", link);
   writeSetup(link, setup());
   EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_NE(textOf(job_).find("32.34"), std::string::npos);
+  EXPECT_NE(readFile(job_).find("32.34"), std::string::npos);
 }
 
 TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
   const JobSetup solved = setup();
-  std::string text = textOf(job_);
+  std::string text = readFile(job_);
   text.replace(text.find("rake_angle_deg: 8"), 17, "rake_angle_deg: 9");
   write(text);
   const std::string said = refusal(job_, solved);
   EXPECT_NE(said.find("has changed"), std::string::npos) << said;
   EXPECT_NE(said.find("process.setup.swivel_deg: 32.34"), std::string::npos) << said;
-  EXPECT_EQ(textOf(job_), text);
+  EXPECT_EQ(readFile(job_), text);
 }
 
 TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreTold) {
-  std::string text = textOf(job_);
+  std::string text = readFile(job_);
   text.replace(text.find("swivel_deg: "), 12, "swivel_deg: !!float ");
   write(text);
   const std::string said = refusal(job_, setup());
   EXPECT_NE(said.find(":35: has a value that is not written as a plain number"), std::string::npos) << said;
   EXPECT_NE(said.find("process.setup.height_mm: 5.88"), std::string::npos) << said;
-  EXPECT_EQ(textOf(job_), text);
+  EXPECT_EQ(readFile(job_), text);
   EXPECT_EQ(filesInFolder(), 1);
 }
 

@@ -134,17 +134,6 @@ class TestHoming(unittest.TestCase):
             self.check_job(reading)
         self.check_steps(RECORDER.read()[first:])
 
-    def test_homing_that_finds_no_reference_is_a_fault(self):
-        first = self.begin()
-        RECORDER.over(10)
-        hal_bench.halcmd('sets', 'homing', 'false')
-        state = self.grinder.wait_state(GrinderState.FAULT)
-        self.assertRegex(state.fault, r'^the drive has not found its reference after ')
-        self.assertFalse(state.homed)
-        wait_signal('home', 'FALSE')
-        self.check_steps(RECORDER.read()[first:])
-        self.assertEqual(len({row.position for row in RECORDER.read()[first:]}), 1)
-
     def test_disable_breaks_homing_off(self):
         first = self.begin()
         set_reference(RECORDER.over(1)[0].position, FIRST)

@@ -157,26 +157,6 @@ class TestSwivel(unittest.TestCase):
         hal_bench.halcmd('sets', 'swivel', '-0.125')
         gc.poll(lambda: grinder.fresh_state().swivel == -0.125, 'the other angle')
 
-    def test_signal_that_drifts_in_a_job_lifts_the_wheel(self):
-        asked = gc.PAPER['process.setup_swivel']
-        hal_bench.halcmd('newsig', 'swivel', 'float')
-        self.addCleanup(hal_bench.halcmd, 'delsig', 'swivel')
-        hal_bench.halcmd('sets', 'swivel', repr(asked))
-        hal_bench.patience(1000)
-        grinder = self.start()
-        grinder.make_ready()
-        run = grinder.send(gc.paper(), confirm=False).wait_in_stroke(2 * gc.MM)
-        for off in (0.02, 0.04):
-            hal_bench.halcmd('sets', 'swivel', repr(asked + off * gc.DEG))
-            self.assertEqual(grinder.fresh_state().state, GrinderState.RUNNING)
-        hal_bench.halcmd('sets', 'swivel', repr(asked + 0.06 * gc.DEG))
-        state = grinder.wait_state(GrinderState.RETRACTED)
-        self.assertEqual(state.hold_reason, "the swivel is not at the job's angle")
-        self.assertFalse(state.wheel_in_work)
-        self.assertFalse(grinder.resume().success)
-        run.cancel()
-        run.wait()
-
 
 if __name__ == '__main__':
     rospy.init_node('test_hal_start')

@@ -239,17 +239,6 @@ class TestHold(Stop, unittest.TestCase):
         self.assertEqual(checks.excesses(self.goal_run.setpoints, self.limits, self.period), [])
 
 
-class TestHoming(Stop, unittest.TestCase):
-    def test_homing_ends_ready_and_without_a_step(self):
-        self.goal_run.wait()
-        first = RECORDER.now()
-        self.assertTrue(self.grinder._call('home', gc.Trigger).success)
-        self.grinder.wait_state(GrinderState.READY)
-        rows = RECORDER.read()[first:]
-        self.assertEqual(len({row.command for row in rows}), 1)
-        self.assertTrue(all(row.enabled for row in rows))
-
-
 if __name__ == '__main__':
     rospy.init_node('test_hal_stops')
     rostest.rosrun('flute_grinder', 'hal_stops', '__main__')

@@ -6,12 +6,12 @@
 #include "flute_grinder/job/job_fields.h"
 
 #include "motion/generators.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -23,17 +23,9 @@ using Edits = std::vector<JobEdit>;
 
 constexpr const char* kName = "jobs/job.yaml";  // where a wheel file is relative to
 
-std::string readText(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  EXPECT_TRUE(file) << path;
-  return text.str();
-}
-
 std::vector<std::string> shippedJobs() {
   std::vector<std::string> texts;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) texts.push_back(readText(entry));
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) texts.push_back(test_support::readFile(entry));
   return texts;
 }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -138,76 +137,6 @@ TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
   }
   EXPECT_GT(goals, 13000);
   EXPECT_GT(good_jobs, 1000);
-}
-
-/// Every number of a goal, one by one.
-std::vector<double*> numbersOf(GrindGoal& g) {
-  std::vector<double*> numbers{&g.cutter.end_diameter,
-                               &g.cutter.cone_angle,
-                               &g.cutter.spiral_angle,
-                               &g.cutter.rake_angle,
-                               &g.cutter.flute_length,
-                               &g.process.feed,
-                               &g.cutter.rake_tolerance,
-                               &g.cutter.shank_diameter,
-                               &g.process.depth_end,
-                               &g.process.wheel_angle,
-                               &g.process.wheel_corner_radius_lower,
-                               &g.process.wheel_corner_radius_upper,
-                               &g.process.setup_swivel,
-                               &g.process.setup_height,
-                               &g.process.depth,
-                               &g.process.infeed,
-                               &g.process.finish_infeed,
-                               &g.process.clearance,
-                               &g.process.overtravel_end,
-                               &g.process.overtravel_shank,
-                               &g.process.wheel_diameter,
-                               &g.process.wheel_width,
-                               &g.process.wheel_wear,
-                               &g.process.wheel_wear_per_pass,
-                               &g.interpolation.tolerance,
-                               &g.interpolation.rotary_scale};
-  for (std::vector<double>* list : {&g.cutter.tooth_angles, &g.cutter.spiral_angles, &g.process.wheel_points}) {
-    for (double& number : *list) numbers.push_back(&number);
-  }
-  return numbers;
-}
-
-TEST(GoalFuzz, GoalsWithHostileNumbersAreAnswered) {
-  using Limits = std::numeric_limits<double>;
-  const double hostile[]{Limits::quiet_NaN(),
-                         Limits::signaling_NaN(),
-                         Limits::infinity(),
-                         -Limits::infinity(),
-                         Limits::max(),
-                         Limits::lowest(),
-                         Limits::min(),
-                         Limits::denorm_min(),
-                         -Limits::denorm_min(),
-                         0.0,
-                         -0.0,
-                         1,
-                         -1,
-                         1e-9,
-                         1e9};
-  std::mt19937 dice(2);
-  for (int i = 0; i < 8000 && !HasFailure(); ++i) {
-    GrindGoal goal = goodGoal();
-    const std::vector<double*> numbers = numbersOf(goal);
-    for (std::size_t n = 0; n < 1 + dice() % 2; ++n) *numbers[dice() % numbers.size()] = hostile[dice() % 15];
-    if (i % 5 == 0) goal.process.spark_out = static_cast<std::uint16_t>(dice());
-    if (i % 6 == 0) goal.process.order = static_cast<std::uint8_t>(dice());
-    if (i % 7 == 0) goal.process.direction = static_cast<std::uint8_t>(dice());
-    if (i % 8 == 0) goal.interpolation.even_step = static_cast<std::uint8_t>(dice());
-    if (i % 11 == 0) goal.process.wheel_profile = static_cast<std::uint8_t>(dice());
-    if (i % 12 == 0) goal.process.wheel_points = {-1e-3, 50e-3, hostile[dice() % 15]};
-    if (i % 13 == 0) goal.cutter.spiral_angles = {0.5, hostile[dice() % 15]};
-    if (i % 9 == 0) goal.first_tooth = static_cast<std::uint16_t>(dice());
-    if (i % 10 == 0) goal.first_pass = static_cast<std::uint16_t>(dice());
-    if (i % 400 == 0) goal.cutter.tooth_angles.assign(100000, hostile[dice() % 15]);
-    answer(goal);
-  }
 }
 
 }  // namespace test_goal_fuzz

@@ -261,6 +261,13 @@ inline Machine plainMachine() {
   return m;
 }
 
+/// A machine on which every shipped job can be planned.
+inline Machine roomyMachine() {
+  Machine machine = plainMachine();
+  machine.park << -0.02, 0.08, 0, 0;
+  return machine;
+}
+
 }  // namespace flute_grinder::test_support
 
 namespace flute_grinder {

@@ -116,16 +116,6 @@ TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
   EXPECT_NEAR(stroke.to[kA], 2 + static_cast<double>(curve.a(31e-3L)), 1e-14);
 }
 
-TEST(GrindProgram, TakesAllPassesOfAToothBeforeTheNext) {
-  EXPECT_EQ(strokesOf(programOf(manyPasses())), (std::vector<std::string>{"0/0", "0/1", "0/2", "1/0", "1/1", "1/2"}));
-}
-
-TEST(GrindProgram, TakesAPassOfAllTeethBeforeTheNext) {
-  GrindJob job = manyPasses();
-  job.process.order = GrindOrder::kPassMajor;
-  EXPECT_EQ(strokesOf(programOf(job)), (std::vector<std::string>{"0/0", "1/0", "0/1", "1/1", "0/2", "1/2"}));
-}
-
 TEST(GrindProgram, EveryPassOfManyHasItsMoves) {
   std::vector<MoveKind> expected;
   for (int i = 0; i < 6; ++i) {
@@ -153,18 +143,6 @@ TEST(GrindProgram, GoesFromTheShankToTheEndWhenTold) {
   EXPECT_NEAR(program.strokeTo(), -1e-3, 1e-18);
   EXPECT_NEAR(firstOf(program, MoveKind::kPosition).to[kX], 31e-3, 1e-17);
   EXPECT_NEAR(firstOf(program, MoveKind::kStroke).to[kX], -1e-3, 1e-18);
-}
-
-TEST(GrindProgram, WearOfTheWheelGoesDeeper) {
-  GrindJob worn = paperJob();
-  worn.process.wheel_wear = 0.3e-3;
-  const GrindProgram fresh_program = programOf(paperJob());
-  const GrindProgram worn_program = programOf(worn);
-  for (std::size_t i = 0; i < fresh_program.moves().size(); ++i) {
-    const MoveKind kind = fresh_program.moves()[i].kind;
-    const double deeper = kind == MoveKind::kInfeed || kind == MoveKind::kStroke ? 0.3e-3 : 0;
-    EXPECT_NEAR(fresh_program.moves()[i].to[kY] - worn_program.moves()[i].to[kY], deeper, 1e-17) << toString(kind);
-  }
 }
 
 TEST(GrindProgram, ContinuesFromAPassOfATooth) {
@@ -237,13 +215,6 @@ INSTANTIATE_TEST_SUITE_P(
         Unfit{"NanPark", [](Machine& m, Axes&) { m.park[kZ] = kNan; }, "park"},
         Unfit{"ParkInTheWork", [](Machine& m, Axes&) { m.park[kY] = 7e-3; }, "park position axis_y = 0.007 m"}),
     [](const auto& info) { return std::string(info.param.name); });
-
-TEST(GrindProgram, TellsHowHighTheParkMustBe) {
-  Machine machine = plainMachine();
-  machine.park[kY] = 7e-3;
-  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, plainMachine().park); });
-  EXPECT_TRUE(contains(error, "at least 0.0077")) << error;  // 2.712 mm + 5 mm
-}
 
 TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
   Machine machine = plainMachine();
@@ -404,23 +375,6 @@ RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {
   RC_ASSERT((program.moves().front().kind == MoveKind::kLift) == low);
   if (low) RC_ASSERT(program.moves().front().to[kY] == work.machine.park[kY]);
   for (std::size_t i = 1; i < program.moves().size(); ++i) RC_ASSERT(program.moves()[i].kind != MoveKind::kLift);
-}
-
-RC_GTEST_PROP(GrindProgramProperty, EveryToothGetsEveryPassOnce, ()) {
-  GrindJob job = paperJob();
-  job.process.depth = 1e-3 * *test_support::uniform(0.1, 2);
-  job.process.infeed = job.process.depth / *test_support::uniform(0.5, 6);
-  job.process.spark_out = *test_support::whole(0, 2);
-  job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
-  const int teeth = *test_support::whole(1, 6);
-  for (int i = 1; i < teeth; ++i) job.tooth_angles.push_back(i);
-  const auto passes = static_cast<int>(passDepths(job.process).size());
-  std::vector<int> seen(static_cast<std::size_t>(teeth * passes));
-  const GrindProgram program = programOf(job);
-  for (const Move& move : program.moves()) {
-    if (move.kind == MoveKind::kStroke) ++seen.at(static_cast<std::size_t>(move.tooth * passes + move.pass));
-  }
-  for (const int count : seen) RC_ASSERT(count == 1);
 }
 
 }  // namespace test_grind_program

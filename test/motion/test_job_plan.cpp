@@ -28,21 +28,6 @@ TEST(JobPlan, OfThePapersJobIsGoodAndHasNoReasons) {
   EXPECT_NEAR(plan.statistics.max_feed, 0.01, 1e-8);
 }
 
-TEST(JobPlan, VisitsWhatTheStreamGives) {
-  std::vector<Setpoint> visited;
-  const Machine machine = plainMachine();
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
-  SetpointStream stream(*plan.program);
-  Setpoint p;
-  std::size_t i = 0;
-  for (; stream.next(p); ++i) {
-    ASSERT_LT(i, visited.size());
-    ASSERT_TRUE((visited[i].position == p.position).all());
-    ASSERT_EQ(visited[i].cycle, p.cycle);
-  }
-  EXPECT_EQ(i, visited.size());
-}
-
 TEST(JobPlan, RefusesAnInvalidJobWithAllReasons) {
   GrindJob job = paperJob();
   job.cutter.end_diameter = -1;
@@ -54,21 +39,6 @@ TEST(JobPlan, RefusesAnInvalidJobWithAllReasons) {
   ASSERT_EQ(plan.reasons.size(), 2u);
   EXPECT_TRUE(contains(textOf(plan), "cutter.end_diameter = -1 m; allowed: "));
   EXPECT_TRUE(contains(textOf(plan), "process.feed = nan m/s; allowed: "));
-}
-
-TEST(JobPlan, TellsInTheUnitsAskedFor) {
-  GrindJob job = paperJob();
-  job.cutter.end_diameter = -1e-3;
-  const Machine machine = plainMachine();
-  const JobPlan plan = planJob(job, machine, machine.park);
-  EXPECT_TRUE(contains(text(plan.reasons, UnitSystem::kShop), "cutter.end_diameter_mm = -1 mm"));
-}
-
-TEST(JobPlan, RefusesAFirstPassThatIsNotThere) {
-  const Machine machine = plainMachine();
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, {1, 0});
-  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
-  EXPECT_TRUE(contains(textOf(plan), "first_tooth = 1"));
 }
 
 TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
@@ -299,36 +269,6 @@ TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
     EXPECT_LE(plan.statistics.max_deviation, 0.2e-6);
     EXPECT_GT(plan.statistics.max_deviation, 0.18e-6);
   }
-}
-
-TEST(JobPlan, CutsTheFeedForTheTolerance) {
-  GrindJob job = steepJob();
-  job.process.feed = 0.1;
-  job.interpolation.tolerance = 0.1e-6;
-  job.interpolation.even_step = EvenStepRule::kExact;
-  const JobPlan plan = planOf(job);
-  ASSERT_TRUE(plan.good()) << textOf(plan);
-  EXPECT_LE(plan.statistics.max_deviation, 0.1e-6);
-  EXPECT_LT(plan.statistics.max_feed, 0.1);
-}
-
-TEST(JobPlan, NamesTheAxisThatHindersTheFeedAtASmallEnd) {
-  GrindJob job = steepJob();
-  job.cutter.end_diameter = 0.5e-3;
-  job.process.depth = job.process.infeed = 0.05e-3;
-  job.process.feed = 0.05;
-  job.interpolation.tolerance = 100e-6;
-  const JobPlan plan = planOf(job);
-  ASSERT_TRUE(plan.good()) << textOf(plan);
-  EXPECT_EQ(causesOf(plan).find("axis_a"), 0u) << causesOf(plan);
-}
-
-TEST(JobPlan, RefusesAFeedBelowTheSlowest) {
-  Machine machine = plainMachine();
-  machine.limits.max_velocity[kA] = 1e-5;
-  const JobPlan plan = planOf(paperJob(), machine);
-  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
-  EXPECT_TRUE(contains(textOf(plan), "axis_a velocity")) << textOf(plan);
 }
 
 /// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.

@@ -396,35 +396,6 @@ TEST(LimitCheck, TellsWhatTheSetpointsAskOfTheAxes) {
   EXPECT_NEAR(check.jerk()[kX], 6 * 5, 1e-5);
 }
 
-TEST(LimitCheck, TellsAxisAmountLimitMoveCycleAndPlace) {
-  LimitViolation v;
-  v.axis = kX;
-  v.quantity = LimitedQuantity::kPosition;
-  v.value = 0.301;
-  v.limit = 0.3;
-  v.cycle = 1204;
-  v.x = 0.301;
-  v.move = MoveKind::kStroke;
-  EXPECT_EQ(text(reasonOf(v), UnitSystem::kSi),
-            "axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)");
-}
-
-TEST(LimitCheck, TellsTheUnitsOfEveryQuantity) {
-  LimitViolation v;
-  v.axis = kA;
-  v.value = -12;
-  v.limit = 10;
-  v.quantity = LimitedQuantity::kVelocity;
-  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a velocity -12 rad/s is 2 rad/s beyond its limit 10 rad/s"),
-            std::string::npos);
-  v.quantity = LimitedQuantity::kAcceleration;
-  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_a acceleration -12 rad/s^2 is 2 rad/s^2 beyond"),
-            std::string::npos);
-  v.axis = kZ;
-  v.quantity = LimitedQuantity::kJerk;
-  EXPECT_NE(text(reasonOf(v), UnitSystem::kSi).find("axis_z jerk -12 m/s^3 is 2 m/s^3 beyond"), std::string::npos);
-}
-
 RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {
   // p = c (wt - sin wt) begins at rest; its derivatives reach 2 c w, c w^2 and c w^3, and so do its differences.
   const int axis = *test_support::whole(0, 3);

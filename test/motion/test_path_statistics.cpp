@@ -8,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -108,13 +106,6 @@ TEST(JobPlan, TellsTheStatisticsOfManyTeethAndPasses) {
   expectSame(job, plainMachine());
 }
 
-TEST(JobPlan, MovesTakeTheWholeTime) {
-  const JobPlan plan = planOf(paperJob());
-  double sum = 0;
-  for (const double duration : plan.statistics.move_duration) sum += duration;
-  EXPECT_NEAR(sum, plan.statistics.duration, 1e-9);
-}
-
 /// Checks move_ends against the setpoints' own moves.
 void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& start, bool rc = false) {
   std::vector<Setpoint> visited;
@@ -138,8 +129,6 @@ void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& sta
   }
 }
 
-TEST(JobPlan, TellsWhereEveryMoveEnds) { expectMoveEnds(paperJob(), plainMachine(), plainMachine().park); }
-
 TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
   GrindJob job = paperJob();
   job.cutter.spiral_angle = 0;  // A never turns
@@ -150,90 +139,6 @@ TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
 RC_GTEST_PROP(JobPlanProperty, TellsWhereEveryMoveEnds, ()) {
   const Work work = *test_support::toothedWork(500);
   expectMoveEnds(work.job, work.machine, work.start, true);
-}
-
-RC_GTEST_PROP(JobPlanProperty, MovesTakeTheWholeTime, ()) {
-  const Work work = *test_support::toothedWork(500);
-  std::array<std::uint64_t, kMoveKindCount> cycles{};
-  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
-    if (p.cycle > 0) ++cycles.at(static_cast<std::size_t>(p.move));
-  });
-  double sum = 0;
-  for (std::size_t i = 0; i < kMoveKindCount; ++i) {
-    const double duration = static_cast<double>(cycles[i]) * work.machine.period;
-    RC_ASSERT(std::abs(plan.statistics.move_duration[i] - duration) <= 1e-9 * (1 + duration));
-    sum += plan.statistics.move_duration[i];
-  }
-  RC_ASSERT(std::abs(sum - plan.statistics.duration) <= 1e-9 * (1 + sum));
-}
-
-/// Where the pairs' own feed is below the one asked for, apart from the ramps at the stroke's ends; in the order of the
-/// stroke.
-std::pair<double, double> slowRange(const JobPlan& plan, const std::vector<Setpoint>& setpoints) {
-  const GrindJob& job = plan.program->job();
-  const double period = plan.program->machine().period;
-  const double edge = test_support::edgePerTravel(job.cutter);
-  std::vector<double> slow;
-  for (std::size_t i = 2; i < setpoints.size(); i += 2) {
-    if (setpoints[i].step == StepKind::kNone) continue;
-    const double x = setpoints[i].position[kX];
-    const double before = setpoints[i - 2].position[kX];
-    const double ramp = 0.2e-3;
-    const bool ramps =
-        std::min(std::abs(x - plan.program->strokeFrom()), std::abs(x - plan.program->strokeTo())) < ramp;
-    if (!ramps && std::abs(x - before) / (2 * period) * edge < job.process.feed * (1 - 1e-4)) slow.push_back(x);
-  }
-  if (slow.empty()) return {0, 0};
-  return {slow.front(), slow.back()};
-}
-
-TEST(JobPlan, TellsWhereTheFeedIsCut) {
-  // 10 mm/s along the edge ask A for 1.015 rad/s at X = -1 mm and for 0.653 rad/s at 31 mm.
-  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    SCOPED_TRACE(toString(direction));
-    GrindJob job = paperJob();
-    job.process.direction = direction;
-    Machine machine = strongMachine();
-    machine.limits.max_velocity[kA] = 0.8;
-    std::vector<Setpoint> visited;
-    const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
-    ASSERT_TRUE(plan.good()) << textOf(plan);
-    ASSERT_EQ(causesOf(plan), "axis_a velocity");
-    const core::FeedLimit& cut = plan.statistics.feed_limits[0];
-    const auto [from, to] = slowRange(plan, visited);
-    const bool from_end = direction == StrokeDirection::kFromEnd;
-    EXPECT_EQ(from_end ? cut.from_x : cut.to_x, -1e-3);
-    EXPECT_NEAR(from_end ? cut.from_x : cut.to_x, from_end ? from : to, 0.3e-3);  // up to the ramp
-    EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, from_end ? to : from, 0.1e-3);
-    // Where v k/u = 0.8 rad/s, by hand.
-    const double growth = std::tan(5 * units::kDegree);
-    const double x =
-        (0.01 / test_support::edgePerTravel(job.cutter) * std::tan(30 * units::kDegree) / 0.8 - 5e-3) / growth;
-    EXPECT_NEAR(from_end ? cut.to_x : cut.from_x, x, 0.1e-3);
-  }
-}
-
-TEST(JobPlan, TellsThatTheFeedIsCutAllAlong) {
-  GrindJob job = paperJob();
-  Machine machine = strongMachine();
-  machine.limits.max_velocity[kX] = 0.004;
-  std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
-  ASSERT_EQ(causesOf(plan), "axis_x velocity");
-  EXPECT_EQ(plan.statistics.feed_limits[0].from_x, -1e-3);
-  EXPECT_EQ(plan.statistics.feed_limits[0].to_x, 31e-3);
-  const auto [from, to] = slowRange(plan, visited);
-  EXPECT_NEAR(from, -1e-3, 0.3e-3);
-  EXPECT_NEAR(to, 31e-3, 0.3e-3);
-}
-
-TEST(JobPlan, ReportsTheRippleOfTheOddEvenSteps) {
-  // A turns by 2 kappa dl once per pair: |k b| v^2 / u^2 on the mean, twice that by single cycles, at X = -1 mm.
-  const JobPlan plan = planOf(paperJob());
-  const ReferenceCurve curve(paperJob().cutter);
-  const Real speed = 0.01 / test_support::edgePerTravel(paperJob().cutter);
-  const Real thin = 2 * curve.k * curve.b * speed * speed;
-  EXPECT_GE(plan.statistics.ripple_acceleration[kA], static_cast<double>(thin / (curve.u(0.001L) * curve.u(0.001L))));
 }
 
 }  // namespace test_path_statistics

@@ -123,20 +123,6 @@ TEST(JobPlan, TellsAllLimitsOfManyTeethInOneTextEach) {
   expectReasons(plan, visited, kX, 0.030);
 }
 
-TEST(JobPlan, RefusesATurnBeyondTheLimitOfA) {
-  Machine machine = plainMachine();
-  machine.limits.max_position[kA] = 2;
-  const JobPlan plan = planOf(paperJob(), machine);
-  EXPECT_EQ(plan.fault, PlanFault::kLimit);
-  // It is at (tan S / tan C) ln(31 mm * 2 tan C / 10 mm + 1) at the end of the stroke.
-  const double growth = std::tan(5 * units::kDegree);
-  const double end = std::tan(30 * units::kDegree) / growth * std::log1p(31e-3 * 2 * growth / 10e-3);
-  std::ostringstream text;
-  text << "axis_a position " << end << " rad is ";
-  EXPECT_TRUE(contains(textOf(plan), text.str())) << text.str() << " in\n" << textOf(plan);
-  EXPECT_TRUE(contains(textOf(plan), "beyond its limit 2 rad")) << textOf(plan);
-}
-
 TEST(JobPlan, RefusesAStartBeyondALimit) {
   const Machine machine = plainMachine();
   Axes start = machine.park;

@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <map>
 #include <memory>
 
 namespace flute_grinder {
@@ -70,50 +69,14 @@ TEST(SetpointStream, KeepsThePapersCutterWithinAMicroradianAt60MillimetresPerMin
   }
 }
 
-TEST(SetpointStream, YAndZFollowXInTheStroke) {
-  GrindJob job = paperJob();
-  job.process.wheel_wear = 0.2e-3;
-  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
-  const double growth = std::tan(5 * units::kDegree);
-  for (const Setpoint& p : all(stream)) {
-    if (p.move != MoveKind::kStroke) continue;
-    const double x = p.position[kX];
-    ASSERT_NEAR(p.position[kY], x * growth - 0.5e-3 - 0.2e-3, 1e-15);
-    ASSERT_NEAR(p.position[kZ], x * growth * std::sin(8 * units::kDegree), 1e-15);
-  }
-}
-
-TEST(SetpointStream, EveryToothStandsAtItsAngle) {
-  GrindJob job = paperJob();
-  job.tooth_angles = {0, 1.5, 3.3};
-  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
-  const ReferenceCurve curve(job.cutter);
-  std::map<int, int> seen;
-  for (const Setpoint& p : all(stream)) {
-    if (p.step != StepKind::kEven) continue;
-    ++seen[p.tooth];
-    ASSERT_NEAR(p.position[kA] - job.tooth_angles[p.tooth], static_cast<double>(curve.a(p.position[kX])), 1e-6);
-  }
-  EXPECT_EQ(seen.size(), 3u);
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, CyclesCountFromZeroWithoutGap, ()) {
-  std::uint64_t expected = 0;
-  for (const Setpoint& p : all(*test_support::work(kCycles))) RC_ASSERT(p.cycle == expected++);
-  RC_ASSERT(expected % 2 == 1u);  // the start and then pairs
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, EveryMoveTakesAnEvenNumberOfCycles, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, CyclesCountFromZeroInPairsOddAndEvenByTurnsInStrokesOnly, ()) {
   const auto setpoints = all(*test_support::work(kCycles));
-  for (std::size_t i = 1; i + 1 < setpoints.size(); ++i) {
+  RC_ASSERT(setpoints.size() % 2 == 1u);  // the start and then pairs
+  for (std::size_t i = 0; i < setpoints.size(); ++i) {
     const Setpoint& p = setpoints[i];
-    const Setpoint& q = setpoints[i + 1];
-    if (p.move_index != q.move_index) RC_ASSERT(p.cycle % 2 == 0u);
-  }
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, StrokesGoOddAndEvenByTurnsAndOtherMovesDoNot, ()) {
-  for (const Setpoint& p : all(*test_support::work(kCycles))) {
+    RC_ASSERT(p.cycle == i);
+    const bool ends = i > 0 && i + 1 < setpoints.size() && p.move_index != setpoints[i + 1].move_index;
+    if (ends) RC_ASSERT(p.cycle % 2 == 0u);
     if (p.cycle == 0 || p.move != MoveKind::kStroke) {
       RC_ASSERT(p.step == StepKind::kNone);
       RC_ASSERT(p.path_error == 0);
@@ -173,30 +136,10 @@ RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, WearNeverMovesYWithinAPass, ()) {
-  Work work = *toothedWork(kCycles / 3);
-  work.job.process.wheel_wear = *uniform(0, 1e-3);
-  work.job.process.wheel_wear_per_pass = *uniform(1e-6, 1e-4);
-  const auto setpoints = all(work);
-  const double growth = std::tan(work.job.cutter.cone_angle);
-  const double rounding = 4 * roundingOf(setpoints)[kY];
-  double deeper = work.job.process.depth + work.job.process.wheel_wear;
-  for (std::size_t i = 1; i < setpoints.size(); ++i) {
-    const Setpoint& p = setpoints[i];
-    if (p.step != StepKind::kNone) RC_ASSERT(std::abs(p.position[kY] - p.position[kX] * growth + deeper) <= rounding);
-    const bool pass_ends = p.move == MoveKind::kRetract && setpoints[i - 1].move == MoveKind::kStroke;
-    if (pass_ends) deeper += work.job.process.wheel_wear_per_pass;
-  }
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxes, ()) {
-  const Work work = *test_support::work(kCycles);
-  RC_ASSERT(beyondLimits(all(work), work.machine) == "");
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, TellsTheMeanVelocityOfTheCycle, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndTellsTheMeanVelocityOfTheCycle, ()) {
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
     const Axes moved = setpoints[i].position - setpoints[i - 1].position;
     RC_ASSERT(((setpoints[i].velocity * work.machine.period - moved).abs() <= 4 * kEps * moved.abs()).all());
@@ -217,34 +160,9 @@ RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) 
 
 RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstruction, ()) {
   const Work work = *test_support::work(kCycles);
-  RC_ASSERT(offTheConstruction(all(work), work.job, 37) == "");
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, OddPointsLeaveTheCurveByTheTangentsErrorOnly, ()) {
-  const Work work = *test_support::work(kCycles);
-  RC_ASSERT(offTheTangent(all(work), work.job) == "");
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, ExactEvenPointsAreOnTheCurve, ()) {
-  Work work = *test_support::work(kCycles);
-  work.job.interpolation.even_step = EvenStepRule::kExact;
   const auto setpoints = all(work);
-  const double rounding = 4 * roundingOf(setpoints)[kA] + 1e-15;
-  for (const Setpoint& p : setpoints) {
-    if (p.step == StepKind::kEven) RC_ASSERT(std::abs(p.path_error) <= rounding);
-  }
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, ExactNeverLeavesTheTolerance, ()) {
-  Work work = *test_support::work(kCycles);
-  work.job.interpolation.even_step = EvenStepRule::kExact;
-  const CutterGeometry& g = work.job.cutter;
-  const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
-  for (const Setpoint& p : all(work)) {
-    if (p.step == StepKind::kNone) continue;
-    const Real radius = Real(g.end_diameter) / 2 + p.position[kX] * std::tan(Real(g.cone_angle));
-    RC_ASSERT(std::abs(p.path_error) * radius * normal <= work.job.interpolation.tolerance * Real(1 + 1e-9));
-  }
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 37) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");  // odd points leave the curve by the tangent's error only
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {

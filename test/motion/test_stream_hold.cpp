@@ -126,12 +126,15 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightToler
   RC_ASSERT(largestDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsOfAllAxes, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsAndThePapersConstruction, ()) {
   const Work work = *test_support::work(kCycles);
   const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4));
   RC_ASSERT(ride.requests_in_strokes >= 4);
+  const auto setpoints = ride.setpoints();
   RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
-  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");      // and none needs a rest to be gone on from
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");             // and none needs a rest to be gone on from
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
 /// Slowed down at random moments, held and brought up again now and then.
@@ -186,13 +189,6 @@ TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
   step();
   // Then a fifth, and what the jerk adds in two cycles.
   EXPECT_NEAR(p.position[kX] - x, full / 5, 0.02 * full);
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveThePapersConstruction, ()) {
-  const Work work = *test_support::work(kCycles);
-  const auto setpoints = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4)).setpoints();
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
 }  // namespace test_stream_hold

@@ -311,21 +311,6 @@ TEST_F(OnStage, APanelMayBeClosedWhileARequestHangs) {
   EXPECT_TRUE(stage.get([&] { return stage.resume_hangs; })) << "it did not wait for the answer";
 }
 
-TEST_F(OnStage, StopsGoByTheirTopic) {
-  Panel panel("cell/stage");
-  stage.be(GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.state() == "Running");  // before any state has come the stops are enabled too
-  panel.click("hold");
-  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
-  panel.click("cancel");
-  WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL}));
-  stage.be(GrinderState::READY, "ready");
-  WAIT_FOR(panel.state() == "Ready");
-  panel.click("disable");
-  WAIT_FOR(stage.get([&] { return stage.stops; }) == (std::vector<int>{Stop::HOLD, Stop::CANCEL, Stop::DISABLE}));
-  EXPECT_NE(panel.text("messages").find("Disable was sent"), std::string::npos) << panel.text("messages");
-}
-
 /// What a reply says behind its time.
 std::string said(Panel& panel) {
   const std::string text = panel.text("messages");

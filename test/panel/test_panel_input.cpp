@@ -176,16 +176,6 @@ TEST_F(Input, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   WAIT_FOR(!red("touch_at") && panel.enabled("touch_off"));
 }
 
-TEST_F(Input, ATouchOffIsSentAsItIsRead) {
-  Panel panel("cell/stage");
-  panel.openTab("Jog");
-  WAIT_FOR(panel.enabled("touch_off"));
-  typed(panel.the<QAbstractSpinBox>("touch_at"), "0,5");
-  panel.click("touch_off");
-  WAIT_FOR(stage.get([&] { return stage.touches.size(); }) == 1);
-  EXPECT_DOUBLE_EQ(stage.get([&] { return stage.touches[0].position; }), 0.5e-3);
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// Stops the job that has begun meanwhile, beside whatever is open.

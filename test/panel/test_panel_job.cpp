@@ -183,20 +183,6 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   WAIT_FOR(position('y') > y + 1);
 }
 
-TEST_F(WithGrinder, AJobOfSomebodyElseIsShown) {
-  enable();
-  // As by `grind run`: another client of the action.
-  Panel other("grinder", slow);
-  WAIT_FOR(other.enabled("plan"));
-  other.click("plan");
-  WAIT_FOR(other.enabled("start"));
-  startAndDiscard(other);
-  WAIT_FOR(panel.state() == "Running" && stroke() > 100);
-  panel.click("cancel");
-  WAIT_FOR(panel.text("messages").find("The job has ended: canceled") != std::string::npos);
-  WAIT_FOR(other.text("messages").find("The job has ended: canceled") != std::string::npos);
-}
-
 TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
   WAIT_FOR(panel.state() == "Disabled");
   open(jobFile(folder, "wrong.yaml", {{"spiral_angle_deg: 30", "spiral_angle_deg: 300"}}));
@@ -206,41 +192,6 @@ TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
   panel.picture("wrong_job_file");
   open(folder.filePath("slow.yaml"));
   EXPECT_EQ(panel.text("verdict").find("Not planned yet."), 0U);
-}
-
-TEST_F(WithGrinder, TheWheelComesFromTheFileThatTheJobNames) {
-  const auto write = [&](const QByteArray& text) {
-    QFile wheel(folder.filePath("wheel.yaml"));
-    EXPECT_TRUE(wheel.open(QFile::WriteOnly) && wheel.write(text) == text.size());
-  };
-  const QByteArray wheel = "profile: straight\ndiameter_mm: 100\nwidth_mm: 3\n";
-  write(wheel);
-  enable();
-  open(jobFile(folder, "named.yaml",
-               {{"    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
-                 "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
-                 "    file: wheel.yaml\n"}}));
-  plan();
-  WAIT_FOR(panel.enabled("start"));
-  // Dressed since then: Y would be another one.
-  write(wheel + "measured: {date: 2026-11-20, diameter_mm: 99.9}\n");
-  startAndDiscard(panel);
-  WAIT_FOR(panel.text("verdict").find("Plan it again") != std::string::npos);
-  EXPECT_EQ(panel.state(), "Ready");
-  write(wheel + "measured: {date: 2026-11-20, diameter_mm: 100.1}\n");
-  panel.click("plan");
-  EXPECT_EQ(panel.text("verdict").find("wheel.yaml:4: measured.diameter_mm = 100.1 mm"), 0u) << panel.text("verdict");
-}
-
-TEST_F(WithGrinder, AJobBeyondTheAxesIsRefused) {
-  // X reaches to 300 mm.
-  open(jobFile(folder, "long.yaml", {{"flute_length_mm: 30", "flute_length_mm: 320"}}));
-  enable();
-  WAIT_FOR(panel.enabled("plan"));
-  panel.click("plan");
-  WAIT_FOR(panel.text("verdict").find("Cannot be ground") == 0);
-  EXPECT_NE(panel.text("verdict").find("beyond its limit"), std::string::npos) << panel.text("verdict");
-  EXPECT_FALSE(panel.enabled("start"));
 }
 
 }  // namespace test_panel_job

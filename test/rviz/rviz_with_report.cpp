@@ -1,7 +1,7 @@
 /// @file
 /// rviz as it is, and services beside it: `~report` tells how many frames it has drawn, where its window and the
 /// screen are, how small the window can be, its title, where its view looks, and what its displays say of themselves;
-/// `~next_tab` shows the next tab of the panel; `~look` turns the view as the parameter `~camera` says.
+/// `~look` turns the view as the parameter `~camera` says.
 
 #include <ros/ros.h>
 #include <rviz/display_group.h>
@@ -16,7 +16,6 @@
 #include <std_srvs/Trigger.h>
 #include <QApplication>
 #include <QScreen>
-#include <QTabWidget>
 
 #include <algorithm>
 #include <sstream>
@@ -96,15 +95,6 @@ bool look(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& 
   return true;
 }
 
-bool nextTab(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
-  auto* tabs = window() ? window()->findChild<QTabWidget*>("tabs") : nullptr;
-  response.success = static_cast<std::uint8_t>(tabs != nullptr);
-  if (tabs == nullptr) return true;
-  tabs->setCurrentIndex((tabs->currentIndex() + 1) % tabs->count());
-  response.message = tabs->tabText(tabs->currentIndex()).toStdString();
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -115,6 +105,5 @@ int main(int argc, char** argv) {
   ros::NodeHandle private_nh("~");
   const ros::ServiceServer service = private_nh.advertiseService("report", &report);
   const ros::ServiceServer look_service = private_nh.advertiseService("look", &look);
-  const ros::ServiceServer tab_service = private_nh.advertiseService("next_tab", &nextTab);
   return QApplication::exec();
 }

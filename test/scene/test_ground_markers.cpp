@@ -17,21 +17,14 @@
 namespace flute_grinder {
 namespace test_ground_markers {
 
+using test_support::jobOf;
+using test_support::paper;
 using units::kDegree;
 using units::kMillimetre;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::uint32_t kMaxBytes = 3000000;
-
-GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
-
-/// The paper's cutter by its published motion; any edge and core will do.
-GrindJob paper() {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
-  test_support::askForRakeAlone(job.cutter);
-  return job;
-}
 
 std::vector<Marker> solidOf(const MarkerArray& array, const std::string& ns) {
   std::vector<Marker> found;

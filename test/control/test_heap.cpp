@@ -1,0 +1,124 @@
+#include "control/fixtures.h"
+#include "control/heap.h"
+#include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include <cstdlib>
+
+// That the heap is counted, of which every rig makes use, and what no rig runs.
+namespace flute_grinder::test_support {
+namespace test_heap {
+
+/// Keeps the compiler from optimising an allocation away.
+void* volatile kept = nullptr;
+
+struct alignas(64) Wide {
+  double numbers[8] = {};
+};
+
+/// A counter that saw nothing would let every rig pass.
+TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
+  const GrindJob job = readJobFile("test/jobs/paper.yaml");
+  const LoopConfig config = machineConfig();
+  LoopFault fault;
+  fault.kind = FaultKind::kFollowingError;
+  struct Row {
+    const char* name;
+    std::function<void()> work;
+    int allocations;  ///< at least
+  };
+  const Row rows[] = {
+      {"malloc", [] { std::free(kept = std::malloc(16)); }, 1},
+      {"calloc and realloc", [] { std::free(kept = std::realloc(kept = std::calloc(2, 16), 4096)); }, 2},
+      {"posix_memalign",
+       [] {
+         void* memory = nullptr;
+         if (posix_memalign(&memory, 64, 128) == 0) kept = memory;
+         std::free(kept);
+       },
+       1},
+      {"aligned_alloc", [] { std::free(kept = std::aligned_alloc(64, 128)); }, 1},
+      {"new", [] { delete static_cast<double*>(kept = new double(1)); }, 1},
+      {"new of what is over-aligned", [] { delete static_cast<Wide*>(kept = new Wide); }, 1},
+      {"the core library: the moves of a program", [&] { GrindProgram(job, config.machine, config.machine.park); }, 1},
+      {"the drive library: a long text", [&] { fault.text(); }, 1},
+      {"the simulated drive: its handles", [] { SimulatedDrive().init(driveModel(), equipment()); }, 1}};
+  for (const Row& row : rows) {
+    const HeapUse use = heapUse(row.work);
+    EXPECT_GE(use.allocations, row.allocations) << row.name;
+    EXPECT_GE(use.releases, 1) << row.name;
+  }
+}
+
+/// Signal handlers post the stops.
+TEST(HeapUse, IsNoneOfStopsAndFeedOverrides) {
+  FakeDrive drive;
+  setUp(drive, machineConfig());
+  ControlLoop loop(drive, machineConfig());
+  const HeapUse use = heapUse([&] {
+    loop.postStop(E::kHold);
+    loop.postStop(E::kDisable);
+    loop.setFeedOverride(0.5);
+  });
+  EXPECT_FALSE(use.any());
+}
+
+/// The rigs run the published rule, without a correction.
+class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
+ protected:
+  StreamAllocatesNothing() : stream_(program()) {}
+
+  static GrindProgram program() {
+    GrindJob job = readJobFile("test/jobs/paper.yaml");
+    job.interpolation.even_step = GetParam();
+    job.process.z_law = ZLaw::kConstantRake;
+    ZCorrection bow;
+    bow.from = -job.process.overtravel_end;
+    bow.pieces = ZCorrection::kMaxPieces;
+    bow.piece = 3e-3;
+    for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
+    job.z_corrections = {bow};
+    const LoopConfig config = machineConfig();
+    return GrindProgram(job, config.machine, config.machine.park);
+  }
+
+  SetpointStream stream_;
+};
+
+TEST_P(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
+  for (const MoveKind move : {MoveKind::kPosition, MoveKind::kStroke, MoveKind::kReturn}) {
+    SetpointStream stream = stream_;
+    bool finished = false;
+    const HeapUse use = heapUse([&] {
+      Setpoint setpoint;
+      const auto run = [&](int most) {
+        for (int i = 0; i < most && stream.next(setpoint); ++i) {
+        }
+      };
+      while (setpoint.move != move && stream.next(setpoint)) {
+      }
+      run(100);
+      stream.setFeedOverride(0.5);
+      run(100);
+      stream.hold();
+      run(100000);
+      stream.retract();
+      run(100000);
+      stream.resume();
+      run(100000);
+      finished = stream.finished();
+    });
+    EXPECT_FALSE(use.any());
+    EXPECT_TRUE(finished) << toString(move);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
+                         testing::Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
+                         [](const testing::TestParamInfo<EvenStepRule>& info) {
+                           return std::string(toString(info.param));
+                         });
+
+}  // namespace test_heap
+}  // namespace flute_grinder::test_support

@@ -60,7 +60,8 @@ void ControlLoop::run() {
   const ros::Duration nominal(config_.machine.period);
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
-  ros::Time time(wall.sec, wall.nsec);
+  // The first wait returns a period that has not passed; no stamp is to be ahead of the clock.
+  ros::Time time = ros::Time(wall.sec, wall.nsec) - nominal;
   while (running_) {
     const ros::Duration period = hw_.wait(nominal);
     const Clock::time_point begin = Clock::now();

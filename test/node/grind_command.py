@@ -120,7 +120,8 @@ class RunTest(unittest.TestCase):
         return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
                            clearance_mm=1, **changes)
 
-    def wait_in_stroke(self, client, seen):
+    @staticmethod
+    def wait_in_stroke(client, seen):
         def past():
             new = client.batches[seen:]
             return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM

@@ -180,16 +180,6 @@ class TestRecords(Kept):
         self.check_broken_off(record, 'canceled', run)
         self.assertIn('canceled; stopped on the path', record['reason'])
 
-    def test_fault(self):
-        def fault():
-            run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
-            self.grinder.inject('emergency_stop')
-            return run.wait_complete()
-
-        record, run = self.record_of(fault)
-        self.check_broken_off(record, 'fault', run)
-        self.assertIn('emergency stop', record['reason'])
-
     def test_interlock_is_the_reason_of_its_hold(self):
         def dry():
             run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
@@ -209,19 +199,6 @@ class TestRecords(Kept):
         record, _ = self.record_of(lambda: self.grinder.run(JOB, first_tooth=1, first_pass=1))
         self.assertEqual(record['first'], {'tooth': 2, 'pass': 2})
         self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(2, 2)])
-
-    def test_nothing_is_kept_of_what_did_not_move(self):
-        before = self.files()
-        self.assertEqual(self.grinder.send(JOB, dry_run=True).wait().status, 'SUCCEEDED')
-        run = self.grinder.send(JOB)
-        self.grinder.wait_state(GrinderState.STARTING)
-        run.cancel()
-        run.wait()
-        self.assertEqual(run.status, 'PREEMPTED')
-        if run.result.setpoints_written == 0:
-            # The next job's record is written after any of this.
-            self.record_of(lambda: self.grinder.run(gc.SHORT))
-            self.assertEqual(len(self.files()), len(before) + 1)
 
     def test_end_of_the_node_keeps_the_record_and_a_restart_the_folder(self):
         before = self.files()

@@ -194,6 +194,14 @@ class TestMachine(CommandLine):
         self.assertRegex(told, r'(?m)^setpoints +\d{4}')
         self.assertEqual(self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout, told)
 
+    def test_output_that_cannot_be_printed_is_no_success(self):
+        for arguments in (['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):
+            self.check_not_printed(*arguments)
+
+    def test_probe_with_arguments_that_do_not_belong_together(self):
+        for arguments in (['diameter', '--at', '10'], ['diameter', '--job', PAPER_JOB], ['tooth', '--job', PAPER_JOB]):
+            self.grind(2, 'probe', *arguments)
+
     def test_run_while_disabled(self):
         self.grind(0, 'disable')
         self.assertRegex(self.grind(1, 'run', PAPER_JOB).stderr, r'the machine is in state disabled; allowed: .*enable')

@@ -1,18 +1,22 @@
 #!/usr/bin/env python3
-"""Shows what `grind table`, `grind plan` and wrong usage print, and every command's exit status: 0 done, 1 the machine or
-the job said no, 2 wrong usage or an unreadable file."""
+"""Shows what `grind table`, `grind plan` and wrong usage print, and the exit status: 0 done, 1 the job said no, 2 wrong usage or an
+unreadable file."""
 
 import math
 import os
+import pathlib
 import re
 import subprocess
+import sys
 
-import rospy
 import rostest
 
-import grinder_client as gc
-from grind_command import PAPER_JOB, CommandLine
-from grinder_client import DEG, grinder
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grind_command import PAPER_JOB, CommandLine  # noqa: E402
+from grinder_client import DEG  # noqa: E402
+
 
 class TestTable(CommandLine):
     """`grind table` gives the paper's figures."""
@@ -202,39 +206,16 @@ class TestUsage(CommandLine):
         self.assertEqual(self.grind(0, '--version').stdout, 'flute_grinder %s\n' % version)
 
     def test_output_that_cannot_be_printed_is_no_success(self):
-        grinder().make_ready()
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
                           ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['--help'],
-                          ['plan', '--help'], ['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):
-            for close in (None, lambda: os.close(1)):
-                with open('/dev/full', 'w') as full:
-                    done = subprocess.run([gc.program('grind'), *arguments], stdout=full, stderr=subprocess.PIPE,
-                                          universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=close)
-                self.assertEqual(done.returncode, 1, arguments)
-                self.assertTrue(done.stderr.endswith('standard output: write failed\n'), done.stderr)
+                          ['plan', '--help']):
+            self.check_not_printed(*arguments)
 
-    def check_wrong(self, *arguments):
-        self.grind(2, *arguments)
-
-
-# Name, arguments that parse and are wrong all the same.
-WRONG = [
-    ('zeros_without_flange', ['zeros', PAPER_JOB, '--stickout', '60']),
-    ('probe_diameter_that_is_known_without_job', ['probe', 'diameter', '--at', '10']),
-    ('probe_diameter_with_a_job_alone', ['probe', 'diameter', '--job', PAPER_JOB]),
-    ('probe_tooth_without_flange', ['probe', 'tooth', '--job', PAPER_JOB]),
-    ('report_without_output', ['report', 'plan.csv']),
-]
-
-
-def add_usage():
-    for name, arguments in WRONG:
-        setattr(TestUsage, 'test_' + name, lambda self, arguments=arguments: self.check_wrong(*arguments))
-
-
-add_usage()
+    def test_arguments_that_parse_and_are_wrong_all_the_same(self):
+        for arguments in (['zeros', PAPER_JOB, '--stickout', '60'], ['report', 'plan.csv']):
+            with self.subTest(arguments):
+                self.grind(2, *arguments)
 
 
 if __name__ == '__main__':
-    rospy.init_node('test_cli')
     rostest.rosrun('flute_grinder', 'cli', '__main__')

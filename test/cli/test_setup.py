@@ -4,16 +4,20 @@ sheet says, and that a refusal leaves the file as it was."""
 
 import math
 import os
+import pathlib
 import re
 import resource
 import signal
 import subprocess
+import sys
 
 import rostest
 
-import grinder_client as gc
-from grind_command import CommandLine
-from grinder_client import DEG
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grind_command import CommandLine  # noqa: E402
+from grinder_client import DEG  # noqa: E402
 
 JOBS = gc.package_file('jobs')
 PAPER_JOB = os.path.join(JOBS, 'paper.yaml')

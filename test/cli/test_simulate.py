@@ -3,7 +3,9 @@
 
 import math
 import os
+import pathlib
 import re
+import sys
 import xml.etree.ElementTree as xml
 
 import rosbag
@@ -11,9 +13,11 @@ import rostest
 import yaml
 from flute_grinder.msg import GrindActionGoal, SetpointBatch, WrittenSetpoint
 
-import grinder_client as gc
-from grind_command import PAPER_JOB, CommandLine
-from grinder_client import DEG, MM
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grind_command import PAPER_JOB, CommandLine  # noqa: E402
+from grinder_client import DEG, MM  # noqa: E402
 
 NULLABLE = {'edge_deg', 'rake_deg', 'chordal_rake_deg', 'normal_rake_deg', 'flute_deg', 'land_deg', 'land_mm', 'spiral_deg'}
 

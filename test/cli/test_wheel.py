@@ -5,15 +5,19 @@
 import datetime
 import math
 import os
+import pathlib
 import pwd
 import re
 import socket
+import sys
 
 import rostest
 import yaml
 
-import grinder_client as gc
-from grind_command import CommandLine
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grind_command import CommandLine  # noqa: E402
 
 WORN = gc.package_file('wheels/straight_d125_w2.yaml')
 NEW = gc.package_file('wheels/straight_d100_w3.yaml')

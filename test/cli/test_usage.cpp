@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -183,7 +185,20 @@ TEST(Help, IsThereForEveryCommand) {
         "enable", "disable", "home",    "lift",     "hold",      "resume",         "retract",
         "cancel", "reset",   "spindle", "coolant",  "touch-off", "confirm-swivel", "completion"}) {
     EXPECT_NE(all.find("\n  " + std::string(command) + " "), std::string::npos) << command;
-    EXPECT_EQ(parse({command, "--help"}).status, 0) << command;
+    const Said help = parse({command, "--help"});
+    EXPECT_EQ(help.status, 0) << command;
+    // Its example is right usage.
+    const std::string before = "\nExample:\n  rosrun flute_grinder grind ";
+    const std::size_t at = help.out.find(before);
+    ASSERT_NE(at, std::string::npos) << command;
+    std::istringstream example(help.out.substr(at + before.size()));
+    Words words{std::istream_iterator<std::string>(example), {}};
+    // The machine's files are otherwise those of the package, which ROS has to find.
+    for (const char* file : {"--machine", "--urdf"}) {
+      if (help.out.find(file) != std::string::npos) words.insert(words.end(), {file, "f"});
+    }
+    const Said said = parse(words);
+    EXPECT_FALSE(said.status) << joined(words) << said.err;
   }
 }
 

@@ -11,9 +11,10 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 /// @file
-/// A job told in JSON is a job file, which reads back as the same job.
+/// A job told in JSON is a job file, which reads back as the same job; no other job has its digest.
 
 namespace flute_grinder {
 namespace test_json {
@@ -61,6 +62,32 @@ TEST(JobJson, OfUnequalTeethAndHelices) {
   expectSameBits(job);
   EXPECT_EQ(toJson(job)["cutter"]["tooth_angles_deg"][2], 180.5);
   EXPECT_FALSE(toJson(job)["cutter"].contains("spiral_angle_deg"));
+}
+
+// So that a job whose file was changed is another one, which is not continued.
+TEST(JobDigest, TellsEveryFigureAndChoice) {
+  const GrindJob job = paper();
+  const std::string digest = jobDigest(job);
+  visitJobFields([&](const JobField& field, auto of) {
+    GrindJob other = job;
+    of(other) = std::nextafter(of(job), 1);
+    EXPECT_NE(jobDigest(other), digest) << field.path;
+  });
+  visitJobChoices([&](const char* path, int, auto of) {
+    GrindJob other = job;
+    auto& choice = of(other);
+    choice = static_cast<std::decay_t<decltype(choice)>>(static_cast<int>(choice) == 0 ? 1 : 0);
+    EXPECT_NE(jobDigest(other), digest) << path;
+  });
+  GrindJob other = job;
+  other.tooth_angles.push_back(1);
+  EXPECT_NE(jobDigest(other), digest);
+  other = job;
+  other.spiral_angles = {job.cutter.spiral_angle};
+  EXPECT_NE(jobDigest(other), digest);
+  other = job;
+  other.wheel_points.push_back({0, 0.05});
+  EXPECT_NE(jobDigest(other), digest);
 }
 
 TEST(JobJson, OfEveryWheel) {

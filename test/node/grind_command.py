@@ -48,6 +48,15 @@ class CommandLine(unittest.TestCase):
             self.assertNotEqual(done.stderr.strip(), '', 'no reason is given')
         return done
 
+    def check_not_printed(self, *arguments):
+        """That what cannot be printed is no success: to a disk that is full, and with no standard output."""
+        for close in (None, lambda: os.close(1)):
+            with open('/dev/full', 'w') as full:
+                done = subprocess.run([gc.program('grind'), *arguments], stdout=full, stderr=subprocess.PIPE,
+                                      universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=close)
+            self.assertEqual(done.returncode, 1, arguments)
+            self.assertTrue(done.stderr.endswith('standard output: write failed\n'), done.stderr)
+
     def json(self, status, *arguments):
         """What a command prints with --json, which must be nothing else."""
         done = self.grind(status, *arguments, '--json')
@@ -120,7 +129,8 @@ class RunTest(unittest.TestCase):
         return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
                            clearance_mm=1, **changes)
 
-    def wait_in_stroke(self, client, seen):
+    @staticmethod
+    def wait_in_stroke(client, seen):
         def past():
             new = client.batches[seen:]
             return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM

@@ -37,7 +37,7 @@ X, Y, Z, A = range(4)
 JOINTS = ['axis_x', 'axis_y', 'axis_z', 'axis_a']
 MOVES = ['lift', 'index', 'position', 'approach', 'infeed', 'stroke', 'retract', 'return']
 STEPS = ['none', 'odd', 'even']
-LIFT, INDEX, POSITION, APPROACH, INFEED, STROKE, RETRACT, RETURN = range(8)
+LIFT, STROKE = MOVES.index('lift'), MOVES.index('stroke')
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
 # Much longer than anything takes, even on a host that stalls.
@@ -150,26 +150,18 @@ def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
                           universal_newlines=True, timeout=timeout)
 
 
-def read_job(path):
-    """A job file, with the wheel's own keys in place of the wheel file that it may name."""
+def job_from_file(path):
+    """What a job file says, with the names and in the units of the goal's fields."""
     with open(path) as text:
-        job = yaml.safe_load(text)
-    wheel = job['process']['wheel']
+        file = yaml.safe_load(text)
+    cutter, process, interpolation = file['cutter'], file['process'], file['interpolation']
+    wheel = process['wheel']
     if 'file' in wheel:
         with open(os.path.join(os.path.dirname(path), wheel.pop('file'))) as text:
             wheel.update(yaml.safe_load(text))
-        wheel.pop('flange_mm', None)
         measured = wheel.pop('measured', {})
         wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
         wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
-    return job
-
-
-def job_from_file(path):
-    """What a job file says, with the names and in the units of the goal's fields."""
-    file = read_job(path)
-    cutter, process, interpolation = file['cutter'], file['process'], file['interpolation']
-    wheel = process['wheel']
     angles = cutter.get('tooth_angles_deg') or [i * 360.0 / cutter['teeth'] for i in range(cutter['teeth'])]
     return {
         'cutter.end_diameter': cutter['end_diameter_mm'] * MM,

@@ -19,11 +19,9 @@ class Helix:
         self.tan_spiral = math.tan(job['cutter.spiral_angle'])
         self.z_per_y = math.sin(job['cutter.rake_angle']) * (-1 if job['cutter.cut'] == Cutter.LEFT_HAND else 1)
         self.lead = job.get('process.setup_lead', 0)
-        self.scale = job['interpolation.rotary_scale']
         self.b = 2 * self.tan_cone / self.diameter
         self.k = 2 * self.tan_spiral / self.diameter
-        # Surface feed over dX/dt, and the part of a deviation around the axis that is normal to the helix.
-        self.edge = math.sqrt(1 + self.tan_cone ** 2 + self.tan_spiral ** 2)
+        # The part of a deviation around the axis that is normal to the helix.
         self.normal = math.cos(math.atan(self.tan_spiral * math.cos(job['cutter.cone_angle'])))
 
     def radius(self, x):
@@ -39,21 +37,10 @@ class Helix:
     def z(self, x):
         return x * self.tan_cone * self.z_per_y
 
-    def tangent_error(self, x, dx):
-        """Theory - commanded of A at the end of a step along the tangent that starts on the curve at x."""
-        z = self.b * dx / (1 + self.b * (x - self.lead))
-        return self.k / self.b * (math.log1p(z) - z)
-
     def tangent_bound(self, x, dx):
-        """The leading order of that in size, |k b| dX^2 / (2 u^2)."""
+        """Of theory - commanded of A at the end of a step along the tangent that starts on the curve at x, the leading order in
+        size: |k b| dX^2 / (2 u^2)."""
         return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * (x - self.lead)) ** 2)
-
-    def pair_unevenness(self, x, step_length):
-        """How much longer in X the even step of a pair is than the odd one, relatively: 2 |kappa| dl tan(theta)."""
-        u = 1 + self.b * (x - self.lead)
-        slope = self.scale * self.k
-        curvature = abs(slope * self.b * u) / math.hypot(u, slope) ** 3
-        return 2 * curvature * step_length * abs(slope) / u
 
 
 def stroke_pairs(setpoints):

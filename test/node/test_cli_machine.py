@@ -4,8 +4,6 @@ said no, 2 an unreadable file."""
 
 import os
 import re
-import signal
-import subprocess
 import unittest.mock
 
 import rospy
@@ -13,9 +11,8 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
-import path_checks as checks
-from grind_command import PAPER_JOB, CommandLine
-from grinder_client import DEG, LIFT, MM, MM_MIN, STROKE, X, grinder
+from grind_command import PAPER_JOB, Command, CommandLine, RunTest
+from grinder_client import DEG, MM, MM_MIN, grinder
 
 
 class TestMachine(CommandLine):
@@ -103,7 +100,7 @@ class TestMachine(CommandLine):
 
     def test_run_streams_what_plan_lists(self):
         grinder().make_ready_at_park()
-        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500)
+        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500, teeth=2, infeed_mm=0.3, wear_mm=0.01)
         batches = len(grinder().batches)
         self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
         printed = self.grind(0, 'run', job, '--discard', '--ignore-offset-check', '--csv', self.path('run.csv'))
@@ -119,25 +116,6 @@ class TestMachine(CommandLine):
                          % (len(planned) - 1, re.escape('%.3f' % duration)))
         self.assertRegex(printed.stderr, r'100 %')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-
-    def check_refused(self, command):
-        self.assertEqual(self.grind(1, command).stderr,
-                         '%s refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog\n'
-                         % command)
-
-    def test_hold_without_a_job_is_refused(self):
-        self.check_refused('hold')
-
-    def test_resume_without_a_job_is_refused(self):
-        self.check_refused('resume')
-
-    def test_retract_without_a_job_is_refused(self):
-        self.check_refused('retract')
-
-    def test_home_while_disabled_is_refused(self):
-        self.grind(0, 'disable')
-        self.assertEqual(self.grind(1, 'home').stderr,
-                         'home refused: the machine is in state disabled; allowed: enable, disable, reset\n')
 
     def test_home(self):
         self.assertEqual(self.grind(0, 'home').stdout, 'homed\n')
@@ -155,8 +133,9 @@ class TestMachine(CommandLine):
 
     def test_hold_retract_and_resume(self):
         batches = len(grinder().batches)
-        process = self.start_run()
-        self.wait_in_stroke(batches)
+        command = Command('run', PAPER_JOB, '--discard', '--ignore-offset-check')
+        self.addCleanup(command.close)
+        RunTest.wait_in_stroke(grinder(), batches)
         self.grind(0, 'override', '10')
         self.addCleanup(grinder().set_feed_override, 1)
         self.grind(0, 'hold')
@@ -174,11 +153,10 @@ class TestMachine(CommandLine):
         grinder().wait_state(GrinderState.RETRACTED)
         self.grind(0, 'override', '120')
         self.grind(0, 'resume')
-        printed, shown = process.communicate(timeout=gc.PATIENCE)
-        self.assertEqual(process.returncode, 0, shown)
-        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertRegex(command.stdout, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
         for state in ('running', 'held', 'retracted'):
-            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, shown)
+            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, command.text)
 
     def test_stops_need_no_home(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
@@ -208,102 +186,25 @@ class TestMachine(CommandLine):
         self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
         run.cancel()
         run.wait()
-
-    def test_dry_run_moves_nothing(self):
-        batches = len(grinder().batches)
-        rest = grinder().positions()
-        printed = self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout
-        self.assertRegex(printed, r'setpoints +\d{4}')
-        self.assertNotIn('streamed', printed)
-        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-        self.assertEqual(len(grinder().batches), batches)
-        self.assertEqual(grinder().positions(), rest)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
 
     def test_dry_run_tells_what_plan_tells(self):
         grinder().make_ready_at_park()
-        shown = 'rake|spiral angle|core|flutes complete|closest|cut out'
-        lines = [[line for line in self.grind(0, *words).stdout.split('\n') if re.match(shown, line)]
-                 for words in (['run', PAPER_JOB, '--dry-run'], ['plan', PAPER_JOB])]
-        self.assertEqual(len(lines[0]), 6)
-        self.assertEqual(*lines)
+        told = self.grind(0, 'plan', PAPER_JOB).stdout
+        self.assertRegex(told, r'(?m)^setpoints +\d{4}')
+        self.assertEqual(self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout, told)
+
+    def test_output_that_cannot_be_printed_is_no_success(self):
+        for arguments in (['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):
+            self.check_not_printed(*arguments)
+
+    def test_probe_with_arguments_that_do_not_belong_together(self):
+        for arguments in (['diameter', '--at', '10'], ['diameter', '--job', PAPER_JOB], ['tooth', '--job', PAPER_JOB]):
+            self.grind(2, 'probe', *arguments)
 
     def test_run_while_disabled(self):
         self.grind(0, 'disable')
         self.assertRegex(self.grind(1, 'run', PAPER_JOB).stderr, r'the machine is in state disabled; allowed: .*enable')
-
-    def test_run_outside_of_the_limits(self):
-        job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
-        self.assertRegex(self.grind(1, 'run', job, '--discard', '--ignore-offset-check').stderr,
-                         r'(?m)^axis X position 401 mm is 101 mm beyond its limit 300 mm \(.*\(code -6\)')
-
-    def test_job_that_is_not_finished_is_forgotten_only_where_told(self):
-        run = grinder().send(gc.PAPER, job_name='left.yaml').wait_in_stroke(2 * MM)
-        run.cancel()
-        run.wait()
-        job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1)
-        self.assertRegex(self.grind(1, 'run', job, '--ignore-offset-check').stderr,
-                         r'^the journal keeps a job that is not finished: left\.yaml \(.*\(code -7\)\n$')
-        self.assertEqual(grinder().fresh_state().progress.job_name, 'left.yaml')
-        self.grind(0, 'run', job, '--discard', '--ignore-offset-check')
-        self.assertEqual(grinder().fresh_state().progress.job_name, 'short.yaml')
-
-    def test_run_of_a_bad_file(self):
-        self.grind(2, 'run', self.path('nothing.yaml'))
-
-    def test_fault_ends_the_run(self):
-        batches = len(grinder().batches)
-        process = self.start_run()
-        self.wait_in_stroke(batches)
-        grinder().inject('emergency_stop')
-        _, reason = process.communicate(timeout=gc.PATIENCE)
-        self.assertEqual(process.returncode, 1)
-        self.assertRegex(reason, r'emergency stop \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -9\)')
-
-    def start_run(self):
-        process = subprocess.Popen([gc.program('grind'), 'run', PAPER_JOB, '--discard', '--ignore-offset-check'],
-                                   stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, universal_newlines=True)
-        self.addCleanup(self.kill, process)
-        return process
-
-    @staticmethod
-    def kill(process):
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
-
-    @staticmethod
-    def wait_in_stroke(batches):
-        def past():
-            new = grinder().batches[batches:]
-            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
-
-        grinder().wait_for(past, 'the stroke')
-
-    def test_interrupt_cancels_the_run(self):
-        # With time to interfere in the stroke, even on a host that stalls.
-        assert grinder().set_feed_override(0.2).success
-        self.addCleanup(grinder().set_feed_override, 1)
-        batches = len(grinder().batches)
-        process = self.start_run()
-        self.wait_in_stroke(batches)
-        process.send_signal(signal.SIGINT)
-        printed, reason = process.communicate(timeout=gc.PATIENCE)
-        self.assertEqual(process.returncode, 1, reason)
-        self.assertRegex(reason, r'canceled; stopped on the path \(stroke, tooth 1, pass 1, X = [\d.]+ mm\) \(code -11\)')
-        self.assertIn('the feed override is 20 %\n', reason)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
-        self.assertRegex(printed, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
-        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-        setpoints = [s for batch in grinder().batches_of_goal(batches) for s in batch.setpoints]
-        self.assertTrue(checks.is_gapless(setpoints))
-        stopped = [s for s in setpoints if s.move != LIFT][-1]
-        self.assertEqual(stopped.move, STROKE)
-        self.assertLess(stopped.position[X], 30 * MM)
-        self.assertEqual(setpoints[-1].move, LIFT)
-        self.assertFalse(grinder().fresh_state().wheel_in_work)
-        self.assertEqual(checks.excesses(setpoints, grinder().limits(), grinder().period()), [])
-        self.assertEqual(len(set(grinder().positions_over(0.1))), 1)
 
 
 if __name__ == '__main__':

@@ -98,17 +98,3 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(run.setpoints[1].move, LIFT)
         self.assertEqual(checks.excesses(run.setpoints, g.limits(), g.period()), [])
-
-
-class TestFaultAtRest(unittest.TestCase):
-    def test_power_is_refused_while_the_emergency_stop_is_pressed(self):
-        g = grinder()
-        self.addCleanup(g.make_ready)
-        g.make_ready()
-        self.assertTrue(g.disable().success)
-        g.inject('emergency_stop')
-        gc.poll(lambda: g.fresh_state().emergency_stop, 'the emergency stop')
-        reply = g.enable()
-        self.assertFalse(reply.success)
-        self.assertRegex(reply.message, r'^enable refused: the emergency stop is pressed')
-        self.assertEqual(g.fresh_state().state, GrinderState.DISABLED)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that axes are jogged by a service in steps, and by a topic for as long as its message is repeated; that a jog ends by a stop,
-and when its client dies; and that a job goes on whose wheel was jogged off the work. Limits, states and moments are gone through in
+and when its client dies. Limits, states and moments, and a job whose wheel was jogged off the work, are gone through in
 test/control/test_jog.cpp."""
 
 import signal
@@ -18,12 +18,8 @@ from flute_grinder.srv import JogStep
 from std_msgs.msg import String
 
 import grinder_client as gc
-import path_checks as checks
 from grind_command import CommandLine, RunTest
-from grinder_client import A, DEG, MM, MM_MIN, X, Y, Z, grinder
-
-# Every axis moves in the stroke.
-JOB = gc.paper(cone_angle=10 * DEG, feed=2000 * MM_MIN)
+from grinder_client import A, DEG, MM, X, Z, grinder
 
 # Encoder counts, as in config/grinder.yaml.
 RESOLUTION = (1e-7, 1e-7, 1e-7, 1e-6)
@@ -43,12 +39,6 @@ while True:
 
 def step(axis, distance, speed=0.0):
     return grinder()._call('jog_step', JogStep, axis, distance, speed)
-
-
-def send_slowly():
-    """The job in its stroke, with time to interfere even on a host that stalls."""
-    assert grinder().set_feed_override(0.2).success
-    return grinder().send(JOB).wait_in_stroke(4 * MM)
 
 
 def return_to_park():
@@ -145,7 +135,7 @@ class TestStep(JogTest):
         g = grinder()
         self.assertTrue(step(X, 300 * MM, 10 * MM).success)
         g.wait_state(GrinderState.JOGGING)
-        run = g.send(JOB).wait()
+        run = g.send(gc.SHORT).wait()
         self.assertEqual(run.status, 'REJECTED')
         self.assertRegex(run.text, 'state jogging; allowed: disable, hold, cancel, jog')
         self.stops.publish(Stop(request=Stop.CANCEL))
@@ -197,47 +187,6 @@ class TestContinuous(JogTest):
         self.assertEqual(set(map(tuple, g.positions_over(0.3))), {tuple(at)})
 
 
-class TestRetracted(JogTest):
-    def test_job_goes_on_after_the_wheel_was_jogged_off_the_work(self):
-        g = grinder()
-        run = send_slowly()
-        self.assertRegex(step(X, 1 * MM).message, 'jog refused: the machine is in state running; ')
-        self.assertTrue(g.hold().success)
-        g.wait_state(GrinderState.HELD)
-        self.assertTrue(g.retract().success)
-        g.wait_state(GrinderState.RETRACTED)
-        lifted, first_state = g.wait_rest(), len(g.states)
-        self.assertRegex(step(Y, -1 * MM).message, 'jog refused: it would lead axis Y to .*; allowed: down to ')
-        for axis, distance, speed in ((Y, 30 * MM, 0.1), (X, -60 * MM, 0.2)):
-            self.assertTrue(step(axis, distance, speed).success)
-            g.wait_state(GrinderState.RETRACTED)
-            lifted[axis] += distance
-        self.check_at(lifted)
-        self.assertIn('jogging_retracted', [s.state_name for s in g.states[first_state:]])
-        self.assertTrue(g.set_feed_override(1).success)
-        self.assertTrue(g.resume().success)
-        self.assertEqual(run.wait_complete().status, 'SUCCEEDED', run.text)
-        self.assertTrue(checks.is_gapless(run.setpoints))
-        self.assertEqual(len(run.setpoints), run.result.setpoints_written)
-        self.assertEqual(checks.excesses(run.setpoints, g.limits(), g.period()), [])
-        self.assertEqual(checks.off_path(run.setpoints, checks.Helix(JOB)), [])
-
-    def test_a_cancel_stops_the_jog_and_ends_the_job(self):
-        g = grinder()
-        run = send_slowly()
-        self.assertTrue(g.hold().success)
-        g.wait_state(GrinderState.HELD)
-        self.assertTrue(g.retract().success)
-        g.wait_state(GrinderState.RETRACTED)
-        self.assertTrue(step(X, 200 * MM, 10 * MM).success)
-        g.wait_state(GrinderState.JOGGING_RETRACTED)
-        run.cancel()
-        self.assertEqual(run.wait().status, 'PREEMPTED')
-        g.wait_state(GrinderState.READY)
-        self.assertLess(g.wait_rest()[X], 150 * MM)
-        self.assertFalse(g.fresh_state().wheel_in_work)
-
-
 class TestCommandLine(CommandLine):
     def setUp(self):
         super().setUp()
@@ -253,10 +202,6 @@ class TestCommandLine(CommandLine):
         self.assertEqual(self.grind(1, 'jog', 'y', '200').stderr,
                          'jog refused: it would lead axis Y to 250 mm; allowed: up to 150 mm\n')
         self.assertRegex(self.grind(1, 'jog', 'y', '1', '--feed', '6001').stderr, 'speed of axis Y = 6001 mm/min')
-
-    def test_wrong_usage(self):
-        for arguments in (('b', '1'), ('x',), ('x', 'far'), ('x', '1', '--feed', '0'), ('x', '1', '--feed', '-5')):
-            self.grind(2, 'jog', *arguments)
 
 
 class TestCtrlC(RunTest):

@@ -306,21 +306,6 @@ class TestContinue(JournalTest):
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^last job .*finished')
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^the job is finished: ')
 
-    def test_cancelled_job_goes_on_with_the_pass_that_was_cancelled(self):
-        self.start_ready()
-        run = self.hold_in_stroke_of(0, 1)
-        run.cancel()
-        run.wait()
-        self.client.wait_state(GrinderState.READY)
-        journal = self.wait_left(run)
-        self.check_told(journal)
-        self.assertEqual((journal['finished'], journal['tooth'], journal['pass']), (False, 0, 1))
-        self.assertTrue(self.client.set_feed_override(1).success)
-        batches = len(self.client.batches)
-        self.grind(0, 'run', self.job_path, '--continue')
-        setpoints = [s for batch in self.client.batches_of_goal(batches) for s in batch.setpoints]
-        self.assertEqual(strokes_of(setpoints)[0], PASSES[1:])
-
     def test_dry_run_leaves_the_journal_alone(self):
         self.start_ready()
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
@@ -329,60 +314,24 @@ class TestContinue(JournalTest):
         self.assertEqual(self.read_journal(), journal)
         self.check_told(journal)
 
-    def test_nothing_is_continued_without_a_journal(self):
-        self.journal = os.path.join(self.folder, 'folders', 'made', 'as needed', 'journal')
-        self.start_ready()
-        self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
-        self.assertNotIn('last job', self.grind(0, 'status').stdout)
-        self.assertEqual(self.client.batches, [])
-        self.grind(0, 'run', self.job_path, '--ignore-offset-check')
-        self.wait_finished()
 
-
-# Name, what is changed in the job file.
-CHANGES = [
-    ('feed', {'feed_mm_min': 3000.0001}),
-    ('depth', {'depth_mm': 0.49}),
-    ('tooth', {'teeth': 4}),
-    ('direction', {'direction': 'to_end'}),
-    ('interpolation', {'even_step': 'exact'}),
-]
-
-
-class TestChangedJob(unittest.TestCase):
-    """A job file that was changed after its job was left; the methods are made of the table."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
-        cls.node = gc.NodeProcess('left_grinder', quick_machine(os.path.join(cls.folder, 'journal')))
-        cls.addClassCleanup(cls.node.close)
-        cls.client = cls.node.client()
-        cls.addClassCleanup(cls.client.close)
-        cls.client.make_ready()
-        run = cls.client.send(gc.job_from_file(write_job(cls.folder)))
-        run.wait_past(lambda s: s.move == STROKE, 'a stroke')
-        run.cancel()
-        run.wait()
-        cls.client.wait_state(GrinderState.READY)
-
-    def check(self, changes):
-        batches = len(self.client.batches)
-        done = gc.grind('--node', self.node.name, 'run', write_job(self.folder, **changes), '--continue')
-        self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertRegex(done.stderr, r'^the grinder.s last job was another one, or its file has changed since')
-        self.client.fresh_state()
-        self.assertEqual(len(self.client.batches), batches)
-
-
-def add_changes():
-    for name, changes in CHANGES:
-        setattr(TestChangedJob, 'test_another_%s_is_not_continued' % name,
-                lambda self, changes=changes: self.check(changes))
-
-
-add_changes()
+class TestDamagedJournal(JournalTest):
+    def test_it_is_told_and_the_next_job_makes_a_new_one(self):
+        with open(self.journal, 'wb') as file:
+            file.write(b'nothing of a journal')
+        self.start()
+        self.check_trouble_is_told()
+        state = self.client.fresh_state()
+        self.assertIn('journal ' + self.journal, state.journal_error)
+        self.assertTrue(state.journal_damaged)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^wheel in work +not known$')
+        with open(self.journal, 'rb') as file:
+            self.assertEqual(file.read(), b'nothing of a journal', 'it is left as it is until the next job')
+        self.assertTrue(self.client.enable().success)
+        self.client.wait_state(GrinderState.READY)
+        self.assertRegex(self.client.send(self.job, discard=False).wait().text, 'its checksum is missing; .*, or discard it$')
+        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
+        self.check_told(self.wait_finished())
 
 
 class TestOwner(JournalTest):
@@ -396,14 +345,6 @@ class TestOwner(JournalTest):
                                                                          self.node.process.pid), second.output)
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
         self.check_told(self.wait_finished())
-
-    def test_it_is_free_when_its_node_is_killed(self):
-        self.start_ready()
-        self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        journal = self.wait_finished()
-        self.kill()
-        self.start()
-        self.check_told(journal)
 
 
 class TestUnfinishedJob(JournalTest):
@@ -445,10 +386,6 @@ class TestUnfinishedJob(JournalTest):
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
         journal = self.check_ground(gc.SHORT, discard=True, job_name='other.yaml')
         self.assertEqual(journal['job_name'], 'other.yaml')
-
-    def test_it_does_not_begin_anew(self):
-        self.check_refused(self.job)
-        self.check_ground(self.job, discard=True)
 
     def test_it_is_continued(self):
         journal = self.read_journal()

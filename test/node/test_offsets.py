@@ -17,7 +17,6 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult, OffsetBasis, WorkOffsets
 
 import grinder_client as gc
-import path_checks as checks
 from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z
 
 # The job then stays within the machine's limits, and the cutter stands out of the collet, not in.
@@ -124,33 +123,6 @@ class TestJob(OffsetsTest):
             self.assertAlmostEqual(state.position[axis], rest[axis], delta=COUNT)
             self.assertAlmostEqual(state.work_position[axis], rest[axis] - OFFSETS[axis], delta=COUNT)
 
-    def test_limits_are_the_machines(self):
-        deepest = checks.Helix(gc.SHORT).y(-1 * MM) - 0.5 * MM
-        self.set_offsets([0, -0.0196, 0, 0])
-        plan = self.client.plan(gc.goal_of(gc.SHORT))
-        self.assertFalse(plan.valid)
-        self.assertRegex(plan.reasons[0], r'^axis_y position %.6g m is %.6g m beyond its limit -0\.02 m '
-                                          r'\(infeed, cycle \d+, X = -0\.001 m\)' % (deepest - 0.0196, -0.0004 - deepest))
-        run = self.client.send(gc.SHORT).wait()
-        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.LIMIT_VIOLATED))
-
-    def test_lift_after_a_kill_goes_to_the_height_of_the_job(self):
-        self.set_offsets(OFFSETS)
-        helix = checks.Helix(SLOW)
-        clear = helix.y(SLOW['cutter.flute_length'] + SLOW['process.overtravel_shank']) + 1 * MM + OFFSETS[Y]
-        self.client.send(SLOW).wait_in_stroke(3 * MM)
-        self.node.end(signal.SIGKILL)
-        at = self.client.positions()
-        hardware = gc.machine(pace=5)['hardware']
-        self.start(**{joint: dict(hardware[joint], start_position=at[i]) for i, joint in enumerate(gc.JOINTS)})
-        self.assertTrue(self.client.fresh_state().wheel_in_work)
-        self.set_offsets([0, 0, 0, 0])
-        self.assertTrue(self.client.enable().success)
-        self.client.wait_state(GrinderState.READY)
-        self.assertTrue(self.client.lift().success)
-        gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
-        self.assertAlmostEqual(self.client.wait_rest()[Y], clear, delta=COUNT)
-
 
 class TestSetting(OffsetsTest):
     def test_touch_off_where_the_axes_stand(self):
@@ -185,16 +157,6 @@ class TestSetting(OffsetsTest):
         self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
         self.assertFalse(os.path.exists(self.file))
 
-    def test_a_large_change_wants_a_confirmation(self):
-        self.assertTrue(self.set_offset(Y, 0.0452, large_change_ok=False).success, 'the first is no change')
-        refused = self.set_offset(Y, 0.0002, large_change_ok=False)
-        self.check_refused(refused, 'work offset of axis Y would change by 45 mm, from 45.2 mm to 0.2 mm; allowed without a '
-                                    'confirmation: 5 mm')
-        self.assertTrue(refused.large_change)
-        self.assertTrue(self.touch_off(Y, 0, large_change_ok=False).success, 'by 4.8 mm')
-        self.assertFalse(self.set_offset(Y, 1.0, large_change_ok=False).large_change, 'no confirmation would help')
-        self.assertTrue(self.set_offset(Y, 0.0002).success)
-
     def check_both_refused(self, text):
         self.check_refused(self.set_offset(Y, 0.01), text)
         self.check_refused(self.touch_off(Y, 0.01), text)
@@ -223,13 +185,6 @@ class TestSetting(OffsetsTest):
         self.assertTrue(self.client.home().success)
         self.check_both_refused('the machine is in state homing')
 
-    def test_what_cannot_be_kept_is_not_set(self):
-        os.mkfifo(self.file + '.new')
-        self.check_refused(self.set_offset(X, 0.01), 'file of work offsets ' + self.file)
-        self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
-        os.remove(self.file + '.new')
-        self.assertTrue(self.set_offset(X, 0.01).success)
-
     def test_nothing_waits_for_the_disk(self):
         delay = os.path.join(self.folder, 'delay')
         preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libflute_grinder_slow_fsync.so')
@@ -257,14 +212,6 @@ class TestSetting(OffsetsTest):
 
 
 class TestRestart(OffsetsTest):
-    def test_offsets_outlive_the_process(self):
-        self.set_offsets(OFFSETS)
-        before = self.offsets()
-        self.restart(signal.SIGKILL)
-        after = self.offsets()
-        self.assertEqual((after.values, after.set_by, after.set_at, after.error),
-                         (tuple(OFFSETS), before.set_by, before.set_at, ''))
-
     def test_damaged_ones_are_told_and_no_job_starts_until_all_are_set(self):
         self.set_offsets(OFFSETS)
         self.node.end(signal.SIGTERM)

@@ -39,13 +39,6 @@ LONGEST_MESSAGE = 256 << 10
 NEST = '<value><array><data>'
 
 
-def nested_arrays(size):
-    """XML of arrays in arrays, of about `size` bytes."""
-    opening, closing = NEST, '</data></array></value>'
-    depth = size // len(opening + closing)
-    return depth * opening + '<value><i4>1</i4></value>' + depth * closing
-
-
 def response(value):
     return '<?xml version="1.0"?><methodResponse><params><param>%s</param></params></methodResponse>' % value
 
@@ -208,10 +201,6 @@ class Attacked(unittest.TestCase):
 class TestPeers(Attacked):
     # The API of the node, XML-RPC.
 
-    def test_request_of_nested_arrays(self):
-        self.post(call('getPid', nested_arrays(2400000)))
-        self.check()
-
     def test_call_of_calls(self):
         inner = {'methodName': 'system.multicall', 'params': []}
         self.post(call('system.multicall', value([inner])))
@@ -276,10 +265,6 @@ class TestPeers(Attacked):
         return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
 
     # Publishers that the node asks, because the master told it to.
-
-    def test_publisher_that_answers_nested_arrays(self):
-        self.answer(response(nested_arrays(3000000)))
-        self.check()
 
     def test_publisher_that_answers_300_megabytes(self):
         self.answer(300 * MEGABYTE * ' ')

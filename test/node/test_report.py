@@ -303,9 +303,6 @@ class TestTable(ReportCase):
     def test_papers_figures_at_02(self):
         self.check_figures('0.2', 152, '3.9785e-05', '3.5000e-07')
 
-    def test_papers_figures_at_05(self):
-        self.check_figures('0.5', 62, '2.4780e-04', None)
-
     def test_pictures_show_the_points(self):
         page = self.report(FILES['table 0.2'])
         helix = checks.Helix(gc.PAPER)
@@ -357,15 +354,6 @@ class TestPlan(ReportCase):
             scale = 1 / DEG if i == 3 else 1
             self.assertAlmostEqual(axis['speed']['stroke'], largest[True] * scale, delta=1e-6 * scale)
             self.assertAlmostEqual(axis['speed']['rapid'], largest[False] * scale, delta=1e-6 * scale)
-
-    def test_feed_is_the_jobs(self):
-        stroke, = self.found['strokes']
-        self.assertAlmostEqual(stroke['feed_max_mm_min'], 600, delta=600e-6)
-
-    def test_limits_are_the_machines(self):
-        machine = gc.machine()['joint_limits']
-        for axis, joint, unit in zip(self.found['axes'], JOINTS, UNITS):
-            self.assertAlmostEqual(axis['acceleration']['limit'], machine[joint]['max_acceleration'] / unit, delta=1e-6)
 
     def test_limits_are_those_of_another_machine(self):
         with open(gc.package_file('config/grinder.yaml')) as file:
@@ -449,12 +437,6 @@ class TestBag(ReportCase):
         self.assertEqual(sorted(topics), ['/diagnostics', 'joint_states'] + ['recorded/' + name for name in (
             'grind/result', 'job', 'machine', 'offsets', 'setpoints', 'state')])
         self.assertTrue(all(topic.message_count > 0 for topic in topics.values()))
-
-    def test_bag_has_every_setpoint(self):
-        with rosbag.Bag(self.recording.bag) as bag:
-            cycles = [s.cycle for _, batch, _ in bag.read_messages('recorded/setpoints')
-                      if batch.goal_id == self.batches[0].goal_id for s in batch.setpoints]
-        self.assertEqual(cycles, list(range(len(self.setpoints))))
 
     def test_page(self):
         self.assert_page(self.page, TOOL + ['feed'] + FOLLOWING + COMMANDED + ['timing'] + PATH)
@@ -568,11 +550,6 @@ class TestBag(ReportCase):
             self.assertLessEqual(told, last + 0.1, name)
             self.assertGreater(told, last - 6, name)
 
-    def test_cycle_periods_add_up_to_the_time_that_went_by(self):
-        periods = [s.cycle_period for s in self.recording.jobs[1] for s in s.setpoints]
-        batches = self.recording.jobs[1]
-        self.assertAlmostEqual(sum(periods[1:]), (batches[-1].end_stamp - batches[0].header.stamp).to_sec(), delta=1e-5)
-
     def test_loop_timing(self):
         periods = [s.cycle_period for s in self.setpoints]
         loop = self.found['loop']
@@ -593,10 +570,6 @@ class TestBag(ReportCase):
         self.assertEqual([at for _, at in states], sorted(at for _, at in states))
         # A loop that was late catches up, so that a job takes a few cycles more or less than it has.
         self.assertLessEqual(self.batches[-1].end_stamp.to_sec() - self.start - 0.001, states[-1][1])
-
-    def test_diagnostics(self):
-        worst = {row[0]: row[1] for row in self.page.tables['Diagnostics']}
-        self.assertEqual(worst['recorded: Drive link'], 'OK')
 
     def test_diagnostics_are_the_worst_of_all_messages(self):
         worst = {}

@@ -285,15 +285,6 @@ class TestRecord(RunTest):
         self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
         self.assertRegex(first.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
 
-    def test_own_run_beside_another_waits_for_none_of_its_setpoints(self):
-        make_ready_for_a_slow_stroke()
-        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
-        second = self.grind(*RUN, PAPER_JOB)
-        self.assertEqual(second.end(), 1)
-        self.assertNotIn('streamed', second.stdout)
-        run.cancel()
-        run.wait()
-
     def test_full_disk_hides_no_emergency_stop(self):
         seen = len(grinder().batches)
         command = self.grind(*RUN, PAPER_JOB, '--csv', '/dev/full')

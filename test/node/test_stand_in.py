@@ -18,7 +18,6 @@ from std_srvs.srv import Trigger, TriggerResponse
 import grinder_client as gc
 from grind_command import PAPER_JOB, RunTest
 
-DIGEST = '0123456789abcdef' * 4
 NONE = [math.nan] * 2
 
 
@@ -191,29 +190,6 @@ class TestStandIn(RunTest):
         gc.poll(lambda: self.node.lifts > lifts, 'the lift')
         self.node.set(GrinderState.FAULT, 'fault', fault='emergency stop')
         self.assertEqual((command.end(), command.text), (1, 'emergency stop\n'))
-
-    def test_last_job_goes_by_its_file_and_tool(self):
-        progress = self.node.state.progress
-        progress.job_digest, progress.job_name, progress.tooth, progress.x = DIGEST, 'd10 r\u00e9.yaml', 1, 12e-3
-        cutter = progress.cutter
-        cutter.end_diameter, cutter.flute_length = 10e-3, 30e-3
-        cutter.cone_angle, cutter.spiral_angle, cutter.rake_angle = 5 * gc.DEG, -30 * gc.DEG, 8 * gc.DEG
-        cutter.tooth_angles = [0, 1, 2]
-        text, told = self.status()
-        tool = 'D 10 mm, cone 5 deg, spiral -30 deg, rake 8 deg'
-        self.assertIn('\nlast job        d10 r\u00e9.yaml: %s, 3 teeth; tooth 2, pass 1 not finished, X 12.000 mm (0123456789ab)\n'
-                      % tool, text)
-        self.assertEqual({key: told['last_job'][key] for key in ('name', 'digest', 'finished', 'tooth', 'pass', 'x_mm')},
-                         {'name': 'd10 r\u00e9.yaml', 'digest': DIGEST, 'finished': False, 'tooth': 2, 'pass': 1,
-                          'x_mm': 12})
-        of_cutter = told['last_job']['cutter']
-        self.assertEqual(of_cutter.pop('teeth'), 3)
-        for key, value in {'end_diameter_mm': 10, 'cone_angle_deg': 5, 'spiral_angle_deg': -30, 'rake_angle_deg': 8,
-                           'flute_length_mm': 30}.items():
-            self.assertAlmostEqual(of_cutter.pop(key), value, delta=1e-12)
-        self.assertEqual(of_cutter, {})
-        progress.finished, progress.job_name, cutter.tooth_angles = True, '', [0]
-        self.assertIn('\nlast job        without a name: %s, 1 tooth; finished (0123456789ab)\n' % tool, self.status()[0])
 
 
 if __name__ == '__main__':

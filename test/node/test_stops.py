@@ -20,12 +20,10 @@ from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
 from flute_grinder.srv import Plan
 from rosgraph_msgs.msg import Clock
-from std_srvs.srv import Trigger
-from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
 import path_checks as checks
-from grinder_client import A, MM, MM_MIN, STROKE, X, Y, Z
+from grinder_client import MM, MM_MIN, STROKE, X
 
 SEED = 20
 
@@ -127,21 +125,13 @@ class TestPlanning(NodeTest):
         self.assertFalse(answer.valid)
         self.assertRegex(answer.reasons[0], '^busy: ')
         self.assertFalse(first.done)
+        self.client.wait_for(lambda: any(0 < f.planned < 1 for f in first.feedback), 'how far it is')
         first.cancel()
         self.assertIn(first.wait().status, ENDED_BY_CANCEL)
         self.assert_rests()
         self.assertEqual(len(self.client.batches), batches)
         self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).valid)
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
-
-    def test_it_tells_how_far_it_is(self):
-        # Not one whose plan the node has kept.
-        run = self.send_planning(dict(LONG_TO_PLAN, **{'process.feed': 0.9 * MM_MIN}), dry_run=True)
-        run.wait()
-        parts = [f.planned for f in run.feedback if f.state == 'planning']
-        self.assertEqual(parts, sorted(parts))
-        self.assertTrue(any(0 < part < 1 for part in parts), parts)
-        self.assertEqual(run.status, 'SUCCEEDED', run.text)
 
     def test_job_can_be_stopped_while_others_plan(self):
         """With many who ask for plans at once, of whom one is served."""
@@ -246,28 +236,6 @@ class TestTheWayDown(NodeTest):
         self.release_disk()
         gc.poll(lambda: self.client.fresh_state().progress.pass_ == 1, 'the pass in the journal')
 
-    def test_job_goes_on_to_its_end_without_the_disk(self):
-        self.start_on_slow_disk()
-        run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
-        self.stop_disk()
-        run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.assertEqual(run.result.setpoints_written, run.result.statistics.setpoints)
-        self.assertTrue(checks.is_gapless(run.setpoints))
-        self.assertFalse(self.client.fresh_state().progress.finished)
-        self.release_disk()
-        gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end in the journal')
-
-    def test_goal_that_waits_for_the_disk_can_be_canceled(self):
-        self.start_on_slow_disk()
-        self.stop_disk()
-        run = self.client.send(gc.SHORT)
-        self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
-        run.cancel()
-        self.assertIn(run.wait().status, ENDED_BY_CANCEL)
-        self.assertEqual(self.client.batches, [])
-        self.release_disk()
-
     def test_full_pipe(self):
         read, write = os.pipe()
         self.addCleanup(os.close, read)
@@ -343,36 +311,6 @@ class TestStates(NodeTest):
         self.check_stopped_on_path_and_lifted(run)
         self.assertFalse(self.client.wait_state(GrinderState.READY).wheel_in_work)
 
-    def test_wheel_in_work_outlives_the_process(self):
-        """With encoders that do not know where they stand: the wheel is lifted by the journal's figure."""
-        parameters = machine()
-        parameters['hardware']['absolute_encoders'] = False
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        parameters['journal'] = os.path.join(folder, 'journal')
-        self.start(parameters).make_ready()
-        self.assertTrue(self.client.set_feed_override(0.36).success)
-        self.send_into_stroke()
-        self.node.end(signal.SIGKILL)
-
-        for i, joint in enumerate(gc.JOINTS):
-            parameters['hardware'][joint]['start_position'] = self.client.positions()[i]
-        self.start(parameters)
-        left = self.client.fresh_state()
-        self.assertTrue(left.wheel_in_work)
-        self.assertEqual((left.override, left.progress.finished, left.progress.end), (0.36, False, ''))
-        self.assertTrue(self.client.enable().success)
-        self.client.wait_state(GrinderState.READY)
-        self.assertIn('lift', self.client.home().message)
-        before = self.client.wait_rest()
-        self.assertTrue(rospy.ServiceProxy('/%s/lift' % self.node.name, Trigger)().success)
-        gc.poll(lambda: not self.client.fresh_state().wheel_in_work, 'the wheel off the work')
-        after = self.client.wait_rest()
-        self.assertAlmostEqual(after[Y] - before[Y], clear_height(SLOW) + SLOW['process.depth'] - 0 +
-                               checks.Helix(SLOW).tan_cone * SLOW['process.overtravel_end'], delta=1e-5)
-        self.assertTrue(self.client.home().success)
-        gc.poll(lambda: self.client.fresh_state().homed, 'the reference')
-
 
 class TestTheEnd(NodeTest):
     """However the process ends, the axes stop on the path, where the loop lives."""
@@ -387,8 +325,19 @@ class TestTheEnd(NodeTest):
         self.check_stopped_on_path_and_lifted(run)
         return run
 
+    def check_signal(self, with_signal):
+        run = self.check_end(with_signal, 0)
+        self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
+        self.assertRegex(run.text, r'^canceled; stopped on the path \(at stroke of tooth 1, pass 1, X = ')
+
     def test_sighup(self):
-        self.assertEqual(self.check_end(signal.SIGHUP, 0).status, 'PREEMPTED')
+        self.check_signal(signal.SIGHUP)
+
+    def test_sigint(self):
+        self.check_signal(signal.SIGINT)
+
+    def test_sigterm(self):
+        self.check_signal(signal.SIGTERM)
 
     def test_crash(self):
         self.check_end(signal.SIGSEGV, -signal.SIGSEGV)
@@ -445,21 +394,6 @@ class TestClock(NodeTest):
                 clock.publish(Clock(clock=rospy.Time.from_sec(set_to)))
                 seen = len(reports)
                 gc.poll(lambda: len(reports) > seen, 'diagnostics at %f' % set_to)
-
-
-class TestScene(NodeTest):
-    def test_new_process_clears_what_was_shown(self):
-        self.start(machine()).make_ready()
-        self.send_into_stroke()
-        self.node.end(signal.SIGKILL)
-        for topic in ('scene', 'tool_path', 'executed_path', 'path_error'):
-            shown = []
-            subscriber = rospy.Subscriber('/%s/%s' % (self.node.name, topic), MarkerArray, shown.append)
-            self.addCleanup(subscriber.unregister)
-        again = gc.NodeProcess(self.node.name, machine())
-        self.addCleanup(again.close)
-        self.client.wait_for(lambda: shown, 'the first markers')
-        self.assertEqual([m.action for m in shown[0].markers], [Marker.DELETEALL])
 
 
 if __name__ == '__main__':

@@ -207,6 +207,28 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
   }
 }
 
+TEST(PathMarkers, AreChordsCloseToTheHelix) {
+  struct Shape {
+    double cone, spiral;  // [deg]
+  };
+  for (const Shape& shape : {Shape{0, 45}, Shape{5, -60}, Shape{20, 8}}) {
+    SCOPED_TRACE(shape.cone);
+    GrindJob job = readJobFile("test/jobs/paper.yaml");
+    job.cutter = {6e-3, shape.cone * units::kDegree, shape.spiral * units::kDegree, 0, 30e-3};
+    const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
+    // An edge under the wheel's centre is the helix.
+    const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
+    const std::vector<geometry_msgs::Point> strip = ToolPath(of_job, {edge}).markers().markers.at(1).points;
+    ASSERT_GT(strip.size(), 30u);
+    for (std::size_t i = 1; i < strip.size(); ++i) {
+      const geometry_msgs::Point &p = strip[i - 1], &q = strip[i];
+      const double x = (p.x + q.x) / 2, r = of_job.cutter().radius(x), a = of_job.helix(0).curve.a(x);
+      // As far as this from the point of the helix beside it, and so no farther from the helix.
+      EXPECT_LT(std::hypot((p.y + q.y) / 2 - r * std::cos(a), (p.z + q.z) / 2 - r * std::sin(a)), 1e-7);
+    }
+  }
+}
+
 // Across the helix in the plane that touches the cone there, all by the same factor.
 TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
   const GrindProgram job = program();

@@ -2,25 +2,28 @@
 """Shows what the tab key offers in bash once `grind completion bash` is sourced, for grind and for rosrun."""
 
 import os
+import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import rostest
 
-import grinder_client as gc
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
-ROSBASH = '/usr/share/bash-completion/completions/rosbash'
-# Completes the command line given as arguments, of which the last word is begun.
-ASK = '''
-COMP_WORDS=("$@")
-COMP_CWORD=$(($# - 1))
-function=$(complete -p "$1" | sed 's/.*-F \\([^ ]*\\).*/\\1/')
-$function "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"
-[ ${#COMPREPLY[@]} = 0 ] || printf '%s\\n' "${COMPREPLY[@]}"
-'''
+import grinder_client as gc  # noqa: E402
+ROSBASH = '/usr/share/bash-completion/completions/rosbash'  # noqa: E402
+# Completes the command line given as arguments, of which the last word is begun.  # noqa: E402
+ASK = '''  # noqa: E402
+COMP_WORDS=("$@")  # noqa: E402
+COMP_CWORD=$(($# - 1))  # noqa: E402
+function=$(complete -p "$1" | sed 's/.*-F \\([^ ]*\\).*/\\1/')  # noqa: E402
+$function "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"  # noqa: E402
+[ ${#COMPREPLY[@]} = 0 ] || printf '%s\\n' "${COMPREPLY[@]}"  # noqa: E402
+'''  # noqa: E402
 
 
 class TestCompletion(unittest.TestCase):

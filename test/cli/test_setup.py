@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+"""Shows that `grind setup` writes the set-up for the tool that a job asks for into the job file, which `grind plan` accepts, what its
+sheet says, and that a refusal leaves the file as it was."""
+
+import math
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+from grind_command import CommandLine  # noqa: E402
+from grinder_client import DEG  # noqa: E402
+
+JOBS = gc.package_file('jobs')
+PAPER_JOB = os.path.join(JOBS, 'paper.yaml')
+URDF = gc.package_file('urdf/grinder.urdf')
+
+
+class TestSetup(CommandLine):
+    def job(self, name, source=PAPER_JOB, **changes):
+        """Writes a shipped job with other values as text, `None` to leave a key out; the keys are unique in it."""
+        with open(source) as file:
+            text = file.read().replace('../wheels', gc.package_file('wheels'))
+        for key, value in changes.items():
+            pattern = r'(?m)^( *)%s: *(\{.*?\}|\[.*?\]|[^ #\n]+)(.*)\n' % key
+            self.assertEqual(len(re.findall(pattern, text)), 1, key)
+            text = re.sub(pattern, '' if value is None else r'\g<1>%s: %s\g<3>\n' % (key, value), text)
+        return self.write(name, text)
+
+    def text(self, path):
+        with open(path, newline='') as file:
+            return file.read()
+
+    def setup(self, job, *arguments, status=0):
+        return self.json(status, 'setup', job, *arguments)[0]
+
+
+class TestFigures(TestSetup):
+    def test_the_papers_cutter_without_a_setup(self):
+        job = self.job('job.yaml', setup=None)
+        self.assertIn("'grind setup --write' finds it", self.grind(2, 'plan', job).stderr)
+        found = self.setup(job, '--write')
+        self.grind(0, 'plan', job)
+        self.assertEqual(self.setup(job), found)
+
+    def test_sheet(self):
+        sheet, found = self.grind(0, 'setup', PAPER_JOB).stdout, self.setup(PAPER_JOB)
+        swivel, height = found['swivel_deg'] * DEG, found['height_mm']
+        lines = [r"swivel +%.3f deg; the machine's range is -60 to 60 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
+                 'lead +%.3f mm' % found['lead_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
+                 r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
+                 r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),
+                 r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete X 0\.000 to 30\.000 mm',
+                 r"core +6\.800 mm at X = 0, 12\.050 mm at the flute's end; asked 6\.8 mm and 12\.05 mm within 0\.02 mm"]
+        for name, key, asked in (('rake', 'rake', '8 deg within 0.5'), ('chordal rake', 'chordal_rake', '8 deg within 7'),
+                                 ('spiral angle', 'spiral', '30 deg within 0.3')):
+            ends = found[key + '_min_deg'], found[key + '_max_deg']
+            lines.append(r'(?m)^  %s +%.3f to %.3f deg; asked %s deg$' % (name, *ends, asked))
+        for line in lines:
+            self.assertRegex(sheet, line)
+
+
+class TestRefusals(TestSetup):
+    def test_what_is_kept_must_be_there(self):
+        for keep, key in (('swivel', 'process.setup.swivel_deg'), ('height', 'process.setup.height_mm')):
+            said = self.grind(2, 'setup', self.job('job.yaml', setup=None), '--keep', keep).stderr
+            self.assertRegex(said, r'job\.yaml:1: %s is missing' % re.escape(key))
+        said = self.grind(2, 'setup', self.job('job.yaml', depth_mm=None), '--keep', 'depth').stderr
+        self.assertRegex(said, 'depth_mm is missing')
+        self.assertRegex(self.grind(2, 'setup', PAPER_JOB, '--keep', 'rake').stderr, 'rake')
+
+    def test_urdf_without_a_swivel(self):
+        urdf = self.write('none.urdf', self.text(URDF).replace('"wheel_swivel"', '"other"'))
+        self.assertIn('no joint wheel_swivel', self.grind(2, 'setup', PAPER_JOB, '--urdf', urdf).stderr)
+
+
+    def test_what_a_plan_refuses_is_not_written(self):
+        # Each tooth has a helix of its own, and the set-up is for the middle.
+        job = self.job('job.yaml', teeth=2, spiral_angle_deg=None, cut='right_hand\n  spiral_angles_deg: [27, 33]')
+        before = self.text(job)
+        said = self.grind(1, 'setup', job, '--write').stderr
+        self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth \d is ground with .*, or set '
+                               r'process\.z_law: constant_rake\n(a plan would refuse this tool: .*\n)*.*job\.yaml: nothing was written\n$')
+        self.assertEqual(self.text(job), before)
+        self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)
+        job = self.job('job.yaml', rake_tolerance_deg='0.01', depth_mm='2.6575\n  z_law: constant_rake')
+        self.setup(job, '--write')
+        self.grind(0, 'plan', job)
+
+
+class TestTouchOff(TestSetup):
+    def test_wheel_above_the_swivel(self):
+        """The sheet of Z counts by how much turning the swivel lowers the wheel."""
+        source = os.path.join(JOBS, 'unequal_d12_t4.yaml')
+        found = self.setup(source)
+        self.assertAlmostEqual(found['wheel_above_swivel_mm'], 0, delta=1e-9)
+        self.assertAlmostEqual(found['touch_z_mm'], 1.5 - found['height_mm'], delta=1e-9)
+        machine = self.write('machine.yaml', self.text(gc.package_file('config/grinder.yaml')).replace(
+            'flange: 0.0035 ', 'flange: 0.0235 '))
+        higher = self.setup(source, '--machine', machine)
+        self.assertAlmostEqual(higher['wheel_above_swivel_mm'], 20, delta=1e-9)
+        lowered = 20 * (1 - math.cos(found['swivel_deg'] * DEG))
+        self.assertAlmostEqual(found['touch_z_mm'] - higher['touch_z_mm'], lowered, delta=1e-9)
+        self.assertIn('with the wheel\'s middle 20.000 mm above', self.grind(0, 'setup', source, '--machine', machine).stdout)
+        self.assertIsNone(self.setup(PAPER_JOB)['wheel_above_swivel_mm'])
+
+
+class TestFile(TestSetup):
+    def test_full_disk_leaves_the_old_file(self):
+        job = self.job('job.yaml')
+        before = self.text(job)
+
+        def full_disk():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+        done = subprocess.run([gc.program('grind'), 'setup', job, '--write'], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=full_disk)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, 'job.yaml: cannot be written: File too large; nothing was written')
+        self.assertEqual(self.text(job), before)
+        self.assertEqual(os.listdir(self.folder), ['job.yaml'])
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'setup', '__main__')

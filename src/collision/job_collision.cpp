@@ -129,17 +129,17 @@ CollisionResult checkCollision(const GrindProgram& program, const MachineShapes&
   try {
     const ProgramPath path = pathOf(program);
     const CollisionCheck check(machine, collisionJobOf(program));
-    const auto onMove = [&](ClosestPlace place) {
+    const auto on_move = [&](ClosestPlace place) {
       place.leg = path.moves.at(place.leg);
       return place;
     };
-    const ClosestPlace closest = onMove(check.closest(path.points));
+    const ClosestPlace closest = on_move(check.closest(path.points));
     if (!(closest.distance > 0 && closest.distance >= program.machine().collision_clearance)) {
       return {closest, reasonOf(closest, program)};
     }
     const auto in_work = check.tooCloseToWork(path.points, outsideCut(program, path));
     if (!in_work) return {closest, std::nullopt};
-    const ClosestPlace in_work_move = onMove(*in_work);
+    const ClosestPlace in_work_move = on_move(*in_work);
     return {in_work_move, reasonInWork(in_work_move, program)};
   } catch (const std::invalid_argument& error) {
     return {std::nullopt, core::otherReason(error.what())};

@@ -204,18 +204,18 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
 std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
   auto best = fitEnds(trial, request, start, request.rake);
   if (!best || !best->is_exact || request.z_law != ZLaw::kPublished) return best;
-  const auto rakeErrors = [&](const EndsFit& fit) {
+  const auto rake_errors = [&](const EndsFit& fit) {
     return setupErrors(trial, request, fit.point, SetupTrial::kSections).rake;
   };
   double rake = request.rake;
-  Eigen::ArrayXd here = rakeErrors(*best);
+  Eigen::ArrayXd here = rake_errors(*best);
   for (int i = 0; i < kShifts && here.allFinite(); ++i) {
     const double middle = (here.minCoeff() + here.maxCoeff()) / 2;
     if (std::abs(middle) <= kEven) break;
     rake -= middle;
     const auto next = fitEnds(trial, request, best->point, rake);
     if (!next || !next->is_exact) break;
-    const Eigen::ArrayXd there = rakeErrors(*next);
+    const Eigen::ArrayXd there = rake_errors(*next);
     if (!(largest(there) < largest(here))) break;
     best = next;
     here = there;

@@ -17,7 +17,7 @@ constexpr int kRings = 64;             ///< for the area of a section
 constexpr double kChordalDepth = 0.1;  ///< of the flute's depth
 constexpr int kRingsOfDepth = 6;       ///< on which a flute must be complete
 constexpr double kRangeAccuracy = 10e-6;
-constexpr double kSameEnd = 1e-6;  ///< of arcs of several strokes [m]
+constexpr double kSameArcEnd = 1e-6;  ///< of arcs of several strokes [m]
 
 /// An angle within one turn.
 double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
@@ -80,7 +80,7 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
     }
     // Whether an end is complete is for the stroke to say that goes farther there; of two that go as far, for either.
     const auto complete = [&](double farther) {
-      if (std::abs(farther) * r <= kSameEnd) return all->complete || one->complete;
+      if (std::abs(farther) * r <= kSameArcEnd) return all->complete || one->complete;
       return farther > 0 ? one->complete : all->complete;
     };
     all = Arc{std::min(all->low, one->low), std::max(all->high, one->high),

@@ -19,8 +19,7 @@ inline void moveBeside(QWidget& window, const QWidget& part) {
   const QSize wanted = window.size().expandedTo(window.sizeHint());
   window.resize(wanted.boundedTo(QSize(std::max(left, right), screen.height() - apart)));
   const int lowest = std::max(screen.top(), screen.bottom() - apart - window.height());
-  window.move(right > left ? here.right() + apart : here.left() - apart - window.width(),
-              std::min(here.top(), lowest));
+  window.move(right > left ? here.right() + apart : here.left() - apart - window.width(), std::min(here.top(), lowest));
 }
 
 }  // namespace flute_grinder

@@ -21,11 +21,11 @@ const QColor kInk("#202124");
 const QColor kThin("#5f6368");
 const QColor kMeasured("#1a5fb4");
 
-constexpr int kLines = 2;         ///< of a label
-constexpr double kDimension = 8;  ///< from the cutter to the land's dimension [px]
-constexpr double kMargin = 14;    ///< around the cutter [px]
-constexpr double kSteps = 16;     ///< of Qt, in a degree
-constexpr double kTop = kPi / 2;  ///< where the first tooth's edge is drawn [rad]
+constexpr int kLines = 2;          ///< of a label
+constexpr double kDimension = 8;   ///< from the cutter to the land's dimension [px]
+constexpr double kMargin = 14;     ///< around the cutter [px]
+constexpr double kStepsOfQt = 16;  ///< of Qt, in a degree
+constexpr double kTop = kPi / 2;   ///< where the first tooth's edge is drawn [rad]
 
 QPen dashed(const QColor& colour) { return {colour, 1, Qt::DashLine}; }
 
@@ -118,7 +118,7 @@ class Painting {
   /// @param from,span counterclockwise [rad]
   void arc(const QPointF& centre, double radius, double from, double span) {
     const QRectF square(centre - QPointF(radius, radius), 2 * QSizeF(radius, radius));
-    painter_.drawArc(square, qRound(from / kDegree * kSteps), qRound(span / kDegree * kSteps));
+    painter_.drawArc(square, qRound(from / kDegree * kStepsOfQt), qRound(span / kDegree * kStepsOfQt));
   }
 
   /// Writes into a corner, with a line to what it is about.

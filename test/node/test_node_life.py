@@ -240,6 +240,22 @@ class TestMarkersDoNotOutliveTheNode(OwnNode):
         self.check_taken_back('wheel', 'blank')  # the first view's
 
 
+class TestFaultIsLogged(OwnNode):
+    def test_with_its_job_or_without_one(self):
+        g = self.grinder
+        g.make_ready()
+        g.inject('emergency_stop')
+        g.wait_state(GrinderState.FAULT)
+        alone, of_job = 'fault without a job: emergency stop', 'goal aborted: emergency stop'
+        gc.poll(lambda: alone in self.node.output, 'the fault in the log')
+        g.make_ready()
+        run = g.send(gc.SHORT).wait_in_stroke(1 * MM)
+        g.inject('emergency_stop')
+        run.wait_complete()
+        gc.poll(lambda: of_job in self.node.output, 'the end of the job in the log')
+        self.assertEqual([self.node.output.count(text) for text in (alone, of_job)], [1, 1])
+
+
 class TestMemory(OwnNode):
     """All that the control loop touches is resident and locked, whatever the machine does; and it does not take much."""
 

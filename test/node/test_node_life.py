@@ -111,7 +111,11 @@ BAD_PARAMETERS = [
     ('history_limit_negative', 'history_limit', -1, 'allowed: 0 to 1e+12'),
     ('hardware_type_unknown', 'hardware/type', 'flute_grinder/NoSuchDrive',
      '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
-    ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None, 'missing; allowed: a number'),
+    ('hardware_type_missing', 'hardware/type', None,
+     ' is missing; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
+    # By an exception of the drive's init().
+    ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None,
+     'the drive flute_grinder/SimulatedDrive: parameter /doubtful/hardware/axis_x/time_constant is missing; allowed: a number'),
 ]
 
 # Name, text of the robot description and its replacement, what the message must say. The others are test_machine_config.cpp's.

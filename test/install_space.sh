@@ -3,6 +3,10 @@
 set -euo pipefail
 source "$(dirname "$0")/launched.sh"
 
+# catkin's set-up files would not follow.
+{ ! cmake --install "$root/build" --prefix "$folder/other" 2>&1; } | grep -q "^  prefix = $folder/other; allowed: "
+[ ! -e "$folder/other" ]
+
 DESTDIR=$folder cmake --install "$root/build" >/dev/null
 space=$folder$(sed -n 's/^CMAKE_INSTALL_PREFIX:PATH=//p' "$root/build/CMakeCache.txt")
 cd "$space"

@@ -120,9 +120,17 @@ std::vector<std::string> pathsIn(const std::string& folder) {
 }  // namespace
 
 std::string historyFolder(const std::string& node) {
-  const char* home = std::getenv("HOME");
-  if (!home || *home == '\0') throw std::runtime_error("HOME is not set; allowed: --folder FOLDER");
-  return std::string(home) + "/.ros/flute_grinder/history" + ros::names::resolve(node);
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value ? value : "");
+  };
+  std::string ros_home = variable("ROS_HOME");
+  if (ros_home.empty()) {
+    const std::string home = variable("HOME");
+    if (home.empty()) throw std::runtime_error("HOME is not set; allowed: --folder FOLDER");
+    ros_home = home + "/.ros";
+  }
+  return ros_home + "/flute_grinder/history" + ros::names::resolve(node);
 }
 
 std::optional<std::string> newestRecord(const std::string& folder) {

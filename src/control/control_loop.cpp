@@ -33,6 +33,7 @@ void ControlLoop::readDrive() {
   const std::uint64_t last_feedback = record_.drive.feedback_count;
   touched_ = record_.drive.probe_contact;
   record_.drive = drive_.getStatus();
+  drive_checks_.observe(record_.drive);
   record_.feedback_age = record_.drive.feedback_count == last_feedback ? record_.feedback_age + record_.period : 0;
   for (int i = 0; i < kAxisCount; ++i) {
     const JointHandle& joint = joints_[static_cast<std::size_t>(i)];

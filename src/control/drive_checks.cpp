@@ -20,7 +20,7 @@ LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis =
 
 Refusal DriveChecks::powerRefusal(const CycleRecord& record) const noexcept {
   if (record.drive.emergency_stop) return Refusal::kEmergencyStop;
-  if (record.drive.fault) return Refusal::kDriveFault;
+  if (record.drive.fault) return was_reset_ ? Refusal::kDriveFaultStays : Refusal::kDriveFault;
   if (!record.position.isFinite().all() || !feedbackIsFresh(record)) return Refusal::kFeedback;
   return Refusal::kNone;
 }

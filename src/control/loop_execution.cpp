@@ -137,6 +137,7 @@ void ControlLoop::switchOff() {
 Refusal ControlLoop::reset() {
   if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
   drive_command_.reset = true;
+  drive_checks_.reset();
   record_.fault = LoopFault{};
   apply(MachineEvent::kReset);
   return Refusal::kNone;

@@ -32,6 +32,7 @@ RequestReply Answer::reply() const {
       break;
     case Refusal::kEmergencyStop: text << "the emergency stop is pressed; release it first"; break;
     case Refusal::kDriveFault: text << "the drive reports a fault; reset it first"; break;
+    case Refusal::kDriveFaultStays: text << "the drive still reports a fault after the reset; remove its cause"; break;
     case Refusal::kInterlock: text << toString(interlock); break;
     case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
     case Refusal::kMoved: text << "the axes do not stand where the job was planned to start; plan it again"; break;

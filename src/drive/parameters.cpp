@@ -8,6 +8,19 @@
 
 namespace flute_grinder {
 
+namespace {
+
+/// A value as it stands in a YAML file, a text in quotes.
+std::string shown(const XmlRpc::XmlRpcValue& value) {
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeBoolean) return static_cast<bool>(value) ? "true" : "false";
+  std::ostringstream text;
+  const char* quote = value.getType() == XmlRpc::XmlRpcValue::TypeString ? "\"" : "";
+  text << quote << value << quote;
+  return text.str();
+}
+
+}  // namespace
+
 ParameterReader::ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns)
     : parameters_(parameters), ns_(std::move(ns)) {}
 
@@ -25,7 +38,7 @@ XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
 
 bool ParameterReader::has(const std::string& path) const { return find(path).valid(); }
 
-XmlRpc::XmlRpcValue ParameterReader::require(const std::string& path, const char* what) const {
+XmlRpc::XmlRpcValue ParameterReader::require(const std::string& path, const std::string& what) const {
   XmlRpc::XmlRpcValue value = find(path);
   if (!value.valid()) throw ParameterError("parameter " + name(path) + " is missing; allowed: " + what);
   return value;
@@ -41,7 +54,7 @@ double ParameterReader::number(const std::string& path, double min, double max) 
   } else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
     result = static_cast<double>(value);
   } else {
-    text << value.toXml() << "; allowed: a number";
+    text << shown(value) << "; allowed: a number";
     throw ParameterError(text.str());
   }
   if (!(result >= min && result <= max)) {
@@ -62,15 +75,17 @@ int ParameterReader::whole(const std::string& path, int min, int max) const {
 bool ParameterReader::flag(const std::string& path) const {
   XmlRpc::XmlRpcValue value = require(path, "true or false");
   if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) {
-    throw ParameterError("parameter " + name(path) + " = " + value.toXml() + "; allowed: true or false");
+    throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: true or false");
   }
   return static_cast<bool>(value);
 }
 
-std::string ParameterReader::text(const std::string& path) const {
-  XmlRpc::XmlRpcValue value = require(path, "a text");
+std::string ParameterReader::text(const std::string& path) const { return text(path, "a text"); }
+
+std::string ParameterReader::text(const std::string& path, const std::string& what) const {
+  XmlRpc::XmlRpcValue value = require(path, what);
   if (value.getType() != XmlRpc::XmlRpcValue::TypeString || static_cast<std::string>(value).empty()) {
-    throw ParameterError("parameter " + name(path) + " = " + value.toXml() + "; allowed: a text");
+    throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: " + what);
   }
   return static_cast<std::string>(value);
 }

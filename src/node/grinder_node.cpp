@@ -56,7 +56,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const ParameterReader parameters(private_nh_);
   const LoopConfig config = readMachineConfig(urdf, parameters);
   const std::string name = private_nh_.getNamespace();
-  const NodeParameters own = readNodeParameters(parameters, name);
+  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
+  const NodeParameters own = readNodeParameters(parameters, name, join(loader_->getDeclaredClasses()));
   journal_ = std::make_unique<JournalWriter>(own.journal, name);
   offsets_ = std::make_unique<OffsetStore>(own.offsets, name);
   const std::string unknown = offsets_->unknown();
@@ -92,7 +93,6 @@ void GrinderNode::loadDrive(const std::string& type, const ParameterReader& para
                          "; allowed: for flute_grinder/SimulatedDrive alone");
   }
   const std::string parameter = parameters.name("hardware/type") + " = " + type;
-  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
   if (!loader_->isClassAvailable(type)) {
     throw ParameterError("parameter " + parameter + "; allowed: " + join(loader_->getDeclaredClasses()));
   }
@@ -105,7 +105,13 @@ void GrinderNode::loadDrive(const std::string& type, const ParameterReader& para
                          " What it is: " + loader_->getClassDescription(type));
   }
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
-  if (!hw_->init(private_nh_, hardware_nh)) throw ParameterError("the drive " + type + " could not be initialised");
+  bool ready = false;
+  try {
+    ready = hw_->init(private_nh_, hardware_nh);
+  } catch (const std::exception& error) {
+    throw ParameterError("the drive " + type + ": " + error.what());
+  }
+  if (!ready) throw ParameterError("the drive " + type + " could not be initialised");
 }
 
 void GrinderNode::shutDown() {

@@ -24,7 +24,8 @@ FirstView readFirstView(const ParameterReader& p) {
 
 }  // namespace
 
-NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node) {
+NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node,
+                                  const std::string& drives) {
   NodeParameters own;
   own.journal = filePath(parameters.text("journal"), node, ".journal");
   own.offsets = filePath(parameters.text("offsets"), node, ".offsets");
@@ -36,7 +37,7 @@ NodeParameters readNodeParameters(const ParameterReader& parameters, const std::
   }
   own.thresholds = readDiagnosticThresholds(parameters);
   own.first_view = readFirstView(parameters);
-  own.drive = parameters.text("hardware/type");
+  own.drive = parameters.text("hardware/type", drives);
   return own;
 }
 

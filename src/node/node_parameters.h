@@ -24,7 +24,9 @@ struct NodeParameters {
 /// Reads journal, offsets, history, history_limit, offset_change_limit/<joint>, diagnostics/..., first_view/... and
 /// hardware/type.
 /// @param node the node's full name, after which files are named where only their folder is given.
+/// @param drives the types of plugins that there are, for a message.
 /// @throw ParameterError
-NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node);
+NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node,
+                                  const std::string& drives);
 
 }  // namespace flute_grinder

@@ -188,9 +188,17 @@ void Telemetry::readRecords() {
 
 void Telemetry::processRecord() {
   diagnostics_.add(record_);
+  logFault();
   // If the record of a job's end was lost, a record of a later job ends it.
   while (jobs_.size() > 1 && record_.job > jobs_.front().number) endJob(jobs_.front());
   if (!jobs_.empty() && record_.job == jobs_.front().number) trackJob(jobs_.front());
+}
+
+/// A fault that has ended a job is logged with its goal.
+void Telemetry::logFault() {
+  const bool in_fault = record_.state == MachineState::kFault;
+  if (in_fault && !in_fault_ && !record_.job_ended) ROS_ERROR_STREAM("fault without a job: " << record_.fault.text());
+  in_fault_ = in_fault;
 }
 
 void Telemetry::trackJob(Job& job) {

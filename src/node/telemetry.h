@@ -88,6 +88,7 @@ class Telemetry {
   GrinderState stateMessage() const;
   void readRecords();
   void processRecord();
+  void logFault();
   void trackJob(Job& job);
   void addToBatch(Job& job, const Buffered& written);
   Axes workPosition(const Job& job) const;
@@ -112,7 +113,8 @@ class Telemetry {
 
   CycleRecord record_;  ///< the latest
   std::uint64_t records_read_ = 0;
-  std::deque<Job> jobs_;  ///< announced; the first may be running
+  bool in_fault_ = false;  ///< by the record before
+  std::deque<Job> jobs_;   ///< announced; the first may be running
   JobRecorder recorder_;
   std::mutex feedback_mutex_;  ///< guards the next two
   std::uint64_t feedback_number_ = 0;

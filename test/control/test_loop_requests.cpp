@@ -81,6 +81,22 @@ INSTANTIATE_TEST_SUITE_P(
         RefusalCase{"StaleFeedback", [](FakeDrive& d) { d.status.feedback_count = 1; }, "no valid, fresh positions"}),
     [](const testing::TestParamInfo<RefusalCase>& info) { return info.param.name; });
 
+TEST(ControlLoopEnable, TellsAFaultThatStaysAfterTheResetFromANewOne) {
+  Rig<FakeDrive> rig;
+  const auto refusal = [&] { return rig.ask(E::kEnable).text; };
+  rig.drive.status.fault = true;
+  rig.cycle();
+  EXPECT_EQ(refusal(), "enable refused: the drive reports a fault; reset it first");
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  rig.run(5);
+  EXPECT_EQ(refusal(), "enable refused: the drive still reports a fault after the reset; remove its cause");
+  rig.drive.status.fault = false;
+  rig.cycle();
+  rig.drive.status.fault = true;
+  rig.cycle();
+  EXPECT_EQ(refusal(), "enable refused: the drive reports a fault; reset it first");
+}
+
 TEST(ControlLoopEnable, GivesUpWhenPowerDoesNotComeInTime) {
   Rig<FakeDrive> rig;  // 10.5 periods
   rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; };

@@ -22,7 +22,8 @@ NOT_RUN = {
     'rosdep install --from-paths src --ignore-src -y': 'installs packages; test/rosdep.sh looks for their names',
     'catkin_make -DCMAKE_BUILD_TYPE=Release': 'builds for minutes; test/workspace.sh runs it',
     'source devel/setup.bash': 'is for a workspace; test/workspace.sh has one',
-    'catkin_make -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3': 'builds for minutes; test/workspace.sh runs it',
+    'catkin_make -DCMAKE_BUILD_TYPE=Release -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3':
+        'builds for minutes; test/workspace.sh runs it',
     'catkin_make run_tests_flute_grinder': 'runs all tests; test/workspace.sh runs one of each kind',
     'catkin_make install': 'test/workspace.sh runs it',
     'cmake --install build': 'writes to /opt; test/install_space.sh runs it',

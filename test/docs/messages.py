@@ -61,6 +61,7 @@ MESSAGES = {
     'src/node/progress_tracker.cpp': ('a job without a name',),
     'src/node/request_server.cpp': (),
     'src/node/stop_server.cpp': ('the job will be held before it moves',),
+    'src/node/telemetry.cpp': (),
     'src/panel/grind_panel.cpp': ('the job begins at a feed override of', 'Replies from the grinder', 'is set',
                                   'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
                                   'touch-off: the work offset of', '. It was not started in this panel.',

@@ -20,8 +20,8 @@ import re
 import sys
 from dataclasses import dataclass, field
 
-PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|grind'
-COMMAND = re.compile(r'(?:%s|source|export|cd|cmake|catkin_make|git|rosdep|sudo|cp|sed|kill|uname|latency-histogram)(?= |$)'
+PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rostest|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|grind'
+COMMAND = re.compile(r'(?:%s|source|export|cd|cmake|catkin_make|git|rosdep|sudo|cp|chmod|sed|kill|uname|latency-histogram)(?= |$)'
                      % PROGRAMS)
 
 

@@ -16,6 +16,7 @@ import unittest
 import rospkg
 import rospy
 import rostest
+import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from flute_grinder.msg import GrinderState, MachineInfo
 
@@ -309,6 +310,16 @@ class TestCommand(Kept):
         self.assertEqual((other.returncode, other.stdout), (2, ''))
         self.assertIn('.ros/flute_grinder/history/grinder: cannot be read: No such file', other.stderr)
         self.assertIn('history/left/kept: cannot be read', self.grind(ROS_NAMESPACE='left').stderr)
+
+    def test_ros_home_moves_it_with_the_launch_file(self):
+        for value, ros_home in ((self.home + '/ros', self.home + '/ros'), ('', self.home + '/.ros')):
+            launch = subprocess.run(['roslaunch', '--dump-params', 'flute_grinder', 'grinder.launch'], check=True,
+                                    stdout=subprocess.PIPE, env=dict(os.environ, HOME=self.home, ROS_HOME=value)).stdout
+            parameters = yaml.safe_load(launch)
+            self.assertEqual(parameters['/grinder/journal'], ros_home + '/flute_grinder/')
+            self.assertEqual(parameters['/grinder/history'], ros_home + '/flute_grinder/history/')
+            self.assertIn(ros_home + '/flute_grinder/history/grinder: cannot be read',
+                          self.grind(node=(), ROS_HOME=value).stderr)
 
     def test_json(self):
         done = self.grind('--json')

@@ -111,7 +111,11 @@ BAD_PARAMETERS = [
     ('history_limit_negative', 'history_limit', -1, 'allowed: 0 to 1e+12'),
     ('hardware_type_unknown', 'hardware/type', 'flute_grinder/NoSuchDrive',
      '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
-    ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None, 'missing; allowed: a number'),
+    ('hardware_type_missing', 'hardware/type', None,
+     ' is missing; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
+    # By an exception of the drive's init().
+    ('hardware_parameter_missing', 'hardware/axis_x/time_constant', None,
+     'the drive flute_grinder/SimulatedDrive: parameter /doubtful/hardware/axis_x/time_constant is missing; allowed: a number'),
 ]
 
 # Name, text of the robot description and its replacement, what the message must say. The others are test_machine_config.cpp's.
@@ -238,6 +242,22 @@ class TestMarkersDoNotOutliveTheNode(OwnNode):
         again = gc.NodeProcess(self.name, self.parameters())
         self.addCleanup(again.close)
         self.check_taken_back('wheel', 'blank')  # the first view's
+
+
+class TestFaultIsLogged(OwnNode):
+    def test_with_its_job_or_without_one(self):
+        g = self.grinder
+        g.make_ready()
+        g.inject('emergency_stop')
+        g.wait_state(GrinderState.FAULT)
+        alone, of_job = 'fault without a job: emergency stop', 'goal aborted: emergency stop'
+        gc.poll(lambda: alone in self.node.output, 'the fault in the log')
+        g.make_ready()
+        run = g.send(gc.SHORT).wait_in_stroke(1 * MM)
+        g.inject('emergency_stop')
+        run.wait_complete()
+        gc.poll(lambda: of_job in self.node.output, 'the end of the job in the log')
+        self.assertEqual([self.node.output.count(text) for text in (alone, of_job)], [1, 1])
 
 
 class TestMemory(OwnNode):

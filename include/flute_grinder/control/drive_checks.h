@@ -18,6 +18,11 @@ class DriveChecks {
   /// Power has come on: counts underruns from now on.
   void powerOn(const DriveStatus& drive) noexcept { underruns_at_power_on_ = drive.underruns; }
 
+  /// The drive has been told to clear its fault.
+  void reset() noexcept { was_reset_ = true; }
+  /// To be called in each cycle: a fault that comes after this one has cleared is a new one.
+  void observe(const DriveStatus& drive) noexcept { was_reset_ = was_reset_ && drive.fault; }
+
   /// Why the drive may not be powered; kNone if it may.
   Refusal powerRefusal(const CycleRecord& record) const noexcept;
 
@@ -31,6 +36,7 @@ class DriveChecks {
 
   const LoopConfig& config_;
   std::uint64_t underruns_at_power_on_ = 0;
+  bool was_reset_ = false;  ///< since the drive reported its present fault
 };
 
 /// The first open interlock; kNone if grinding is allowed. Real-time safe.

@@ -35,12 +35,14 @@ class ParameterReader {
   bool flag(const std::string& path) const;
   /// @throw ParameterError unless the parameter is a non-empty string.
   std::string text(const std::string& path) const;
+  /// The same. @param what the texts that are allowed, for the message.
+  std::string text(const std::string& path, const std::string& what) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }
 
  private:
   XmlRpc::XmlRpcValue find(const std::string& path) const;
-  XmlRpc::XmlRpcValue require(const std::string& path, const char* what) const;
+  XmlRpc::XmlRpcValue require(const std::string& path, const std::string& what) const;
 
   XmlRpc::XmlRpcValue parameters_;
   std::string ns_;

@@ -595,3 +595,38 @@ class NodeProcess:
         shutil.rmtree(self.folder)
         if rospy.has_param('/' + self.name):
             rospy.delete_param('/' + self.name)
+
+
+class OwnNode(unittest.TestCase):
+    """Tests with nodes of their own, each of another name, since the master remembers those that were killed."""
+
+    started = 0
+
+    def start(self, parameters, clean_up=None, **arguments):
+        """Starts a node, and gives its client; both are closed after the test, or by another way to clean up."""
+        OwnNode.started += 1
+        self.node = NodeProcess('own_%d' % OwnNode.started, parameters, **arguments)
+        (clean_up or self.addCleanup)(self.node.close)
+        self.client = self.node.client()
+        (clean_up or self.addCleanup)(self.client.close)
+        return self.client
+
+    def grind(self, *arguments, **options):
+        return grind('--node', self.node.name, *arguments, **options)
+
+
+class SlowDisk:
+    """A disk that can be stopped, for a node that is started with its `environment`; see slow_fsync.c."""
+
+    def __init__(self, folder):
+        self._seconds = os.path.join(folder, 'seconds')
+        library = os.path.join(os.path.dirname(os.path.dirname(program('grinder'))), 'libflute_grinder_slow_fsync.so')
+        self.environment = {'LD_PRELOAD': library, 'SLOW_FSYNC': self._seconds}
+
+    def stop(self):
+        with open(self._seconds, 'w') as file:
+            file.write('1e6')
+
+    def release(self):
+        """Once more does nothing."""
+        remove_file(self._seconds)

@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import threading
@@ -164,6 +165,24 @@ def job_file(path, **changes):
     with open(path, 'w') as changed:
         changed.write(text)
     return path
+
+
+def tcpros_header(fields):
+    """A header of a connection between nodes, ahead of it its length."""
+    lines = [('%s=%s' % item).encode() for item in fields.items()]
+    body = b''.join(struct.pack('<I', len(line)) + line for line in lines)
+    return struct.pack('<I', len(body)) + body
+
+
+def receive(connection, length):
+    """So many bytes, of a connection with a time-out too, for which MSG_WAITALL does not wait."""
+    text = b''
+    while len(text) < length:
+        more = connection.recv(length - len(text))
+        if not more:
+            raise ConnectionError('the node has closed the connection')
+        text += more
+    return text
 
 
 def poll(condition, what, timeout=PATIENCE, interval=0.005):

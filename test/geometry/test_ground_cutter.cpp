@@ -4,6 +4,7 @@
 #include "flute_grinder/geometry/ground_cutter.h"
 
 #include "geometry/ground_case.h"
+#include "random_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -258,8 +259,9 @@ double bruteEnd(const RandomCase& k, double r, double near, bool high) {
 
 TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
   std::mt19937 random(23);
+  const int cases = test_support::randomCases(70);
   int checked = 0;
-  for (int i = 0; checked < 200 && i < 4000; ++i) {
+  for (int i = 0; checked < cases && i < 60 * cases; ++i) {
     const auto k = randomCase(random, i);
     if (!k) continue;
     const GroundCutter ground(k->c.cutter(), {{k->c.sweep(k->wheel)}}, {{0, 0}});
@@ -286,14 +288,15 @@ TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
     const double chord = std::atan(inner * std::sin(inward) / (k->outer - inner * std::cos(inward)));
     EXPECT_NEAR(*tooth.chordal_rake, chord, 0.01 * kDegree) << "case " << i;
   }
-  EXPECT_EQ(checked, 200);
+  EXPECT_EQ(checked, cases);
 }
 
 TEST(GroundCutter, NothingIsRemovedBelowTheCore) {
   std::mt19937 random(5);
   constexpr double kWithin = 0.1e-6;
+  const int cases = test_support::randomCases(80);
   int checked = 0;
-  for (int i = 0; checked < 200 && i < 4000; ++i) {
+  for (int i = 0; checked < cases && i < 60 * cases; ++i) {
     const auto k = randomCase(random, i);
     if (!k) continue;
     const WheelSweep sweep = k->c.sweep(k->wheel);
@@ -308,14 +311,15 @@ TEST(GroundCutter, NothingIsRemovedBelowTheCore) {
       EXPECT_FALSE(removed(k->c, k->wheel, k->x, core - kWithin, phi, 20000)) << "case " << i;
     }
   }
-  EXPECT_EQ(checked, 200);
+  EXPECT_EQ(checked, cases);
 }
 
 TEST(GroundCutter, ArcsEndWhereMembershipByBruteForceDoes) {
   std::mt19937 random(11);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const int cases = test_support::randomCases(120);
   int checked = 0;
-  for (int i = 0; checked < 200 && i < 4000; ++i) {
+  for (int i = 0; checked < cases && i < 60 * cases; ++i) {
     const auto k = randomCase(random, i);
     if (!k) continue;
     const auto& [c, wheel, x, outer] = *k;
@@ -330,7 +334,7 @@ TEST(GroundCutter, ArcsEndWhereMembershipByBruteForceDoes) {
     EXPECT_FALSE(removed(c, wheel, x, r, arc->high + 1e-9, kFew)) << "case " << i;
     EXPECT_FALSE(removed(c, wheel, x, r, arc->low - 1e-9, kFew)) << "case " << i;
   }
-  EXPECT_EQ(checked, 200);
+  EXPECT_EQ(checked, cases);
 }
 
 TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {

@@ -5,12 +5,12 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_solver.h"
 
+#include "random_cases.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <functional>
 #include <random>
 #include <stdexcept>
@@ -636,13 +636,6 @@ class CoarseSearch {
   const SetupRequest& request_;
 };
 
-/// How many random tools: as many as take at most 5 s of processor, scaled as RapidCheck's cases are.
-int cases() {
-  const char* const params = std::getenv("RC_PARAMS");
-  const char* const more = params ? std::strstr(params, "max_success=") : nullptr;
-  return more ? std::atoi(more + std::strlen("max_success=")) * 12 / 100 : 12;
-}
-
 // A set-up is none if the rake is lost within what the swivel may be off, as beside the cliff where it meets the helix.
 constexpr double kHandTight = 0.1 * kDegree, kUsable = 0.5 * kDegree;
 
@@ -650,7 +643,8 @@ TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
   std::mt19937 random(5);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   int count = 0;
-  for (int i = 0; i < cases(); ++i) {
+  const int cases = test_support::randomCases(12);
+  for (int i = 0; i < cases; ++i) {
     const SetupRequest request = randomRequest(i, uniform);
     const auto result = solveSetup(request);
     if (const auto* s = std::get_if<SolvedSetup>(&result)) {
@@ -685,8 +679,8 @@ TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
         << found.swivel / kDegree << " deg, face " << found.face / kMillimetre << " mm the rake is off by "
         << found.error / kDegree << " deg";
   }
-  EXPECT_GT(count, cases() / 3);
-  EXPECT_LT(count, cases() * 0.95);
+  EXPECT_GT(count, cases / 3);
+  EXPECT_LT(count, cases * 0.95);
 }
 
 }  // namespace test_setup_solver

@@ -7,12 +7,14 @@ import os
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import threading
 import time
 import unittest
 import xml.etree.ElementTree as xml
+from functools import partialmethod
 
 import actionlib
 import rosgraph
@@ -43,53 +45,77 @@ ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 # Much longer than anything takes, even on a host that stalls.
 PATIENCE = 60
 
-# The paper's conical end mill, as in test/jobs/paper.yaml; the names are those of the goal's fields.
-PAPER = {
-    'cutter.end_diameter': 10 * MM,
-    'cutter.cone_angle': 5 * DEG,
-    'cutter.spiral_angle': 30 * DEG,
-    'cutter.rake_angle': 8 * DEG,
-    'cutter.flute_length': 30 * MM,
-    'cutter.cut': 0,
-    'cutter.rake_tolerance': 0.5 * DEG,
-    'cutter.chordal_rake_tolerance': 6 * DEG,
-    'cutter.chordal_rake_depth': 0.0,
-    'cutter.spiral_tolerance': 4 * DEG,
-    'cutter.core_diameter': 7.1 * MM,
-    'cutter.core_diameter_end': 12.4 * MM,
-    'cutter.core_tolerance': 0.1 * MM,
-    'cutter.shank_diameter': 16 * MM,
-    'cutter.neck_length': 0.0,
-    'cutter.tooth_angles': [0.0],
-    'process.feed': 600 * MM_MIN,
-    'process.depth': 1.6 * MM,
-    'process.depth_end': 0.0,
-    'process.infeed': 1.6 * MM,
-    'process.finish_infeed': 0.0,
-    'process.spark_out': 0,
-    'process.clearance': 5 * MM,
-    'process.overtravel_end': 1 * MM,
-    'process.overtravel_shank': 7 * MM,
-    'process.incomplete_ok': False,
-    'process.order': 0,
-    'process.direction': 0,
-    'process.wheel_profile': 0,
-    'process.wheel_diameter': 100 * MM,
-    'process.wheel_width': 3 * MM,
-    'process.wheel_angle': 0.0,
-    'process.wheel_side': 0,
-    'process.wheel_corner_radius_lower': 0.0,
-    'process.wheel_corner_radius_upper': 0.0,
-    'process.wheel_wear': 0.0,
-    'process.wheel_wear_per_pass': 0.0,
-    'process.setup_swivel': 31.769 * DEG,
-    'process.setup_height': 2.788 * MM,
-    'process.setup_lead': 0.0,
-    'interpolation.even_step': 0,
-    'interpolation.tolerance': 1 * UM,
-    'interpolation.rotary_scale': 1 * MM,
-}
 
+def goal_of(job, **fields):
+    """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
+    and the work offsets are right, unless they say otherwise."""
+    goal = GrindGoal(**dict({'discard': True, 'ignore_offset_check': True}, **fields))
+    for path, value in job.items():
+        part, name = path.split('.')
+        setattr(getattr(goal, part), name, value)
+    return goal
+
+
+def program(name):
+    """The path of one of the package's programs."""
+    return roslib.packages.find_node('flute_grinder', name)[0]
+
+
+def package_file(path):
+    return rospkg.RosPack().get_path('flute_grinder') + '/' + path
+
+
+def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
+    """Runs the command line to its end."""
+    return subprocess.run([program('grind'), *arguments], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          universal_newlines=True, timeout=timeout)
+
+
+# The units by the endings of a file's keys, the numbers of its choices, and the fields of its pairs.
+UNITS = {'mm_per_rad': MM, 'mm_min': MM_MIN, 'mm': MM, 'um': UM, 'deg': DEG}
+CHOICES = {'cut': ['right_hand', 'left_hand'], 'order': ['tooth_major', 'pass_major'], 'direction': ['from_end', 'to_end'],
+           'z_law': ['published', 'constant_rake'], 'wheel_side': ['upper', 'lower'],
+           'wheel_profile': ['straight', 'angled', 'full_radius', 'cup', 'points'],
+           'even_step': ['published', 'third_order', 'exact']}
+PAIRS = {'overtravel': ('overtravel_end', 'overtravel_shank'),
+         'wheel_corner_radius': ('wheel_corner_radius_lower', 'wheel_corner_radius_upper')}
+
+
+def job_from_file(path):
+    """What a job file says, with the names and in the units of the goal's fields, of which it has all."""
+    with open(path) as text:
+        file = yaml.safe_load(text)
+    cutter, process = file['cutter'], file['process']
+    wheel = process.pop('wheel')
+    if 'file' in wheel:
+        with open(os.path.join(os.path.dirname(path), wheel.pop('file'))) as text:
+            wheel.update(yaml.safe_load(text))
+        wheel.pop('flange_mm', None)  # for `grind zeros` alone
+        measured = wheel.pop('measured', {})
+        wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
+        wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
+    teeth = cutter.pop('teeth', 0)
+    cutter.setdefault('tooth_angles_deg', [i * 360.0 / teeth for i in range(teeth)])
+    for part, values in (('wheel_', wheel), ('setup_', process.pop('setup'))):
+        process.update((part + key, value) for key, value in values.items())
+
+    goal = GrindGoal()
+    job = {part + '.' + name: getattr(getattr(goal, part), name) for part in file for name in getattr(goal, part).__slots__}
+    for part, values in file.items():
+        for key, value in values.items():
+            name, unit = re.fullmatch('(.*?)(?:_(%s))?' % '|'.join(UNITS), key).groups()
+            if name in CHOICES:
+                value = CHOICES[name].index(value)
+            elif unit:
+                value = [v * UNITS[unit] for v in value] if isinstance(value, list) else value * UNITS[unit]
+            for field, of_field in zip(PAIRS[name], value) if name in PAIRS else [(name, value)]:
+                assert part + '.' + field in job, key
+                job[part + '.' + field] = of_field
+    return job
+
+
+# The paper's conical end mill; the names are those of the goal's fields.
+PAPER = job_from_file(package_file('test/jobs/paper.yaml'))
 
 # What any tool has.
 ANY_TOOL = {'rake_tolerance_deg': 180, 'chordal_rake_tolerance_deg': 180, 'spiral_tolerance_deg': 180, 'core_diameter_mm': 0.01,
@@ -125,89 +151,6 @@ def paper(**changes):
 SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
 
 
-def goal_of(job, **fields):
-    """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
-    and the work offsets are right, unless they say otherwise."""
-    goal = GrindGoal(**dict({'discard': True, 'ignore_offset_check': True}, **fields))
-    for path, value in job.items():
-        part, name = path.split('.')
-        setattr(getattr(goal, part), name, value)
-    return goal
-
-
-def program(name):
-    """The path of one of the package's programs."""
-    return roslib.packages.find_node('flute_grinder', name)[0]
-
-
-def package_file(path):
-    return rospkg.RosPack().get_path('flute_grinder') + '/' + path
-
-
-def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
-    """Runs the command line to its end."""
-    return subprocess.run([program('grind'), *arguments], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          universal_newlines=True, timeout=timeout)
-
-
-def job_from_file(path):
-    """What a job file says, with the names and in the units of the goal's fields."""
-    with open(path) as text:
-        file = yaml.safe_load(text)
-    cutter, process, interpolation = file['cutter'], file['process'], file['interpolation']
-    wheel = process['wheel']
-    if 'file' in wheel:
-        with open(os.path.join(os.path.dirname(path), wheel.pop('file'))) as text:
-            wheel.update(yaml.safe_load(text))
-        measured = wheel.pop('measured', {})
-        wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
-        wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
-    angles = cutter.get('tooth_angles_deg') or [i * 360.0 / cutter['teeth'] for i in range(cutter['teeth'])]
-    return {
-        'cutter.end_diameter': cutter['end_diameter_mm'] * MM,
-        'cutter.cone_angle': cutter['cone_angle_deg'] * DEG,
-        'cutter.spiral_angle': cutter['spiral_angle_deg'] * DEG,
-        'cutter.rake_angle': cutter['rake_angle_deg'] * DEG,
-        'cutter.flute_length': cutter['flute_length_mm'] * MM,
-        'cutter.cut': ['right_hand', 'left_hand'].index(cutter['cut']),
-        'cutter.rake_tolerance': cutter['rake_tolerance_deg'] * DEG,
-        'cutter.chordal_rake_tolerance': cutter['chordal_rake_tolerance_deg'] * DEG,
-        'cutter.chordal_rake_depth': cutter.get('chordal_rake_depth_mm', 0) * MM,
-        'cutter.spiral_tolerance': cutter['spiral_tolerance_deg'] * DEG,
-        'cutter.core_diameter': cutter['core_diameter_mm'] * MM,
-        'cutter.core_diameter_end': cutter['core_diameter_end_mm'] * MM,
-        'cutter.core_tolerance': cutter['core_tolerance_mm'] * MM,
-        'cutter.shank_diameter': cutter['shank_diameter_mm'] * MM,
-        'cutter.neck_length': cutter.get('neck_length_mm', 0) * MM,
-        'cutter.tooth_angles': [angle * DEG for angle in angles],
-        'process.feed': process['feed_mm_min'] * MM_MIN,
-        'process.depth': process['depth_mm'] * MM,
-        'process.depth_end': process.get('depth_end_mm', 0) * MM,
-        'process.infeed': process['infeed_mm'] * MM,
-        'process.finish_infeed': process['finish_infeed_mm'] * MM,
-        'process.spark_out': process['spark_out'],
-        'process.clearance': process['clearance_mm'] * MM,
-        'process.overtravel_end': process['overtravel_mm'][0] * MM,
-        'process.overtravel_shank': process['overtravel_mm'][1] * MM,
-        'process.incomplete_ok': process.get('incomplete_ok', False),
-        'process.order': ['tooth_major', 'pass_major'].index(process['order']),
-        'process.direction': ['from_end', 'to_end'].index(process['direction']),
-        'process.wheel_profile': ['straight', 'angled', 'full_radius', 'cup', 'points'].index(wheel['profile']),
-        'process.wheel_diameter': wheel['diameter_mm'] * MM,
-        'process.wheel_width': wheel['width_mm'] * MM,
-        'process.wheel_corner_radius_lower': wheel.get('corner_radius_mm', [0, 0])[0] * MM,
-        'process.wheel_corner_radius_upper': wheel.get('corner_radius_mm', [0, 0])[1] * MM,
-        'process.wheel_wear': wheel['wear_mm'] * MM,
-        'process.wheel_wear_per_pass': wheel.get('wear_per_pass_mm', 0) * MM,
-        'process.setup_swivel': process['setup']['swivel_deg'] * DEG,
-        'process.setup_height': process['setup']['height_mm'] * MM,
-        'process.setup_lead': process['setup'].get('lead_mm', 0) * MM,
-        'interpolation.even_step': ['published', 'third_order', 'exact'].index(interpolation['even_step']),
-        'interpolation.tolerance': interpolation['tolerance_um'] * UM,
-        'interpolation.rotary_scale': interpolation['rotary_scale_mm_per_rad'] * MM,
-    }
-
-
 def job_file(path, **changes):
     """Writes test/jobs/paper.yaml to `path`; with other values, as feed_mm_min=60, for tests of the motion, like MOTION."""
     with open(package_file('test/jobs/paper.yaml')) as original:
@@ -222,6 +165,24 @@ def job_file(path, **changes):
     with open(path, 'w') as changed:
         changed.write(text)
     return path
+
+
+def tcpros_header(fields):
+    """A header of a connection between nodes, ahead of it its length."""
+    lines = [('%s=%s' % item).encode() for item in fields.items()]
+    body = b''.join(struct.pack('<I', len(line)) + line for line in lines)
+    return struct.pack('<I', len(body)) + body
+
+
+def receive(connection, length):
+    """So many bytes, of a connection with a time-out too, for which MSG_WAITALL does not wait."""
+    text = b''
+    while len(text) < length:
+        more = connection.recv(length - len(text))
+        if not more:
+            raise ConnectionError('the node has closed the connection')
+        text += more
+    return text
 
 
 def poll(condition, what, timeout=PATIENCE, interval=0.005):
@@ -387,35 +348,17 @@ class Grinder:
         joint = axis if isinstance(axis, str) else JOINTS[axis]
         return self._call(service, kind, joint, value, by, basis or OffsetBasis(), large_change_ok)
 
-    def enable(self):
-        return self._call('enable', Trigger)
-
-    def disable(self):
-        return self._call('disable', Trigger)
-
-    def home(self):
-        return self._call('home', Trigger)
-
-    def hold(self):
-        return self._call('hold', Trigger)
-
-    def resume(self):
-        return self._call('resume', Trigger)
-
-    def retract(self):
-        return self._call('retract', Trigger)
-
-    def lift(self):
-        return self._call('lift', Trigger)
-
-    def reset(self):
-        return self._call('reset_fault', Trigger)
-
-    def set_feed_override(self, fraction):
-        return self._call('set_feed_override', SetFeedOverride, fraction)
-
-    def confirm_swivel(self, angle):
-        return self._call('confirm_swivel', ConfirmSwivel, angle)
+    enable = partialmethod(_call, 'enable', Trigger)
+    disable = partialmethod(_call, 'disable', Trigger)
+    home = partialmethod(_call, 'home', Trigger)
+    hold = partialmethod(_call, 'hold', Trigger)
+    resume = partialmethod(_call, 'resume', Trigger)
+    retract = partialmethod(_call, 'retract', Trigger)
+    lift = partialmethod(_call, 'lift', Trigger)
+    reset = partialmethod(_call, 'reset_fault', Trigger)
+    set_feed_override = partialmethod(_call, 'set_feed_override', SetFeedOverride)
+    confirm_swivel = partialmethod(_call, 'confirm_swivel', ConfirmSwivel)
+    plan = partialmethod(_call, 'plan', Plan)
 
     @contextlib.contextmanager
     def probing(self, within, cycle=ProbeGoal.END_FACE, **fields):
@@ -440,9 +383,6 @@ class Grinder:
         with self.probing(within, cycle, **fields) as client:
             assert client.wait_for_result(rospy.Duration(PATIENCE)), 'no result'
             return client.get_result()
-
-    def plan(self, goal):
-        return self._call('plan', Plan, goal)
 
     def injects_faults(self):
         """Whether the drive lets a test inject faults: only the simulated one does."""
@@ -674,3 +614,38 @@ class NodeProcess:
         shutil.rmtree(self.folder)
         if rospy.has_param('/' + self.name):
             rospy.delete_param('/' + self.name)
+
+
+class OwnNode(unittest.TestCase):
+    """Tests with nodes of their own, each of another name, since the master remembers those that were killed."""
+
+    started = 0
+
+    def start(self, parameters, clean_up=None, **arguments):
+        """Starts a node, and gives its client; both are closed after the test, or by another way to clean up."""
+        OwnNode.started += 1
+        self.node = NodeProcess('own_%d' % OwnNode.started, parameters, **arguments)
+        (clean_up or self.addCleanup)(self.node.close)
+        self.client = self.node.client()
+        (clean_up or self.addCleanup)(self.client.close)
+        return self.client
+
+    def grind(self, *arguments, **options):
+        return grind('--node', self.node.name, *arguments, **options)
+
+
+class SlowDisk:
+    """A disk that can be stopped, for a node that is started with its `environment`; see slow_fsync.c."""
+
+    def __init__(self, folder):
+        self._seconds = os.path.join(folder, 'seconds')
+        library = os.path.join(os.path.dirname(os.path.dirname(program('grinder'))), 'libflute_grinder_slow_fsync.so')
+        self.environment = {'LD_PRELOAD': library, 'SLOW_FSYNC': self._seconds}
+
+    def stop(self):
+        with open(self._seconds, 'w') as file:
+            file.write('1e6')
+
+    def release(self):
+        """Once more does nothing."""
+        remove_file(self._seconds)

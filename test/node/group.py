@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """group.py NAME...: runs modules of tests, or single cases of them, one after another, with the node that the launch file has
-started; for rostest, which starts the master and the node anew for each <test>."""
+started; for rostest, which starts the master and the node anew for each <test>. The <test>'s name is that of this program's own
+node, and no test's grinder may have it."""
 
 import pathlib
 import sys

@@ -38,9 +38,9 @@ class Reports:
     def since(self, mark, name):
         return self.statuses[name][mark[name]:]
 
-    def wait(self, name, level, text=''):
-        """Waits for a report of a level, from now on."""
-        mark = self.mark()
+    def wait(self, name, level, text='', mark=None):
+        """Waits for a report of a level, from a mark or from now on."""
+        mark = mark or self.mark()
 
         def found():
             return [s for s in self.since(mark, name) if s.level == level and text in s.message]
@@ -76,10 +76,11 @@ class TestDiagnostics(unittest.TestCase):
         self.grinder.make_ready()
 
     def test_at_rest_all_is_well(self):
+        mark = self.reports.mark()
         for name, text in (('Drive link', 'enabled'), ('Following error', 'within'), ('Limit margin', 'no setpoints'),
                            ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'),
                            ('History', 'kept')):
-            self.assertEqual(self.reports.wait(name, OK, text).hardware_id, 'flute_grinder/SimulatedDrive')
+            self.assertEqual(self.reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')
 
     def test_stuck_axis(self):
         run = self.grinder.send(gc.PAPER).wait_in_stroke(2 * MM)
@@ -91,8 +92,9 @@ class TestDiagnostics(unittest.TestCase):
         self.assertTrue(errors)
         self.assertGreater(max(figures(errors, 'axis_x of the allowed [%]')), 100)
         self.grinder.make_ready()
-        self.reports.wait('Following error', OK)
-        self.reports.wait('Drive link', OK)
+        mark = self.reports.mark()
+        self.reports.wait('Following error', OK, mark=mark)
+        self.reports.wait('Drive link', OK, mark=mark)
 
 
 if __name__ == '__main__':

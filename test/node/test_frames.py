@@ -117,6 +117,12 @@ def story():
     return Story()
 
 
+def tearDownModule():
+    """Other tests may follow with the same grinder."""
+    for joint in gc.JOINTS:
+        assert grinder().set_offset(joint, 0).success
+
+
 class TestStroke(unittest.TestCase):
     def check(self, found, expected, delta):
         self.assertLess(abs(found - numpy.array(expected)).max(), delta)

@@ -123,25 +123,17 @@ class Service:
         address = urllib.parse.urlparse(rosservice.get_service_uri(name))
         self._connection = socket.create_connection((address.hostname, address.port), timeout=gc.PATIENCE)
         fields = {'service': name, 'md5sum': kind._md5sum, 'type': kind._type, 'callerid': CALLER, 'persistent': '1'}
-        body = b''.join(struct.pack('<I', len(field)) + field for field in
-                        (('%s=%s' % item).encode() for item in fields.items()))
-        self._connection.sendall(struct.pack('<I', len(body)) + body)
+        self._connection.sendall(gc.tcpros_header(fields))
         self._receive()
 
     def _receive(self):
-        length, = struct.unpack('<I', self._read(4))
-        return self._read(length)
-
-    def _read(self, length):
-        text = self._connection.recv(length, socket.MSG_WAITALL) if length else b''
-        if len(text) < length:
-            raise ConnectionError('%s: the node has closed the connection' % self.name)
-        return text
+        length, = struct.unpack('<I', gc.receive(self._connection, 4))
+        gc.receive(self._connection, length)
 
     def send(self):
         text = self._fuzzer.message(self._kind._request_class)
         self._connection.sendall(struct.pack('<I', len(text)) + text)
-        self._read(1)
+        gc.receive(self._connection, 1)
         self._receive()
 
     def close(self):

@@ -241,7 +241,7 @@ class TestLimit(Kept):
         gc.poll(lambda: self.files() == kept[-(self.limit // size):] + ['notes.json'], 'the oldest gone')
 
 
-class TestBadFolder(unittest.TestCase):
+class TestBadFolder(gc.OwnNode):
     """It is told, and the job does not mind."""
 
     def test_is_told_and_the_job_is_ground(self):
@@ -249,11 +249,8 @@ class TestBadFolder(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder)
         with open(os.path.join(folder, 'file'), 'w'):
             pass
-        node = gc.NodeProcess('badly_kept', dict(gc.machine(), history=folder + '/file/history'))
-        self.addCleanup(node.close)
-        grinder = node.client()
-        self.addCleanup(grinder.close)
-        reports = Reports('badly_kept')
+        grinder = self.start(dict(gc.machine(), history=folder + '/file/history'))
+        reports = Reports(self.node.name)
         self.addCleanup(reports.subscriber.unregister)
         told = reports.wait('History', DiagnosticStatus.WARN, 'history %s/file/history: ' % folder)
         self.assertIn('Not a directory', told.message)
@@ -261,7 +258,7 @@ class TestBadFolder(unittest.TestCase):
         self.assertEqual(grinder.run(gc.SHORT).status, 'SUCCEEDED')
         reports.wait('History', DiagnosticStatus.WARN, 'Not a directory')
         reports.wait('Journal', DiagnosticStatus.OK)
-        self.assertRegex(node.output, r'(?s)WARN.*history %s/file/history: ' % folder)
+        self.assertRegex(self.node.output, r'(?s)WARN.*history %s/file/history: ' % folder)
         # Well again as soon as a record can be kept.
         os.remove(folder + '/file')
         self.assertEqual(grinder.run(gc.SHORT).status, 'SUCCEEDED')

@@ -10,7 +10,6 @@ import shutil
 import signal
 import tempfile
 import time
-import unittest
 
 import rospy
 import rostest
@@ -84,10 +83,9 @@ def strokes_of(setpoints):
     return begun, ended
 
 
-class JournalTest(unittest.TestCase):
+class JournalTest(gc.OwnNode):
     """With a folder for the journal, and nodes that are started on it one after another."""
 
-    started = 0
     at = None  # where the axes stand when a node is started
 
     def setUp(self):
@@ -96,30 +94,17 @@ class JournalTest(unittest.TestCase):
         self.journal = os.path.join(self.folder, 'journal')
         self.job_path = write_job(self.folder)
         self.job = gc.job_from_file(self.job_path)
-        self.node = None
 
-    def start_process(self, **environment):
-        """Every node has a name of its own, since the master remembers those that were killed."""
-        JournalTest.started += 1
-        node = gc.NodeProcess('grinder_%d' % JournalTest.started, quick_machine(self.journal, self.at),
-                              environment=environment)
-        self.addCleanup(node.close)
-        return node
-
-    def start(self, **environment):
-        self.node = self.start_process(**environment)
-        self.client = self.node.client()
-        self.addCleanup(self.client.close)
+    def start(self, **arguments):
+        super().start(quick_machine(self.journal, self.at), **arguments)
         self.client.confirm_swivel(gc.PAPER['process.setup_swivel'])
-        return self.client
 
-    def start_ready(self, **environment):
-        self.start(**environment)
+    def start_ready(self, **arguments):
+        self.start(**arguments)
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
         if self.client.fresh_state().wheel_in_work:
             self.lift()
-        return self.client
 
     def lift(self):
         self.assertTrue(self.client.lift().success)
@@ -162,7 +147,7 @@ class JournalTest(unittest.TestCase):
         self.assertEqual(list(told.cutter.tooth_angles), journal['tooth_angles_rad'])
 
     def grind(self, status, *arguments):
-        done = gc.grind('--node', self.node.name, *arguments)
+        done = super().grind(*arguments)
         self.assertEqual(done.returncode, status, '%s\n%s' % (done.stdout, done.stderr))
         return done
 
@@ -339,7 +324,8 @@ class TestOwner(JournalTest):
 
     def test_second_node_is_refused(self):
         self.start_ready()
-        second = self.start_process()
+        second = gc.NodeProcess('second', quick_machine(self.journal))
+        self.addCleanup(second.close)
         self.assertEqual(second.end(), 1)
         self.assertIn('journal %s is in use by node /%s, process %d' % (self.journal, self.node.name,
                                                                          self.node.process.pid), second.output)
@@ -350,9 +336,7 @@ class TestOwner(JournalTest):
 class TestUnfinishedJob(JournalTest):
     """A job that is not finished is forgotten only by whoever says so."""
 
-    def setUp(self):
-        super().setUp()
-        self.start_ready()
+    def leave_unfinished(self):
         run = self.hold_in_stroke_of(0, 1)
         run.cancel()
         run.wait()
@@ -381,40 +365,37 @@ class TestUnfinishedJob(JournalTest):
         self.check_told(journal)
         return journal
 
-    def test_another_job_does_not_replace_it(self):
+    def test_it_is_remembered_until_it_is_continued_or_discarded(self):
+        self.start_ready()
+        self.leave_unfinished()
+        self.check_refused(gc.SHORT)
+        self.kill()
+        self.start_ready()
+        self.check_refused(gc.SHORT)
+        # The restart takes it from the journal.
+        self.assertTrue(self.client.set_feed_override(1).success)
+        journal = self.read_journal()
+        self.check_ground(self.job, first_tooth=journal['tooth'], first_pass=journal['pass'])
+        self.check_ground(gc.SHORT)
+
+        self.leave_unfinished()
         self.check_refused(gc.SHORT)
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
         journal = self.check_ground(gc.SHORT, discard=True, job_name='other.yaml')
         self.assertEqual(journal['job_name'], 'other.yaml')
 
-    def test_it_is_continued(self):
-        journal = self.read_journal()
-        self.check_ground(self.job, first_tooth=journal['tooth'], first_pass=journal['pass'])
-        self.check_ground(gc.SHORT)
-
-    def test_it_is_remembered_over_a_restart(self):
-        self.kill()
-        self.start_ready()
-        self.check_refused(gc.SHORT)
-
 
 class TestSlowDisk(JournalTest):
     """Nobody waits for the disk; what is told as finished is on it."""
 
-    def slow_down(self, seconds):
-        with open(self.seconds + '.new', 'w') as file:
-            file.write(str(seconds))
-        os.rename(self.seconds + '.new', self.seconds)
-
     def setUp(self):
         super().setUp()
-        self.seconds = os.path.join(self.folder, 'seconds')
-        library = os.path.join(os.path.dirname(os.path.dirname(gc.program('grinder'))), 'libflute_grinder_slow_fsync.so')
-        self.start_ready(LD_PRELOAD=library, SLOW_FSYNC=self.seconds)
-        self.addCleanup(self.slow_down, 0)
+        self.disk = gc.SlowDisk(self.folder)
+        self.start_ready(environment=self.disk.environment)
+        self.addCleanup(self.disk.release)
 
     def test_spindle_starts_and_the_axes_wait_for_the_entry(self):
-        self.slow_down(100)
+        self.disk.stop()
         rest = self.client.wait_rest()
         run = self.client.send(self.job)
         self.client.wait_for(lambda: self.client.states[-1].spindle_at_speed, 'the spindle at speed')
@@ -422,18 +403,18 @@ class TestSlowDisk(JournalTest):
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
         self.assertEqual(run.setpoints, [])
         self.assertFalse(os.path.exists(self.journal))
-        self.slow_down(0)
+        self.disk.release()
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.check_told(self.wait_finished())
 
     def test_cancel_does_not_wait_for_the_entry(self):
-        self.slow_down(100)
+        self.disk.stop()
         run = self.client.send(self.job)
         self.client.wait_state(GrinderState.STARTING)
         run.cancel()
         self.client.wait_state(GrinderState.READY)
-        self.slow_down(0)
+        self.disk.release()
         run.wait()
         self.assertEqual((run.status, run.setpoints), ('PREEMPTED', []))
 
@@ -441,13 +422,13 @@ class TestSlowDisk(JournalTest):
         run = self.hold_in_stroke_of(0, 1)
         journal = self.wait_left(run)
         gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place told')
-        self.slow_down(100)
+        self.disk.stop()
         self.assertTrue(self.client.set_feed_override(1).success)
         self.assertTrue(self.client.resume().success)
         run.wait_past(lambda s: (s.tooth, s.pass_) == (2, 0), 'the last tooth')
         self.check_told(journal)
         self.assertEqual(self.read_journal(), journal)
-        self.slow_down(0)
+        self.disk.release()
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.check_told(self.wait_finished())

@@ -10,7 +10,6 @@ import signal
 import tempfile
 import threading
 import time
-import unittest
 
 import rospy
 import rostest
@@ -27,10 +26,8 @@ SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 COUNT = 2e-6
 
 
-class OffsetsTest(unittest.TestCase):
+class OffsetsTest(gc.OwnNode):
     """With a ready node of its own for each test."""
-
-    started = 0
 
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -40,38 +37,25 @@ class OffsetsTest(unittest.TestCase):
         self.client.make_ready()
 
     def start(self, environment=(), **changes):
-        """Starts a node on the folder; each has a name of its own, since the master remembers those that were killed."""
-        OffsetsTest.started += 1
+        """Starts a node on the folder."""
         parameters = gc.machine(pace=5)
         parameters.update(journal=os.path.join(self.folder, 'journal'), offsets=self.file)
         parameters['hardware']['spindle_run_up_time'] = 0.0
         parameters['hardware'].update(changes)
-        self.node = gc.NodeProcess('offset_%d' % OffsetsTest.started, parameters, environment=environment)
-        self.addCleanup(self.node.close)
-        self.client = self.node.client()
-        self.addCleanup(self.client.close)
+        super().start(parameters, environment=environment)
 
     def restart(self, with_signal=signal.SIGTERM, **arguments):
         self.node.end(with_signal)
         self.client.wait_end_of_connections()
         self.start(**arguments)
 
-    def set_offset(self, axis, value, *arguments, **options):
-        return self.client.set_offset(axis, value, *arguments, **options)
-
-    def touch_off(self, axis, position, *arguments, **options):
-        return self.client.touch_off(axis, position, *arguments, **options)
-
     def set_offsets(self, values):
         for axis, value in enumerate(values):
-            answer = self.set_offset(axis, value)
+            answer = self.client.set_offset(axis, value)
             self.assertTrue(answer.success, answer.message)
 
     def offsets(self):
         return rospy.wait_for_message('/%s/offsets' % self.client.name, WorkOffsets, gc.PATIENCE)
-
-    def grind(self, *arguments):
-        return gc.grind('--node', self.client.name, *arguments)
 
     def grind_answering(self, answer, *arguments):
         """At a terminal, whose keyboard has typed the answer."""
@@ -79,7 +63,7 @@ class OffsetsTest(unittest.TestCase):
         self.addCleanup(os.close, keyboard)
         self.addCleanup(os.close, terminal)
         os.write(keyboard, answer.encode() + b'\n')
-        return gc.grind('--node', self.client.name, *arguments, stdin=terminal)
+        return self.grind(*arguments, stdin=terminal)
 
     def check_refused(self, answer, text):
         self.assertFalse(answer.success)
@@ -128,7 +112,7 @@ class TestSetting(OffsetsTest):
     def test_touch_off_where_the_axes_stand(self):
         rest = self.client.wait_rest()
         before = time.time()
-        answer = self.touch_off(Y, 0.0125)
+        answer = self.client.touch_off(Y, 0.0125)
         self.assertTrue(answer.success, answer.message)
         self.assertAlmostEqual(answer.value, rest[Y] - 0.0125, delta=1e-12)
         offsets = self.offsets()
@@ -139,27 +123,27 @@ class TestSetting(OffsetsTest):
         self.assertAlmostEqual(self.client.fresh_state().work_position[Y], 0.0125, delta=1e-12)
 
     def test_wrong_ones_are_refused(self):
-        self.check_refused(self.set_offset('axis_b', 0),
+        self.check_refused(self.client.set_offset('axis_b', 0),
                            'axis = axis_b; allowed: axis_x, axis_y, axis_z, axis_a')
-        self.check_refused(self.touch_off('\x1b[2J', 0), 'allowed: axis_x')
-        self.check_refused(self.set_offset(X, 0.3001),
+        self.check_refused(self.client.touch_off('\x1b[2J', 0), 'allowed: axis_x')
+        self.check_refused(self.client.set_offset(X, 0.3001),
                            'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
-        self.check_refused(self.touch_off(Y, -6.203), 'work offset of axis Y = 6253 mm; allowed: -20 to 150 mm')
+        self.check_refused(self.client.touch_off(Y, -6.203), 'work offset of axis Y = 6253 mm; allowed: -20 to 150 mm')
         for value in (math.nan, math.inf, -math.inf):
-            self.check_refused(self.set_offset(A, value), ' deg, the travel of the axis')
-            self.check_refused(self.touch_off(A, value), ' deg, the travel of the axis')
+            self.check_refused(self.client.set_offset(A, value), ' deg, the travel of the axis')
+            self.check_refused(self.client.touch_off(A, value), ' deg, the travel of the axis')
         for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'swivel': math.nan}, 'not finite'),
                             ({'wheel_digest': 'A' * 64}, 'allowed: 64 hexadecimal digits'),
                             ({'job_name': '\n'}, 'basis.job_name'), ({'wheel_name': 256 * 'w'}, 'basis.wheel_name')):
-            self.check_refused(self.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)
-        self.check_refused(self.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
-        self.check_refused(self.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
+            self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)
+        self.check_refused(self.client.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
+        self.check_refused(self.client.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
         self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
         self.assertFalse(os.path.exists(self.file))
 
     def check_both_refused(self, text):
-        self.check_refused(self.set_offset(Y, 0.01), text)
-        self.check_refused(self.touch_off(Y, 0.01), text)
+        self.check_refused(self.client.set_offset(Y, 0.01), text)
+        self.check_refused(self.client.touch_off(Y, 0.01), text)
         self.assertEqual(tuple(self.offsets().values), (0, 0, 0, 0))
 
     def test_refused_while_a_job_needs_them(self):
@@ -173,7 +157,7 @@ class TestSetting(OffsetsTest):
         self.check_both_refused('a job is being planned')
         run.cancel()
         run.wait()
-        self.assertTrue(self.set_offset(Y, 0.01).success)
+        self.assertTrue(self.client.set_offset(Y, 0.01).success)
 
     def test_refused_without_the_reference_and_while_homing(self):
         # Y homes first, and needs a second.
@@ -186,14 +170,12 @@ class TestSetting(OffsetsTest):
         self.check_both_refused('the machine is in state homing')
 
     def test_nothing_waits_for_the_disk(self):
-        delay = os.path.join(self.folder, 'delay')
-        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libflute_grinder_slow_fsync.so')
-        self.restart(environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': delay})
+        disk = gc.SlowDisk(self.folder)
+        self.restart(environment=disk.environment)
         self.client.make_ready()
-        with open(delay, 'w') as file:
-            file.write('1e6')
+        disk.stop()
         answers = []
-        setting = threading.Thread(target=lambda: answers.append(self.set_offset(X, 0.01)))
+        setting = threading.Thread(target=lambda: answers.append(self.client.set_offset(X, 0.01)))
         setting.start()
         try:
             gc.poll(lambda: os.path.exists(self.file + '.new'), 'the new file')
@@ -205,7 +187,7 @@ class TestSetting(OffsetsTest):
             self.client.wait_state(GrinderState.DISABLED)
             self.assertEqual(answers, [], 'not before it is on the disk')
         finally:
-            os.remove(delay)
+            disk.release()
             setting.join()
         self.assertTrue(answers[0].success, answers[0].message)
         self.assertEqual(tuple(self.offsets().values), (0.01, 0, 0, 0))
@@ -237,7 +219,7 @@ class TestRestart(OffsetsTest):
         self.restart()
         self.client.make_ready()
         self.assertIn('unknown work offsets of axis_a; set each of them', self.client.send(gc.SHORT).wait().text)
-        self.assertTrue(self.touch_off(A, 0).success)
+        self.assertTrue(self.client.touch_off(A, 0).success)
         self.assertEqual(self.offsets().error, '')
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
 
@@ -247,7 +229,7 @@ class TestRestart(OffsetsTest):
         run = self.client.send(job).wait_past(lambda s: s.tooth == 1 and s.move == STROKE, 'the second tooth')
         run.cancel()
         run.wait()
-        self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 0.0001).success)
+        self.assertTrue(self.client.set_offset(Y, OFFSETS[Y] + 0.0001).success)
         self.restart()
         self.client.make_ready()
         for _ in range(2):
@@ -256,7 +238,7 @@ class TestRestart(OffsetsTest):
             self.assertRegex(run.text, r'^the job is not finished, and it began with other work offsets; that of axis Y '
                                        r'was 23\.7 mm and is 23\.8 mm; set them as they were, or discard the job$')
         # As somebody sets it who has read its four decimals of a millimetre.
-        self.assertTrue(self.set_offset(Y, OFFSETS[Y] + 5e-8).success)
+        self.assertTrue(self.client.set_offset(Y, OFFSETS[Y] + 5e-8).success)
         # Nobody has said what they were set for, but that they are right was said when it began.
         run = self.client.send(job, first_tooth=1, discard=False, ignore_offset_check=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)

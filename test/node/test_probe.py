@@ -11,7 +11,6 @@ import shutil
 import signal
 import subprocess
 import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -32,16 +31,13 @@ JOB = gc.package_file('jobs/unequal_d12_t4.yaml')
 TOUCH = 5e-6
 
 
-class ProbeTest(unittest.TestCase):
-    started = 0
-
+class ProbeTest(gc.OwnNode):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
 
     def start(self, blank=BLANK, **changes):
         """Starts a node, ready, with the probe swung in before the blank."""
-        ProbeTest.started += 1
         parameters = gc.machine()
         # A client that a busy host leaves without a processor is not to count as gone.
         parameters['jog_timeout'] = 1.0
@@ -50,12 +46,7 @@ class ProbeTest(unittest.TestCase):
         parameters['hardware'].pop('blank', None)
         if blank:
             parameters['hardware']['blank'] = blank
-        self.node = gc.NodeProcess('probing_%d' % ProbeTest.started, parameters)
-        self.addCleanup(self.node.close)
-        self.client = self.node.client()
-        self.addCleanup(self.client.close)
-        self.client.make_ready()
-        return self.client
+        super().start(parameters).make_ready()
 
     def jog(self, axis, distance):
         reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
@@ -70,9 +61,6 @@ class ProbeTest(unittest.TestCase):
             distance = to - self.client.wait_rest()[axis]
             if abs(distance) > 1e-6:
                 self.jog(axis, distance)
-
-    def grind(self, *arguments):
-        return gc.grind('--node', self.client.name, *arguments, timeout=60)
 
     def cycle(self, *arguments):
         """Runs `grind probe`; what it printed, by its names."""
@@ -215,7 +203,6 @@ class TestStop(ProbeTest):
     @contextlib.contextmanager
     def begun(self):
         """While a search is under way, of 45 mm into nothing; gives the action's client."""
-        self.start()
         self.bring_ball(-35 * MM, 0)
         with self.client.probing(45 * MM) as cycle:
             self.client.wait_state(GrinderState.JOGGING)
@@ -226,22 +213,17 @@ class TestStop(ProbeTest):
         self.assertEqual((cycle.get_state(), cycle.get_result().message), (state, 'probing ended: stopped'))
         self.assertLess(self.client.wait_rest()[X], 0)
 
-    def test_a_hold_ends_it(self):
-        with self.begun() as cycle:
-            self.assertTrue(self.client.hold().success)
-            self.assert_stopped(cycle, GoalStatus.ABORTED)
-        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
-
-    def test_a_disable_ends_it(self):
-        with self.begun() as cycle:
-            self.assertTrue(self.client.disable().success)
-            self.assert_stopped(cycle, GoalStatus.ABORTED)
-
-    def test_a_cancel_ends_it(self):
+    def test_cancel_hold_and_disable_end_it(self):
+        self.start()
         with self.begun() as cycle:
             cycle.cancel_goal()
             self.assert_stopped(cycle, GoalStatus.PREEMPTED)
-        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+        for stop, state in ((self.client.hold, GrinderState.READY), (self.client.disable, GrinderState.DISABLED)):
+            self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+            with self.begun() as cycle:
+                self.assertTrue(stop().success)
+                self.assert_stopped(cycle, GoalStatus.ABORTED)
+            self.assertEqual(self.client.fresh_state().state, state)
 
     def test_ctrl_c_ends_a_cycle_between_its_touches_too(self):
         self.start()
@@ -303,14 +285,10 @@ class TestStop(ProbeTest):
         self.assertLess(self.client.wait_rest()[X], at + 20 * MM)
         self.assertIn('probing ended: its client was silent for 1 s; ~probe_alive is to be repeated', self.node.output)
 
-    def test_another_goal_meanwhile_is_refused(self):
+    def test_other_goals_meanwhile_are_refused(self):
+        self.start()
         with self.begun() as cycle:
             self.assertIn('probing refused: another probing cycle is in progress; ', self.client.probe(1 * MM).message)
-            self.client.hold()
-            self.assert_stopped(cycle, GoalStatus.ABORTED)
-
-    def test_no_job_starts_meanwhile(self):
-        with self.begun() as cycle:
             run = self.client.send(gc.SHORT).wait()
             # Between two touches the machine is ready, and the goal refused all the same.
             self.assertEqual(run.status, 'REJECTED')
@@ -319,6 +297,7 @@ class TestStop(ProbeTest):
             self.assert_stopped(cycle, GoalStatus.ABORTED)
 
     def test_the_end_of_the_node_does_not_wait_for_it(self):
+        self.start()
         with self.begun():
             self.node.process.terminate()
             self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)

@@ -238,6 +238,19 @@ class ReportCase(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         return json.loads(done.stdout)
 
+    def kept(self):
+        """The record of the job that was run to its end."""
+        with open(FILES['recording'].record) as file:
+            return json.load(file)
+
+    def rewritten(self, name, change):
+        """The bag with every message through a function, which says whether it is left in."""
+        with rosbag.Bag(FILES['recording'].bag) as whole, rosbag.Bag(self.path(name), 'w') as bag:
+            for topic, message, stamp in whole.read_messages():
+                if change(topic, message):
+                    bag.write(topic, message, stamp)
+        return self.path(name)
+
     def assert_page(self, page, pictures):
         """It is whole, needs no other file, and has these pictures, each with something in it."""
         self.assertEqual(page.open, [])
@@ -523,17 +536,20 @@ class TestBag(ReportCase):
         # There the axes that rest have no distance to go, and nothing else in a state need change with the override.
         factors, asked, last = (1.0, 0.0, 0.3, 0.0, 1.2), [], 1.0
         end = self.batches[-1].end_stamp.to_sec()
-        with rosbag.Bag(self.recording.bag) as whole, rosbag.Bag(self.path('cylinder.bag'), 'w') as bag:
-            for topic, message, stamp in whole.read_messages():
-                if topic.endswith('/state'):
-                    at = message.header.stamp.to_sec()
-                    message.override = factors[int((at - self.start) / 0.5) % 5] if at > self.start else 1.0
-                    message.distance_to_go = [0, 0, 0, 0]
-                    if self.start < at < end and message.override != last:
-                        asked.append((100 * message.override, at - self.start))
-                        last = message.override
-                bag.write(topic, message, stamp)
-        found = [(o['percent'], o['at_s']) for o in self.data(self.path('cylinder.bag'), '--job', '1')['overrides']]
+
+        def change(topic, message):
+            nonlocal last
+            if topic.endswith('/state'):
+                at = message.header.stamp.to_sec()
+                message.override = factors[int((at - self.start) / 0.5) % 5] if at > self.start else 1.0
+                message.distance_to_go = [0, 0, 0, 0]
+                if self.start < at < end and message.override != last:
+                    asked.append((100 * message.override, at - self.start))
+                    last = message.override
+            return True
+
+        data = self.data(self.rewritten('cylinder.bag', change), '--job', '1')
+        found = [(o['percent'], o['at_s']) for o in data['overrides']]
         self.assertGreater(len(asked), 8)
         self.assertEqual([percent for percent, _ in found], [round(percent, 6) for percent, _ in asked])
         for (_, at), (_, asked_at) in zip(found, asked):
@@ -656,47 +672,35 @@ class TestVerdict(ReportCase):
 
     def test_job_whose_end_is_not_in_the_file(self):
         # Without the result, which the recorder may have got or not before it was ended itself.
-        with rosbag.Bag(FILES['recording'].bag) as whole, rosbag.Bag(self.path('cut.bag'), 'w') as bag:
-            for topic, message, stamp in whole.read_messages():
-                if not topic.endswith('grind/result'):
-                    bag.write(topic, message, stamp)
-        data = self.judged(self.path('cut.bag'))
+        data = self.judged(self.rewritten('cut.bag', lambda topic, _: not topic.endswith('grind/result')))
         self.assertEqual((data['verdict'], data['verdict_because']), ('unfinished', ['the end of the job is not in the file']))
 
     def test_canceled_job_has_failed(self):
-        with open(FILES['recording'].record) as file:
-            record = json.load(file)
-        record.update(outcome='canceled', reason='canceled; stopped on the path')
-        data = self.data_of(record)
+        data = self.data_of(dict(self.kept(), outcome='canceled', reason='canceled; stopped on the path'))
         self.assertEqual((data['verdict'], data['verdict_because'][0]), ('failed', 'the job ended as canceled'))
 
-    def data_of(self, record):
+    def data_of(self, record, **changes):
         with open(self.path('changed.json'), 'w') as file:
             json.dump(record, file)
-        return self.judged(self.path('changed.json'), job=None)
+        return self.judged(self.path('changed.json'), job=None, **changes)
 
     def test_feed_that_the_plan_reduces_is_not_judged(self):
-        with open(FILES['recording'].record) as file:
-            record = json.load(file)
+        record = self.kept()
         for from_x, to_x, result in ((-0.5, 3.9, 'not measured'), (29, 31, 'not measured'), (3.9, -0.5, 'not measured'),
                                      (31, 36, 'failed'), (-1, -0.5, 'failed')):
             record['planned']['feed_limits'] = [{'cause': 'axis A jerk', 'from_x_mm': from_x, 'to_x_mm': to_x}]
-            with open(self.path('changed.json'), 'w') as file:
-                json.dump(record, file)
-            found = self.judged(self.path('changed.json'), job=None, feed_percent=5)
+            found = self.data_of(record, feed_percent=5)
             self.assertEqual(self.result(found, 'feed constancy'), result, (from_x, to_x))
 
     def test_record_of_a_drive_that_read_nan(self):
-        with open(FILES['recording'].record) as file:
-            record = json.load(file)
+        record = self.kept()
         record['strokes'][0]['following_error'] = dict.fromkeys(('x_um', 'y_um', 'z_um', 'a_mdeg'))
         record['late_cycles']['longest_ms'] = None
         self.assertEqual(self.result(self.data_of(record), 'following error in strokes'), 'not measured')
         self.assertEqual(self.report(self.path('changed.json')).rows['1, 1'][5], '-, -, -')
 
     def test_late_cycles_of_a_record_are_of_all_its_cycles(self):
-        with open(FILES['recording'].record) as file:
-            record = json.load(file)
+        record = self.kept()
         record['late_cycles']['count'] = 40
         late, = (c for c in self.data_of(record)['criteria'] if c['name'] == 'late cycles')
         cycles = (timestamp(record['ended']) - timestamp(record['started'])) / 1e-3
@@ -714,12 +718,12 @@ class TestVerdict(ReportCase):
 
     def test_tool_of_which_a_tooth_is_missing_is_not_measured(self):
         # As of a job that was continued: the goal has a second tooth, ground before.
-        with rosbag.Bag(FILES['recording'].bag) as whole, rosbag.Bag(self.path('part.bag'), 'w') as bag:
-            for topic, message, stamp in whole.read_messages():
-                if topic.endswith('/job'):
-                    message.goal.cutter.tooth_angles = [0, math.pi]
-                bag.write(topic, message, stamp)
-        data = self.judged(self.path('part.bag'))
+        def change(topic, message):
+            if topic.endswith('/job'):
+                message.goal.cutter.tooth_angles = [0, math.pi]
+            return True
+
+        data = self.judged(self.rewritten('part.bag', change))
         for name in ('rake', 'chordal rake', 'core diameter', 'land', 'spiral angle'):
             self.assertEqual(self.result(data, name), 'not measured')
         self.assertEqual(data['verdict'], 'incomplete')
@@ -950,46 +954,30 @@ class TestBadFiles(ReportCase):
         row[column] = value
         return lines[:line - 1] + [','.join(row)] + lines[line:]
 
-    def test_missing(self):
-        self.check(self.path('nothing.csv'), 'cannot be read: No such file or directory')
+    def test_csv(self):
+        for name, change, reason in (
+                ('empty', lambda lines: [], 'is empty'),
+                ('header', lambda lines: lines[:1], 'has no points; .*'),
+                ('wrong', lambda lines: ['t,x,y'] + lines[1:],
+                 'its first line is \'t,x,y\'; allowed: "point,.*", "cycle,.*", or a bag'),
+                ('cut', lambda lines: lines[:-1] + [lines[-1][:40]], 'line 50: .*columns.*'),
+                ('line', lambda lines: lines[:9] + [''] + lines[9:], 'line 10: is empty'),
+                ('text', lambda lines: self.replace(lines, 20, 6, 'far'), 'line 20: .*far.*'),
+                ('nan', lambda lines: self.replace(lines, 20, 9, 'nan'), 'cycle 18: position is not a finite number'),
+                ('move', lambda lines: self.replace(lines, 20, 2, 'polish'), 'cycle 18: move "polish"; allowed: lift, .*'),
+                ('tooth', lambda lines: self.replace(lines, 20, 3, '-1'), 'cycle 18: tooth = -1; allowed: 0 to 65535'),
+                ('order', lambda lines: lines[:30] + lines[20:], 'cycle 19 follows cycle 28; allowed: ascending cycles')):
+            with self.subTest(name):
+                self.check(self.changed(name + '.csv', change), reason)
 
-    def test_folder(self):
-        self.check(FILES['folder'], 'cannot be read: Is a directory')
-
-    def test_empty(self):
-        self.check(self.changed('empty.csv', lambda lines: []), 'is empty')
-
-    def test_header_alone(self):
-        self.check(self.changed('header.csv', lambda lines: lines[:1]), 'has no points; .*')
-
-    def test_wrong_columns(self):
-        self.check(self.changed('wrong.csv', lambda lines: ['t,x,y'] + lines[1:]),
-                   'its first line is \'t,x,y\'; allowed: "point,.*", "cycle,.*", or a bag')
-
-    def test_line_that_is_cut_off(self):
-        self.check(self.changed('cut.csv', lambda lines: lines[:-1] + [lines[-1][:40]]), 'line 50: .*columns.*')
-
-    def test_empty_line(self):
-        self.check(self.changed('line.csv', lambda lines: lines[:9] + [''] + lines[9:]), 'line 10: is empty')
-
-    def test_text_in_place_of_a_number(self):
-        self.check(self.changed('text.csv', lambda lines: self.replace(lines, 20, 6, 'far')), 'line 20: .*far.*')
-
-    def test_nan(self):
-        self.check(self.changed('nan.csv', lambda lines: self.replace(lines, 20, 9, 'nan')),
-                   'cycle 18: position is not a finite number')
-
-    def test_unknown_move(self):
-        self.check(self.changed('move.csv', lambda lines: self.replace(lines, 20, 2, 'polish')),
-                   'cycle 18: move "polish"; allowed: lift, .*')
-
-    def test_negative_tooth(self):
-        self.check(self.changed('tooth.csv', lambda lines: self.replace(lines, 20, 3, '-1')),
-                   'cycle 18: tooth = -1; allowed: 0 to 65535')
-
-    def test_cycles_that_do_not_ascend(self):
-        self.check(self.changed('order.csv', lambda lines: lines[:30] + lines[20:]),
-                   'cycle 19 follows cycle 28; allowed: ascending cycles')
+    def test_no_such_file_or_job(self):
+        for source, reason, *arguments in (
+                (self.path('nothing.csv'), 'cannot be read: No such file or directory'),
+                (FILES['folder'], 'cannot be read: Is a directory'),
+                (FILES['plan'], '--job 3: only a bag has several jobs', '--job', '3'),
+                (FILES['recording'].bag, r'--job 3: the bag has 2 job\(s\)', '--job', '3')):
+            with self.subTest(reason):
+                self.check(source, reason, *arguments)
 
     def test_bag_that_is_cut_off(self):
         size = os.path.getsize(FILES['recording'].bag)
@@ -1002,16 +990,8 @@ class TestBadFiles(ReportCase):
         self.assertIn('record.bag.active: the bag was not closed', done.stderr)
 
     def test_bag_without_setpoints(self):
-        with rosbag.Bag(FILES['recording'].bag) as whole, rosbag.Bag(self.path('none.bag'), 'w') as bag:
-            for topic, message, stamp in whole.read_messages('/diagnostics'):
-                bag.write(topic, message, stamp)
-        self.check(self.path('none.bag'), r'the bag has setpoints \(.*\) on no topic; allowed: one topic')
-
-    def test_job_of_a_file_that_has_one(self):
-        self.check(FILES['plan'], '--job 3: only a bag has several jobs', '--job', '3')
-
-    def test_job_that_the_bag_does_not_have(self):
-        self.check(FILES['recording'].bag, r'--job 3: the bag has 2 job\(s\)', '--job', '3')
+        self.check(self.rewritten('none.bag', lambda topic, _: topic == '/diagnostics'),
+                   r'the bag has setpoints \(.*\) on no topic; allowed: one topic')
 
     def test_output_that_cannot_be_written(self):
         output = self.path('no/such/folder.html')

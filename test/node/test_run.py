@@ -311,7 +311,7 @@ class TestRecord(RunTest):
         self.assertEqual(len(grinder().batches), seen)
 
 
-class TestOwnNode(RunTest):
+class TestOwnNode(RunTest, gc.OwnNode):
     """With a grinder of its own, which is ill-treated."""
 
     def start_node(self, **hardware):
@@ -321,16 +321,13 @@ class TestOwnNode(RunTest):
                 parameters['hardware'][key].update(value)
             else:
                 parameters['hardware'][key] = value
-        self.node = gc.NodeProcess('ill_treated', parameters)
-        self.addCleanup(self.node.close)
+        self.start(parameters)
         self.addCleanup(self.node.process.send_signal, signal.SIGCONT)
-        self.client = self.node.client()
-        self.addCleanup(self.client.close)
 
     def start_run(self):
         self.client.make_ready()
         seen = len(self.client.batches)
-        command = self.grind('--node', 'ill_treated', *RUN, PAPER_JOB)
+        command = self.grind('--node', self.node.name, *RUN, PAPER_JOB)
         self.wait_in_stroke(self.client, seen)
         return command
 
@@ -361,7 +358,7 @@ class TestOwnNode(RunTest):
         slow = {'homing_velocity': 1e-3, 'home_position': 0.02}
         self.start_node(absolute_encoders=False, axis_x=slow)
         self.assertTrue(self.client.enable().success)
-        command = self.grind('--node', 'ill_treated', 'home')
+        command = self.grind('--node', self.node.name, 'home')
         self.client.wait_state(GrinderState.HOMING)
         command.send(signal.SIGINT)
         self.assertEqual(command.end(), 1)
@@ -371,7 +368,7 @@ class TestOwnNode(RunTest):
         self.assertEqual(len(set(self.client.positions_over(0.1))), 1)
 
         self.assertTrue(self.client.enable().success)
-        command = self.grind('--node', 'ill_treated', 'home')
+        command = self.grind('--node', self.node.name, 'home')
         self.client.wait_state(GrinderState.HOMING)
         self.node.process.kill()
         self.check_lost(command)

@@ -51,10 +51,9 @@ def clear_height(job):
     return helix.y(job['cutter.flute_length'] + job['process.overtravel_shank']) + job['process.clearance']
 
 
-class NodeTest(unittest.TestCase):
+class NodeTest(gc.OwnNode):
     """With a ready node: one for all tests, but where a test starts one of its own, to end it or with other parameters."""
 
-    started = 0
     shared = None
 
     def setUp(self):
@@ -63,15 +62,6 @@ class NodeTest(unittest.TestCase):
             NodeTest.shared = self.node, self.client
         self.node, self.client = NodeTest.shared
         self.client.make_ready()
-
-    def start(self, parameters, clean_up=None, **arguments):
-        """Starts a node; every one has a name of its own, since the master remembers those that were killed."""
-        NodeTest.started += 1
-        self.node = gc.NodeProcess('stopped_%d' % NodeTest.started, parameters, **arguments)
-        self.client = self.node.client()
-        for end in (self.node.close, self.client.close):
-            (clean_up or self.addCleanup)(end)
-        return self.client
 
     def send_into_stroke(self, job=SLOW, x=5 * MM):
         return self.client.send(job).wait_in_stroke(x)
@@ -206,26 +196,15 @@ class TestTheWayDown(NodeTest):
     def setUp(self):
         """Every test starts its node."""
 
-    def start_on_slow_disk(self):
-        preload = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libflute_grinder_slow_fsync.so')
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        self.delay = os.path.join(folder, 'delay')
-        self.start(machine(), environment={'LD_PRELOAD': preload, 'SLOW_FSYNC': self.delay}).make_ready()
-
-    def stop_disk(self):
-        with open(self.delay, 'w') as file:
-            file.write('1e6')
-
-    def release_disk(self):
-        os.remove(self.delay)
-
     TWO_PASSES = gc.paper(flute_length=5 * MM, feed=300 * MM_MIN, clearance=1 * MM, infeed=0.3 * MM)
 
     def test_cancel_does_not_wait_for_the_disk(self):
-        self.start_on_slow_disk()
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        disk = gc.SlowDisk(folder)
+        self.start(machine(), environment=disk.environment).make_ready()
         run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
-        self.stop_disk()
+        disk.stop()
         run.wait_past(lambda s: s.pass_ == 1 and s.move == STROKE, 'the second pass')
         run.cancel()
         run.wait_complete()
@@ -233,7 +212,7 @@ class TestTheWayDown(NodeTest):
         self.client.wait_state(GrinderState.READY)
         # What the journal does not have is not told.
         self.assertEqual(self.client.fresh_state().progress.pass_, 0)
-        self.release_disk()
+        disk.release()
         gc.poll(lambda: self.client.fresh_state().progress.pass_ == 1, 'the pass in the journal')
 
     def test_full_pipe(self):

@@ -114,7 +114,7 @@ class TestConstantRake(unittest.TestCase):
         job_path = os.path.join(folder, 'job.yaml')
         with open(job_path, 'w') as file:
             file.write(STEEP_TOOL)
-        cls.job = dict(gc.job_from_file(job_path), **{'process.z_law': Process.CONSTANT_RAKE})
+        cls.job = gc.job_from_file(job_path)
 
     def setUp(self):
         grinder().make_ready_at_park()

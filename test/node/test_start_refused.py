@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Shows that a goal is refused until the swivel is at the job's angle, as an operator has confirmed it or as the drive measures it,
-and how a client sees it. What the control loop makes of each angle is shown in test/control/test_swivel.cpp."""
+"""Shows that a goal is refused until the machine is homed, and the swivel at the job's angle, as an operator has confirmed it or as
+the drive measures it; how a client sees it, and that the machine homes. What the control loop makes of reference and angle, at
+every moment of a job, is shown in test/control."""
 
+import itertools
 import json
 import math
-import unittest
 
 import rospy
 import rostest
@@ -17,31 +18,77 @@ WANTED = 31.769
 TO_SET = 'set it to 31.769 deg and confirm it: grind confirm-swivel 31.769'
 
 
-class SwivelTest(unittest.TestCase):
-    def start(self, swivel=None):
+class TestHoming(gc.OwnNode):
+    def test_machine_whose_encoders_do_not_know_where_it_is(self):
+        # Homing takes longer than all that is to happen meanwhile.
+        parameters = gc.machine()
+        hardware = parameters['hardware']
+        hardware.update(absolute_encoders=False, spindle_run_up_time=0)
+        hardware['axis_x']['start_position'] = -0.045
+        hardware['axis_a']['start_position'] = 3.0
+        g = self.start(parameters)
+        state = g.fresh_state()
+        self.assertEqual((state.state_name, state.homed, state.enabled), ('disabled', False, False))
+        self.assertTrue(g.enable().success)
+        self.assertFalse(g.wait_state(GrinderState.READY).homed)
+        run = g.send(gc.SHORT).wait()
+        self.assertEqual((run.status, run.code, run.text),
+                         ('ABORTED', GrindResult.NOT_READY, 'start refused: the axes are not homed'))
+        self.assertEqual(run.setpoints, [])
+        run = g.send(gc.SHORT, dry_run=True).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertRegex(self.grind('status').stdout, r'(?m)^homed +no$')
+        self.assertEqual(set(g.positions_over(0.2)), {(0, 0, 0, 0)}, 'it does not home by itself')
+
+        # Canceled, it is not homed.
+        first_state = len(g.states)
+        self.assertTrue(g.home().success)
+        g.wait_for(lambda: g.states[-1].state == GrinderState.HOMING, 'homing')
+        run = g.send(gc.SHORT).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+        self.assertRegex(run.text, 'state homing; allowed: disable, hold, cancel')
+        self.assertEqual(g.home().message,
+                         'home refused: the machine is in state homing; allowed: disable, hold, cancel')
+        g.client.cancel_all_goals()
+        self.assertFalse(g.wait_power_off().homed)
+        self.assertTrue(g.enable().success)
+        g.wait_state(GrinderState.READY)
+
+        home = self.grind('home')
+        self.assertEqual((home.returncode, home.stderr), (0, ''))
+        self.assertTrue(g.fresh_state().homed)
+        for joint, position in zip(gc.JOINTS, g.wait_rest()):
+            self.assertAlmostEqual(position, hardware[joint]['home_position'], delta=1e-6)
+        states = [name for name, _ in itertools.groupby(s.state_name for s in g.states[first_state:])]
+        if states[0] == 'ready':  # of before
+            del states[0]
+        self.assertEqual(states, ['homing', 'disabled', 'ready', 'homing', 'ready'])
+        run = g.run(gc.SHORT)
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
+
+
+class TestSwivel(gc.OwnNode):
+    def start_ready(self, swivel=None):
         """A node of its own, ready, with nothing confirmed."""
         parameters = gc.machine(pace=5)
         if swivel is not None:
             parameters['hardware']['swivel'] = swivel * DEG
-        self.node = gc.NodeProcess('own_grinder', parameters)
-        self.addCleanup(self.node.close)
-        self.grinder = self.node.client()
-        self.addCleanup(self.grinder.close)
-        gc.poll(lambda: self.grinder.enable().success, 'the power on')
-        self.grinder.wait_state(GrinderState.READY)
-        return self.grinder
+        g = self.start(parameters)
+        gc.poll(lambda: g.enable().success, 'the power on')
+        g.wait_state(GrinderState.READY)
+        return g
 
     def grind(self, status, *arguments):
-        done = gc.grind('--node', self.node.name, *arguments)
+        done = super().grind(*arguments)
         self.assertEqual(done.returncode, status, done.stderr)
         return done
 
     def send(self, job=gc.SHORT, **fields):
-        return self.grinder.send(job, confirm=False, **fields)
+        return self.client.send(job, confirm=False, **fields)
 
     def check_refused(self, detail, angle, text):
         """The goal and the command line's job are refused at once, and nothing moves."""
-        rest = self.grinder.wait_rest()
+        rest = self.client.wait_rest()
         run = self.send().wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY), run.text)
         reason, = run.result.reasons
@@ -55,15 +102,15 @@ class SwivelTest(unittest.TestCase):
         self.assertEqual([f.state for f in run.feedback], [], 'it was not even planned')
         done = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--ignore-offset-check')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: ' + text, done.stderr)
-        self.assertEqual(self.grinder.fresh_state().state, GrinderState.READY)
-        self.assertEqual(self.grinder.wait_rest(), rest)
+        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
+        self.assertEqual(self.client.wait_rest(), rest)
 
     def check_runs(self, job=gc.SHORT, **fields):
         run = self.send(job, **fields).wait_complete()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), run.text)
 
     def test_confirmed_by_an_operator(self):
-        g = self.start()
+        g = self.start_ready()
         self.check_refused('', None, 'the swivel is not confirmed; ' + TO_SET)
         state = g.fresh_state()
         self.assertTrue(math.isnan(state.swivel))
@@ -95,7 +142,7 @@ class SwivelTest(unittest.TestCase):
                            'the swivel is confirmed at 31.829 deg; allowed: within 0.05 deg of that; ' + TO_SET)
 
     def test_turned_while_the_job_is_planned_it_does_not_start(self):
-        g = self.start()
+        g = self.start_ready()
         self.assertTrue(g.confirm_swivel(WANTED * DEG).success)
         rest = g.wait_rest()
         # A stroke slow enough for the plan to take a while.
@@ -109,7 +156,7 @@ class SwivelTest(unittest.TestCase):
         self.assertEqual(g.wait_rest(), rest)
 
     def test_measured_by_the_drive(self):
-        g = self.start(31.8)
+        g = self.start_ready(31.8)
         state = g.fresh_state()
         self.assertAlmostEqual(state.swivel, 31.8 * DEG, delta=1e-15)
         self.assertTrue(state.swivel_measured)
@@ -119,11 +166,11 @@ class SwivelTest(unittest.TestCase):
                                       'nothing is to be confirmed\n')
 
     def test_measured_elsewhere_the_job_is_refused(self):
-        self.start(31.83)
+        self.start_ready(31.83)
         self.check_refused('measured', 31.83, 'the swivel stands at 31.83 deg; allowed: within 0.05 deg of that; set it to '
                                               '31.769 deg (code -7)')
 
 
 if __name__ == '__main__':
-    rospy.init_node('test_swivel')
-    rostest.rosrun('flute_grinder', 'swivel', '__main__')
+    rospy.init_node('test_start_refused')
+    rostest.rosrun('flute_grinder', 'start_refused', '__main__')

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdlib>
+#include <cstring>
+
+namespace flute_grinder::test_support {
+
+/// How many random cases a search of its own tries, scaled as RapidCheck's are by RC_PARAMS.
+/// @param usual with RapidCheck's 100; as many as take at most 5 s of processor.
+inline int randomCases(int usual) {
+  const char* const params = std::getenv("RC_PARAMS");
+  const char* const more = params ? std::strstr(params, "max_success=") : nullptr;
+  return more ? std::atoi(more + std::strlen("max_success=")) * usual / 100 : usual;
+}
+
+}  // namespace flute_grinder::test_support

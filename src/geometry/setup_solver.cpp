@@ -157,14 +157,14 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
     return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
   };
   std::vector<SetupPoint> seen, ends, nearest;
-  const auto is_new = [&](const SetupPoint& fit, std::vector<SetupPoint>& others, double difference) {
+  const auto add_new = [&](const SetupPoint& fit, std::vector<SetupPoint>& others, double difference) {
     const auto same = [&](const SetupPoint& other) { return isSame(fit, other, difference, trial.cutter().radius(0)); };
     if (std::any_of(others.begin(), others.end(), same)) return false;
     others.push_back(fit);
     return true;
   };
   const auto take = [&](const SetupPoint& fit) {
-    if (!is_new(fit, seen, kSame)) return;
+    if (!add_new(fit, seen, kSame)) return;
     Judged judged = judge(trial, request, fit);
     if (has_tolerances) judged.error = worst(fit);
     if (!fitted.best || isBetter(judged, *fitted.best)) fitted.best = judged;
@@ -172,13 +172,13 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
   for (const SetupPoint& start : starts) {
     const auto fit = fitEnds(trial, request, start);
     if (!fit) continue;
-    is_new(fit->point, ends, kAlike);
+    add_new(fit->point, ends, kAlike);
     if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
   }
   if (fitted.isGood()) return;
   for (const SetupPoint& start : ends) {
     const auto fit = nearestSetup(trial, request, start);
-    if (fit) is_new(*fit, nearest, kAlike);
+    if (fit) add_new(*fit, nearest, kAlike);
   }
   std::map<double, SetupPoint> by_error;
   for (const SetupPoint& fit : nearest) by_error.emplace(worst(fit), fit);

@@ -176,7 +176,7 @@ def of_goals(found):
                 name = '%s/%s/%s' % (job, kind, part)
                 yield name, of_times('goal to %s, %s, %s' % (to, label, kind), 'ms', samples[name], 'empty_action')
         yield job + '/goal_bytes', of_value('goal, ' + label, 'bytes', values[job + '/goal_bytes'])
-        yield job + '/max_odd_error', of_value('largest error of A, ' + label, 'rad', values[job + '/max_odd_error'])
+        yield job + '/max_odd_error', of_value('maximum error of A, ' + label, 'rad', values[job + '/max_odd_error'])
 
 
 def measure(goals, seconds):
@@ -207,7 +207,7 @@ def read(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog='scripts/bench', description='Measures what the documentation tells of speed and '
+    parser = argparse.ArgumentParser(prog='scripts/bench', description='Measures what the documentation states of speed and '
                                      'size, each figure beside its floor on this computer.')
     parser.add_argument('--json', metavar='FILE', help='write the figures to a file')
     parser.add_argument('--before', metavar='FILE', help='print them beside those of an earlier --json FILE')

@@ -40,7 +40,7 @@ def press_in_stroke(grinder, button):
     grinder.wait_for(lambda: run.done or run.last and run.last.move == gc.STROKE, 'the stroke')
     times = {}
 
-    def told():
+    def reported():
         seen = {'goal': run.done, 'state': grinder.states[-1].emergency_stop}
         for what in seen:
             if seen[what]:
@@ -50,7 +50,7 @@ def press_in_stroke(grinder, button):
     pressed = time.monotonic()
     button.press(True)
     try:
-        grinder.wait_for(told, 'the emergency stop')
+        grinder.wait_for(reported, 'the emergency stop')
     finally:
         button.press(False)
     return times if run.code == GrindResult.EMERGENCY_STOP else None
@@ -76,7 +76,7 @@ def main():
     button = Button()
     node = hal_bench.Node(buffer=None)
     grinder = gc.Grinder()
-    print('%-8s %-12s %8s %11s %11s %14s' % ('cores', 'emerg. stop', 'presses', 'median', 'largest', 'ended before'))
+    print('%-8s %-12s %8s %11s %11s %14s' % ('cores', 'emerg. stop', 'presses', 'median', 'max', 'ended before'))
     for cores in ('idle', 'loaded'):
         with load(os.cpu_count() if cores == 'loaded' else 0):
             times, stalls = press_often(grinder, button, presses)

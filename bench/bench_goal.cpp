@@ -96,7 +96,7 @@ class Sender {
 
   void cancel() { handle_.cancel(); }
 
-  /// Waits until the goal is accepted. @return when the client was told [s]. @throw std::runtime_error if it is not.
+  /// Waits until the goal is accepted. @return when the client knows it [s]. @throw std::runtime_error if it is not.
   double accepted() {
     shared_.wait("goal accepted", [this] { return accepted_ || ended_; });
     if (!accepted_) throw std::runtime_error("the goal was not accepted: " + handle_.getTerminalState().getText());

@@ -208,11 +208,11 @@ SetupRequest paperSetup(bool core) {
   r.cutter = {0.01, 5 * kDegree, 30 * kDegree, 8 * kDegree, 0.03};
   r.rake = 8 * kDegree;
   r.tooth_angles = {0};
-  r.nominal_radius = r.wheel.largestRadius();
+  r.nominal_radius = r.wheel.maxRadius();
   r.depth = 0.0016;
   if (core) r.core_diameter = 0.0072;
-  r.least_swivel = -60 * kDegree;
-  r.largest_swivel = 60 * kDegree;
+  r.min_swivel = -60 * kDegree;
+  r.max_swivel = 60 * kDegree;
   return r;
 }
 

@@ -93,7 +93,7 @@ def load(delay_file, planner):
 
 
 def setpoint_times(run):
-    """Every setpoint told, with the time of the cycle that wrote it."""
+    """Every setpoint reported, with the time of the cycle that wrote it."""
     for batch in run.batches:
         at = batch.header.stamp.to_sec()
         for i, setpoint in enumerate(batch.setpoints):

@@ -22,29 +22,29 @@ def percentile(samples, fraction):
 
 
 def of_value(label, unit, value, floor=None):
-    """The figure of a single value, or of the median of what is not told in samples."""
+    """The figure of a single value, or of the median of what is not reported in samples."""
     return dict({'label': label, 'unit': unit, 'median': value}, **({'floor': floor} if floor else {}))
 
 
 def of_times(label, unit, seconds, floor=None):
-    """The figure of samples in s, told in a unit of time."""
+    """The figure of samples in s, reported in a unit of time."""
     factor = FACTORS[unit]
     return dict(of_value(label, unit, factor * statistics.median(seconds), floor),
                 p99=factor * percentile(seconds, 0.99), count=len(seconds))
 
 
 def of_diagnostics(values, floors):
-    """The times that a node tells on /diagnostics as "Median ... [s]" and "99 % ... [s]", each the median of what it has told.
+    """The times that a node reports on /diagnostics as "Median ... [s]" and "99 % ... [s]", each the median of what it has reported.
     @param values lists of texts, by key. @param floors names of figures, by the time's name."""
     found = {}
-    for key, told in values.items():
+    for key, reported in values.items():
         parts = re.fullmatch(r'(Median|99 %) (.*) \[s\]', key)
         if not parts:
             continue
         name = parts.group(2)
         figure = found.setdefault('loop/' + name, of_value(name + ', live', 'us', None, floors.get(name)))
-        value = 1e6 * statistics.median(map(float, told))
-        figure.update({'median': value, 'count': len(told)} if parts.group(1) == 'Median' else {'p99': value})
+        value = 1e6 * statistics.median(map(float, reported))
+        figure.update({'median': value, 'count': len(reported)} if parts.group(1) == 'Median' else {'p99': value})
     return found
 
 

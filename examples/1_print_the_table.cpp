@@ -24,6 +24,6 @@ int main() {
     const StepTable::Row& row = table.rows[i];
     std::printf("%5zu  %7.4f  %7.4f  %16.4f\n", i, row.point.x / units::kMillimetre, row.point.a, row.error() / 1e-4);
   }
-  std::printf("%zu points; largest error %.4e rad (odd), %.4e rad (even)\n", table.rows.size() - 1,
-              table.largest_odd_error, table.largest_even_error);
+  std::printf("%zu points; maximum error %.4e rad (odd), %.4e rad (even)\n", table.rows.size() - 1, table.max_odd_error,
+              table.max_even_error);
 }

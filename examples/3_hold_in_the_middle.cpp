@@ -19,13 +19,13 @@ int main() {
   OddEvenInterpolator interpolator(curve, units::kMillimetrePerRadian, EvenStepRule::kThirdOrder, 0);
   SCurveProfile law({kSpeed, 0.5, 50}, kLength, kSpeed);
 
-  double largest = 0;  // error of the pairs' ends [rad]
+  double max = 0;  // error of the pairs' ends [rad]
   // Until the law is at rest: at its end, or because its target is 0.
   const auto ride = [&](double until) {
     while (!law.resting() && law.position() < until) {
       law.advance(2 * kPeriod);
       const CurvePoint even = interpolator.advance(law.position() - interpolator.position().x).even;
-      largest = std::max(largest, std::abs(curve.a(even.x) - even.a));
+      max = std::max(max, std::abs(curve.a(even.x) - even.a));
     }
   };
 
@@ -37,6 +37,6 @@ int main() {
               std::abs(curve.a(interpolator.position().x) - interpolator.position().a));
   law.setTarget(kSpeed);
   ride(kLength);
-  std::printf("end at X = %.3f mm; largest error of an even point: %.0e rad\n",
-              interpolator.position().x / units::kMillimetre, largest);
+  std::printf("end at X = %.3f mm; maximum error of an even point: %.0e rad\n",
+              interpolator.position().x / units::kMillimetre, max);
 }

@@ -49,7 +49,7 @@ void addJobCommands(Commands& commands);
 /// What is done with a wheel, and the zeros that follow from it: `wheel`, `zeros`.
 void addWheelCommands(Commands& commands);
 
-/// What the machine is told by hand: `override`, `confirm-swivel`, `jog`, `status` and the requests without arguments.
+/// Requests to the machine: `override`, `confirm-swivel`, `jog`, `status` and the requests without arguments.
 void addMachineCommands(Commands& commands);
 
 /// The work offsets and how they are found: `offsets`, `touch-off`, `probe`.

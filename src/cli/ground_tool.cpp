@@ -125,13 +125,13 @@ void printSection(const GrindJob& job, const MeasuredSection& section) {
   }
 }
 
-/// The least and the largest of a figure and where they are, with the range of what is asked and of the difference.
+/// The minimum and maximum of a figure and where they are, with the range of what is asked and of the difference.
 struct Extremes {
   struct At {
     double value, x;
     std::size_t tooth;
   };
-  std::optional<At> least, largest;
+  std::optional<At> min, max;
   std::optional<std::pair<double, double>> asked, difference;
 
   Extremes(const GroundTool& tool, const Figure& figure) {
@@ -141,8 +141,8 @@ struct Extremes {
       if (!value) return;
       if (asks) widen(difference, *value - *asks);
       const At at{*value, p.section.ground.x / kMillimetre, p.number + 1};
-      if (!least || *value < least->value) least = at;
-      if (!largest || *value > largest->value) largest = at;
+      if (!min || *value < min->value) min = at;
+      if (!max || *value > max->value) max = at;
     });
   }
 
@@ -166,12 +166,12 @@ std::string text(const std::optional<std::pair<double, double>>& range, const ch
 }
 
 void printExtremes(const GroundTool& tool) {
-  std::printf("\n%-18s  %9s  %8s  %5s  %9s  %8s  %5s  %20s  %20s\n", "", "least", "at X mm", "tooth", "largest",
-              "at X mm", "tooth", "asked", "difference");
+  std::printf("\n%-18s  %9s  %8s  %5s  %9s  %8s  %5s  %20s  %20s\n", "", "min", "at X mm", "tooth", "max", "at X mm",
+              "tooth", "asked", "difference");
   for (const Figure& figure : kFigures) {
     if (!isShown(figure)) continue;
     const Extremes e(tool, figure);
-    std::printf("%-18s%s%s%s%s\n", figure.title, text(e.least).c_str(), text(e.largest).c_str(), text(e.asked).c_str(),
+    std::printf("%-18s%s%s%s%s\n", figure.title, text(e.min).c_str(), text(e.max).c_str(), text(e.asked).c_str(),
                 text(e.difference, "+").c_str());
   }
 }

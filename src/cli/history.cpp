@@ -24,7 +24,7 @@ namespace flute_grinder {
 
 namespace {
 
-/// What is told of a record.
+/// What is listed of a record.
 struct Entry {
   std::string file;
   std::string started;  ///< as in the record

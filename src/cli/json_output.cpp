@@ -92,15 +92,15 @@ Json toJson(const PlannedJob& plan) {
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},
-          {"largest_odd_error_rad", s.max_odd_error},
-          {"largest_even_error_rad", s.max_even_error},
-          {"largest_deviation_um", s.max_deviation / kMicrometre},
-          {"smallest_feed_mm_min", s.min_feed / kMillimetrePerMinute},
-          {"largest_feed_mm_min", s.max_feed / kMillimetrePerMinute},
+          {"max_odd_error_rad", s.max_odd_error},
+          {"max_even_error_rad", s.max_even_error},
+          {"max_deviation_um", s.max_deviation / kMicrometre},
+          {"min_feed_mm_min", s.min_feed / kMillimetrePerMinute},
+          {"max_feed_mm_min", s.max_feed / kMillimetrePerMinute},
           {"feed_limits", toJson(s.feed_limits)},
-          {"largest_velocity", toJson(s.max_velocity, "_s")},
-          {"largest_acceleration", toJson(s.max_acceleration, "_s2")},
-          {"largest_jerk", toJson(s.max_jerk, "_s3")},
+          {"max_velocity", toJson(s.max_velocity, "_s")},
+          {"max_acceleration", toJson(s.max_acceleration, "_s2")},
+          {"max_jerk", toJson(s.max_jerk, "_s3")},
           {"odd_even_ripple", toJson(s.ripple_acceleration, "_s2")}};
 }
 

@@ -28,8 +28,8 @@ void addOverride(Commands& commands) {
 void addConfirmSwivel(Commands& commands) {
   const auto degrees = std::make_shared<double>(0);
   auto& command =
-      commands.add("confirm-swivel", "tell the grinder at which angle the swivel has been set and clamped by hand",
-                   "32.34", commands.online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
+      commands.add("confirm-swivel", "confirm the angle at which the swivel has been set and clamped by hand", "32.34",
+                   commands.online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
   command.add_option("DEG", *degrees, "as setup.swivel_deg of the job, -90 to 90")
       ->required()
       ->check([](const std::string& text) {

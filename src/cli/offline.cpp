@@ -25,9 +25,9 @@ void printText(const StepTable& table) {
                 row.error() / 1e-4);
   }
   std::printf("\n%d points\n", number - 1);
-  std::printf("largest error          %.4e rad\n", table.largestError());
-  std::printf("largest at odd points  %.4e rad\n", table.largest_odd_error);
-  std::printf("largest at even points %.4e rad\n", table.largest_even_error);
+  std::printf("maximum error          %.4e rad\n", table.maxError());
+  std::printf("maximum at odd points  %.4e rad\n", table.max_odd_error);
+  std::printf("maximum at even points %.4e rad\n", table.max_even_error);
 }
 
 Json toJson(const StepTable& table, EvenStepRule rule, double step_length_mm) {
@@ -42,9 +42,9 @@ Json toJson(const StepTable& table, EvenStepRule rule, double step_length_mm) {
   return {{"step_length_mm", step_length_mm},
           {"even_step", toString(rule)},
           {"points", points},
-          {"largest_error_rad", table.largestError()},
-          {"largest_odd_error_rad", table.largest_odd_error},
-          {"largest_even_error_rad", table.largest_even_error}};
+          {"max_error_rad", table.maxError()},
+          {"max_odd_error_rad", table.max_odd_error},
+          {"max_even_error_rad", table.max_even_error}};
 }
 
 void writeCsv(const StepTable& table, const std::string& path) {
@@ -82,9 +82,9 @@ void printStatistics(const core::PathStatistics& s) {
     const double duration = s.move_duration[static_cast<std::size_t>(move.value)];
     if (duration > 0) std::printf(" %s %.3f", move.name, duration);
   }
-  std::printf("\nlargest odd error    %.4e rad\n", s.max_odd_error);
-  std::printf("largest even error   %.4e rad\n", s.max_even_error);
-  std::printf("largest deviation    %.3g um at the cutter's surface\n", s.max_deviation / kMicrometre);
+  std::printf("\nmaximum odd error    %.4e rad\n", s.max_odd_error);
+  std::printf("maximum even error   %.4e rad\n", s.max_even_error);
+  std::printf("maximum deviation    %.3g um at the cutter's surface\n", s.max_deviation / kMicrometre);
   if (s.max_feed > 0) {
     std::printf("feed constancy       %.6f to %.6f mm/min\n", s.min_feed / kMillimetrePerMinute,
                 s.max_feed / kMillimetrePerMinute);
@@ -99,9 +99,9 @@ void printStatistics(const core::PathStatistics& s) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
                 v[kZ] / kMillimetre, linear, v[kA] / kDegree, rotary);
   };
-  axes("largest velocity", s.max_velocity, "mm/s", "deg/s");
-  axes("largest acceleration", s.max_acceleration, "mm/s^2", "deg/s^2");
-  axes("largest jerk", s.max_jerk, "mm/s^3", "deg/s^3");
+  axes("maximum velocity", s.max_velocity, "mm/s", "deg/s");
+  axes("maximum acceleration", s.max_acceleration, "mm/s^2", "deg/s^2");
+  axes("maximum jerk", s.max_jerk, "mm/s^3", "deg/s^3");
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 

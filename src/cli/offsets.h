@@ -38,13 +38,13 @@ struct TouchOffOptions {
 /// @param large_change_ok it may change by any amount, and nobody is asked. @return the exit status.
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::OffsetBasis& basis, bool large_change_ok);
 
-/// The work offsets; nothing if the grinder does not tell them in time.
+/// The work offsets; nothing if the grinder does not publish them in time.
 std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);
 
-/// Sets work offsets as told, and prints all. @param node the grinder's. @return the exit status; 1 if some do not fit
+/// Sets work offsets as asked, and prints all. @param node the grinder's. @return the exit status; 1 if some do not fit
 /// the job of options.fit, after it has printed why. @throw std::invalid_argument for arguments that do not fit each
 /// other. @throw JobError if a job file is refused.
 int runOffsets(const std::string& node, const OffsetsOptions& options);

@@ -43,7 +43,7 @@ int printStatus(const std::string& node, bool json);
 /// @return the exit status.
 int request(const std::string& node, MachineEvent event);
 
-/// Tells the grinder where the swivel stands. @param degrees -90 to 90. @return the exit status.
+/// Confirms the swivel angle set by hand. @param degrees -90 to 90. @return the exit status.
 int confirmSwivel(const std::string& node, double degrees);
 
 /// Moves an axis by hand, waits until it rests, and prints where it stands; Ctrl-C and Ctrl-Z stop it.

@@ -17,7 +17,7 @@ struct ReportOptions {
   std::string serial;         ///< of the tool
   std::string tolerances;     ///< YAML of what the tool is passed by; empty for the package's own
   int job = 0;                ///< which of a bag's jobs, from 1; 0 for the last
-  std::string parameters;     ///< YAML of the machine, for files that do not tell its limits
+  std::string parameters;     ///< YAML of the machine, for files without its limits
   std::string urdf;
 };
 

@@ -25,7 +25,7 @@ namespace {
 
 using namespace units;
 
-/// The largest difference that is no change of a size [m].
+/// The maximum difference that is no change of a size [m].
 constexpr double kRounding = 1e-9;
 
 /// To a picometre, so that rounding does not show.

@@ -23,7 +23,7 @@ void addWheel(Commands& commands) {
   addJson(add("show", "print the wheel as it is now", "wheels/straight_d125_w2.yaml", showWheel), options->json);
   auto& measure =
       add("measure", "write a measurement into the file", "wheels/my_wheel.yaml --diameter 99.62", measureWheel);
-  addLength(measure, "--diameter", options->diameter_mm, "largest diameter as measured", false).required();
+  addLength(measure, "--diameter", options->diameter_mm, "maximum diameter as measured", false).required();
   addLength(measure, "--width", options->width_mm, "width as measured (default: as before)", false);
   measure.add_flag("--force", options->force, "the wheel may be larger than the file says, which was wrong");
   auto& dress =

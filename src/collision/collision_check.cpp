@@ -163,14 +163,14 @@ double runOutEnd(const CollisionJob& job) {
   const double end_radius = job.cutter.end_diameter / 2;
   const double x = job.stroke_end[kX];
   const double y = end_radius + job.nominal_radius + job.stroke_end[kY];
-  const double depth = std::max(0.0, cone.radius(x) - (y - job.wheel.largestRadius()));
+  const double depth = std::max(0.0, cone.radius(x) - (y - job.wheel.maxRadius()));
   const double radius = std::min(job.shank_diameter / 2, std::max(end_radius, cone.radius(x)) + depth);
 
   Solid wheel = Solid::wheel(job.wheel);
   wheel.pose = Eigen::Translation3d(x, y, job.setup.height + job.stroke_end[kZ]) *
                Eigen::AngleAxisd(-job.setup.swivel, Eigen::Vector3d::UnitY());
   const double reach =
-      job.wheel.largestRadius() + job.wheel.upperFace() - job.wheel.lowerFace() + job.clearance + kRunOutMargin;
+      job.wheel.maxRadius() + job.wheel.upperFace() - job.wheel.lowerFace() + job.clearance + kRunOutMargin;
   double from = x, to = x + reach;
   while (to - from > kRunOutAccuracy) {
     const double middle = (from + to) / 2;

@@ -25,9 +25,9 @@ Axes strokeEndOf(const GrindProgram& program) {
   return end->to;
 }
 
-/// The largest radius of the work within the wheel's reach of a position [m].
+/// The maximum radius of the work within the wheel's reach of a position [m].
 double workRadiusNear(const GrindJob& job, const WheelProfile& wheel, double x) {
-  const double reach = wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace();
+  const double reach = wheel.maxRadius() + wheel.upperFace() - wheel.lowerFace();
   const double flute_end = job.cutter.flute_length;
   const ConicalCutter cone(job.cutter);
   const auto radius = [&](double at) { return cone.radius(std::clamp(at, 0.0, flute_end)); };

@@ -12,8 +12,8 @@ namespace flute_grinder {
 
 namespace {
 
-constexpr double kSmallest = kMinFigure;
-constexpr double kLargest = kMaxFigure;
+constexpr double kMin = kMinFigure;
+constexpr double kMax = kMaxFigure;
 /// Twice the period at which the panel repeats its messages [s].
 constexpr double kMinJogTimeout = 0.05;
 constexpr double kMinBall = 1e-4, kMaxBall = 0.02;  ///< diameter of a probe's [m]
@@ -49,7 +49,7 @@ bool states(const ParameterReader& p, const std::string& joint, const char* flag
 
 double limit(const ParameterReader& p, const std::string& joint, const LimitName& name, double from_urdf) {
   if (states(p, joint, name.flag, {name.value})) {
-    return p.number("joint_limits/" + joint + "/" + name.value, kSmallest, kLargest);
+    return p.number("joint_limits/" + joint + "/" + name.value, kMin, kMax);
   }
   if (from_urdf > 0 && std::isfinite(from_urdf)) return from_urdf;
   throw ParameterError("parameter " + p.name("joint_limits/" + joint + "/" + name.flag) +
@@ -69,13 +69,13 @@ const urdf::Joint& axisJoint(const urdf::Model& model, int axis) {
 }
 
 void readProbing(const ParameterReader& p, const std::string& joint, int axis, LoopConfig& config) {
-  const auto value = [&](const char* what, double largest) {
-    return p.number(std::string("probing/") + what + "/" + joint, kSmallest, largest);
+  const auto value = [&](const char* what, double max) {
+    return p.number(std::string("probing/") + what + "/" + joint, kMin, max);
   };
   ProbingConfig& probing = config.probing;
   probing.velocity[axis] = value("velocity", config.machine.limits.max_velocity[axis]);
   probing.back_off[axis] = value("back_off", 1);
-  probing.largest_spread[axis] = value("largest_spread", 1);
+  probing.max_spread[axis] = value("max_spread", 1);
 }
 
 void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, LoopConfig& config) {
@@ -85,8 +85,8 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
   AxisLimits& limits = config.machine.limits;
 
   if (states(p, name, "has_position_limits", {"min_position", "max_position"})) {
-    limits.min_position[axis] = p.number(ns + "min_position", -kLargest, kLargest);
-    limits.max_position[axis] = p.number(ns + "max_position", -kLargest, kLargest);
+    limits.min_position[axis] = p.number(ns + "min_position", -kMax, kMax);
+    limits.max_position[axis] = p.number(ns + "max_position", -kMax, kMax);
   } else if (joint.limits) {
     limits.min_position[axis] = joint.limits->lower;
     limits.max_position[axis] = joint.limits->upper;
@@ -101,8 +101,8 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
   limits.max_velocity[axis] = limit(p, name, kVelocity, joint.limits ? joint.limits->velocity : 0);
   limits.max_acceleration[axis] = limit(p, name, kAcceleration, 0);
   limits.max_jerk[axis] = limit(p, name, kJerk, 0);
-  config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kSmallest, kLargest);
-  config.jog_velocity[axis] = p.number("jog_velocity/" + name, kSmallest, limits.max_velocity[axis]);
+  config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kMin, kMax);
+  config.jog_velocity[axis] = p.number("jog_velocity/" + name, kMin, limits.max_velocity[axis]);
   readProbing(p, name, axis, config);
   config.machine.park[axis] = p.number("park_position/" + name, limits.min_position[axis], limits.max_position[axis]);
 }
@@ -110,8 +110,8 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
 }  // namespace
 
 MachineGeometry readMachineGeometry(const ParameterReader& p) {
-  constexpr double largest = 10;
-  const auto place = [&](const char* name) { return p.number(std::string("geometry/") + name, -largest, largest); };
+  constexpr double max = 10;
+  const auto place = [&](const char* name) { return p.number(std::string("geometry/") + name, -max, max); };
   MachineGeometry geometry;
   geometry.work_axis_y = place("work_axis/y");
   geometry.work_axis_z = place("work_axis/z");
@@ -136,15 +136,15 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.enable_timeout = p.number("enable_timeout", 0, 60);
   config.homing_timeout = p.number("homing_timeout", 0, 3600);
   config.spindle_timeout = p.number("spindle_timeout", 0, 600);
-  config.machine.max_job_duration = p.number("max_job_duration", 1, kLargest);
+  config.machine.max_job_duration = p.number("max_job_duration", 1, kMax);
   config.machine.collision_clearance = p.number("collision_clearance", 0, 1);
   config.jog_timeout = p.number("jog_timeout", kMinJogTimeout, 1);
   config.geometry = readMachineGeometry(p);
-  config.probing.slow = p.number("probing/slow", kSmallest, 1);
+  config.probing.slow = p.number("probing/slow", kMin, 1);
   // Of one touch alone there is no spread.
   config.probing.touches = p.whole("probing/touches", 2, 100);
-  config.late_slow_down = p.number("late_cycle/slow_down", 2, kLargest);
-  config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kLargest);
+  config.late_slow_down = p.number("late_cycle/slow_down", 2, kMax);
+  config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kMax);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
   config.machine.swivel = readSwivelRange(urdf);
   return config;

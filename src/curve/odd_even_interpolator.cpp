@@ -115,8 +115,8 @@ double OddEvenInterpolator::contraction(double dx) const noexcept {
   return std::min(1.0, 4 * std::abs(curve_.b() * dx) / tangent_.u);
 }
 
-double OddEvenInterpolator::largestStepLength(const LogCurve& curve, double rotary_scale, double x,
-                                              double a_error) noexcept {
+double OddEvenInterpolator::maxStepLength(const LogCurve& curve, double rotary_scale, double x,
+                                          double a_error) noexcept {
   const double k = rotary_scale * curve.k();
   const double u = curve.u(x);
   return std::sqrt(2 * a_error / std::abs(curve.k() * curve.b()) * (u * u + k * k));

@@ -7,9 +7,9 @@ namespace flute_grinder {
 namespace {
 
 void add(StepTable& table, const LogCurve& curve, const CurvePoint& point) {
-  double& largest = table.rows.size() % 2 == 1 ? table.largest_odd_error : table.largest_even_error;
+  double& max = table.rows.size() % 2 == 1 ? table.max_odd_error : table.max_even_error;
   table.rows.push_back({point, curve.a(point.x)});
-  largest = std::max(largest, std::abs(table.rows.back().error()));
+  max = std::max(max, std::abs(table.rows.back().error()));
 }
 
 }  // namespace

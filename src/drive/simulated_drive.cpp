@@ -45,18 +45,16 @@ std::int64_t processorTime() {
 
 /// @param root,p parameters of the node and of the drive.
 SimulatedDrive::Blank readBlank(const ParameterReader& root, const ParameterReader& p) {
-  constexpr double largest = 10;
-  const auto figure = [](const ParameterReader& from, const std::string& name) {
-    return from.number(name, -largest, largest);
-  };
+  constexpr double max = 10;
+  const auto figure = [](const ParameterReader& from, const std::string& name) { return from.number(name, -max, max); };
   SimulatedDrive::Blank blank;
   blank.end_face = figure(p, "blank/end_face");
-  blank.diameter = p.number("blank/diameter", 0, largest);
-  blank.run_out = p.number("blank/run_out", 0, largest);
+  blank.diameter = p.number("blank/diameter", 0, max);
+  blank.run_out = p.number("blank/run_out", 0, max);
   if (p.has("blank/rake_face")) {
     blank.rake_face = {figure(p, "blank/rake_face/height"), p.number("blank/rake_face/angle", -units::kPi, units::kPi)};
   }
-  blank.ball_diameter = root.number("geometry/probe/diameter", 0, largest);
+  blank.ball_diameter = root.number("geometry/probe/diameter", 0, max);
   blank.ball_centre = {figure(root, "geometry/probe/x"),
                        figure(root, "geometry/probe/y") - figure(root, "geometry/work_axis/y"),
                        figure(root, "geometry/probe/z") - figure(root, "geometry/work_axis/z")};

@@ -22,13 +22,13 @@ constexpr int kFitSteps = 40;             ///< of a fit
 constexpr int kStepsBetweenSections = 4;  ///< where errors are weighed by their tolerances
 constexpr double kNoGain = 1e-2;          ///< of a step, of the errors, that ends a fit
 constexpr double kFigureStep = 1e-6;      ///< [rad], of the taper, and of the small end's radius
-constexpr double kLeastSpiral = 1e-3;     ///< below whose tangent a lead has no effect
-constexpr double kLeastDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
+constexpr double kMinSpiral = 1e-3;       ///< below whose tangent a lead has no effect
+constexpr double kMinDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
 
 /// What a figure may differ by: a tolerance of 0 asks for it exactly.
 double allowed(double tolerance) { return std::max(tolerance, kExact); }
 
-double largest(const Eigen::ArrayXd& errors) {
+double maxOf(const Eigen::ArrayXd& errors) {
   if (errors.size() == 0) return 0;
   return errors.allFinite() ? errors.abs().maxCoeff() : std::numeric_limits<double>::infinity();
 }
@@ -47,12 +47,12 @@ class DampedFit {
     if (request.core_diameter_end && !trial.isCylinder()) figures_.push_back(&SetupPoint::taper);
   }
 
-  /// @param enough the largest error at which the fit may end. @return nothing if the start gives no tool.
+  /// @param enough the maximum error at which the fit may end. @return nothing if the start gives no tool.
   std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough) const {
     Eigen::VectorXd errors = at(point, errors_of);
     if (!errors.allFinite()) return std::nullopt;
-    double damping = kLeastDamping;
-    for (int i = 0; i < kFitSteps && largest(errors) > enough; ++i) {
+    double damping = kMinDamping;
+    for (int i = 0; i < kFitSteps && maxOf(errors) > enough; ++i) {
       const double before = errors.norm();
       if (!step(point, errors, damping, errors_of) || errors.norm() > (1 - kNoGain) * before) break;
     }
@@ -62,7 +62,7 @@ class DampedFit {
  private:
   Eigen::VectorXd at(const SetupPoint& p, const Errors& errors_of) const {
     const bool is_setup =
-        std::abs(p.lead) < trial_.wheel().largestRadius() && trial_.cutter().radius(-p.lead) > 0 && trial_.isSound(p);
+        std::abs(p.lead) < trial_.wheel().maxRadius() && trial_.cutter().radius(-p.lead) > 0 && trial_.isSound(p);
     return is_setup ? Eigen::VectorXd(errors_of(p)) : Eigen::VectorXd::Constant(1, std::nan(""));
   }
 
@@ -75,7 +75,7 @@ class DampedFit {
     for (std::size_t k = 0; k < figures_.size(); ++k)
       point.*figures_[k] += step[static_cast<Eigen::Index>(k)] * unit(k);
     // At the end of the machine's range the others go on.
-    point.swivel = std::clamp(point.swivel, request_.least_swivel, request_.largest_swivel);
+    point.swivel = std::clamp(point.swivel, request_.min_swivel, request_.max_swivel);
     if (is_height_tied_) point.height = tiedHeight(trial_, request_, point.swivel);
     return point;
   }
@@ -86,7 +86,7 @@ class DampedFit {
     Eigen::MatrixXd by_figure(errors.size(), count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const bool at_limit = figures_[static_cast<std::size_t>(k)] == &SetupPoint::swivel &&
-                            point.swivel + kFigureStep > request_.largest_swivel;
+                            point.swivel + kFigureStep > request_.max_swivel;
       const double off = at_limit ? -kFigureStep : kFigureStep;
       const Eigen::VectorXd there = at(moved(point, off * Eigen::VectorXd::Unit(count, k)), errors_of);
       if (!there.allFinite()) return false;
@@ -104,7 +104,7 @@ class DampedFit {
       }
       point = next;
       errors = there;
-      damping = std::max(kLeastDamping, damping / (kDampingFactor * kDampingFactor));
+      damping = std::max(kMinDamping, damping / (kDampingFactor * kDampingFactor));
       return true;
     }
     return false;
@@ -128,7 +128,7 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
   };
   const auto found = DampedFit(trial, request).solve(start, errors_of, kExact);
   if (!found) return std::nullopt;
-  return EndsFit{*found, largest(errors_of(*found)) <= kExact};
+  return EndsFit{*found, maxOf(errors_of(*found)) <= kExact};
 }
 
 /// All errors over the flute, each by its tolerance.
@@ -148,14 +148,14 @@ Eigen::ArrayXd weighedErrors(const SetupTrial& trial, const SetupRequest& reques
 
 double SetupErrors::worst(const SetupRequest& request) const {
   const CutterGeometry& c = request.cutter;
-  return std::max({largest(rake) / allowed(c.rake_tolerance),
-                   std::max(largest(turn), largest(spiral)) / allowed(c.spiral_tolerance),
-                   c.chordal_rake_tolerance > 0 ? largest(chord) / c.chordal_rake_tolerance : 0,
-                   largest(core) / allowed(c.core_tolerance / c.end_diameter)});
+  return std::max({maxOf(rake) / allowed(c.rake_tolerance),
+                   std::max(maxOf(turn), maxOf(spiral)) / allowed(c.spiral_tolerance),
+                   c.chordal_rake_tolerance > 0 ? maxOf(chord) / c.chordal_rake_tolerance : 0,
+                   maxOf(core) / allowed(c.core_tolerance / c.end_diameter)});
 }
 
 bool hasLead(const SetupTrial& trial, const SetupRequest& request) {
-  return request.asks_spiral && !trial.isCylinder() && std::abs(std::tan(request.cutter.spiral_angle)) > kLeastSpiral;
+  return request.asks_spiral && !trial.isCylinder() && std::abs(std::tan(request.cutter.spiral_angle)) > kMinSpiral;
 }
 
 bool isHeightTied(const SetupTrial& trial, const SetupRequest& request) {
@@ -216,7 +216,7 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
     const auto next = fitEnds(trial, request, best->point, rake);
     if (!next || !next->is_exact) break;
     const Eigen::ArrayXd there = rake_errors(*next);
-    if (!(largest(there) < largest(here))) break;
+    if (!(maxOf(there) < maxOf(here))) break;
     best = next;
     here = there;
   }
@@ -230,7 +230,7 @@ std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupReque
 
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
   const auto cubed = [&](const SetupPoint& p) -> Eigen::ArrayXd { return weighedErrors(trial, request, p).cube(); };
-  const double error = largest(weighedErrors(trial, request, nearest));
+  const double error = maxOf(weighedErrors(trial, request, nearest));
   if (!(error > 1 && error < kNearEnough)) return nearest;
   return DampedFit(trial, request).solve(nearest, cubed, 1).value_or(nearest);
 }

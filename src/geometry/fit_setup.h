@@ -17,7 +17,7 @@ struct SetupErrors {
   Eigen::ArrayXd chord;   ///< the chordal rake in the sections; none if they are the ends alone [rad]
   Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end; if both are asked, in the sections
 
-  /// The largest error by its tolerance: 1 or less is within them; infinite if there is none.
+  /// The maximum error by its tolerance: 1 or less is within them; infinite if there is none.
   double worst(const SetupRequest& request) const;
 };
 
@@ -46,7 +46,7 @@ struct EndsFit {
 
 /// Fits a set-up to what is asked at the ends: the rake at both, the angle of the edge between them, and the cores. By
 /// the published law of Z the rake rises or falls between the ends, so an exact one gives both the same error of the
-/// other sign: the set-up with the smallest largest error over the flute.
+/// other sign: the set-up with the minimum of the maximum error over the flute.
 /// @param trial, request as of setupErrors(). @param start from which it is looked for.
 /// @return nothing if the start gives no tool.
 std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
@@ -55,7 +55,7 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
 /// @return nothing if the start gives no tool.
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
-/// The same with the least sum of sixth powers, in which the largest error counts most: what it takes to bring the last
+/// The same with the least sum of sixth powers, in which the maximum error counts most: what it takes to bring the last
 /// error within its tolerance. As it is where all are, or one is far beyond.
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest);
 

@@ -47,11 +47,11 @@ struct Asked {
   const WheelSweep& sweep;
   ConicalCutter cutter;
 
-  /// How far another sweep goes beyond it in a section, if farther than `least`; else no more than that [m].
-  double gouge(const WheelSweep& other, double x, double least) const {
+  /// How far another sweep goes beyond it in a section, if farther than `min`; else no more than that [m].
+  double gouge(const WheelSweep& other, double x, double min) const {
     const double radius = cutter.radius(x);
-    const double core = std::min(radius, sweep.leastRadius(x, radius));
-    const double floor = std::min(radius, other.leastRadius(x, radius));
+    const double core = std::min(radius, sweep.minRadius(x, radius));
+    const double floor = std::min(radius, other.minRadius(x, radius));
     double depth = core - floor;
     for (int i = 1; i <= kCompared; ++i) {
       const double u = static_cast<double>(i) / kCompared;  // closer to one another toward the floor
@@ -63,7 +63,7 @@ struct Asked {
         const double angle = high ? ground->high : ground->low;
         // The flute is no farther than its wall is along the circle.
         const double along = own ? r * (high ? angle - own->high : own->low - angle) : core - r;
-        if (own ? along > std::max(depth, least) : core < radius)
+        if (own ? along > std::max(depth, min) : core < radius)
           depth = std::max(depth, distance(x, r, angle, core, along));
       }
     }
@@ -84,15 +84,15 @@ struct Asked {
         return std::hypot(of - r, 2 * std::sqrt(of * r) * half);
       };
       int best = 1;
-      double least = to(best);
+      double min = to(best);
       for (int i = 2; i <= kPlacesOfWall; ++i) {
         const double here = to(i);
-        if (here < least) least = here, best = i;
+        if (here < min) min = here, best = i;
       }
       std::uintmax_t steps = kNearestSteps;
       const auto found =
           boost::math::tools::brent_find_minima(to, best - 1.0, std::min(best + 1.0, kPlacesOfWall * 1.0), 26, steps);
-      nearest = std::min({nearest, least, found.second});
+      nearest = std::min({nearest, min, found.second});
     }
     return nearest;
   }
@@ -100,7 +100,7 @@ struct Asked {
 
 }  // namespace
 
-std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double least) {
+std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double min) {
   const GroundCutter asked = groundCutterOf(job);
   const Range blank{0, job.cutter.flute_length + job.process.overtravel_shank};
   std::vector<Gouge> gouges;
@@ -110,10 +110,10 @@ std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes,
     const WheelSweep sweep = strokes.sweep(stroke);
     Gouge worst{stroke.place, stroke.move, 0, 0};
     for (const double x : sectionsOf(stroke, blank)) {
-      const double depth = flute.gouge(sweep, x, std::max(least, worst.depth));
+      const double depth = flute.gouge(sweep, x, std::max(min, worst.depth));
       if (depth > worst.depth) worst.x = x, worst.depth = depth;
     }
-    if (!(worst.depth > least)) continue;
+    if (!(worst.depth > min)) continue;
     const bool same = !gouges.empty() && gouges.back().place == worst.place && gouges.back().move == worst.move;
     if (!same) {
       gouges.push_back(worst);

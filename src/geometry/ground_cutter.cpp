@@ -108,15 +108,15 @@ std::optional<double> GroundCutter::chordalRake(const Flute& flute, double x, do
 }
 
 double GroundCutter::coreRadius(const Flute& flute, double x) const {
-  double least = cutter_.radius(x);
-  for (const WheelSweep& sweep : flute) least = std::min(least, sweep.leastRadius(x, cutter_.radius(x)));
-  return least;
+  double min = cutter_.radius(x);
+  for (const WheelSweep& sweep : flute) min = std::min(min, sweep.minRadius(x, cutter_.radius(x)));
+  return min;
 }
 
 double GroundCutter::coreRadius(double x) const {
-  double least = cutter_.radius(x);
-  for (const Flute& flute : flutes_) least = std::min(least, coreRadius(flute, x));
-  return least;
+  double min = cutter_.radius(x);
+  for (const Flute& flute : flutes_) min = std::min(min, coreRadius(flute, x));
+  return min;
 }
 
 double GroundCutter::areaRemoved(double x, double core_radius) const {

@@ -40,7 +40,7 @@ std::vector<double> wearOfTeeth(const GrindJob& job) {
 std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, double radius) {
   std::optional<double> first = sweep.overcutStart(x, radius);
   if (!first) return first;  // the wheel reaches no other circle from farther away
-  const double core = sweep.leastRadius(x, radius);
+  const double core = sweep.minRadius(x, radius);
   for (int i = 1; i < kRingsToSpoil; ++i) {
     const auto here = sweep.overcutStart(x, core + (radius - core) * i / kRingsToSpoil);
     if (here && std::abs(*here - x) < std::abs(*first - x)) first = here;

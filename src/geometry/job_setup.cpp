@@ -50,7 +50,7 @@ std::string asked(const char* path, double value, Unit unit) {
 }
 
 std::string range(const SetupRefusal& r, Unit unit) {
-  return text(Quantity{r.least, unit}, Quantity{r.largest, unit}, UnitSystem::kShop, 5);
+  return text(Quantity{r.min, unit}, Quantity{r.max, unit}, UnitSystem::kShop, 5);
 }
 
 std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
@@ -104,7 +104,7 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
       return "no set-up gives all that is asked within its tolerance; the nearest one gives for" +
              textOf(r.nearest, job) + textOf(r.mend, job);
     case SetupProblem::kLand:
-      return "no land is left: the flutes overlap by " + text(Quantity{-r.least, Unit::kMetre}, UnitSystem::kShop, 3) +
+      return "no land is left: the flutes overlap by " + text(Quantity{-r.min, Unit::kMetre}, UnitSystem::kShop, 3) +
              " along the circle" + change + (r.mend.wheel_width > 0 ? textOf(r.mend, job) : "");
     case SetupProblem::kIncomplete:
       return "near the cone's apex no overtravel makes the flute complete" + change + ", or set " +
@@ -130,8 +130,8 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   r.y_per_x = (c.core_diameter_end - c.core_diameter) / 2 / c.flute_length - std::tan(c.cone_angle);
   r.incomplete_ok = p.incomplete_ok;
   r.asks_spiral = true;
-  r.least_swivel = swivel.from;
-  r.largest_swivel = swivel.to;
+  r.min_swivel = swivel.from;
+  r.max_swivel = swivel.to;
   r.keep = keep;
   r.kept = {p.setup_swivel, p.setup_height};
   r.z_law = p.z_law;

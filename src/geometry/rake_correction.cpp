@@ -41,8 +41,8 @@ class Correction {
         const Eigen::VectorXd errors = rakeErrors(z);
         if (!errors.allFinite()) break;
         const RakeCorrection here{z, rake_ + errors.minCoeff(), rake_ + errors.maxCoeff()};
-        if (!best || largestError(here) < largestError(*best)) best = here;
-        if (largestError(*best) < kGoodEnough) return best;
+        if (!best || maxError(here) < maxError(*best)) best = here;
+        if (maxError(*best) < kGoodEnough) return best;
         improve(z, errors);
       }
     }
@@ -57,8 +57,8 @@ class Correction {
     throw core::ReasonError(reason);
   }
 
-  double largestError(const RakeCorrection& c) const {
-    return std::max(std::abs(c.least_rake - rake_), std::abs(c.largest_rake - rake_));
+  double maxError(const RakeCorrection& c) const {
+    return std::max(std::abs(c.min_rake - rake_), std::abs(c.max_rake - rake_));
   }
 
   /// The rake less what is asked, in sections over the flute; not finite where there is no flute.

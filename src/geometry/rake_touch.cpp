@@ -28,7 +28,7 @@ constexpr int kDistances = 24;                 ///< that are tried for what is a
 constexpr int kDiameterHalvings = 6;           ///< of the diameter, the same
 constexpr double kAtEdge = 10e-6;              ///< nearer to the edge than this is no rake face [m]
 constexpr double kFar = 1e3;                   ///< more than any angle of a wall [rad]
-constexpr double kRounding = 1e-6;             ///< of lengths in texts, and the least ball [m]
+constexpr double kRounding = 1e-6;             ///< of lengths in texts, and the minimum ball [m]
 
 /// Why a ball does not come to the rake face.
 enum class Fit { kTouches, kOutside, kEdge, kFloor, kOtherWall };
@@ -136,7 +136,7 @@ class TurningBall {
   }
 
   template <typename Function>
-  static std::pair<double, double> least(const Function& f, double middle, double step, double from, double to) {
+  static std::pair<double, double> minimum(const Function& f, double middle, double step, double from, double to) {
     std::uintmax_t steps = kMaxTouchSteps;
     return boost::math::tools::brent_find_minima(f, std::max(from, middle - step), std::min(to, middle + step), kBits,
                                                  steps);
@@ -145,10 +145,10 @@ class TurningBall {
   Place refined(int side, const Place& place) const {
     const auto in_section = [&](double along) {
       const auto f = [&](double across) { return angleAt(side, along, across); };
-      return least(f, place.across, 1.0 / kTouchSteps, 0, 1);
+      return minimum(f, place.across, 1.0 / kTouchSteps, 0, 1);
     };
     const auto f = [&](double along) { return in_section(along).second; };
-    const auto [along, angle] = least(f, place.along, kPi / kTouchSteps, -kPi / 2, kPi / 2);
+    const auto [along, angle] = minimum(f, place.along, kPi / kTouchSteps, -kPi / 2, kPi / 2);
     return {along, in_section(along).first, angle};
   }
 
@@ -210,7 +210,7 @@ double rounded(double length) { return std::nearbyint(length / kRounding) * kRou
 /// follow one another.
 std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, double radius) {
   const double blank = cutter.cutter().radius(x);
-  const double core = std::min(blank, firstFlute(cutter).front().leastRadius(x, blank));
+  const double core = std::min(blank, firstFlute(cutter).front().minRadius(x, blank));
   const auto at = [&](int i) { return rounded(core + (blank + radius - core) * i / kDistances); };
   const auto fits = [&](int i) { return TurningBall(cutter, x, at(i), radius).coarseFit() == Fit::kTouches; };
   int from = 1;

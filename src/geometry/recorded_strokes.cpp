@@ -40,7 +40,7 @@ bool holds(const Range& range, double x) {
   return x >= range.from - RecordedStrokes::kSame && x <= range.to + RecordedStrokes::kSame;
 }
 
-double largestRadius(const GrindJob& job) {
+double maxRadius(const GrindJob& job) {
   const ConicalCutter cutter(job.cutter);
   return std::max(cutter.radius(0), cutter.radius(job.cutter.flute_length + job.process.overtravel_shank));
 }
@@ -52,7 +52,7 @@ RecordedStrokes::RecordedStrokes(const GrindJob& job)
       order_(passOrder(job)),
       wear_(wearOfPasses(job)),
       depths_(passDepths(job.process)),
-      radius_(largestRadius(job)) {}
+      radius_(maxRadius(job)) {}
 
 double RecordedStrokes::wearOf(const ToothPass& place) const {
   return wear_[static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin())];

@@ -29,7 +29,7 @@ class FluteWalls {
  public:
   FluteWalls(const GroundCutter& cutter, const Flute& flute, double x, double blank_radius)
       : cutter_(cutter), flute_(flute), x_(x), core_(blank_radius) {
-    for (const WheelSweep& sweep : flute) core_ = std::min(core_, sweep.leastRadius(x, blank_radius));
+    for (const WheelSweep& sweep : flute) core_ = std::min(core_, sweep.minRadius(x, blank_radius));
     const double depth = blank_radius - core_;
     // The floor is a point, in the middle of what is removed a little above it.
     for (double above = kNearFloor; empty_ && above < depth; above *= 4) {

@@ -22,10 +22,10 @@ constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
 constexpr double kBeyond = 1e-5;   ///< added to the overtravel, for the precision of an extremum's place [m]
 
-double leastPitch(const std::vector<double>& angles) {
-  double least = angles.front() + 2 * units::kPi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) least = std::min(least, angles[i] - angles[i - 1]);
-  return least;
+double minPitch(const std::vector<double>& angles) {
+  double min = angles.front() + 2 * units::kPi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) min = std::min(min, angles[i] - angles[i - 1]);
+  return min;
 }
 
 /// The stroke that the flute needs, and where it is then complete by the plan's own measure.
@@ -48,10 +48,10 @@ void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup&
 }
 
 void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
-  const double swivel = std::min(s.setup.swivel - request.least_swivel, request.largest_swivel - s.setup.swivel);
+  const double swivel = std::min(s.setup.swivel - request.min_swivel, request.max_swivel - s.setup.swivel);
   const double radius = request.cutter.end_diameter / 2;
   const std::pair<SetupLimit, double> margins[] = {
-      {SetupLimit::kSwivel, swivel / (request.largest_swivel - request.least_swivel)},
+      {SetupLimit::kSwivel, swivel / (request.max_swivel - request.min_swivel)},
       {SetupLimit::kLand, s.land / (pitch * radius)},
       {SetupLimit::kCore, s.core_diameter / 2 / radius}};
   std::tie(s.limit, s.margin) = *std::min_element(std::begin(margins), std::end(margins),
@@ -61,7 +61,7 @@ void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
 }  // namespace
 
 Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
-  const double pitch = leastPitch(request.tooth_angles);
+  const double pitch = minPitch(request.tooth_angles);
   const WheelSweep sweep = trial.sweep(point);
   Judged judged;
   SolvedSetup& s = judged.solved;
@@ -69,8 +69,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   s.setup = {point.swivel, point.height, point.lead};
   s.depth = point.depth;
   s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
-  s.least_rake = s.land = std::numeric_limits<double>::infinity();
-  s.largest_rake = -s.least_rake;
+  s.min_rake = s.land = std::numeric_limits<double>::infinity();
+  s.max_rake = -s.min_rake;
   for (int i = 0; i <= SetupTrial::kSections; ++i) {
     const double x = trial.section(i);
     const double r = trial.cutter().radius(x);
@@ -84,8 +84,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     if (!below || !(std::abs(std::atan(-kBelowEdge * r * below->slope) - rake) < kSameFace)) judged.is_facet = true;
     const double chord_off = std::abs(trial.chordalRake(sweep, x) - request.rake);
     judged.chord_off = std::max(judged.chord_off, std::isnan(chord_off) ? kNotThere : chord_off);
-    s.least_rake = std::min(s.least_rake, rake);
-    s.largest_rake = std::max(s.largest_rake, rake);
+    s.min_rake = std::min(s.min_rake, rake);
+    s.max_rake = std::max(s.max_rake, rake);
     s.land = std::min(s.land, r * (pitch - (high->angle - low->angle)));
     judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
   }
@@ -111,7 +111,7 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
 bool isBetter(const Judged& a, const Judged& b) {
   const auto order = [](const Judged& j) {
     const SolvedSetup& s = j.solved;
-    const double spread = s.largest_rake - s.least_rake;
+    const double spread = s.max_rake - s.min_rake;
     return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short, j.is_facet,
                       std::floor(j.error / kSameError), std::floor(spread / kSameRake),
                       std::floor(j.chord_off / kSameChord), -j.formed_by_face, spread);

@@ -14,7 +14,7 @@ struct Judged {
   double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
   double error = 0;           ///< the largest over the flute, by its tolerance
   bool is_facet = false;      ///< the rake is that of a facet at the edge, with another angle behind it
-  double chord_off = 0;       ///< largest difference of the chordal rake from the asked rake [rad]
+  double chord_off = 0;       ///< maximum difference of the chordal rake from the asked rake [rad]
   bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
   std::optional<SetupProblem> problem;
 };

@@ -113,7 +113,7 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
     case SetupLimit::kSwivel:
       return line("swivel", format("%.3f deg from the end of the machine's range",
                                    deg(setup.margin * (swivel.to - swivel.from))));
-    case SetupLimit::kLand: return line("land", format("%.1f %% of the least pitch is left", percent));
+    case SetupLimit::kLand: return line("land", format("%.1f %% of the minimum pitch is left", percent));
     case SetupLimit::kCore: return line("core", format("%.1f %% of the small end's diameter is left", percent));
   }
   return "";

@@ -21,7 +21,7 @@ constexpr double kSame = 1e-4;   ///< [rad], of the taper and of the radius: of 
 constexpr double kAlike = 0.02;  ///< likewise, of two that lead on to the same
 constexpr int kMostEvened = 8;   ///< of those nearest to the tolerances
 /// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
-/// A wheel in the plane of the helix may give the largest rake on a cylinder, and that be the asked one.
+/// A wheel in the plane of the helix may give the maximum rake on a cylinder, and that be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
 const std::vector<double> kOtherSwivels{0, -4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
 const std::vector<double> kSwivelsOfCylinder{0, 4 * units::kDegree, -4 * units::kDegree};
@@ -47,9 +47,9 @@ void check(const SetupRequest& r) {
   requireFinite("rake", r.rake, std::abs(r.rake) < kQuarter, "within (-pi/2, pi/2) [rad]");
   requireFinite("nominal_radius", r.nominal_radius, r.nominal_radius > 0, "positive [m]");
   requireFinite("y_per_x", r.y_per_x, true, "finite");
-  requireFinite("least_swivel", r.least_swivel, std::abs(r.least_swivel) < kQuarter, "within (-pi/2, pi/2) [rad]");
-  requireFinite("largest_swivel", r.largest_swivel, r.largest_swivel > r.least_swivel && r.largest_swivel < kQuarter,
-                "above the least one, below pi/2 [rad]");
+  requireFinite("min_swivel", r.min_swivel, std::abs(r.min_swivel) < kQuarter, "within (-pi/2, pi/2) [rad]");
+  requireFinite("max_swivel", r.max_swivel, r.max_swivel > r.min_swivel && r.max_swivel < kQuarter,
+                "above the minimum, below pi/2 [rad]");
   if (r.core_diameter) {
     requireFinite("core_diameter", *r.core_diameter, *r.core_diameter > 0 && *r.core_diameter < r.cutter.end_diameter,
                   "positive, below the end diameter [m]");
@@ -70,9 +70,9 @@ SetupRequest mirrored(SetupRequest r) {
   r.cutter.spiral_angle = -r.cutter.spiral_angle;
   r.wheel = r.wheel.mirrored();
   r.kept = {-r.kept.swivel, -r.kept.height};
-  std::swap(r.least_swivel, r.largest_swivel);
-  r.least_swivel = -r.least_swivel;
-  r.largest_swivel = -r.largest_swivel;
+  std::swap(r.min_swivel, r.max_swivel);
+  r.min_swivel = -r.min_swivel;
+  r.max_swivel = -r.max_swivel;
   return r;
 }
 
@@ -110,9 +110,9 @@ std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& re
   std::vector<SetupPoint> starts;
   for (const double swivel : swivels) {
     SetupPoint p;
-    p.swivel = std::clamp(request.cutter.spiral_angle + swivel, request.least_swivel, request.largest_swivel);
+    p.swivel = std::clamp(request.cutter.spiral_angle + swivel, request.min_swivel, request.max_swivel);
     if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
-    const double highest = radius + std::sqrt(2 * trial.wheel().largestRadius() * depth) * std::abs(std::sin(p.swivel));
+    const double highest = radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(p.swivel));
     const bool has_heights = request.keep != SetupFigure::kHeight && !isHeightTied(trial, request);
     const int heights = has_heights ? kStartHeights : 0;
     for (int i = -heights; i <= heights; ++i) {
@@ -250,7 +250,7 @@ double mendingWidth(const SetupRequest& request, SetupPoint nearest) {
 
 /// The largest of some smaller wheels that mends it; 0 if none does [m].
 double mendingDiameter(const SetupRequest& request, SetupPoint nearest) {
-  const double diameter = 2 * request.wheel.largestRadius();
+  const double diameter = 2 * request.wheel.maxRadius();
   for (int i = 1; i <= kSmallerWheels; ++i) {
     SetupRequest smaller = request;
     const double of_new = diameter * (1 - kLessWheel * i);
@@ -317,7 +317,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     if (auto* solved = std::get_if<SolvedSetup>(&result)) {
       solved->setup = {-solved->setup.swivel, -solved->setup.height, solved->setup.lead};
     } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
-      refusal = {refusal.problem, -refusal.asked, -refusal.largest, -refusal.least};
+      refusal = {refusal.problem, -refusal.asked, -refusal.max, -refusal.min};
     } else {
       refusal.nearest.spiral = {-refusal.nearest.spiral.to, -refusal.nearest.spiral.from};
     }
@@ -325,21 +325,21 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   }
   const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
   const auto beyond = [&](double swivel) {
-    return SetupRefusal{SetupProblem::kSwivel, swivel, request.least_swivel, request.largest_swivel};
+    return SetupRefusal{SetupProblem::kSwivel, swivel, request.min_swivel, request.max_swivel};
   };
   if (request.keep == SetupFigure::kSwivel &&
-      !(request.kept.swivel >= request.least_swivel && request.kept.swivel <= request.largest_swivel)) {
+      !(request.kept.swivel >= request.min_swivel && request.kept.swivel <= request.max_swivel)) {
     return beyond(request.kept.swivel);
   }
   const Fitted here = fitted(trial, request, true);
   if (here.best && !here.best->problem) return here.best->solved;
   // What the machine's range does not stop is not beyond it either.
-  const double nearest = here.nearest ? here.nearest->swivel : request.largest_swivel;
-  const double to_limit = std::min(nearest - request.least_swivel, request.largest_swivel - nearest);
+  const double nearest = here.nearest ? here.nearest->swivel : request.max_swivel;
+  const double to_limit = std::min(nearest - request.min_swivel, request.max_swivel - nearest);
   if (request.keep != SetupFigure::kSwivel && to_limit < kAtLimit) {
     SetupRequest wide = request;
-    wide.least_swivel = -kWidestSwivel;
-    wide.largest_swivel = kWidestSwivel;
+    wide.min_swivel = -kWidestSwivel;
+    wide.max_swivel = kWidestSwivel;
     const Fitted anywhere = fitted(trial, wide, false);
     if (anywhere.best && !anywhere.best->problem) return beyond(anywhere.best->solved.setup.swivel);
   }

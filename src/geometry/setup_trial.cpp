@@ -30,8 +30,8 @@ SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, d
       y_per_x_(y_per_x),
       deepest_(std::min(cutter.radius(0),
                         cutter.radius(cutter.geometry().flute_length) + y_per_x * cutter.geometry().flute_length)),
-      far_(4 * wheel.largestRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length),
-      face_from_(wheel.largestPlace().to) {}
+      far_(4 * wheel.maxRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length),
+      face_from_(wheel.maxPlace().to) {}
 
 bool SetupTrial::isCylinder() const noexcept {
   return std::abs(cutter_.tanCone()) < kCylinder && std::abs(y_per_x_) < kCylinder;
@@ -85,7 +85,7 @@ double SetupTrial::chordalRake(const WheelSweep& sweep, double x) const {
 }
 
 double SetupTrial::coreRadius(const WheelSweep& sweep, double x) const {
-  const double radius = sweep.leastRadius(x, std::numeric_limits<double>::max());
+  const double radius = sweep.minRadius(x, std::numeric_limits<double>::max());
   return std::isfinite(radius) ? radius : kNowhere;
 }
 
@@ -96,7 +96,7 @@ double SetupTrial::depthFor(double swivel, double height, double core_radius) co
 
 double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x);
-  const double depth = r - sweep.leastRadius(x, r);
+  const double depth = r - sweep.minRadius(x, r);
   for (int i = 0; i < kWallRings; ++i) {
     const auto wall = sweep.wall(x, r - depth * i / kWallRings, true);
     if (!wall || wall->w < face_from_ - kOnFace) return static_cast<double>(i) / kWallRings;
@@ -106,7 +106,7 @@ double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {
 
 SetupTrial::Reach SetupTrial::reach(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x);
-  const double core = sweep.leastRadius(x, r);
+  const double core = sweep.minRadius(x, r);
   Reach reach{x, x, true};
   for (int i = 0; i <= kRingsOfReach; ++i) {
     const double part = i == 0 ? kFloor : static_cast<double>(i) / kRingsOfReach;

@@ -21,8 +21,8 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
-  const Range& largest = wheel.largestPlace();
-  touch.z_for_y = -(p.setup_height + (largest.from + largest.to) / 2 * std::cos(p.setup_swivel));
+  const Range& widest = wheel.maxPlace();
+  touch.z_for_y = -(p.setup_height + (widest.from + widest.to) / 2 * std::cos(p.setup_swivel));
   touch.z = -wheel.lowerFace() - p.setup_height - above_swivel * (1 - std::cos(p.setup_swivel));
   return touch;
 }
@@ -46,11 +46,11 @@ std::string heightRefusal(const GrindJob& job, double z) {
   const double w = -height / std::cos(job.process.setup_swivel);
   const double on_wheel = std::clamp(w, wheel.lowerFace(), wheel.upperFace());
   const bool meets =
-      std::abs(w - on_wheel) <= kTouchTolerance && wheel.radius(on_wheel) >= wheel.largestRadius() - kTouchTolerance;
+      std::abs(w - on_wheel) <= kTouchTolerance && wheel.radius(on_wheel) >= wheel.maxRadius() - kTouchTolerance;
   if (meets) return "";
   const auto shown = [](double si) { return text({si, Unit::kMetre}, UnitSystem::kShop); };
   return "the wheel's centre stands " + shown(height) +
-         " above the cutter's axis: there the wheel does not touch a blank with its largest diameter; move Z to " +
+         " above the cutter's axis: there the wheel does not touch a blank with its maximum diameter; move Z to " +
          shown(touchReadings(job).z_for_y) + ", and touch again";
 }
 

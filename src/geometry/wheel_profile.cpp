@@ -32,7 +32,7 @@ WheelProfile::WheelProfile(std::vector<ProfilePoint> corners, const std::array<d
   fillets_ = {fillet(false, corner_radii[0]), fillet(true, corner_radii[1])};
   require(fillets_[0].to <= fillets_[1].from, "corner_radius", std::max(corner_radii[0], corner_radii[1]),
           "small enough for both corners to fit");
-  findLargest();
+  findMax();
 }
 
 WheelProfile WheelProfile::straight(double diameter, double width, const std::array<double, 2>& corner_radii) {
@@ -102,18 +102,18 @@ WheelProfile::Fillet WheelProfile::fillet(bool upper, double size) const {
   return upper ? Fillet{touch, corner.w + 1, w, radius, size} : Fillet{corner.w - 1, touch, w, radius, size};
 }
 
-void WheelProfile::findLargest() {
+void WheelProfile::findMax() {
   std::vector<double> places;  // between two of them there is a line, or a circle that rises or falls
   for (const ProfilePoint& corner : corners_) places.push_back(corner.w);
   for (const Fillet& f : fillets_) {
     if (f.size > 0) places.push_back(std::clamp(f.w, lowerFace(), upperFace()));
   }
   std::sort(places.begin(), places.end());
-  for (const double w : places) largest_radius_ = std::max(largest_radius_, radius(w));
-  const auto is_largest = [&](double w) { return radius(w) >= largest_radius_ * (1 - kShortfall); };
-  const auto last = std::find_if(places.rbegin(), places.rend(), is_largest);
-  const auto before = std::find_if_not(last, places.rend(), is_largest);
-  largest_place_ = {*std::prev(before), *last};
+  for (const double w : places) max_radius_ = std::max(max_radius_, radius(w));
+  const auto is_max = [&](double w) { return radius(w) >= max_radius_ * (1 - kShortfall); };
+  const auto last = std::find_if(places.rbegin(), places.rend(), is_max);
+  const auto before = std::find_if_not(last, places.rend(), is_max);
+  max_place_ = {*std::prev(before), *last};
 }
 
 WheelProfile WheelProfile::mirrored() const {
@@ -128,12 +128,12 @@ WheelProfile WheelProfile::worn(double wear) const {
   return WheelProfile(std::move(corners), corner_radii_);
 }
 
-WheelProfile WheelProfile::withDiameter(double diameter) const { return worn(largest_radius_ - diameter / 2); }
+WheelProfile WheelProfile::withDiameter(double diameter) const { return worn(max_radius_ - diameter / 2); }
 
 std::optional<WheelProfile> WheelProfile::withWidth(double width) const {
   const bool is_straight = corners_.size() == 2 && corners_[0].radius == corners_[1].radius;
   if (!is_straight || !(corner_radii_[0] + corner_radii_[1] <= width)) return std::nullopt;
-  return straight(2 * largest_radius_, width, corner_radii_);
+  return straight(2 * max_radius_, width, corner_radii_);
 }
 
 }  // namespace flute_grinder

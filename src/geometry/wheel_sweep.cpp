@@ -24,7 +24,7 @@ constexpr double kPoseTurn = 0.1;  ///< of the cutter between two poses; or the 
 constexpr int kAnglesPerPose = 8;  ///< from which the wheel's deepest place on a circle is refined
 constexpr std::uintmax_t kMaxPoseSteps = 60;
 constexpr int kPoseHalvings = 30;      ///< of a step between poses, for where a circle near the floor is reached
-constexpr int kDiscs = 16;             ///< of the wheel, from which its least radius is refined
+constexpr int kDiscs = 16;             ///< of the wheel, from which its minimum radius is refined
 constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
 constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
 constexpr double kSameAngle = 1e-12;   ///< by which a longer stroke must move an end to count as farther [rad]
@@ -127,7 +127,7 @@ WheelSweep::Pose WheelSweep::pose(double x, double axis_x) const noexcept {
 }
 
 double WheelSweep::lowestPoint(double axis_x) const noexcept {
-  return centre_ + axis_x * y_per_x_ + deepest_deviation_ - wheel_.largestRadius();
+  return centre_ + axis_x * y_per_x_ + deepest_deviation_ - wheel_.maxRadius();
 }
 
 double WheelSweep::outside(const Pose& p, double r, double theta) const noexcept {
@@ -140,7 +140,7 @@ double WheelSweep::outside(const Pose& p, double r, double theta) const noexcept
 
 WheelSweep::Window WheelSweep::reach(double x, double r) const noexcept {
   const double width = std::max(std::abs(wheel_.lowerFace()), std::abs(wheel_.upperFace())) * std::abs(sin_);
-  const double radius = wheel_.largestRadius();
+  const double radius = wheel_.maxRadius();
   // Where the wheel's circle, seen from the side and moved by the width either way, meets the height r: on a cone its
   // centre rises with X.
   const double above = centre_ + x * y_per_x_ + deepest_deviation_ - r;
@@ -159,10 +159,10 @@ WheelSweep::Window WheelSweep::betweenFaces(double x, double r) const noexcept {
   // In a section the faces pass the axis at heights that are linear along the stroke.
   const double rise = z_per_x_ - sin_ / cos_;
   const double at_start = height_ + x * sin_ / cos_;
-  const double least = -r - (at_start + wheel_.upperFace() / cos_ + z_off_.to);
-  const double most = r - (at_start + wheel_.lowerFace() / cos_ + z_off_.from);
-  if (rise == 0) return least <= 0 && most >= 0 ? Window{-kInfinite, kInfinite} : Window{kInfinite, -kInfinite};
-  return {std::min(least / rise, most / rise), std::max(least / rise, most / rise)};
+  const double min = -r - (at_start + wheel_.upperFace() / cos_ + z_off_.to);
+  const double max = r - (at_start + wheel_.lowerFace() / cos_ + z_off_.from);
+  if (rise == 0) return min <= 0 && max >= 0 ? Window{-kInfinite, kInfinite} : Window{kInfinite, -kInfinite};
+  return {std::min(min / rise, max / rise), std::max(min / rise, max / rise)};
 }
 
 int WheelSweep::posesOf(double x, const Window& w) const noexcept {
@@ -181,31 +181,31 @@ std::optional<WheelSweep::Window> WheelSweep::window(double x, double r) const n
 }
 
 std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) const {
-  const double lowest = p.y - wheel_.largestRadius();
+  const double lowest = p.y - wheel_.maxRadius();
   if (lowest >= r) return std::nullopt;
   // Where the circle lies between the wheel's faces and not below its lowest point.
   const double open = std::acos(std::clamp(lowest / r, 0.0, 1.0));
   const auto at_face = [&](double w) { return std::asin(std::clamp((p.z + (w + p.dx * sin_) / cos_) / r, -1.0, 1.0)); };
-  const double least = std::max(-open, at_face(wheel_.lowerFace()));
-  const double most = std::min(open, at_face(wheel_.upperFace()));
-  if (!(least < most)) return std::nullopt;
+  const double min = std::max(-open, at_face(wheel_.lowerFace()));
+  const double max = std::min(open, at_face(wheel_.upperFace()));
+  if (!(min < max)) return std::nullopt;
 
   const auto f = [&](double theta) { return outside(p, r, theta); };
-  const double end = high ? most : least;
+  const double end = high ? max : min;
   const double f_end = f(end);
   if (f_end <= 0) return end;
-  double inside = high ? least : most;
+  double inside = high ? min : max;
   double f_inside = f(inside);
-  const double step = (most - least) / kAnglesPerPose;
+  const double step = (max - min) / kAnglesPerPose;
   for (int i = 1; i < kAnglesPerPose; ++i) {
-    const double theta = least + i * step;
+    const double theta = min + i * step;
     const double value = f(theta);
     if (value < f_inside) inside = theta, f_inside = value;
   }
   if (f_inside > 0) {
     std::uintmax_t steps = kMaxPoseSteps;
-    std::tie(inside, f_inside) = boost::math::tools::brent_find_minima(f, std::max(least, inside - step),
-                                                                       std::min(most, inside + step), 26, steps);
+    std::tie(inside, f_inside) =
+        boost::math::tools::brent_find_minima(f, std::max(min, inside - step), std::min(max, inside + step), 26, steps);
     if (!(f_inside <= 0)) return std::nullopt;
   }
   return root(f, inside, f_inside, end, f_end);
@@ -320,18 +320,18 @@ std::optional<double> WheelSweep::overcutStart(double x, double r) const {
 }
 
 template <typename Function>
-WheelSweep::Least WheelSweep::least(double x, double largest_height, const Function& f) const {
-  // Along the stroke, for the disc of the wheel at w, f is convex: one search finds its least value.
-  const auto of_disc = [&](double w) -> Least {
+WheelSweep::Minimum WheelSweep::minimum(double x, double max_height, const Function& f) const {
+  // Along the stroke, for the disc of the wheel at w, f is convex: one search finds its minimum value.
+  const auto of_disc = [&](double w) -> Minimum {
     const double radius = wheel_.radius(w);
     double from = std::max(std::min(stroke_.from, stroke_.to), x - (radius * cos_ - w * sin_));
     double to = std::min(std::max(stroke_.from, stroke_.to), x + (radius * cos_ + w * sin_));
     const double rise = z_per_x_ - sin_ / cos_;
     const double height = height_ + (w + x * sin_) / cos_;
-    if (std::isfinite(largest_height)) {
-      if (rise == 0 && std::abs(height) > largest_height) return {kInfinite, x};
+    if (std::isfinite(max_height)) {
+      if (rise == 0 && std::abs(height) > max_height) return {kInfinite, x};
       if (rise != 0) {
-        const double one = (largest_height - height) / rise, other = (-largest_height - height) / rise;
+        const double one = (max_height - height) / rise, other = (-max_height - height) / rise;
         from = std::max(from, std::min(one, other));
         to = std::min(to, std::max(one, other));
       }
@@ -349,9 +349,9 @@ WheelSweep::Least WheelSweep::least(double x, double largest_height, const Funct
   };
   const double step = (wheel_.upperFace() - wheel_.lowerFace()) / kDiscs;
   const auto at = [&](double i) { return of_disc(std::min(wheel_.lowerFace() + i * step, wheel_.upperFace())); };
-  std::array<Least, kDiscs + 1> discs;
+  std::array<Minimum, kDiscs + 1> discs;
   for (int i = 0; i <= kDiscs; ++i) discs[static_cast<std::size_t>(i)] = at(i);
-  Least best = discs[0];
+  Minimum best = discs[0];
   for (int i = 0; i <= kDiscs; ++i) {
     const auto here = static_cast<std::size_t>(i);
     if (discs[here].value < best.value) best = discs[here];
@@ -360,20 +360,20 @@ WheelSweep::Least WheelSweep::least(double x, double largest_height, const Funct
     std::uintmax_t steps = kMaxPoseSteps;
     const double from = std::max(0, i - 1), to = std::min(kDiscs, i + 1);
     const auto value = [&](double disc) { return at(disc).value; };
-    const Least found = at(boost::math::tools::brent_find_minima(value, from, to, 26, steps).first);
+    const Minimum found = at(boost::math::tools::brent_find_minima(value, from, to, 26, steps).first);
     if (found.value < best.value) best = found;
   }
   return best;
 }
 
-WheelSweep::Least WheelSweep::leastSquare(double x) const {
+WheelSweep::Minimum WheelSweep::minSquare(double x) const {
   const auto square = [](double y, double z) { return (y > 0 ? y * y : 0) + z * z; };
-  return least(x, std::numeric_limits<double>::infinity(), square);
+  return minimum(x, std::numeric_limits<double>::infinity(), square);
 }
 
 std::optional<WheelSweep::Window> WheelSweep::narrowWindow(double x, double r, double step) const {
   // Near the floor, circles are reached along less of the stroke than a step between poses.
-  const Least lowest = leastSquare(x);
+  const Minimum lowest = minSquare(x);
   const auto reached = [&](double axis_x) { return endAt(pose(x, axis_x), r, true).has_value(); };
   if (!(lowest.value < r * r) || !reached(lowest.axis_x)) return std::nullopt;
   const auto end = [&](double outside) {
@@ -436,7 +436,7 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   // The wheel moves along its groove's wall: of the normals about the point, one at a corner of the profile being any
   // between those of its two sides, the wall's is the one square to the wheel's motion.
   const bool on_face = outside(p, r, theta) < -kCorner;
-  const double face = w + (2 * w > wheel_.lowerFace() + wheel_.upperFace() ? 1 : -1) * wheel_.largestRadius();
+  const double face = w + (2 * w > wheel_.lowerFace() + wheel_.upperFace() ? 1 : -1) * wheel_.maxRadius();
   const Normal below = normal(p, r, theta, on_face ? face : w - kCorner);
   const Normal above = normal(p, r, theta, on_face ? face : w + kCorner);
   const double difference = above.along_motion - below.along_motion;
@@ -446,14 +446,14 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   return Wall{angle, -radial / (r * tangential), w, end.axis_x, isComplete(x, r, end, high)};
 }
 
-double WheelSweep::leastRadius(double x, double blank_radius) const {
-  const double radius = std::sqrt(leastSquare(x).value);
+double WheelSweep::minRadius(double x, double blank_radius) const {
+  const double radius = std::sqrt(minSquare(x).value);
   return radius < blank_radius ? radius : std::numeric_limits<double>::infinity();
 }
 
 double WheelSweep::deeperFor(double x, double radius) const {
   const auto deeper = [&](double y, double z) { return y - std::sqrt(std::max(0.0, radius * radius - z * z)); };
-  return least(x, radius, deeper).value;
+  return minimum(x, radius, deeper).value;
 }
 
 }  // namespace flute_grinder

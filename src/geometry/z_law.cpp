@@ -18,7 +18,7 @@ ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch)
   const auto found =
       correctRake(ConicalCutter(cutterOf(job, tooth)), wheelOf(job).worn(p.wheel_wear), p.wheel_diameter / 2,
                   setupOf(job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
-  if (found && std::abs(found->least_rake - rake) <= kEvenRake && std::abs(found->largest_rake - rake) <= kEvenRake) {
+  if (found && std::abs(found->min_rake - rake) <= kEvenRake && std::abs(found->max_rake - rake) <= kEvenRake) {
     return found->z;
   }
   core::Reason reason;
@@ -26,8 +26,8 @@ ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch)
   reason.field = "process.z_law";
   reason.unit = Unit::kRadian;
   reason.tooth = tooth;
-  reason.low = found ? found->least_rake : 1;
-  reason.value = found ? found->largest_rake : 0;
+  reason.low = found ? found->min_rake : 1;
+  reason.value = found ? found->max_rake : 0;
   reason.limit = rake;
   throw core::ReasonError(reason);
 }

@@ -91,7 +91,7 @@ void checkSpirals(Checker& checker, const GrindJob& job) {
 
 void checkWheelPoints(Checker& checker, const GrindJob& job) {
   constexpr double rounding = 1e-9;
-  constexpr double smallest = 0.05e-3, largest = 250e-3;
+  constexpr double min = 0.05e-3, max = 250e-3;
   const GrindProcess& p = job.process;
   const std::vector<ProfilePoint>& points = job.wheel_points;
   const char* const path = "process.wheel_points";
@@ -103,10 +103,10 @@ void checkWheelPoints(Checker& checker, const GrindJob& job) {
   if (!checker.good()) return;
   double radius = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!(points[i].radius >= smallest && points[i].radius <= largest)) {
-      checker.refuse(ReasonKind::kOutOfRange, path, {points[i].radius, Unit::kMetre}, "", largest, smallest);
+    if (!(points[i].radius >= min && points[i].radius <= max)) {
+      checker.refuse(ReasonKind::kOutOfRange, path, {points[i].radius, Unit::kMetre}, "", max, min);
     }
-    if (!(std::abs(points[i].w) <= largest && (i == 0 || points[i].w > points[i - 1].w))) {
+    if (!(std::abs(points[i].w) <= max && (i == 0 || points[i].w > points[i - 1].w))) {
       checker.refuse(ReasonKind::kNotAllowed, path, {points[i].w, Unit::kMetre}, "places along the spindle, ascending");
     }
     radius = std::max(radius, points[i].radius);
@@ -218,8 +218,8 @@ CutterGeometry cutterOf(const GrindJob& job, int tooth) {
 Range askedSpiral(const GrindJob& job) {
   const std::vector<double>& angles = job.spiral_angles;
   if (angles.empty()) return {job.cutter.spiral_angle, job.cutter.spiral_angle};
-  const auto [least, largest] = std::minmax_element(angles.begin(), angles.end());
-  return {*least, *largest};
+  const auto [min, max] = std::minmax_element(angles.begin(), angles.end());
+  return {*min, *max};
 }
 
 ZCorrection zCorrectionOf(const GrindJob& job, int tooth) {

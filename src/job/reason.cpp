@@ -32,7 +32,7 @@ class Writer {
                ", clear of the work";
       case ReasonKind::kTolerance:
         return name("interpolation.tolerance") + " = " + limit() + ": the path deviates by " + value() +
-               " at the largest feed override" + place() + "; lower " + name("process.feed") +
+               " at the maximum feed override" + place() + "; lower " + name("process.feed") +
                ", or set interpolation.even_step to exact";
       case ReasonKind::kRake:
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +

@@ -71,16 +71,16 @@ double wearOf(double diameter, double measured) {
 void takeMeasuredDiameter(FlatFile& file, GrindProcess& process) {
   const JobField diameter = fieldOf("process.wheel_diameter");
   const JobField wear = fieldOf("process.wheel_wear");
-  // A wrong diameter_mm is told by itself.
+  // A wrong diameter_mm is reported by itself.
   const bool set = process.wheel_diameter >= diameter.low().si && process.wheel_diameter <= diameter.high().si;
-  const double most = set ? process.wheel_diameter : diameter.high().si;
-  const double least = set ? std::max(diameter.low().si, most - 2 * wear.high().si) : diameter.low().si;
-  const std::string allowed = text(Quantity{least, Unit::kMetre}, Quantity{most, Unit::kMetre}, UnitSystem::kShop, 10) +
+  const double max = set ? process.wheel_diameter : diameter.high().si;
+  const double min = set ? std::max(diameter.low().si, max - 2 * wear.high().si) : diameter.low().si;
+  const std::string allowed = text(Quantity{min, Unit::kMetre}, Quantity{max, Unit::kMetre}, UnitSystem::kShop, 10) +
                               ", the diameter to which Y = 0 is set";
   double value = 0;
   if (!file.take(kDiameter, allowed, value)) return;
   const double measured = value * kMillimetre;
-  if (!(measured >= least && measured <= most)) {
+  if (!(measured >= min && measured <= max)) {
     return file.fail(file.line(kDiameter), std::string(kDiameter) + " = " +
                                                text(Quantity{measured, Unit::kMetre}, UnitSystem::kShop, 10) +
                                                "; allowed: " + allowed);

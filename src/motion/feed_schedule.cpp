@@ -36,7 +36,7 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
   const LogCurve curve(cutter, stroke.lead);
   const double z_per_x = cutter.tanCone() * cutter.zPerY();
   const ZCorrection::Bounds correction = stroke.z_correction.bounds();
-  z_per_x_ = std::max(std::abs(z_per_x + correction.least_first), std::abs(z_per_x + correction.largest_first));
+  z_per_x_ = std::max(std::abs(z_per_x + correction.min_first), std::abs(z_per_x + correction.max_first));
   z_bend_ = correction.second;
   z_twist_ = correction.third;
   chooseSpeeds(cutter, stroke, machine);
@@ -92,7 +92,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   Bound even;  // on the speed of X, everywhere on the stroke
   // The odd points' deviation is largest at the thin end. The next-order term reduces the leading-order step.
   const double a_error = stroke.tolerance / FormedEdge{cutter, stroke.lead}.deviation(thin_x, 1);
-  const double step = OddEvenInterpolator::largestStepLength(curve, 1, thin_x, a_error);
+  const double step = OddEvenInterpolator::maxStepLength(curve, 1, thin_x, a_error);
   if (std::isfinite(step)) {
     const double dx = step * u_thin / std::hypot(u_thin, curve.k());
     even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");

@@ -17,19 +17,19 @@ void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
   plan.reasons.push_back(std::move(reason));
 }
 
-/// @param least lower bound of the duration [s]; 0 if it is unknown.
-void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double least) {
+/// @param min lower bound of the duration [s]; 0 if it is unknown.
+void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double min) {
   core::Reason reason;
   reason.kind = core::ReasonKind::kTooLong;
   reason.unit = Unit::kSecond;
-  reason.value = least;
+  reason.value = min;
   reason.limit = machine.max_job_duration;
   reason.count = job.tooth_angles.size() * passDepths(job.process).size();
   refuse(plan, PlanFault::kTooLong, std::move(reason));
 }
 
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
-double leastDuration(const GrindJob& job, const ToothPass& first) {
+double minDuration(const GrindJob& job, const ToothPass& first) {
   const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
   const auto teeth = static_cast<double>(job.tooth_angles.size());
   double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
@@ -102,7 +102,7 @@ class ShapePlanner {
 
   /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics. It is
   /// not
-  ///         if something is not allowed: every setpoint is needed to tell all of that.
+  ///         if something is not allowed: every setpoint is needed to say all of that.
   bool run() {
     Setpoint p;
     while (stream_.next(p)) {
@@ -208,9 +208,9 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     plan.fault = PlanFault::kInvalidJob;
     return plan;
   }
-  const double least = leastDuration(job, first);
-  if (least > machine.max_job_duration) {
-    refuseAsTooLong(plan, job, machine, least);
+  const double min = minDuration(job, first);
+  if (min > machine.max_job_duration) {
+    refuseAsTooLong(plan, job, machine, min);
     return plan;
   }
   try {

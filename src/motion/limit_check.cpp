@@ -36,11 +36,11 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const 
   const Axes& p = setpoint.position;
   if (seen_++ == 0) {
     last_ = p;
-    largest_ = Axes::Zero();
+    max_ = Axes::Zero();
     for (Axes& end : ends_) end = p;
   }
   if (slow_down_ < 1 && setpoint.cycle % 2 == 1) slowPastDown();
-  largest_ = largest_.max(p.abs());
+  max_ = max_.max(p.abs());
   velocity_ = (p - last_) * inverse_period_;
   last_ = p;
 
@@ -104,7 +104,7 @@ void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, c
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     // A position is the sum of a few numbers no larger than the largest so far, each rounded to half an epsilon.
-    const double noise = roundings_ * 2 * kEpsilon * largest_[axis] * rounding;
+    const double noise = roundings_ * 2 * kEpsilon * max_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);
     }

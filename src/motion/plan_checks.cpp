@@ -69,7 +69,7 @@ void PlanChecks::count(const Setpoint& p) {
 
 void PlanChecks::measure(const Setpoint& p) {
   statistics_.max_velocity = statistics_.max_velocity.max(check_.velocity().abs());
-  largest_change_ = largest_change_.max((check_.velocity() - last_velocity_).abs());
+  max_change_ = max_change_.max((check_.velocity() - last_velocity_).abs());
   last_velocity_ = check_.velocity();
   if (p.cycle % 2 == 0) {
     statistics_.max_acceleration = statistics_.max_acceleration.max(check_.acceleration().abs());
@@ -126,7 +126,7 @@ void PlanChecks::finish() {
     statistics_.move_duration[i] = static_cast<double>(cycles_[i]) * period_;
   }
   statistics_.duration = static_cast<double>(statistics_.setpoints - 1) * period_;
-  statistics_.ripple_acceleration = largest_change_ / period_;
+  statistics_.ripple_acceleration = max_change_ / period_;
   for (const Excess& e : excesses_) {
     plan_.reasons.push_back(reasonOf(e.worst));
     plan_.reasons.back().count = e.count;

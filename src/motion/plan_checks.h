@@ -49,8 +49,8 @@ class PlanChecks {
   LimitCheck check_;
   std::array<std::uint64_t, kMoveKindCount> cycles_{};
   Axes last_velocity_ = Axes::Zero();
-  Axes largest_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
-  double end_x_ = 0;                    ///< of the last pair
+  Axes max_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
+  double end_x_ = 0;                ///< of the last pair
   std::vector<Excess> excesses_;
   core::Reason deviation_;  ///< the largest above the tolerance, if there is one
 };

@@ -12,7 +12,7 @@ constexpr int kSignals[]{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kMaxChecks = 1000;                   ///< of the loop's status, before giving up
 constexpr timespec kCheckInterval{0, 10'000'000};  ///< [s, ns]
 /// The telemetry publishes every 0.05 s; the axes are off by then.
-constexpr timespec kTellTime{0, 200'000'000};  ///< [s, ns]
+constexpr timespec kReportTime{0, 200'000'000};  ///< [s, ns]
 
 std::atomic<ControlLoop*> guarded{nullptr};
 
@@ -21,7 +21,7 @@ void onCrash(int signal) {
   if (ControlLoop* loop = guarded) {
     loop->postStop(MachineEvent::kDisable);
     for (int i = 0; i < kMaxChecks && isPowered(loop->status().state); ++i) nanosleep(&kCheckInterval, nullptr);
-    nanosleep(&kTellTime, nullptr);
+    nanosleep(&kReportTime, nullptr);
   }
   std::signal(signal, SIG_DFL);
   std::raise(signal);

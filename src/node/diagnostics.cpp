@@ -16,10 +16,10 @@ constexpr double kPercent = 0.01;
 constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend
 constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
 
-DiagnosticLevels readLevels(const ParameterReader& p, const std::string& quantity, double largest) {
+DiagnosticLevels readLevels(const ParameterReader& p, const std::string& quantity, double max) {
   const std::string ns = "diagnostics/" + quantity + "/";
-  const double warn = p.number(ns + "warn", 0, largest);
-  return {warn, p.number(ns + "error", warn, largest)};
+  const double warn = p.number(ns + "warn", 0, max);
+  return {warn, p.number(ns + "error", warn, max)};
 }
 
 /// For a quantity with upper thresholds; NaN exceeds them all.
@@ -169,7 +169,7 @@ double Diagnostics::positionUse(int axis, double position) const {
 
 void Diagnostics::addBuffer(const DriveStatus& drive) {
   fullest_ = std::max(fullest_, drive.commands_waiting);
-  buffer_.least = buffer_.used ? std::min(buffer_.least, drive.commands_waiting) : drive.commands_waiting;
+  buffer_.min = buffer_.used ? std::min(buffer_.min, drive.commands_waiting) : drive.commands_waiting;
   buffer_.used = true;
 }
 
@@ -241,7 +241,7 @@ void Diagnostics::reportFollowing(Status& status) {
     const std::string unit = axisUnit(i);
     status.mergeSummary(levelAbove(fraction, thresholds_.following_error),
                         text(joint(i), " ", following_error_[i], " ", unit, " of ", allowed, " ", unit));
-    status.add(joint(i) + " largest [" + unit + "]", following_error_[i]);
+    status.add(joint(i) + " max [" + unit + "]", following_error_[i]);
     status.add(joint(i) + " of the allowed [%]", fraction / kPercent);
   }
   following_error_.setZero();
@@ -272,10 +272,10 @@ void Diagnostics::reportBuffer(Status& status) {
   } else if (!buffer_.used) {
     status.summary(DiagnosticStatus::OK, "no power");
   } else {
-    const double fill = static_cast<double>(buffer_.least) / fullest_;
+    const double fill = static_cast<double>(buffer_.min) / fullest_;
     status.mergeSummary(levelBelow(fill, thresholds_.buffer_fill),
-                        text("down to ", buffer_.least, " of ", fullest_, " commands"));
-    status.add("Least fill [%]", fill / kPercent);
+                        text("down to ", buffer_.min, " of ", fullest_, " commands"));
+    status.add("Minimum fill [%]", fill / kPercent);
   }
   if (underruns > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(underruns, " underruns"));
   status.add("Commands waiting", last_.drive.commands_waiting);

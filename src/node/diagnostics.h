@@ -25,7 +25,7 @@ struct DiagnosticThresholds {
   DiagnosticLevels late_cycles;      ///< upper, of all cycles since the last report
   DiagnosticLevels following_error;  ///< upper, of the allowed following error
   DiagnosticLevels limit_use;        ///< upper, of an axis limit
-  DiagnosticLevels buffer_fill;      ///< lower, of the largest fill since power-on
+  DiagnosticLevels buffer_fill;      ///< lower, of the maximum fill since power-on
 };
 
 /// Reads diagnostics/<quantity>/warn and .../error.
@@ -92,7 +92,7 @@ class Diagnostics {
   };
   struct Buffer {
     bool used = false;
-    std::uint32_t least = 0;  ///< commands
+    std::uint32_t min = 0;  ///< commands
   };
 
   void addDrive(const CycleRecord& record);

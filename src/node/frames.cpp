@@ -46,7 +46,7 @@ Frames::Frames(const std::string& urdf, const FirstView& first_view)
   for (const char* frame : {kWork, kCutter, kContact}) {
     if (model_->getLink(frame)) {
       throw std::invalid_argument(std::string("robot_description: link ") + frame +
-                                  "; allowed: another name, since the node itself tells the frame " + frame);
+                                  "; allowed: another name, since the node itself publishes the frame " + frame);
     }
   }
 }

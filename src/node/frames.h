@@ -17,8 +17,8 @@
 
 namespace flute_grinder {
 
-/// Tells tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again with every
-/// change:
+/// Publishes to tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again
+/// with every change:
 /// - `work` in the axis_x table: the cutter's small end, not turning. Here the wheel's centre is at X, D1/2 + Dw/2 + Y,
 ///   and the height of the set-up + Z, in work coordinates.
 /// - `cutter` in the chuck: it turns in `work` by -A.

@@ -36,7 +36,7 @@ GrindResult result(int code, const std::vector<core::Reason>& reasons, const cor
   return r;
 }
 
-/// As records of jobs tell it.
+/// As records of jobs state it.
 const char* outcomeOf(JobEnd end) {
   switch (end) {
     case JobEnd::kFault: return "fault";
@@ -150,7 +150,7 @@ std::string GoalServer::refusal(const GrindGoal& goal, const std::string& digest
 /// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
 std::optional<core::Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
   const Swivel swivel = loop_.status().swivel;
-  // What is wrong with a job that cannot be ground at any swivel, the planner tells.
+  // What is wrong with a job that cannot be ground at any swivel, the planner reports.
   if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
   return reasonOf(swivel, job.process.setup_swivel);
 }

@@ -19,9 +19,9 @@
 
 namespace flute_grinder {
 
-/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, tells it on `~job`, and reports
-/// its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are polled.
-/// One goal at a time; any other is rejected at once.
+/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, publishes it on `~job`, and
+/// reports its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are
+/// polled. One goal at a time; any other is rejected at once.
 class GoalServer {
  public:
   /// @param private_nh the node's own namespace.

@@ -39,7 +39,7 @@ void checkAbi(const std::string& parameter, const std::string& library) {
   if (abi == kDriveAbi) return;
   throw ParameterError("parameter " + parameter +
                        (abi ? " was built against version " + std::to_string(*abi) + " of the drive interface"
-                            : " tells no version of the drive interface") +
+                            : " states no version of the drive interface") +
                        "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 

@@ -15,7 +15,7 @@ class History {
  public:
   /// Makes the folder, or notes why that is not possible; returns at once.
   /// @param folder for the records of one grinder.
-  /// @param limit largest size of all records together [bytes]: the oldest are removed first, and the newest stays
+  /// @param limit maximum size of all records together [bytes]: the oldest are removed first, and the newest stays
   ///        whatever its size. Nothing is removed but what has the name of a record.
   History(const std::string& folder, std::uint64_t limit);
 

@@ -28,9 +28,9 @@ bool isEnded(const sigset_t& signals) {
 /// @return false if a signal has ended the wait.
 bool waitForMaster(const sigset_t& signals) {
   const std::atomic<bool> never{false};
-  for (bool told = false;
-       !flute_grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never); told = true) {
-    if (!told) ROS_WARN_STREAM("no ROS master answers at " << ros::master::getURI() << "; waiting for one");
+  for (bool warned = false;
+       !flute_grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never); warned = true) {
+    if (!warned) ROS_WARN_STREAM("no ROS master answers at " << ros::master::getURI() << "; waiting for one");
     if (isEnded(signals)) return false;
   }
   return true;

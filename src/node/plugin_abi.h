@@ -9,7 +9,7 @@ namespace flute_grinder {
 /// The version of the drive interface that a plugin was built against (flute_grinder/drive/export_drive.h). Runs none
 /// of its code.
 /// @param library path of the plugin's library, which has been loaded.
-/// @return nothing if the library itself tells none, whatever those that it is linked with tell.
+/// @return nothing if the library itself states none, whatever those that it is linked with state.
 std::optional<std::uint32_t> driveAbiOf(const std::string& library);
 
 }  // namespace flute_grinder

@@ -42,9 +42,9 @@ Prober::Touch Prober::touch(int axis, double distance) {
   ++places_;
   result.axes[index(axis)] = sum / probing.touches;
   result.spread = max - min;
-  if (!(result.spread <= probing.largest_spread[axis])) {
+  if (!(result.spread <= probing.max_spread[axis])) {
     throw ProbingError("the touches spread over " + shownOf(axis, result.spread) + "; allowed: up to " +
-                       shownOf(axis, probing.largest_spread[axis]));
+                       shownOf(axis, probing.max_spread[axis]));
   }
   return result;
 }

@@ -17,7 +17,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Largest difference of a measured diameter from the known one [m]; with more, they are not of the same cylinder.
+/// Maximum difference of a measured diameter from the known one [m]; with more, they are not of the same cylinder.
 constexpr double kMostOff = 1 * units::kMillimetre;
 
 /// What a cycle works with.

@@ -82,19 +82,19 @@ void RequestServer::onJog(const Jog::ConstPtr& message) {
   // An axis is stopped however late the message comes.
   if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
   if (refusal.empty()) refusal = loop_.jog({message->axis, true, 0, message->velocity}).text;
-  tellJogRefusal(refusal);
+  reportJogRefusal(refusal);
 }
 
 /// Once for each press of a button. @param refusal of its latest message; empty if that was accepted.
-void RequestServer::tellJogRefusal(const std::string& refusal) {
+void RequestServer::reportJogRefusal(const std::string& refusal) {
   const ros::SteadyTime now = ros::SteadyTime::now();
   const bool pressed_before = (now - last_jog_).toSec() <= loop_.config().jog_timeout;
-  const bool told = jog_refused_ && pressed_before;
+  const bool reported = jog_refused_ && pressed_before;
   last_jog_ = now;
   jog_refused_ = !refusal.empty();
   if (!jog_refused_) return;
   ROS_WARN_STREAM_THROTTLE(kWarningInterval, refusal);
-  if (told) return;
+  if (reported) return;
   std_msgs::String why;
   why.data = refusal;
   jog_refusals_.publish(why);

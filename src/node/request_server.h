@@ -29,7 +29,7 @@ class RequestServer {
   bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response);
   bool onJogStep(JogStep::Request& request, JogStep::Response& response);
   void onJog(const Jog::ConstPtr& message);
-  void tellJogRefusal(const std::string& refusal);
+  void reportJogRefusal(const std::string& refusal);
 
   ControlLoop& loop_;
   JobGate& gate_;

@@ -230,7 +230,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
   }
   batch_.setpoints.push_back(toMessage(setpoint, workPosition(job), written.period));
   batch_.end_stamp = ros::Time(record_.time);
-  job.largest_error = std::max(job.largest_error, std::abs(setpoint.path_error));
+  job.max_error = std::max(job.max_error, std::abs(setpoint.path_error));
 }
 
 /// The position read, in the job's work coordinates.
@@ -331,8 +331,8 @@ void Telemetry::makeFeedback() {
   feedback.job_fraction = fraction(done, all);
   feedback.remaining_time = std::max(0.0, all - done) * batch_.period;
   feedback.feed = p.feed;
-  feedback.path_error = job->largest_error;
-  job->largest_error = 0;
+  feedback.path_error = job->max_error;
+  job->max_error = 0;
   const std::lock_guard<std::mutex> lock(feedback_mutex_);
   if (feedback_ && feedback_number_ == job->number) {
     feedback.path_error = std::max(feedback.path_error, feedback_->path_error);

@@ -55,7 +55,7 @@ class Telemetry {
   std::optional<GrindFeedback> takeFeedback(std::uint64_t number);
   /// The job announced last will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
-  /// Tells the result of a job, for its record. Thread safe; never blocks.
+  /// Hands over the result of a job, for its record. Thread safe; never blocks.
   void concludeJob(std::uint64_t number, const JobConclusion& conclusion);
   /// Takes back what rviz shows of a job, and shows nothing any more. Thread safe; never blocks.
   void clearScene();
@@ -77,7 +77,7 @@ class Telemetry {
     std::shared_ptr<const Preview> preview;
     bool shown = false;
     Setpoint last{};                  ///< that reached the axes
-    double largest_error = 0;         ///< since the last feedback [rad]
+    double max_error = 0;             ///< since the last feedback [rad]
     std::uint64_t next_cycle = 0;     ///< of the next setpoint to publish
     std::deque<Buffered> buffered{};  ///< written, not yet published
   };
@@ -123,7 +123,7 @@ class Telemetry {
   SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
   ros::SerializedMessage last_state_;  ///< without its stamp
-  ros::SteadyTime last_change_;        ///< of anything that is told
+  ros::SteadyTime last_change_;        ///< of anything that is published
   bool resting_ = false;
   ros::WallDuration diagnostics_period_;
   ros::SteadyTime next_diagnostics_;

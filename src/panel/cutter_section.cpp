@@ -22,9 +22,9 @@ constexpr double kSameFigure = 0.5e-2;  ///< difference that two digits do not s
 /// "8.02" or "7.98 to 8.02"; nothing without values.
 std::optional<QString> rangeText(const std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
-  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-  const QString from = QString::number(*least, 'f', 2), to = QString::number(*largest, 'f', 2);
-  return *largest - *least < kSameFigure ? to : from + " to " + to;
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  const QString from = QString::number(*min, 'f', 2), to = QString::number(*max, 'f', 2);
+  return *max - *min < kSameFigure ? to : from + " to " + to;
 }
 
 QString line(const QString& text, bool good) {

@@ -445,7 +445,7 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
       goal.dry_run = false;
       if (good) {
         showMessage(result.error_string);
-        return plan(goal);  // which the grinder has kept, and which tells more
+        return plan(goal);  // which the grinder has kept, and which knows more
       }
       Plan::Response refused;
       refused.reasons = {result.error_string};
@@ -486,7 +486,7 @@ void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
   }
 }
 
-/// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be told.
+/// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be said.
 core::OffsetBasis GrindPanel::touchedFor(int axis) const {
   core::OffsetBasis basis;
   basis.method = OffsetMethod::kTouchOff;

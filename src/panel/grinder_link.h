@@ -73,7 +73,7 @@ class GrinderLink {
   void request(MachineEvent event, const OnAnswer& on_answer);
   /// @param fraction of the job's feed.
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
-  /// Tells the grinder where the swivel stands. @param angle [rad].
+  /// Confirms the swivel angle set by hand. @param angle [rad].
   void confirmSwivel(double angle, const OnAnswer& on_answer);
   /// Sets an axis' work offset from where it stands. @param position in work coordinates [m], A [rad].
   /// @param basis what it is set for. @param large_change_ok it may change by any amount.

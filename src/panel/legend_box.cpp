@@ -51,8 +51,7 @@ QLabel* label(const char* name) {
 
 }  // namespace
 
-LegendBox::LegendBox(QWidget* parent)
-    : QWidget(parent), cutter_(label("shown_cutter")), largest_(label("largest_error")) {
+LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cutter")), max_(label("max_error")) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(4);
@@ -63,7 +62,7 @@ LegendBox::LegendBox(QWidget* parent)
   constexpr std::array<std::array<const char*, 2>, 3> names{
       {{"flutes", "flutes_end"}, {"rake_faces", "rake_faces_end"}, {"arrows", "arrows_end"}}};
   constexpr std::array<const char*, 3> hints{
-      "Lines along the flutes: the largest error measured in the last finished pass",
+      "Lines along the flutes: the maximum error measured in the last finished pass",
       "Faces of the ground cutter: how far their rake is from the one asked",
       "Arrows across the flute: path error of the setpoints, drawn this many times longer"};
   for (std::size_t i = 0; i < scales_.size(); ++i) {
@@ -74,8 +73,8 @@ LegendBox::LegendBox(QWidget* parent)
     layout->addWidget(new Gradient, row, 1);
     layout->addWidget(scales_[i].end, row, 2);
   }
-  largest_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
-  layout->addWidget(largest_, 4, 0, 1, 3);
+  max_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
+  layout->addWidget(max_, 4, 0, 1, 3);
   auto* lines = label("line_colours");
   lines->setText("Flutes: grey planned, magenta being ground. Cyan: the wheel's path.");
   lines->setWordWrap(true);
@@ -94,7 +93,7 @@ void LegendBox::show(const std::optional<Legend>& legend) {
     set(0, "Measured error", "");
     set(1, "Rake error", "");
     set(2, "Path error", "");
-    largest_->clear();
+    max_->clear();
     return;
   }
   const Cutter& cutter = legend->cutter;
@@ -102,7 +101,7 @@ void LegendBox::show(const std::optional<Legend>& legend) {
   set(0, "Measured error", micrometres(legend->tolerance));
   set(1, "Rake error, off " + degrees(cutter.rake_angle), degrees(cutter.rake_tolerance));
   set(2, "Path error" + timesText(legend->arrow_scale), micrometres(legend->tolerance));
-  largest_->setText("Largest error measured: " + micrometres(legend->largest_error));
+  max_->setText("Maximum error measured: " + micrometres(legend->max_error));
 }
 
 }  // namespace flute_grinder

@@ -10,7 +10,7 @@
 
 namespace flute_grinder {
 
-/// What the colours in rviz mean: where each scale ends, and the largest error measured.
+/// What the colours in rviz mean: where each scale ends, and the maximum error measured.
 class LegendBox : public QWidget {
   Q_OBJECT
 
@@ -27,7 +27,7 @@ class LegendBox : public QWidget {
 
   QLabel* cutter_;
   std::array<Scale, 3> scales_{};
-  QLabel* largest_;
+  QLabel* max_;
 };
 
 }  // namespace flute_grinder

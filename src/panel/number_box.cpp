@@ -93,7 +93,7 @@ void NumberBox::keepText(Handle handle) {
   if (!good) lineEdit()->setText(text);
 }
 
-/// Here, since Qt tells nobody of a text that it sets itself.
+/// Here, since Qt sends no signal for a text that it sets itself.
 void NumberBox::paintEvent(QPaintEvent* event) {
   QDoubleSpinBox::paintEvent(event);
   if (red_ != isGood()) return;

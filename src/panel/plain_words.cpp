@@ -52,7 +52,7 @@ std::string duration(double seconds) {
 std::string describe(const GrinderState& state) {
   const auto machine = static_cast<MachineState>(state.state);
   std::string text;
-  // In states other than a fault it tells why the last job did not begin.
+  // In states other than a fault it says why the last job did not begin.
   if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";

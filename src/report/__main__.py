@@ -1,4 +1,4 @@
-"""Draws a report; `grind report` starts it and gives it the machine's limits, in SI units, for files that do not tell them."""
+"""Draws a report; `grind report` starts it and gives it the machine's limits, in SI units, for files without them."""
 
 import argparse
 import errno
@@ -74,7 +74,7 @@ def read_record_and_tool(given):
     from findings import read_record
     record = Record('record')
     record.head = read_record(given.file)
-    # What JSON can tell, YAML can: the job in the record is a job file.
+    # What JSON can express, YAML can: the job in the record is a job file.
     with tempfile.NamedTemporaryFile('w', suffix='.yaml') as job:
         json.dump(record.head['job']['file'], job)
         job.flush()
@@ -145,7 +145,7 @@ def make(given, tolerances, record, tool, no_tool):
 
 
 class Failure(Exception):
-    """What to tell, and the exit status: 2 for a file that cannot be used, 1 for a write that failed."""
+    """What to print, and the exit status: 2 for a file that cannot be used, 1 for a write that failed."""
 
     def __init__(self, text, status):
         super().__init__(text)

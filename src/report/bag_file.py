@@ -69,8 +69,8 @@ class BagFile:
 
     def _add_connection(self, header, data):
         number, = LENGTH.unpack(header[b'conn'])
-        told = fields_of(data)
-        self._connections[number] = header[b'topic'].decode(), told[b'type'].decode(), told[b'md5sum'].decode()
+        named = fields_of(data)
+        self._connections[number] = header[b'topic'].decode(), named[b'type'].decode(), named[b'md5sum'].decode()
 
     def messages(self, topics):
         """Type and data of every message of these topics."""

@@ -18,6 +18,6 @@ def radius(cutter, x_mm):
     return cutter['end_diameter_mm'] / 2 + x_mm * math.tan(math.radians(cutter['cone_angle_deg']))
 
 
-def largest_radius(cutter):
+def max_radius(cutter):
     """[mm]"""
     return max(radius(cutter, 0), radius(cutter, cutter['flute_length_mm']))

@@ -5,7 +5,7 @@ from itertools import cycle
 
 import numpy as np
 
-from cutter import largest_radius, radius, spiral_angles, tooth_angles
+from cutter import max_radius, radius, spiral_angles, tooth_angles
 from style import CURVE, INK, METAL, THEORY, new_figure, picture
 
 SHANK_SHOWN = 0.9  # of its diameter
@@ -53,7 +53,7 @@ def dimension(axes, begin, end, text, offset=(0, 0), **how):
 def tool_drawing(cutter):
     """@param cutter of a job file."""
     outline = Outline(cutter)
-    half = max(largest_radius(cutter), outline.shank)
+    half = max(max_radius(cutter), outline.shank)
     x, r = np.array(outline.points()).T
     figure = new_figure(2.7)
     axes = figure.add_subplot()

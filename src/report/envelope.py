@@ -13,8 +13,8 @@ class Envelope:
         self._width = (high - low) / COLUMNS or 1.0
         self.is_exact = points <= 2 * COLUMNS
         self._points = []
-        self._least = np.full((COLUMNS, curves), np.inf)
-        self._largest = np.full((COLUMNS, curves), -np.inf)
+        self._min = np.full((COLUMNS, curves), np.inf)
+        self._max = np.full((COLUMNS, curves), -np.inf)
 
     def add(self, x, y):
         """Adds points; y has a column for each curve."""
@@ -29,7 +29,7 @@ class Envelope:
                 order = np.argsort(column, kind='stable')
                 column, y = column[order], y[order]
             starts = np.flatnonzero(np.diff(column, prepend=-1))
-            for values, reduce in ((self._least, np.minimum), (self._largest, np.maximum)):
+            for values, reduce in ((self._min, np.minimum), (self._max, np.maximum)):
                 values[column[starts]] = reduce(values[column[starts]], reduce.reduceat(y, starts))
 
     def line(self, gap, columns=1.5):
@@ -43,8 +43,8 @@ class Envelope:
         """x and y of all points, or of the minimum and maximum in each column."""
         if self.is_exact:
             if not self._points:
-                return np.zeros(0), np.zeros((0, self._least.shape[1]))
+                return np.zeros(0), np.zeros((0, self._min.shape[1]))
             return np.concatenate([x for x, _ in self._points]), np.concatenate([y for _, y in self._points])
-        full = np.flatnonzero(np.isfinite(self._least[:, 0]))
+        full = np.flatnonzero(np.isfinite(self._min[:, 0]))
         x = self._low + (np.repeat(full, 2) + 0.5) * self._width
-        return x, np.stack([self._least[full], self._largest[full]], axis=1).reshape(len(x), self._least.shape[1])
+        return x, np.stack([self._min[full], self._max[full]], axis=1).reshape(len(x), self._min.shape[1])

@@ -37,7 +37,7 @@ def axis_unit(axis, per='', largest=1.0):
 
 
 class Curve:
-    """The curve and its errors. Of the stroke with the largest error: `whole` (thinned to some hundred points), `start` and `end`
+    """The curve and its errors. Of the stroke with the maximum error: `whole` (thinned to some hundred points), `start` and `end`
     (its first and last points), all in the order in which they are ground."""
 
     def __init__(self, record):
@@ -70,7 +70,7 @@ class Curve:
         """As the paper's Figures 3 to 5, and of the error."""
         tooth, pass_ = self._record.worst
         is_table = self._record.kind == 'table'
-        which = 'the table' if is_table else 'tooth %d, pass %d, the stroke with the largest error' % (tooth + 1, pass_ + 1)
+        which = 'the table' if is_table else 'tooth %d, pass %d, the stroke with the maximum error' % (tooth + 1, pass_ + 1)
         whole = 'A in rad over X in mm for %s; the line is the theoretical curve, %s.' % (
             which, 'with all %d points' % self._count if self._every == 1
             else 'with one in %d of its %d points' % (self._every, self._count))
@@ -94,7 +94,7 @@ class Curve:
                 x, y = envelope.line(0, columns=8)
                 axes.plot(x / MM, y / scale, color=style['color'])
             axes.set_ylabel('error of A [%s]' % unit)
-            axes.set_title('%s points: largest %.4e rad' % (name, largest), loc='left')
+            axes.set_title('%s points: max %.4e rad' % (name, largest), loc='left')
         panels[1].set_xlabel('X [mm]')
         return picture('error', 'Error over X',
                        'Theory minus commanded position of A over X in mm, above at the odd points, below at the even points, '
@@ -190,7 +190,7 @@ class AxisPictures:
             # Following errors in a stroke are a small part of the limit, which would hide them.
             span = 1.1 * top / scale or 1.0
             axes.set(ylim=(-span, span), ylabel=unit)
-            axes.set_title('%s: largest %.4g %s%s' % (where, top / scale, unit, share), loc='left')
+            axes.set_title('%s: max %.4g %s%s' % (where, top / scale, unit, share), loc='left')
             self._clock.finish(axes)
         panels[1].set_xlabel('time since the start [s]')
         return picture('%s-%s' % (self._key, AXES[axis].lower()), '%s of %s' % (self._title, AXES[axis]),

@@ -1,4 +1,4 @@
-"""All that a report tells, as data: what `--json` prints and what the page shows. In the keys of the grinder's own records of
+"""All that a report says, as data: what `--json` prints and what the page shows. In the keys of the grinder's own records of
 jobs, with more."""
 
 import json
@@ -99,7 +99,7 @@ class Findings:
                 'diagnostics': [dict(zip(('name', 'level', 'message', 'count'), row)) for row in record.diagnostics]}
 
     def _axis(self, record, axis):
-        """Largest values in the strokes and between them, and the limits, in mm and deg."""
+        """Maximum values in the strokes and between them, and the limits, in mm and deg."""
         unit = DEG if axis == len(AXES) - 1 else MM
         row = {'axis': AXES[axis]}
         for name, limit in zip(('speed', 'acceleration', 'following'), LIMITS):

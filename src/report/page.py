@@ -1,4 +1,4 @@
-"""Writes what a report tells, and its pictures, into a self-contained HTML file."""
+"""Writes what a report says, and its pictures, into a self-contained HTML file."""
 
 import html
 import os
@@ -191,9 +191,9 @@ def stroke_table(data):
     table = Table(head + (['following X, Y, Z µm', 'A mdeg'] if has_following else []) + ['holds, overrides'],
                   range(1, 8 if has_following else 6))
     for stroke in data['strokes']:
-        least, largest = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
+        low, high = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
         cells = ['%d, %d' % (stroke['tooth'], stroke['pass']), number(stroke['depth_mm'], 4), number(stroke['started_s'], 1),
-                 number(stroke['duration_s'], 1), None if least is None else '%s to %s' % (least, largest),
+                 number(stroke['duration_s'], 1), None if low is None else '%s to %s' % (low, high),
                  three_digits(stroke['deviation_um'])]
         if has_following:
             errors = stroke['following_error']
@@ -279,8 +279,8 @@ def first_page(data, parts):
 
 
 def appendix(data, parts):
-    errors = facts([('largest odd error', '%.4e rad' % data['odd_error_rad']),
-                    ('largest even error', '%.4e rad' % data['even_error_rad'])])
+    errors = facts([('maximum odd error', '%.4e rad' % data['odd_error_rad']),
+                    ('maximum even error', '%.4e rad' % data['even_error_rad'])])
     opened = ' open' if data['kind'] == 'table' else ''
     return ['<details%s>\n<summary>The interpolation, in radians</summary>' % opened, errors, pictures(parts, 'curve'), '</details>']
 

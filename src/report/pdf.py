@@ -16,7 +16,7 @@ def print_pdf(text, path):
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if not browser:
         raise SourceError('cannot be printed without a browser; install chromium, or print the HTML file with another')
-    # Fail before the browser does, which tells less.
+    # Fail before the browser does, which says less.
     was_there = os.path.exists(path)
     with open(path, 'ab'):
         pass

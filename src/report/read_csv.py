@@ -101,11 +101,11 @@ def from_run(table, record):
     return rows, times
 
 
-def in_range(table, column, largest):
-    good = (table[column] >= 0) & (table[column] <= largest)
+def in_range(table, column, max_value):
+    good = (table[column] >= 0) & (table[column] <= max_value)
     if not good.all():
         bad = np.argmin(good)
-        raise SourceError('cycle %d: %s = %d; allowed: 0 to %d' % (table['cycle'][bad], column, table[column][bad], largest))
+        raise SourceError('cycle %d: %s = %d; allowed: 0 to %d' % (table['cycle'][bad], column, table[column][bad], max_value))
     return table[column]
 
 

@@ -48,11 +48,11 @@ class Record:
     """The rows of a file, with what else the file contains.
 
     kind: 'table', 'setpoints' (CSV of a plan), 'run' (CSV) or 'bag'; `actual` is in the latter two, `cycle_period` in a bag
-    alone; or 'record' of the grinder, which has no rows. period: of the control cycle [s], 0 for a table. head: what the file tells of the job as a whole, in the keys of
+    alone; or 'record' of the grinder, which has no rows. period: of the control cycle [s], 0 for a table. head: what the file says of the job as a whole, in the keys of
     the grinder's own records of jobs (docs/ros-interface.md). states: (time [s], state, reason, tooth, pass), overrides:
     (time [s], fraction, tooth, pass), teeth and passes from 0. diagnostics: (name, level, message, count). missing: number of
     setpoints that the file lacks. odd_error, even_error: largest at the points of the curve [rad]. worst: tooth and pass of the
-    largest error, None without a point of the curve. low_x, high_x: of those points [m]."""
+    maximum error, None without a point of the curve. low_x, high_x: of those points [m]."""
 
     def __init__(self, kind):
         self.kind = kind

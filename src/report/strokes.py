@@ -22,7 +22,7 @@ def deviation(job_file, tooth, x, error):
 
 
 class Largest:
-    """The largest absolute value of each axis."""
+    """The maximum absolute value of each axis."""
 
     def __init__(self):
         self.values = np.zeros(len(AXES))
@@ -38,7 +38,7 @@ class Stroke:
     def __init__(self, tooth, pass_):
         self.tooth, self.pass_ = tooth, pass_
         self.begin = self.end = None
-        self.least_feed, self.least_feed_x, self.largest_feed = math.inf, None, 0.0
+        self.min_feed, self.min_feed_x, self.max_feed = math.inf, None, 0.0
         self.deviation, self.deviation_x = 0.0, None
         self.following = Largest()
 
@@ -50,9 +50,9 @@ class Stroke:
         in_flute = (x >= 0) & (x <= job_file['cutter']['flute_length_mm'] * MM) if job_file else np.ones(len(x), bool)
         if in_flute.any():
             feed = rows['feed'][in_flute]
-            if feed.min() < self.least_feed:
-                self.least_feed, self.least_feed_x = float(feed.min()), float(x[in_flute][np.argmin(feed)])
-            self.largest_feed = max(self.largest_feed, float(feed.max()))
+            if feed.min() < self.min_feed:
+                self.min_feed, self.min_feed_x = float(feed.min()), float(x[in_flute][np.argmin(feed)])
+            self.max_feed = max(self.max_feed, float(feed.max()))
         if job_file:
             off = deviation(job_file, self.tooth, x, rows['error'])
             if off.max() >= self.deviation:
@@ -61,13 +61,13 @@ class Stroke:
 
     def head(self, has_actual, depths):
         """In the keys of the grinder's own records of jobs."""
-        known = self.least_feed_x is not None
+        known = self.min_feed_x is not None
         head = {'tooth': self.tooth + 1, 'pass': self.pass_ + 1,
                 'depth_mm': depths[self.pass_] if depths else None,
                 'started_s': self.begin, 'duration_s': self.end - self.begin,
-                'feed_min_mm_min': self.least_feed / MM_MIN if known else None,
-                'feed_min_x_mm': self.least_feed_x / MM if known else None,
-                'feed_max_mm_min': self.largest_feed / MM_MIN if known else None,
+                'feed_min_mm_min': self.min_feed / MM_MIN if known else None,
+                'feed_min_x_mm': self.min_feed_x / MM if known else None,
+                'feed_max_mm_min': self.max_feed / MM_MIN if known else None,
                 'deviation_um': None if self.deviation_x is None else self.deviation / UM,
                 'deviation_x_mm': None if self.deviation_x is None else self.deviation_x / MM}
         if has_actual:
@@ -77,7 +77,7 @@ class Stroke:
 
 
 class Figures:
-    """Of all rows of a record; largest absolute values, SI units. `speed`, `acceleration`, `following`: of the strokes, and
+    """Of all rows of a record; maximum absolute values, SI units. `speed`, `acceleration`, `following`: of the strokes, and
     of the rapids and infeeds between them."""
 
     def __init__(self, period, job_file=None):

@@ -1,4 +1,4 @@
-"""The pictures of a ground cutter, from what `grind simulate --json` tells. As a program, draws them into one SVG file:
+"""The pictures of a ground cutter, from what `grind simulate --json` prints. As a program, draws them into one SVG file:
 tool.py FILE.svg < JSON; exit status 2 if it cannot be written."""
 
 import json

@@ -4,12 +4,12 @@ import math
 
 import yaml
 
-from cutter import largest_radius
+from cutter import max_radius
 from record import DEG, SourceError
 
 ALLOWED = {
-    'land_mm': 'least land',
-    'following_error_um': 'following error in the strokes, of A at the largest radius',
+    'land_mm': 'minimum land',
+    'following_error_um': 'following error in the strokes, of A at the maximum radius',
     'feed_percent': 'difference of the feed from the job\'s, between the ends of the flute',
     'late_cycles_percent': 'late control cycles'}
 
@@ -35,8 +35,8 @@ def read_tolerances(path):
 
 
 class Criterion:
-    """One line of the verdict. All in `unit`; asked, measured and place may be None. tolerance: largest difference from what
-    is asked; None: `asked` is the least allowed. digits: behind the point, or None: three in all."""
+    """One line of the verdict. All in `unit`; asked, measured and place may be None. tolerance: maximum difference from what
+    is asked; None: `asked` is the minimum allowed. digits: behind the point, or None: three in all."""
 
     def __init__(self, name, unit, digits, asked, tolerance):
         self.name, self.unit, self.digits, self.asked, self.tolerance = name, unit, digits, asked, tolerance
@@ -86,7 +86,7 @@ def of_strokes(job_file, strokes, feed_limits, tolerances):
         for name, value in stroke.get('following_error', {}).items():
             if value is None:  # a faulty drive read NaN
                 continue
-            at_surface = value * DEG * largest_radius(cutter) if name == 'a_mdeg' else value  # thousandths of deg and of mm
+            at_surface = value * DEG * max_radius(cutter) if name == 'a_mdeg' else value  # thousandths of deg and of mm
             following.add(at_surface, '%s, %s' % (name[0].upper(), place_of(stroke)))
         if stroke['feed_min_mm_min'] is not None and not slowed:
             feed.add(stroke['feed_min_mm_min'], place_of(stroke, stroke.get('feed_min_x_mm')))

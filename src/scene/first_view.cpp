@@ -29,7 +29,7 @@ void appendCorner(std::vector<OutlinePoint>& outline, const OutlinePoint& next) 
 }  // namespace
 
 void appendWheel(MarkerArray& array, const WheelProfile& wheel) {
-  const double hub = kHub * wheel.largestRadius();
+  const double hub = kHub * wheel.maxRadius();
   const double lower = wheel.lowerFace(), upper = wheel.upperFace();
   const auto add = [&](const std::vector<OutlinePoint>& outline, const std_msgs::ColorRGBA& colour) {
     Marker& m = appendSolid(array, "wheel", "wheel", outline, colour);

@@ -34,7 +34,7 @@ bool isNear(const geometry_msgs::Point& p) {
 /// Scale of line widths: thinner on a small cutter, so that they do not cover it.
 double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
 
-/// The largest axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
+/// The maximum axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
 double pathStep(const GrindProgram& program) {
   double turning = 0;  // of the steepest helix
@@ -91,13 +91,13 @@ void ToolPath::measure(const Setpoint& p, const Axes& actual) {
   const double error = formed_.deviation(actual[kX], std::abs(flute.angle + flute.curve.a(actual[kX]) - actual[kA]));
   // A faulty drive may report NaN, or a position beyond the cone's apex.
   if (!(error <= kFarthest)) return;
-  largest_ = std::max(largest_, error);
+  max_ = std::max(max_, error);
   if (flute.edge.empty()) return;
   const double x = flute.edge.formedAt(actual[kX]).x;
   if (!isOn(flute.edge, x)) return;
   const double at = (x - flute.edge.from()) / (flute.edge.to() - flute.edge.from()) * static_cast<double>(steps_);
-  float& largest = measured_[static_cast<std::size_t>(std::lround(at))];
-  largest = std::max(largest, static_cast<float>(error));
+  float& max = measured_[static_cast<std::size_t>(std::lround(at))];
+  max = std::max(max, static_cast<float>(error));
 }
 
 void ToolPath::finishPass(Flute& flute) {
@@ -187,12 +187,12 @@ void PathErrorMarkers::add(const Setpoint& p) {
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();
-    largest_ = 0;
+    max_ = 0;
     pairs_ = 0;
     every_ = 1;
   }
   if (p.step == StepKind::kOdd) ++pairs_;
-  largest_ = std::max(largest_, std::abs(deviation));
+  max_ = std::max(max_, std::abs(deviation));
   if ((pairs_ - 1) % every_ != 0) return;
   points_.push_back({place.x, p.position[kA] + place.turn, deviation});
   if (points_.size() >= kMaxArrows && p.step == StepKind::kEven) thinOut();
@@ -212,8 +212,8 @@ void PathErrorMarkers::thinOut() {
 double PathErrorMarkers::scale() const {
   if (points_.empty()) return 0;
   // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
-  const double largest = std::max(largest_, kMinDrawn * tolerance_);
-  return roundDown(kMaxArrow * fineness(formed_.cutter) / largest);
+  const double max = std::max(max_, kMinDrawn * tolerance_);
+  return roundDown(kMaxArrow * fineness(formed_.cutter) / max);
 }
 
 MarkerArray PathErrorMarkers::markers() const {

@@ -148,7 +148,7 @@ void Scene::publishExecuted() {
 void Scene::publishPathError() {
   path_error_.publish(shown_->errors.markers());
   shown_->legend.arrow_scale = shown_->errors.scale();
-  shown_->legend.largest_error = shown_->tool_path.largestMeasured();
+  shown_->legend.max_error = shown_->tool_path.maxMeasured();
   legend_.publish(shown_->legend);
 }
 

@@ -45,7 +45,7 @@ class FiguresTest(unittest.TestCase):
         self.assertEqual(figures.percentile(range(1000), 0.99), 989)
         self.assertEqual(figures.percentile(range(101), 0.99), 99)
 
-    def test_times_that_the_node_tells(self):
+    def test_times_that_the_node_reports(self):
         values = {'State': ['ready', 'running'], 'Longest cycle duration [s]': ['1', '1', '1'], 'Mean period [s]': ['0.001'],
                   '99 % cycle duration [s]': ['9e-06', '7e-06', '8e-06'], 'Median cycle duration [s]': ['2e-06', '3e-06', '4e-06'],
                   'Median wake-up delay [s]': ['5e-05']}

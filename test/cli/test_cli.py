@@ -30,23 +30,23 @@ class TestTable(CommandLine):
                                                 ('0.5', 62, '30.8667', '2.4780e-04')):
             printed = self.grind(0, 'table', PAPER_JOB, '--step-length', length).stdout
             self.assertIn('\n%d points\n' % points, printed)
-            self.assertRegex(printed, r'largest error +%s rad' % re.escape(largest))
+            self.assertRegex(printed, r'maximum error +%s rad' % re.escape(largest))
             self.assertEqual(self.rows(printed)[points][0], last_x)
             if length == '0.2':
-                self.assertRegex(printed, r'largest at even points +3\.5000e-07 rad')
+                self.assertRegex(printed, r'maximum at even points +3\.5000e-07 rad')
 
 
     def test_json_has_every_bit(self):
         for arguments, rule in (([], 'published'), (['--even-step', 'third_order'], 'third_order')):
-            told, _ = self.json(0, 'table', PAPER_JOB, '--step-length', '0.2', '--csv', self.path('table.csv'), *arguments)
-            self.assertEqual((told['step_length_mm'], told['even_step']), (0.2, rule))
+            reported, _ = self.json(0, 'table', PAPER_JOB, '--step-length', '0.2', '--csv', self.path('table.csv'), *arguments)
+            self.assertEqual((reported['step_length_mm'], reported['even_step']), (0.2, rule))
             rows = [{key: float(value) for key, value in row.items()} for row in self.csv(self.path('table.csv'))]
-            self.assertEqual(told['points'], rows)
+            self.assertEqual(reported['points'], rows)
             odd = max(abs(row['error_rad']) for row in rows[1::2])
             even = max(abs(row['error_rad']) for row in rows[::2])
-            self.assertEqual((told['largest_odd_error_rad'], told['largest_even_error_rad'], told['largest_error_rad']),
+            self.assertEqual((reported['max_odd_error_rad'], reported['max_even_error_rad'], reported['max_error_rad']),
                              (odd, even, max(odd, even)))
-            self.assertEqual(len(told), 6)
+            self.assertEqual(len(reported), 6)
 
     def test_steps_that_are_too_long_print_nothing(self):
         job = gc.job_file(self.path('back.yaml'), cone_angle_deg=-3, end_diameter_mm=10)
@@ -68,38 +68,38 @@ class TestPlan(CommandLine):
         self.assertAlmostEqual(high, 600, delta=600e-6)
 
     def test_json_of_a_good_job(self):
-        told, reasons = self.json(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
+        reported, reasons = self.json(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
         rows = self.csv(self.path('plan.csv'))
-        self.assertEqual((told['valid'], told['reasons'], reasons, told['feed_limits']), (True, [], '', []))
-        self.assertEqual((told['setpoints'], told['duration_s']), (len(rows), (len(rows) - 1) * 1e-3))
+        self.assertEqual((reported['valid'], reported['reasons'], reasons, reported['feed_limits']), (True, [], '', []))
+        self.assertEqual((reported['setpoints'], reported['duration_s']), (len(rows), (len(rows) - 1) * 1e-3))
         # A move has the cycles that end in it.
         cycles = {move: sum(row['move'] == move for row in rows[1:]) for move in gc.MOVES}
-        self.assertEqual(sorted(told['move_durations']), sorted(move + '_s' for move in gc.MOVES))
+        self.assertEqual(sorted(reported['move_durations']), sorted(move + '_s' for move in gc.MOVES))
         for move, count in cycles.items():
-            self.assertAlmostEqual(told['move_durations'][move + '_s'], count * 1e-3, delta=1e-9)
+            self.assertAlmostEqual(reported['move_durations'][move + '_s'], count * 1e-3, delta=1e-9)
         for step in ('odd', 'even'):
-            self.assertEqual(told['largest_%s_error_rad' % step],
+            self.assertEqual(reported['max_%s_error_rad' % step],
                              max(abs(float(row['error_rad'])) for row in rows if row['step'] == step))
-        for key in ('smallest_feed_mm_min', 'largest_feed_mm_min'):
-            self.assertAlmostEqual(told[key], 600, delta=600e-6)
+        for key in ('min_feed_mm_min', 'max_feed_mm_min'):
+            self.assertAlmostEqual(reported[key], 600, delta=600e-6)
         for axis, column, unit in (('x_mm', 'x_mm', 1), ('y_mm', 'y_mm', 1), ('z_mm', 'z_mm', 1), ('a_deg', 'a_rad', DEG)):
             positions = [float(row[column]) / unit for row in rows]
             fastest = max(abs(b - a) for a, b in zip(positions, positions[1:])) / 1e-3
-            self.assertAlmostEqual(told['largest_velocity'][axis + '_s'], fastest, delta=1e-8 * max(1, fastest))
+            self.assertAlmostEqual(reported['max_velocity'][axis + '_s'], fastest, delta=1e-8 * max(1, fastest))
             ends = positions[:1] * 2 + positions[::2] + positions[-1:]
             bend = max(abs(a - 2 * b + c) for a, b, c in zip(ends, ends[1:], ends[2:])) / 2e-3 ** 2
-            self.assertAlmostEqual(told['largest_acceleration'][axis + '_s2'], bend, delta=1e-5 * max(1, bend))
-            self.assertGreater(told['largest_jerk'][axis + '_s3'], 0)
+            self.assertAlmostEqual(reported['max_acceleration'][axis + '_s2'], bend, delta=1e-5 * max(1, bend))
+            self.assertGreater(reported['max_jerk'][axis + '_s3'], 0)
             ripple = max(abs(a - 2 * b + c) for a, b, c in zip(positions, positions[1:], positions[2:])) / 1e-3 ** 2
-            self.assertAlmostEqual(told['odd_even_ripple'][axis + '_s2'], ripple, delta=1e-5 * max(1, ripple))
-        self.assertEqual((told['complete_from_mm'], told['complete_to_mm']), (0, 30))
+            self.assertAlmostEqual(reported['odd_even_ripple'][axis + '_s2'], ripple, delta=1e-5 * max(1, ripple))
+        self.assertEqual((reported['complete_from_mm'], reported['complete_to_mm']), (0, 30))
         bodies, distance, x = re.search(r'closest +(.+), (\S+) mm at X (\S+) mm', self.grind(0, 'plan', PAPER_JOB).stdout).groups()
-        self.assertEqual(' and '.join(told['closest']['bodies']), bodies)
-        self.assertEqual('%.3f' % told['closest']['distance_mm'], distance)
+        self.assertEqual(' and '.join(reported['closest']['bodies']), bodies)
+        self.assertEqual('%.3f' % reported['closest']['distance_mm'], distance)
         # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
-        self.assertAlmostEqual(told['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
+        self.assertAlmostEqual(reported['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
         self.assertRegex(self.grind(0, 'plan', PAPER_JOB).stdout, r'cut out of the shank 0\.375 mm more than the infeed, .* X 30\.000 mm')
-        self.assertEqual(len(told), 37)
+        self.assertEqual(len(reported), 37)
 
     def test_what_is_asked_stands_beside_what_is_ground(self):
         with open(PAPER_JOB) as file:
@@ -108,36 +108,36 @@ class TestPlan(CommandLine):
             text, count = re.subn(r'(?m)^( +%s:).*$' % key, r'\g<1> %g' % value, text)
             self.assertEqual(count, 1, key)
         job = self.write('core.yaml', text)
-        told, printed = self.json(0, 'plan', job)[0], self.grind(0, 'plan', job).stdout
+        reported, printed = self.json(0, 'plan', job)[0], self.grind(0, 'plan', job).stdout
         sections = self.json(0, 'simulate', job, '--sections', '9')[0]['sections']
         for name, asked, tolerance in (('rake', 8, 0.5), ('chordal_rake', 8, 5), ('spiral', 30, 4)):
             ground = [tooth[name + '_deg'] for section in sections for tooth in section['teeth']]
-            self.assertEqual([told[name + end] for end in ('_min_deg', '_max_deg')], [min(ground), max(ground)])
-            self.assertEqual(told[name + '_tolerance_deg'], tolerance)
+            self.assertEqual([reported[name + end] for end in ('_min_deg', '_max_deg')], [min(ground), max(ground)])
+            self.assertEqual(reported[name + '_tolerance_deg'], tolerance)
             self.assertRegex(printed, r'(?m)^%s.* %.3f to %.3f deg; asked %g deg within %g deg$' % (
                 name.replace('_', ' '), min(ground), max(ground), asked, tolerance))
         ends = [sections[i]['core_diameter_mm'] for i in (0, -1)]
-        self.assertEqual([told['core_diameter_mm'], told['core_diameter_end_mm']], ends)
+        self.assertEqual([reported['core_diameter_mm'], reported['core_diameter_end_mm']], ends)
         self.assertRegex(printed, r"(?m)^core  .* %.3f mm at X = 0, %.3f mm at the flute's end; "
                                   r'asked 7 mm and 12\.3 mm within 0\.1 mm$' % tuple(ends))
         for key, asked in (('asked_rake_deg', 8), ('asked_spiral_min_deg', 30), ('asked_spiral_max_deg', 30),
                            ('asked_core_diameter_mm', 7), ('asked_core_diameter_end_mm', 12.3), ('core_tolerance_mm', 0.1)):
-            self.assertAlmostEqual(told[key], asked, delta=1e-9)
+            self.assertAlmostEqual(reported[key], asked, delta=1e-9)
 
     def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
         job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)
-        told, _ = self.json(0, 'plan', job)
-        self.assertTrue(told['feed_limits'])
+        reported, _ = self.json(0, 'plan', job)
+        self.assertTrue(reported['feed_limits'])
         lines = re.findall(r'(?m)^feed limited by +(.*), X (\S+) to (\S+) mm$', self.grind(0, 'plan', job).stdout)
         causes = [re.sub('axis_([xyza])', lambda axis: 'axis ' + axis.group(1).upper(), cut['cause'])
-                  for cut in told['feed_limits']]
+                  for cut in reported['feed_limits']]
         self.assertEqual([(cause, '%.3f' % cut['from_x_mm'], '%.3f' % cut['to_x_mm'])
-                          for cause, cut in zip(causes, told['feed_limits'])], lines)
+                          for cause, cut in zip(causes, reported['feed_limits'])], lines)
         job = gc.job_file(self.path('long.yaml'), flute_length_mm=400)
-        told, reasons = self.json(1, 'plan', job)
-        self.assertFalse(told['valid'])
-        self.assertEqual(told['reasons'], reasons.rstrip('\n').split('\n'))
-        self.assertEqual(len(told['reasons']), 4)
+        reported, reasons = self.json(1, 'plan', job)
+        self.assertFalse(reported['valid'])
+        self.assertEqual(reported['reasons'], reasons.rstrip('\n').split('\n'))
+        self.assertEqual(len(reported['reasons']), 4)
 
     def test_missing_file(self):
         reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr

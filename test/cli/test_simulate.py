@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows that `grind simulate` tells the figures of the cutter that a job grinds, and those of a recorded run."""
+"""Shows that `grind simulate` reports the figures of the cutter that a job grinds, and those of a recorded run."""
 
 import math
 import os
@@ -43,9 +43,9 @@ class TestSimulate(CommandLine):
 
 class TestFigures(TestSimulate):
     def test_core_depth_flute_and_land_agree(self):
-        told, _ = self.json(0, 'simulate', gc.package_file('jobs/unequal_d12_t4.yaml'))
+        reported, _ = self.json(0, 'simulate', gc.package_file('jobs/unequal_d12_t4.yaml'))
         pitches = [88, 92, 88, 92]
-        for section in told['sections']:
+        for section in reported['sections']:
             radius = section['diameter_mm'] / 2
             self.assertAlmostEqual(radius, 6 + section['x_mm'] * math.tan(5 * DEG), delta=1e-9)
             self.assertAlmostEqual(section['core_diameter_mm'] / 2,
@@ -72,24 +72,24 @@ class TestConstantRake(TestSimulate):
         process = dict(case['process'], z_law=law)
         return self.job(law + '.yaml', dict(case, process=process), **dict(setup, **more))
 
-    def largest_error(self, asked, *arguments):
+    def max_error(self, asked, *arguments):
         sections = self.json(0, 'simulate', *arguments)[0]['sections']
         return max(abs(section['teeth'][0]['rake_deg'] - asked) for section in sections)
 
     def test_rake_is_kept_where_the_published_law_loses_it(self):
         for case, setup, asked in (STEEP, STEEP_LEFT):
-            self.assertGreater(self.largest_error(asked, self.steep('published', case, setup), '--sections', '26'), 0.25)
-            self.assertLess(self.largest_error(asked, self.steep('constant_rake', case, setup), '--sections', '26'), 0.005)
+            self.assertGreater(self.max_error(asked, self.steep('published', case, setup), '--sections', '26'), 0.25)
+            self.assertLess(self.max_error(asked, self.steep('constant_rake', case, setup), '--sections', '26'), 0.005)
 
 
 class TestOutput(TestSimulate):
     def test_json_has_its_keys(self):
-        told, reasons = self.json(0, 'simulate', PAPER_JOB, '--at', '1,17.25')
+        reported, reasons = self.json(0, 'simulate', PAPER_JOB, '--at', '1,17.25')
         self.assertEqual(reasons, '')
-        self.assertEqual((told['teeth'], told['complete_from_mm'], told['complete_to_mm']), (1, 0, 30))
-        self.assertEqual((told['valid'], told['strokes']), (True, None))
-        self.assertEqual([section['x_mm'] for section in told['sections']], [1, 17.25])
-        for section in told['sections']:
+        self.assertEqual((reported['teeth'], reported['complete_from_mm'], reported['complete_to_mm']), (1, 0, 30))
+        self.assertEqual((reported['valid'], reported['strokes']), (True, None))
+        self.assertEqual([section['x_mm'] for section in reported['sections']], [1, 17.25])
+        for section in reported['sections']:
             for key in ('core_diameter_mm', 'area_removed_mm2'):
                 self.assertGreater(section[key], 0)
             tooth, = section['teeth']
@@ -98,11 +98,11 @@ class TestOutput(TestSimulate):
                 self.assertIsInstance(tooth[key], float, key)
 
     def test_csv_has_every_bit_of_the_json(self):
-        told, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'), '--sections', '3', '--csv',
+        reported, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'), '--sections', '3', '--csv',
                             self.path('tool.csv'), '--stl', self.path('tool.stl'))
         self.assertGreater(os.path.getsize(self.path('tool.stl')), 1000)
         rows = iter(self.csv(self.path('tool.csv')))
-        for section in told['sections']:
+        for section in reported['sections']:
             for tooth in section['teeth']:
                 row = next(rows)
                 for key, text in row.items():
@@ -110,26 +110,26 @@ class TestOutput(TestSimulate):
         self.assertIsNone(next(rows, None))
 
     def test_text_has_the_extremes_and_where_they_are(self):
-        told, _ = self.json(0, 'simulate', PAPER_JOB)
+        reported, _ = self.json(0, 'simulate', PAPER_JOB)
         printed = self.grind(0, 'simulate', PAPER_JOB).stdout
-        rakes = [(section['teeth'][0]['rake_deg'], section['x_mm']) for section in told['sections']]
+        rakes = [(section['teeth'][0]['rake_deg'], section['x_mm']) for section in reported['sections']]
         least, largest = min(rakes), max(rakes)
         line = 'radial rake, deg %.3f %.3f 1 %.3f %.3f 1 8.000 %+.3f to %+.3f' % (
             *least, *largest, least[0] - 8, largest[0] - 8)
         self.assertIn(line, re.sub(' +', ' ', printed).split('\n'))
-        self.assertEqual(len(told['sections']), 9)
-        for section in told['sections']:
+        self.assertEqual(len(reported['sections']), 9)
+        for section in reported['sections']:
             self.assertRegex(printed, r'(?m)^ +%.3f +1 +%.3f ' % (section['x_mm'], section['teeth'][0]['rake_deg']))
-        self.assertRegex(printed, r'(?m)^volume removed +%.3f mm\^3' % told['volume_mm3'])
+        self.assertRegex(printed, r'(?m)^volume removed +%.3f mm\^3' % reported['volume_mm3'])
 
-    def test_svg_tells_ground_and_asked(self):
+    def test_svg_reports_ground_and_asked(self):
         self.grind(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'), '--svg', self.path('tool.svg'))
         self.assertEqual(xml.parse(self.path('tool.svg')).getroot().tag, '{http://www.w3.org/2000/svg}svg')
-        told, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'))
+        reported, _ = self.json(0, 'simulate', gc.package_file('jobs/left_hand_d8_t3.yaml'))
         with open(self.path('tool.svg')) as file:
             text = file.read()
         # matplotlib writes each text as a comment beside its outlines.
-        for section in (told['sections'][0], told['sections'][4], told['sections'][-1]):
+        for section in (reported['sections'][0], reported['sections'][4], reported['sections'][-1]):
             tooth = section['teeth'][0]
             for line in ('X = %.3f mm' % section['x_mm'], 'rake %.3f deg, asked 6.000' % tooth['rake_deg'],
                          'land %.3f mm' % tooth['land_mm'],
@@ -144,16 +144,16 @@ class TestOutput(TestSimulate):
 
     def test_lands_that_are_gone_and_flutes_that_are_not_complete_are_null(self):
         case = {'cutter': {'teeth': 12}}
-        told, reasons = self.json(1, 'simulate', self.job('dense.yaml', case), '--at', '10')
+        reported, reasons = self.json(1, 'simulate', self.job('dense.yaml', case), '--at', '10')
         self.assertRegex(reasons, 'land')
-        self.assertEqual({tooth['land_deg'] for tooth in told['sections'][0]['teeth']}, {None})
-        self.assertEqual({tooth['land_mm'] for tooth in told['sections'][0]['teeth']}, {None})
+        self.assertEqual({tooth['land_deg'] for tooth in reported['sections'][0]['teeth']}, {None})
+        self.assertEqual({tooth['land_mm'] for tooth in reported['sections'][0]['teeth']}, {None})
         short = self.job('short.yaml', {'process': {'overtravel_mm': [1, 0]}})
-        told, reasons = self.json(1, 'simulate', short, '--at', '10,30', '--csv', self.path('tool.csv'))
+        reported, reasons = self.json(1, 'simulate', short, '--at', '10,30', '--csv', self.path('tool.csv'))
         self.assertRegex(reasons, 'complete')
-        self.assertEqual(told['reasons'], reasons.rstrip('\n').split('\n'))
-        self.assertLess(told['complete_to_mm'], 30)
-        whole, short = (section['teeth'][0] for section in told['sections'])
+        self.assertEqual(reported['reasons'], reasons.rstrip('\n').split('\n'))
+        self.assertLess(reported['complete_to_mm'], 30)
+        whole, short = (section['teeth'][0] for section in reported['sections'])
         self.assertIsNotNone(whole['rake_deg'])
         self.assertEqual((short['complete'], short['rake_deg'], short['normal_rake_deg']), (False, None, None))
         self.assertEqual(self.csv(self.path('tool.csv'))[1]['rake_deg'], '')
@@ -208,10 +208,10 @@ class TestRecord(TestSimulate):
         job = gc.package_file('jobs/left_hand_d8_t3.yaml')
         record = self.record(self.plan(job))
         self.check_same(self.sections(0, record, job), self.planned(job))
-        told, _ = self.json(0, 'simulate', record, '--job', job, '--at', '5')
-        self.assertEqual([(stroke['tooth'], stroke['pass']) for stroke in told['strokes']],
+        reported, _ = self.json(0, 'simulate', record, '--job', job, '--at', '5')
+        self.assertEqual([(stroke['tooth'], stroke['pass']) for stroke in reported['strokes']],
                          sorted({(int(row['tooth']), int(row['pass'])) for row in self.csv(self.path('plan.csv'))}))
-        self.assertEqual(told['gouges'], [])
+        self.assertEqual(reported['gouges'], [])
 
     def test_gouge_of_a_spark_out_is_in_tool_and_verdict(self):
         job = gc.package_file('jobs/left_hand_d8_t3.yaml')
@@ -219,14 +219,14 @@ class TestRecord(TestSimulate):
         last = max(rows, key=lambda row: int(row['pass']))['pass']
         gouged = [dict(row, y_mm=str(float(row['y_mm']) - 0.1)) if (row['tooth'], row['pass'], row['move']) == ('1', last, 'stroke')
                   else row for row in rows]
-        told, reasons = self.json(1, 'simulate', self.record(gouged), '--job', job, '--at', '5')
-        gouge, = told['gouges']
+        reported, reasons = self.json(1, 'simulate', self.record(gouged), '--job', job, '--at', '5')
+        gouge, = reported['gouges']
         self.assertEqual((gouge['tooth'], gouge['pass'], gouge['move']), (1, int(last), 'stroke'))
         self.assertAlmostEqual(gouge['depth_mm'], 0.1, delta=1e-4)
         place = 'tooth 2, pass %d, stroke: ' % (int(last) + 1)
         self.assertRegex(reasons, r'(?m)^%sthe wheel went 0\.100 mm beyond the flute' % place)
         planned, = self.json(0, 'simulate', job, '--at', '5')[0]['sections']
-        self.assertLess(told['sections'][0]['core_diameter_mm'], planned['core_diameter_mm'] - 0.19)
+        self.assertLess(reported['sections'][0]['core_diameter_mm'], planned['core_diameter_mm'] - 0.19)
         self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job).stdout,
                          r'(?m)^beyond the flute +%s0\.100 mm at X ' % place)
 
@@ -234,11 +234,11 @@ class TestRecord(TestSimulate):
         rows = self.plan(PAPER_JOB)
         rows = [row for row in rows if row['move'] != 'stroke' or float(row['x_mm']) < 10]
         end = max(i for i, row in enumerate(rows) if row['move'] == 'stroke')
-        told, reasons = self.json(1, 'simulate', self.record(rows[:end + 1]), '--job', PAPER_JOB, '--at', '2,29')
+        reported, reasons = self.json(1, 'simulate', self.record(rows[:end + 1]), '--job', PAPER_JOB, '--at', '2,29')
         self.assertRegex(reasons, 'complete')
-        stroke, = told['strokes']
+        stroke, = reported['strokes']
         self.assertAlmostEqual(stroke['to_x_mm'], 10, delta=0.02)
-        near, far = told['sections']
+        near, far = reported['sections']
         planned = self.json(0, 'simulate', PAPER_JOB, '--at', '2')[0]['sections'][0]
         self.assertAlmostEqual(near['core_diameter_mm'], planned['core_diameter_mm'], delta=1e-4)
         self.assertEqual((far['area_removed_mm2'], far['core_diameter_mm']), (0, far['diameter_mm']))
@@ -247,9 +247,9 @@ class TestRecord(TestSimulate):
     def test_teeth_that_are_not_in_the_record_are_not_ground(self):
         job = gc.package_file('jobs/left_hand_d8_t3.yaml')
         rows = [row for row in self.plan(job) if row['tooth'] != '1']
-        told, _ = self.json(1, 'simulate', self.record(rows), '--job', job, '--at', '5')
-        self.assertEqual({stroke['tooth'] for stroke in told['strokes']}, {0, 2})
-        teeth = told['sections'][0]['teeth']
+        reported, _ = self.json(1, 'simulate', self.record(rows), '--job', job, '--at', '5')
+        self.assertEqual({stroke['tooth'] for stroke in reported['strokes']}, {0, 2})
+        teeth = reported['sections'][0]['teeth']
         self.assertEqual([tooth['edge_deg'] is None for tooth in teeth], [False, True, False])
         self.assertEqual(teeth[1]['depth_mm'], 0)
         self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job, '--svg', self.path('tool.svg')).stdout,
@@ -281,9 +281,9 @@ class TestRecord(TestSimulate):
 
     def test_bag_has_its_job(self):
         bag = self.bag(self.plan(PAPER_JOB))
-        told, _ = self.json(0, 'simulate', bag, '--at', '3,15,27')
-        self.check_same(told['sections'], self.planned())
-        self.assertEqual(told['source'], 'run.bag, job 2 of 2')
+        reported, _ = self.json(0, 'simulate', bag, '--at', '3,15,27')
+        self.check_same(reported['sections'], self.planned())
+        self.assertEqual(reported['source'], 'run.bag, job 2 of 2')
         self.json(1, 'simulate', bag, '--run', '1')
         self.assertRegex(self.grind(2, 'simulate', bag, '--run', '3').stderr, r'--run 3; the bag has 2 job\(s\)')
 

@@ -56,14 +56,14 @@ class TestShow(WheelTest):
         self.assertIn('measured         2026-11-20 by tool room\n', printed)
 
     def test_json(self):
-        told, _ = self.json(0, 'wheel', 'show', WORN)
-        self.assertEqual(told, {'profile': 'straight', 'diameter_mm': 124.76, 'set_diameter_mm': 125, 'wear_mm': 0.12,
+        reported, _ = self.json(0, 'wheel', 'show', WORN)
+        self.assertEqual(reported, {'profile': 'straight', 'diameter_mm': 124.76, 'set_diameter_mm': 125, 'wear_mm': 0.12,
                                 'width_mm': 2, 'new_width_mm': 2, 'angle_deg': None, 'side': None,
                                 'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5,
                                 'measured': {'date': '2026-11-20', 'by': 'tool room'}})
-        told, _ = self.json(0, 'wheel', 'show', ANGLED)
-        self.assertAlmostEqual(told.pop('angle_deg'), 20, delta=1e-12)
-        self.assertEqual((told['profile'], told['side'], told['wear_mm'], told['measured']), ('angled', 'upper', 0, None))
+        reported, _ = self.json(0, 'wheel', 'show', ANGLED)
+        self.assertAlmostEqual(reported.pop('angle_deg'), 20, delta=1e-12)
+        self.assertEqual((reported['profile'], reported['side'], reported['wear_mm'], reported['measured']), ('angled', 'upper', 0, None))
 
     def test_wrong_file(self):
         path = self.write('bad.yaml', 'profile: straight\ndiameter_mm: 100\nwidth_mm: wide\n')
@@ -166,16 +166,16 @@ class TestZeros(WheelTest):
         job = gc.package_file('jobs/finishing_d20_t8.yaml')
         swivel, height = math.radians(46.588), 0.281
         for flange, arguments in ((2.5, []), (-4, ['--flange', '-4'])):
-            told, _ = self.json(0, 'zeros', job, '--stickout', '71.5', '--machine', machine, *arguments)
+            reported, _ = self.json(0, 'zeros', job, '--stickout', '71.5', '--machine', machine, *arguments)
             # The wheel is 2 mm wide, and Y is set to 125 mm, whatever it has worn.
             along = 77 - flange - 2 / 2
-            self.assertEqual(set(told), {'x_mm', 'y_mm', 'z_mm'})
-            self.assertAlmostEqual(told['x_mm'], 133 - 71.5 - 4.4 + along * math.sin(swivel), delta=1e-9)
-            self.assertAlmostEqual(told['y_mm'], 11 + 20 / 2 + 125 / 2 - 55.5, delta=1e-9)
-            self.assertAlmostEqual(told['z_mm'], -22 + height - 6.6 - along * math.cos(swivel), delta=1e-9)
+            self.assertEqual(set(reported), {'x_mm', 'y_mm', 'z_mm'})
+            self.assertAlmostEqual(reported['x_mm'], 133 - 71.5 - 4.4 + along * math.sin(swivel), delta=1e-9)
+            self.assertAlmostEqual(reported['y_mm'], 11 + 20 / 2 + 125 / 2 - 55.5, delta=1e-9)
+            self.assertAlmostEqual(reported['z_mm'], -22 + height - 6.6 - along * math.cos(swivel), delta=1e-9)
             printed = self.grind(0, 'zeros', job, '--stickout', '71.5', '--machine', machine, *arguments).stdout
-            self.assertEqual(printed.split(), ['work', 'zero', 'X', '%.4f' % told['x_mm'], 'Y', '%.4f' % told['y_mm'], 'Z',
-                                               '%.4f' % told['z_mm'], 'mm'])
+            self.assertEqual(printed.split(), ['work', 'zero', 'X', '%.4f' % reported['x_mm'], 'Y', '%.4f' % reported['y_mm'], 'Z',
+                                               '%.4f' % reported['z_mm'], 'mm'])
 
     def test_refusals(self):
         job = gc.package_file('test/jobs/paper.yaml')

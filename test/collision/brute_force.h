@@ -9,10 +9,10 @@
 
 namespace flute_grinder {
 
-/// The least value of a convex function between two ends, by golden section.
+/// The minimum value of a convex function between two ends, by golden section.
 /// @param within of the place where it is least.
 template <typename Function>
-double leastOf(double low, double high, const Function& value, double within = 1e-9) {
+double minOf(double low, double high, const Function& value, double within = 1e-9) {
   constexpr double part = 0.6180339887498949;
   double a = high - part * (high - low), b = low + part * (high - low);
   double at_a = value(a), at_b = value(b);
@@ -52,10 +52,10 @@ struct Shape {
   double distance(const Shape& other) const {
     const double z_half = is_box ? half.z() : half_length;
     const double x_half = is_box ? half.x() : radius;
-    return leastOf(-z_half, z_half, [&](double z) {
-      return leastOf(-x_half, x_half, [&](double x) {
+    return minOf(-z_half, z_half, [&](double z) {
+      return minOf(-x_half, x_half, [&](double x) {
         const double y_half = is_box ? half.y() : std::sqrt(std::max(0.0, radius * radius - x * x));
-        return leastOf(-y_half, y_half, [&](double y) { return other.distance(pose * Eigen::Vector3d(x, y, z)); });
+        return minOf(-y_half, y_half, [&](double y) { return other.distance(pose * Eigen::Vector3d(x, y, z)); });
       });
     });
   }

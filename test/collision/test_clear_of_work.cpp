@@ -185,7 +185,7 @@ struct PlacedWheel {
   double distance(const Frustum& body) const {
     constexpr double kWithin = 3e-7;
     const Vector3d up(0, 1, 0), side = up.cross(along);
-    const auto over = [](double half, const auto& value) { return leastOf(-half, half, value, kWithin); };
+    const auto over = [](double half, const auto& value) { return minOf(-half, half, value, kWithin); };
     return over(half_width, [&](double w) {
       return over(radius, [&](double u) {
         const double high = std::sqrt(std::max(0.0, radius * radius - u * u));

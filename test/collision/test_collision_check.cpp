@@ -37,7 +37,7 @@ ClosestPlace closestOf(const std::string& urdf, const CollisionJob& job, const s
 }
 
 /// The rim meets the edge of the collet, 21 mm from the axis at X = 62 mm, in the plane Z = 0.
-TEST(CollisionCheck, TellsATenthOfAMillimetreFromTheClearanceAndFromAHit) {
+TEST(CollisionCheck, ReportsATenthOfAMillimetreFromTheClearanceAndFromAHit) {
   const double y = -0.0015;
   const double across = 0.005 + 0.05 + y - 0.021;
   for (const double wanted : {-0.1e-3, 0.1e-3, 0.9e-3, 1.1e-3}) {
@@ -70,7 +70,7 @@ TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
     const double height = between(-0.02, 0.02);
     const Axes from = axes(between(-0.02, 0.01), between(-0.002, 0.02), between(-0.01, 0.01));
     const Axes to = axes(between(0.01, 0.05), between(-0.002, 0.03), between(-0.01, 0.01), between(-20, 20));
-    const double expected = leastOf(0, 1, [&](double part) {
+    const double expected = minOf(0, 1, [&](double part) {
       const Axes at = (1 - part) * from + part * to;
       Shape wheel;
       wheel.radius = 0.05;

@@ -134,7 +134,7 @@ TEST(Solid, AWheelHasTheReachOfItsProfile) {
 }
 
 /// The body at any angle is within what it sweeps, and at some angle reaches its rim.
-TEST(Solid, ATurningBodySweepsItsLargestCircles) {
+TEST(Solid, ATurningBodySweepsItsMaxCircles) {
   const Isometry3d axis = Translation3d(0.1, 0.02, -0.03) * AngleAxisd(0.7, Vector3d(1, 2, -1).normalized());
   Solid box = Solid::box({0.02, 0.05, 0.03});
   box.pose = axis * Translation3d(0.03, -0.01, 0.2) * AngleAxisd(0.4, Vector3d::UnitX());

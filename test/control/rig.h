@@ -208,11 +208,11 @@ class Rig {
     EXPECT_TRUE(taken) << name << " was not taken";
   }
 
-  /// One failure tells enough of a loop that uses the heap in every cycle.
+  /// One failure says enough of a loop that uses the heap in every cycle.
   template <typename Work>
   void useNoHeap(const Work& work) {
-    if (!heapUse(work).any() || heap_told_) return;
-    heap_told_ = true;
+    if (!heapUse(work).any() || heap_reported_) return;
+    heap_reported_ = true;
     ADD_FAILURE() << "the heap was used by cycle " << log.size()
                   << " or a request before it; state: " << toString(status_.state);
   }
@@ -220,7 +220,7 @@ class Rig {
   LoopConfig config_;
   ros::Time time_{1000};
   LoopStatus status_;
-  bool heap_told_ = false;
+  bool heap_reported_ = false;
 };
 
 /// Names a test by its state.

@@ -192,7 +192,7 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   EXPECT_TRUE((last.command == machineConfig().machine.park).all());
 }
 
-TEST(ControlLoopRecords, TheEndOfAJobIsToldEvenIfItsOwnRecordWasLost) {
+TEST(ControlLoopRecords, TheEndOfAJobIsReportedEvenIfItsOwnRecordWasLost) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();

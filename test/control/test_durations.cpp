@@ -24,7 +24,7 @@ TEST(Durations, QuantilesAreAtMostAClassTooLong) {
   EXPECT_EQ(durations.longest(), 1e-3);
 }
 
-TEST(Durations, NeverTellMoreThanTheLongest) {
+TEST(Durations, NeverReportMoreThanTheLongest) {
   Durations durations;
   durations.add(1.01e-6);
   EXPECT_EQ(durations.quantile(0.5), 1.01e-6);

@@ -184,7 +184,7 @@ TEST(ControlLoopReset, IsRefusedWhileTheEmergencyStopIsPressed) {
   EXPECT_FALSE(rig.drive.written_drive.reset);
 }
 
-TEST(ControlLoopReset, TellsTheDriveForOneCycle) {
+TEST(ControlLoopReset, IsCommandedForOneCycle) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
   EXPECT_FALSE(rig.drive.written_drive.reset);

@@ -128,7 +128,7 @@ TEST_P(ForbiddenSetpoint, EndsTheJobOnceWithoutPower) {
   EXPECT_EQ(rig_.jobsEnded(), 1);
 }
 
-TEST_P(ForbiddenSetpoint, IsToldInWords) {
+TEST_P(ForbiddenSetpoint, IsReportedInWords) {
   for (const std::string& word : GetParam().words) EXPECT_CONTAINS(rig_.last().fault.text(), word);
   EXPECT_CONTAINS(rig_.last().fault.text(), "cycle " + std::to_string(forbidden_) + ",");
 }

@@ -205,7 +205,7 @@ class HomingFake : public testing::Test {
   Rig<FakeDrive> rig_;
 };
 
-TEST_F(HomingFake, IsToldToHomeAsLongAsItDoes) {
+TEST_F(HomingFake, IsCommandedToHomeAsLongAsItDoes) {
   changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 7; });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   for (int i = 0; i < 7; ++i) {

@@ -88,7 +88,7 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
   EXPECT_EQ(rig_.jobsEnded(), 1);
   EXPECT_TRUE(rig_.setpoints().empty());
   EXPECT_TRUE(sameBits(rig_.last().command, before));
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kInterlock) << "told until the next job";
+  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
 }
 
 TEST_P(WaitsFor, AfterGivingUpANewJobRuns) {
@@ -115,7 +115,7 @@ TEST_P(WaitsFor, CancelEndsTheWait) {
 
 INSTANTIATE_TEST_SUITE_P(, WaitsFor, testing::ValuesIn(parts()), partName);
 
-TEST(BeforeAJob, TheFirstThatIsMissingIsTold) {
+TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
   for (std::size_t first = 0; first < parts().size(); ++first) {
     Rig<FakeDrive> rig;
     rig.cycle();
@@ -208,7 +208,7 @@ TEST_F(WaitsForJournal, GivesUpAfterTheTimeout) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Commands to the drive
 
-TEST(Told, TheWheelTurnsWhileAJobHasTheMachine) {
+TEST(SpindleAndCoolant, TheWheelTurnsWhileAJobHasTheMachine) {
   const std::set<S> without_job{S::kDisabled, S::kReady, S::kHoming, S::kFault, S::kLifting, S::kJogging};
   for (const StateRow& row : kMachineStates) {
     SCOPED_TRACE(row.name);
@@ -222,7 +222,7 @@ TEST(Told, TheWheelTurnsWhileAJobHasTheMachine) {
   }
 }
 
-TEST(Told, SpindleAndCoolantThroughAWholeJob) {
+TEST(SpindleAndCoolant, SpindleAndCoolantThroughAWholeJob) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -238,7 +238,7 @@ TEST(Told, SpindleAndCoolantThroughAWholeJob) {
   EXPECT_EQ(rig.last().state, S::kReady);
 }
 
-TEST(Told, NothingIsOnForAStartThatIsRefused) {
+TEST(SpindleAndCoolant, NothingIsOnForAStartThatIsRefused) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -249,7 +249,7 @@ TEST(Told, NothingIsOnForAStartThatIsRefused) {
   EXPECT_FALSE(rig.drive.written_drive.coolant);
 }
 
-TEST(Told, NothingIsOnAfterTheLoopWasStopped) {
+TEST(SpindleAndCoolant, NothingIsOnAfterTheLoopWasStopped) {
   ros::Time::init();
   FakeDrive drive;
   LoopConfig config = machineConfig();

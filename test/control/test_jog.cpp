@@ -305,8 +305,8 @@ TEST_P(JogFrom, AtRandomMomentsItKeepsTheLimitsAndRestsInTheEnd) {
     std::uniform_real_distribution<> chance(0, 1);
     for (int i = 0; i < 3000; ++i) {
       const int axis = static_cast<int>(random() % 4);
-      const double largest = machineConfig().machine.limits.max_velocity[axis];
-      const double velocity = largest * (2 * chance(random) - 1);
+      const double max = machineConfig().machine.limits.max_velocity[axis];
+      const double velocity = max * (2 * chance(random) - 1);
       if (chance(random) < 0.02) {
         rig_.loop->postJog(step(axis, (axis == kA ? 3 : 0.05) * (2 * chance(random) - 1), std::abs(velocity)));
       } else if (chance(random) < 0.05) {

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         RefusalCase{"StaleFeedback", [](FakeDrive& d) { d.status.feedback_count = 1; }, "no valid, fresh positions"}),
     [](const testing::TestParamInfo<RefusalCase>& info) { return info.param.name; });
 
-TEST(ControlLoopEnable, TellsAFaultThatStaysAfterTheResetFromANewOne) {
+TEST(ControlLoopEnable, DistinguishesAFaultThatStaysAfterTheResetFromANewOne) {
   Rig<FakeDrive> rig;
   const auto refusal = [&] { return rig.ask(E::kEnable).text; };
   rig.drive.status.fault = true;

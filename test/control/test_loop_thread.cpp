@@ -51,7 +51,7 @@ TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   EXPECT_NEAR(record.time - first, sum, 1e-6);
 }
 
-TEST_F(ControlLoopThread, TellsHowLongTheCycleBeforeTookWithoutTheWait) {
+TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds taken{2};
   const auto spend = [&] {
@@ -84,7 +84,7 @@ TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
   EXPECT_TRUE(sameBits(toAxes(drive_.written), machineConfig().machine.park)) << "stopping moved an axis";
 }
 
-TEST_F(ControlLoopThread, TellsTheComputersTime) {
+TEST_F(ControlLoopThread, KeepsTheComputersTime) {
   ros::Time::setNow(ros::Time(5));  // as of a simulation
   const double before = ros::WallTime::now().toSec();
   loop_->startThread();
@@ -135,7 +135,7 @@ TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
   munmap(memory, claim);
 }
 
-TEST_F(ControlLoopThread, AnswersAStopAndTellsItsStatus) {
+TEST_F(ControlLoopThread, AnswersAStopAndReportsItsStatus) {
   loop_->startThread();
   CycleRecord record;
   ASSERT_TRUE(popInTime(record));
@@ -173,7 +173,7 @@ TEST_F(ControlLoopThread, StopEndsTheCycles) {
   EXPECT_EQ(drive_.status.feedback_count, cycles);
 }
 
-TEST_F(ControlLoopThread, RequestTellsARefusal) {
+TEST_F(ControlLoopThread, RequestReportsARefusal) {
   loop_->startThread();
   const RequestReply answer = loop_->request(E::kLift);
   EXPECT_FALSE(answer.accepted);

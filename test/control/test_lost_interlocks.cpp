@@ -96,7 +96,7 @@ class Lost : public testing::TestWithParam<std::tuple<Part, LossMoment>> {
   std::size_t before_ = 0;  ///< last record before the loss
 };
 
-TEST_P(Lost, IsToldAndActedUponInTheSameCycle) {
+TEST_P(Lost, IsReportedAndActedUponInTheSameCycle) {
   EXPECT_EQ(rig_.log[before_].interlock, Interlock::kNone);
   EXPECT_EQ(rig_.last().interlock, part_.interlock);
   EXPECT_EQ(rig_.last().state, std::get<1>(GetParam()).then);
@@ -133,7 +133,7 @@ TEST_P(Lost, ResumeIsRefusedWithTheReasonUntilItIsBackAndThenCompletesTheJob) {
   rig_.drive.on_read = restoreParts;
   rig_.run(200);
   EXPECT_EQ(rig_.last().state, S::kRetracted);
-  EXPECT_EQ(rig_.last().interlock, part_.interlock) << "told until the job is resumed";
+  EXPECT_EQ(rig_.last().interlock, part_.interlock) << "reported until the job is resumed";
   EXPECT_TRUE(atRestFrom(rig_.log, lifted));
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().interlock, Interlock::kNone);
@@ -239,7 +239,7 @@ TEST_P(LostPart, AgainAfterResumeRetractsAgain) {
 
 INSTANTIATE_TEST_SUITE_P(, LostPart, testing::ValuesIn(parts()), partName);
 
-TEST(LostParts, TheFirstStaysToldAndResumeTellsWhatIsAmissNow) {
+TEST(LostParts, TheFirstStaysReportedAndResumeReportsWhatIsAmissNow) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
   rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };

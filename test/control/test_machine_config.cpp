@@ -106,7 +106,7 @@ XmlRpcValue parameters() {
     p["jog_velocity"][name] = 0.02 * axis;
     p["probing"]["velocity"][name] = 0.03 * axis;
     p["probing"]["back_off"][name] = 0.04 * axis;
-    p["probing"]["largest_spread"][name] = 0.05 * axis;
+    p["probing"]["max_spread"][name] = 0.05 * axis;
   }
   return p;
 }
@@ -174,7 +174,7 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.geometry.probe->diameter, 0.004);
   expectAxes(config.probing.velocity, {0.03 * 1, 0.03 * 2, 0.03 * 3, 0.03 * 4});
   expectAxes(config.probing.back_off, {0.04 * 1, 0.04 * 2, 0.04 * 3, 0.04 * 4});
-  expectAxes(config.probing.largest_spread, {0.05 * 1, 0.05 * 2, 0.05 * 3, 0.05 * 4});
+  expectAxes(config.probing.max_spread, {0.05 * 1, 0.05 * 2, 0.05 * 3, 0.05 * 4});
   EXPECT_EQ(config.probing.slow, 0.25);
   EXPECT_EQ(config.probing.touches, 7);
   EXPECT_EQ(config.late_slow_down, 3);

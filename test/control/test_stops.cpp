@@ -298,7 +298,7 @@ TEST(Stops, WhatIsNoneIsNotTaken) {
 // ---------------------------------------------------------------------------------------------------------------------
 // The status
 
-TEST(Status, TellsOfAWholeJob) {
+TEST(Status, ReportsAWholeJob) {
   Rig<SimulatedDrive> rig;
   rig.cycle();
   EXPECT_EQ(rig.loop->status().cycles, 1u);
@@ -347,7 +347,7 @@ TEST(Status, KeepsTheCauseOfAJobsEndUntilTheNextStarts) {
   EXPECT_EQ(rig.loop->status().strokes_ended_at, 0u);
 }
 
-TEST(Status, OfASpindleThatDidNotComeTellsIt) {
+TEST(Status, OfASpindleThatDidNotComeReportsIt) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kStarting));
   rig.runUntil(S::kReady);
@@ -397,7 +397,7 @@ struct Delay {
   }
 };
 
-TEST(Status, OfADriveThatBuffersTellsWhereTheAxesAre) {
+TEST(Status, OfADriveThatBuffersReportsWhereTheAxesAre) {
   Rig<FakeDrive> rig;
   rig.drive.on_read = Delay{50};
   rig.cycle();

@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(By, SwivelOff,
                                          Offset{"JustAbove", 0.04, true}, Offset{"MuchAbove", 0.06, false}),
                          [](const testing::TestParamInfo<Offset>& info) { return std::string(info.param.name); });
 
-TEST(Swivel, ThatIsConfirmedAtAnotherAngleIsToldToBeSet) {
+TEST(Swivel, ThatIsConfirmedAtAnotherAngleIsAskedFor) {
   Unconfirmed rig;
   ASSERT_TRUE(rig.confirm(-20.5 * kDegree).accepted);
   EXPECT_EQ(rig.startPaperJob().text,
@@ -166,7 +166,7 @@ TEST(MeasuredSwivel, IsNotConfirmed) {
             "confirmed");
 }
 
-TEST(MeasuredSwivel, AtAnotherAngleIsToldToBeSetAndNotToBeConfirmed) {
+TEST(MeasuredSwivel, AtAnotherAngleIsAskedForAndNotToBeConfirmed) {
   Unconfirmed rig;
   measure(rig, 32 * kDegree);
   EXPECT_EQ(rig.startPaperJob().text,

@@ -43,25 +43,25 @@ struct Errors {
   double odd = 0, even = 0;
 };
 
-Errors largestErrors(const CutterGeometry& g, EvenStepRule rule, double step, double end) {
+Errors maxErrors(const CutterGeometry& g, EvenStepRule rule, double step, double end) {
   const ReferenceCurve curve(g);
   const auto points = pathOf(g, rule, step, end);
   Errors errors;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    double& largest = i % 2 == 1 ? errors.odd : errors.even;
-    largest = std::max(largest, std::abs(errorOf(curve, points[i])));
+    double& max = i % 2 == 1 ? errors.odd : errors.even;
+    max = std::max(max, std::abs(errorOf(curve, points[i])));
   }
   return errors;
 }
 
 TEST(OddEvenInterpolator, ThirdOrderIsThriceAsAccurateAsPublishedOnThePapersCutter) {
-  const Errors errors = largestErrors(paperCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 30 * kMm);
+  const Errors errors = maxErrors(paperCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 30 * kMm);
   EXPECT_NEAR(errors.even, 1.29e-7, 0.005e-7);
 }
 
 TEST(OddEvenInterpolator, PublishedFailsOnASteepCutterWhereThirdOrderDoesNot) {
-  const Errors published = largestErrors(steepCutter(), EvenStepRule::kPublished, 0.2 * kMm, 20 * kMm);
-  const Errors third_order = largestErrors(steepCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 20 * kMm);
+  const Errors published = maxErrors(steepCutter(), EvenStepRule::kPublished, 0.2 * kMm, 20 * kMm);
+  const Errors third_order = maxErrors(steepCutter(), EvenStepRule::kThirdOrder, 0.2 * kMm, 20 * kMm);
   EXPECT_NEAR(published.even, 1.2e-3, 0.05e-3);
   EXPECT_NEAR(third_order.even, 2.4e-5, 0.05e-5);
 }
@@ -69,8 +69,8 @@ TEST(OddEvenInterpolator, PublishedFailsOnASteepCutterWhereThirdOrderDoesNot) {
 TEST(OddEvenInterpolator, PublishedEvenErrorFallsWithTheSquareOfTheStep) {
   for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
     SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    const double coarse = largestErrors(cutter, EvenStepRule::kPublished, 0.01 * kMm, 20 * kMm).even;
-    const double fine = largestErrors(cutter, EvenStepRule::kPublished, 0.005 * kMm, 20 * kMm).even;
+    const double coarse = maxErrors(cutter, EvenStepRule::kPublished, 0.01 * kMm, 20 * kMm).even;
+    const double fine = maxErrors(cutter, EvenStepRule::kPublished, 0.005 * kMm, 20 * kMm).even;
     EXPECT_NEAR(coarse / fine, 4, 0.2);
   }
 }
@@ -78,8 +78,8 @@ TEST(OddEvenInterpolator, PublishedEvenErrorFallsWithTheSquareOfTheStep) {
 TEST(OddEvenInterpolator, ThirdOrderEvenErrorFallsWithTheCubeOfTheStep) {
   for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
     SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    const double coarse = largestErrors(cutter, EvenStepRule::kThirdOrder, 0.04 * kMm, 20 * kMm).even;
-    const double fine = largestErrors(cutter, EvenStepRule::kThirdOrder, 0.02 * kMm, 20 * kMm).even;
+    const double coarse = maxErrors(cutter, EvenStepRule::kThirdOrder, 0.04 * kMm, 20 * kMm).even;
+    const double fine = maxErrors(cutter, EvenStepRule::kThirdOrder, 0.02 * kMm, 20 * kMm).even;
     EXPECT_NEAR(coarse / fine, 8, 0.4);
   }
 }
@@ -87,7 +87,7 @@ TEST(OddEvenInterpolator, ThirdOrderEvenErrorFallsWithTheCubeOfTheStep) {
 TEST(OddEvenInterpolator, ExactStaysOnTheCurveToRounding) {
   for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
     SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    EXPECT_LE(largestErrors(cutter, EvenStepRule::kExact, 0.2 * kMm, 20 * kMm).even, 2e-15);
+    EXPECT_LE(maxErrors(cutter, EvenStepRule::kExact, 0.2 * kMm, 20 * kMm).even, 2e-15);
   }
 }
 
@@ -261,7 +261,7 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, LargestStepLengthUsesUpTheErrorAllowe
   const Place place = Place::draw();
   RC_PRE(std::abs(place.curve.k() * place.curve.b()) > 1e-3);
   const double allowed = *test_support::logUniform(1e-10, 1e-4);
-  const double step = OddEvenInterpolator::largestStepLength(place.curve, place.scale, place.x, allowed);
+  const double step = OddEvenInterpolator::maxStepLength(place.curve, place.scale, place.x, allowed);
   const Real u = place.reference.u(place.x);
   const Real slope = place.scale * place.reference.slope(place.x);
   const Real growth = std::abs(place.reference.b) * step / std::sqrt(1 + slope * slope) / u;
@@ -276,8 +276,8 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, LargestStepLengthUsesUpTheErrorAllowe
 }
 
 TEST(OddEvenInterpolator, LargestStepLengthIsInfiniteWhereTheCurveIsStraight) {
-  EXPECT_TRUE(std::isinf(OddEvenInterpolator::largestStepLength(LogCurve(0, 100), kPaperScale, 0.01, 1e-6)));
-  EXPECT_TRUE(std::isinf(OddEvenInterpolator::largestStepLength(LogCurve(10, 0), kPaperScale, 0.01, 1e-6)));
+  EXPECT_TRUE(std::isinf(OddEvenInterpolator::maxStepLength(LogCurve(0, 100), kPaperScale, 0.01, 1e-6)));
+  EXPECT_TRUE(std::isinf(OddEvenInterpolator::maxStepLength(LogCurve(10, 0), kPaperScale, 0.01, 1e-6)));
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, NegativeStepsGoAsPositiveOnesDoOnTheMirroredCurve, ()) {

@@ -215,7 +215,7 @@ TEST(SCurveProfile, TakesTheAccelerationBackBeforeItStops) {
   EXPECT_NEAR(law.acceleration(), 0, 1e-14);
 }
 
-TEST(SCurveProfile, TellsItsLimits) {
+TEST(SCurveProfile, ReportsItsLimits) {
   const SCurveProfile law({2, 3, 5}, 1, 1);
   EXPECT_EQ(law.limits().velocity, 2);
   EXPECT_EQ(law.limits().acceleration, 3);

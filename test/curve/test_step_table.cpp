@@ -75,24 +75,24 @@ TEST(StepTable, NeedsThePapers152PointsTo30Mm) {
   EXPECT_EQ(table.rows.size() - 1, 152u);
 }
 
-TEST(StepTable, HasThePapersLargestErrors) {
+TEST(StepTable, HasThePapersMaxErrors) {
   const StepTable table = papersTable(0.2 * kMm);
-  EXPECT_NEAR(table.largest_odd_error, 3.9785e-5, 0.00005e-5);
-  EXPECT_NEAR(table.largest_even_error, 3.5000e-7, 0.00005e-7);
-  EXPECT_EQ(table.largestError(), table.largest_odd_error);
+  EXPECT_NEAR(table.max_odd_error, 3.9785e-5, 0.00005e-5);
+  EXPECT_NEAR(table.max_even_error, 3.5000e-7, 0.00005e-7);
+  EXPECT_EQ(table.maxError(), table.max_odd_error);
 }
 
 TEST(StepTable, HasThePapersFiguresForTheLongerStep) {
   const StepTable table = papersTable(0.5 * kMm);
   EXPECT_EQ(table.rows.size() - 1, 62u);
   EXPECT_NEAR(table.rows.back().point.x / kMm, 30.8667, 0.00005);
-  EXPECT_NEAR(table.largestError(), 2.4780e-4, 0.00005e-4);
+  EXPECT_NEAR(table.maxError(), 2.4780e-4, 0.00005e-4);
 }
 
 TEST(StepTable, TakesTheRuleThatItIsGiven) {
   const StepTable exact = tableOf(paperCutter(), EvenStepRule::kExact, 0.2 * kMm);
   EXPECT_TRUE(exact.complete);
-  EXPECT_LE(exact.largest_even_error, 2e-15);
+  EXPECT_LE(exact.max_even_error, 2e-15);
 }
 
 TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {

@@ -29,7 +29,7 @@ NOT_RUN = {
     'cmake --install build': 'writes to /opt; test/install_space.sh runs it',
     'cmake build && cmake --build build': 'configures anew, for packages that were installed later',
     'sudo apt-get install linux-image-rt-amd64': 'installs a kernel',
-    'uname -v': 'tells of the kernel that was booted',
+    'uname -v': 'reports the kernel that was booted',
     'latency-histogram': 'is a window to look at for an hour',
     'scripts/bench': 'measures for minutes',
     'scripts/bench --json before.json': 'measures for minutes',

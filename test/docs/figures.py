@@ -20,7 +20,7 @@ def of_plan(output):
     feed = re.search(r'(?m)^feed constancy +(.*)$', output).group(1)
     return {
         'stroke s': re.search(r' stroke ([\d.]+)', output).group(1),
-        'largest deviation um': re.search(r'(?m)^largest deviation +(\S+) um', output).group(1),
+        'maximum deviation um': re.search(r'(?m)^maximum deviation +(\S+) um', output).group(1),
         'feed constancy mm/min': re.sub(r'^(\S+) to \1 mm/min$', r'\1', feed),
         'limited by': ', '.join(re.findall(r'(?m)^feed limited by +(.*?), X', output)),
     }
@@ -54,7 +54,7 @@ def wrong_steps(table, job, grind):
             point, rules = ('even', [plain(name)]) if name.startswith('`') else ('odd', [plain(n) for n in head[2:]])
             for rule in rules:
                 output = grind('table', job, '--step-length', step, '--even-step', rule)
-                value = float(re.search(r'largest at %s points +(\S+)' % point, output).group(1))
+                value = float(re.search(r'maximum at %s points +(\S+)' % point, output).group(1))
                 if rounded_as(cell, value) != cell:
                     found.append('step %s mm, %s points, %s: %g, not %s' % (step, point, rule, value, cell))
     return found

@@ -11,14 +11,14 @@ constexpr std::size_t kDepth = 50;
 /// Makes a drive play each command kDepth cycles after it was written.
 struct Buffer {
   std::deque<Axes> waiting;
-  bool tells = true;  ///< how many wait
+  bool reports = true;  ///< how many wait
 
   void operator()(FakeDrive& drive) {
     if (!drive.status.enabled) return waiting.clear();
     waiting.push_back(toAxes(drive.written));
     if (waiting.size() > kDepth + 1) waiting.pop_front();
     drive.place(waiting.front());
-    drive.status.commands_waiting = tells ? static_cast<std::uint32_t>(waiting.size() - 1) : 0;
+    drive.status.commands_waiting = reports ? static_cast<std::uint32_t>(waiting.size() - 1) : 0;
   }
 };
 
@@ -40,8 +40,8 @@ TEST_F(BufferedDrive, IsComparedWithTheCommandThatTheAxesHaveGot) {
   EXPECT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
 }
 
-TEST_F(BufferedDrive, ThatDoesNotTellItsBufferFallsBehind) {
-  buffer_.tells = false;
+TEST_F(BufferedDrive, ThatDoesNotReportItsBufferFallsBehind) {
+  buffer_.reports = false;
   rig_.startPaper();
   rig_.runToEnd();
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kFollowingError);

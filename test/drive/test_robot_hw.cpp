@@ -99,13 +99,13 @@ TEST(DriveHandle, NullPointersAreRefusedByName) {
   EXPECT_TRUE(contains(errorOf([&] { DriveHandle("main_drive", &status, nullptr); }), "'main_drive'"));
 }
 
-TEST(DriveStatus, SaysNothingGoodUntilTold) {
+TEST(DriveStatus, SaysNothingGoodUntilReported) {
   const DriveStatus status;
   EXPECT_FALSE(status.enabled);
   EXPECT_FALSE(status.homed);
 }
 
-TEST(DriveCommand, IsWithoutPowerUntilTold) {
+TEST(DriveCommand, IsWithoutPowerUntilCommanded) {
   const DriveCommand command;
   EXPECT_FALSE(command.enable);
   EXPECT_FALSE(command.reset);

@@ -75,7 +75,7 @@ struct Bench {
 
   /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
   End wall(double x, double r, int side) const {
-    const double large = request.wheel.largestRadius(), rise = large * std::abs(std::tan(request.cutter.cone_angle));
+    const double large = request.wheel.maxRadius(), rise = large * std::abs(std::tan(request.cutter.cone_angle));
     const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
                          (request.wheel.upperFace() - request.wheel.lowerFace());
     double from = x - 1.5 * reach, to = x + 1.5 * reach;
@@ -113,7 +113,7 @@ struct Bench {
   /// The angle of the edge at X [rad].
   double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
 
-  /// The least radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
+  /// The minimum radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
   double core(double x) const {
     double out = 0, in = radius(x);
     for (int i = 0; i < 20; ++i) {
@@ -137,29 +137,29 @@ struct Bench {
     return one <= other ? other : other <= one ? one : std::numeric_limits<double>::infinity();
   }
 
-  /// The least land over both ends of the flute [m].
+  /// The minimum land over both ends of the flute [m].
   double land() const {
-    double least = std::numeric_limits<double>::infinity();
+    double min = std::numeric_limits<double>::infinity();
     const double pitch = 2 * 3.14159265358979324 / static_cast<double>(request.tooth_angles.size());
     for (const double x : {0.0, request.cutter.flute_length}) {
       const double flute = wall(x, radius(x), 1).angle + wall(x, radius(x), -1).angle;
-      least = std::min(least, radius(x) * (pitch - flute));
+      min = std::min(min, radius(x) * (pitch - flute));
     }
-    return least;
+    return min;
   }
 
-  /// Whether the rake face, a tenth of the depth below the outer circle, is formed beyond the wheel's largest radius.
+  /// Whether the rake face, a tenth of the depth below the outer circle, is formed beyond the wheel's maximum radius.
   bool formedByFace() const {
     const WheelProfile& wheel = request.wheel;
-    double largest = rakeSide() > 0 ? wheel.lowerFace() : wheel.upperFace();
+    double max = rakeSide() > 0 ? wheel.lowerFace() : wheel.upperFace();
     for (int i = 0; i <= 1000; ++i) {
       const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * i / 1000;
-      if (wheel.radius(w) >= wheel.largestRadius() * (1 - 1e-6))
-        largest = std::max(rakeSide() * largest, rakeSide() * w) * rakeSide();
+      if (wheel.radius(w) >= wheel.maxRadius() * (1 - 1e-6))
+        max = std::max(rakeSide() * max, rakeSide() * w) * rakeSide();
     }
     for (const double x : {0.0, request.cutter.flute_length}) {
       const double w = wall(x, radius(x) - 0.1 * depth, rakeSide()).w;
-      if (rakeSide() * (w - largest) < -1e-6) return false;
+      if (rakeSide() * (w - max) < -1e-6) return false;
     }
     return true;
   }
@@ -168,8 +168,8 @@ struct Bench {
   static double depthFor(const SetupRequest& request, double swivel, double height, double core, int places,
                          int discs) {
     const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
-    const double reach = 0.8 * request.wheel.largestRadius();
-    double least = std::numeric_limits<double>::infinity();
+    const double reach = 0.8 * request.wheel.maxRadius();
+    double min = std::numeric_limits<double>::infinity();
     for (int i = -places; i <= places; ++i) {
       const double s = reach * i / places;
       if (std::abs(s * tan_cone) > 0.98 * request.cutter.end_diameter / 2) continue;
@@ -182,10 +182,10 @@ struct Bench {
         if (std::abs(z) > core || squared < 0) continue;
         const double low = request.cutter.end_diameter / 2 + request.nominal_radius + s * (tan_cone + request.y_per_x) -
                            std::sqrt(squared);
-        least = std::min(least, low - std::sqrt(core * core - z * z));
+        min = std::min(min, low - std::sqrt(core * core - z * z));
       }
     }
-    return least;
+    return min;
   }
 };
 

@@ -40,8 +40,8 @@ SetupRequest requestFor(const Shop& s) {
   r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
   r.nominal_radius = s.wheel / 2 * kMillimetre;
   r.depth = s.depth * kMillimetre;
-  r.least_swivel = -60 * kDegree;
-  r.largest_swivel = 60 * kDegree;
+  r.min_swivel = -60 * kDegree;
+  r.max_swivel = 60 * kDegree;
   r.z_law = ZLaw::kConstantRake;
   return r;
 }
@@ -70,16 +70,16 @@ std::optional<GrindJob> jobFor(const Shop& s) {
 
 GrindJob steepJob() { return jobFor({}).value(); }
 
-/// The largest error of the rake over the flute [deg]; infinite where there is none.
+/// The maximum error of the rake over the flute [deg]; infinite where there is none.
 double rakeError(const GroundCutter& cutter, const GrindJob& job) {
-  double largest = 0;
+  double max = 0;
   for (int i = 0; i <= kParts; ++i) {
     for (const ToothSection& tooth : cutter.section(job.cutter.flute_length * i / kParts).teeth) {
       const double error = tooth.rake && tooth.complete ? std::abs(*tooth.rake - job.cutter.rake_angle) : 10;
-      largest = std::max(largest, error / kDegree);
+      max = std::max(max, error / kDegree);
     }
   }
-  return largest;
+  return max;
 }
 
 double publishedRakeError(GrindJob job) {

@@ -130,7 +130,7 @@ TEST(CutterSolid, CutOpenIsClosedAndLacksTheWedge) {
   }
 }
 
-TEST(CutterSolid, TellsWhatEachTriangleIs) {
+TEST(CutterSolid, ReportsWhatEachTriangleIs) {
   for (const SolidCase& c : test_support::solidCases()) {
     if (c.name != "unequal pitch" && c.name != "left hand") continue;
     SCOPED_TRACE(c.name);

@@ -98,7 +98,7 @@ TEST(GroundCutter, TheEdgeCircleFormsTheWallThatItTouchesLast) {
   const double k = std::tan(30 * kDegree) / r;
   const WheelSetup setup = c.setup();
   const double centre_y = (5 - 1.6 + 50) * kMillimetre;
-  // Points of the upper edge, each moved along X by the screw to where it crosses the section: the greatest angle wins.
+  // Points of the upper edge, each moved along X by the screw to where it crosses the section: the maximum angle wins.
   double greatest = -10;
   for (int i = -200000; i <= 200000; ++i) {
     const double angle = i * 2e-6;
@@ -300,7 +300,7 @@ TEST(GroundCutter, NothingIsRemovedBelowTheCore) {
     const auto k = randomCase(random, i);
     if (!k) continue;
     const WheelSweep sweep = k->c.sweep(k->wheel);
-    const double core = sweep.leastRadius(k->x, k->outer);
+    const double core = sweep.minRadius(k->x, k->outer);
     if (!(core < k->outer - 1e-5)) continue;
     ++checked;
     const auto arc = sweep.arc(k->x, core + kWithin);
@@ -391,7 +391,7 @@ TEST(WheelSweep, AWallsSlopeIsThatOfItsAngles) {
     const WheelSweep sweep =
         c.sweep(WheelProfile::straight(c.wheel * kMillimetre, c.width * kMillimetre, {0, i % 3 * 2e-4}));
     const double x = uniform(3, 15) * kMillimetre, outer = c.cutter().radius(x);
-    const double r = outer - uniform(0, 0.7) * (outer - sweep.leastRadius(x, outer));
+    const double r = outer - uniform(0, 0.7) * (outer - sweep.minRadius(x, outer));
     const auto arc = sweep.arc(x, r);
     for (const bool high : {false, true}) {
       const auto at = sweep.wall(x, r, high), above = sweep.wall(x, 1.0001 * r, high),
@@ -416,7 +416,7 @@ TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
     c.width = 3;
     const double deeper = c.sweep().deeperFor(0.01, 2.9 * kMillimetre);
     c.depth += deeper / kMillimetre;
-    EXPECT_NEAR(c.sweep().leastRadius(0.01, 0.02), 2.9 * kMillimetre, 1e-9) << cone;
+    EXPECT_NEAR(c.sweep().minRadius(0.01, 0.02), 2.9 * kMillimetre, 1e-9) << cone;
   }
 }
 

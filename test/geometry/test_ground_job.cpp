@@ -65,15 +65,15 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
     const GroundCutter cutter = groundCutterOf(job);
-    double least_rake = 90 * kDegree, largest_spiral = -90 * kDegree;
+    double min_rake = 90 * kDegree, max_spiral = -90 * kDegree;
     for (int i = 0; i <= 8; ++i) {
       for (const ToothSection& tooth : cutter.section(i / 8.0 * job.cutter.flute_length).teeth) {
-        least_rake = std::min(least_rake, tooth.rake.value());
-        largest_spiral = std::max(largest_spiral, tooth.spiral.value());
+        min_rake = std::min(min_rake, tooth.rake.value());
+        max_spiral = std::max(max_spiral, tooth.spiral.value());
       }
     }
-    EXPECT_NEAR(check.figures.rake.from, least_rake, 1e-4);  // with other wear
-    EXPECT_NEAR(check.figures.spiral.to, largest_spiral, 1e-4);
+    EXPECT_NEAR(check.figures.rake.from, min_rake, 1e-4);  // with other wear
+    EXPECT_NEAR(check.figures.spiral.to, max_spiral, 1e-4);
     EXPECT_NEAR(check.figures.core_diameter[0], 2 * cutter.section(0).core_radius, 1e-8);
     EXPECT_NEAR(check.figures.core_diameter[1], 2 * cutter.section(job.cutter.flute_length).core_radius, 1e-8);
     // Between the checked sections too.
@@ -352,12 +352,12 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
   brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 200, 100};
   bench.lead = job.process.setup_lead;
   bench.taper = (job.process.depth - job.process.depthEnd()) / job.cutter.flute_length;
-  double least = 1e9, largest = -1e9;
+  double min = 1e9, max = -1e9;
   for (int i = 0; i <= 8; ++i) {
     const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
-    least = std::min(least, off), largest = std::max(largest, off);
+    min = std::min(min, off), max = std::max(max, off);
   }
-  EXPECT_NEAR(checkGroundCutter(job).figures.edge, (largest - least) / 2, 1e-4);
+  EXPECT_NEAR(checkGroundCutter(job).figures.edge, (max - min) / 2, 1e-4);
 }
 
 // Straight flutes on a cylinder: the lower face passes 2.5 mm above the axis, so that the core is a hyperbola.

@@ -344,7 +344,7 @@ TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
   EXPECT_GT(set_up, 0);
 }
 
-TEST(SetupSheet, TellsHowHighTheWheelStands) {
+TEST(SetupSheet, ReportsHowHighTheWheelStands) {
   const GrindJob job = paper();
   EXPECT_NEAR(upperFaceHeight(job) / kMillimetre, 4.552, 1e-3);
   EXPECT_NEAR(lowerFaceHeight(job) / kMillimetre, 2 * 2.788 - 4.552, 1e-3);

@@ -66,8 +66,8 @@ SetupRequest requestFor(double diameter, double cone, double spiral, double rake
   r.wheel = WheelProfile::straight(wheel * kMillimetre, width * kMillimetre);
   r.nominal_radius = wheel / 2 * kMillimetre;
   r.depth = depth * kMillimetre;
-  r.least_swivel = -60 * kDegree;
-  r.largest_swivel = 60 * kDegree;
+  r.min_swivel = -60 * kDegree;
+  r.max_swivel = 60 * kDegree;
   return r;
 }
 
@@ -82,8 +82,8 @@ TEST(RakeCorrection, TheRakeIsTheSameOverTheWholeFlute) {
     const auto corrected =
         correctRake(cutter, request.wheel, request.nominal_radius, solved.setup, stroke, request.rake);
     ASSERT_TRUE(corrected.has_value());
-    EXPECT_NEAR(corrected->least_rake, request.rake, 0.005 * kDegree);
-    EXPECT_NEAR(corrected->largest_rake, request.rake, 0.005 * kDegree);
+    EXPECT_NEAR(corrected->min_rake, request.rake, 0.005 * kDegree);
+    EXPECT_NEAR(corrected->max_rake, request.rake, 0.005 * kDegree);
     // In other sections than those it was made for, by sections and by brute force.
     stroke.z_correction = corrected->z;
     const GroundCutter ground(
@@ -99,7 +99,7 @@ TEST(RakeCorrection, TheRakeIsTheSameOverTheWholeFlute) {
 
 TEST(RakeCorrection, WhereThereIsNoFluteThereIsNoCorrection) {
   const SetupRequest request = requestFor(10, 5, 30, 8, 30, 1.6, 100, 3);
-  const WheelSetup above{request.least_swivel, 0.1};
+  const WheelSetup above{request.min_swivel, 0.1};
   EXPECT_FALSE(correctRake(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, above,
                            {0, 0.03, -0.0016, 0, 0, {}}, request.rake)
                    .has_value());

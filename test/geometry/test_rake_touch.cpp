@@ -67,7 +67,7 @@ class Groove {
   explicit Groove(const GrindJob& job)
       : job_(job), wheel_(wheelOf(job).worn(job.process.wheel_wear)), z_correction_(zCorrectionOf(job, 0)) {}
 
-  /// The least depth in the wheel's way of the ball's points within the blank, while A is as given; negative if the
+  /// The minimum depth in the wheel's way of the ball's points within the blank, while A is as given; negative if the
   /// ball is in the cutter [m].
   /// @param rows of points, from which the point that is deepest in the cutter is refined.
   double room(const Ball& ball, double a, int rows) const {

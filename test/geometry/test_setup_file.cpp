@@ -85,7 +85,7 @@ TEST_F(SetupFile, AFileThatHasChangedIsLeft) {
   EXPECT_EQ(readFile(job_), text);
 }
 
-TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreTold) {
+TEST_F(SetupFile, OneThatCannotBeEditedIsLeftAndTheFiguresAreReported) {
   std::string text = readFile(job_);
   text.replace(text.find("swivel_deg: "), 12, "swivel_deg: !!float ");
   write(text);

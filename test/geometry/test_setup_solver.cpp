@@ -41,8 +41,8 @@ SetupRequest requestFor(const Shop& s) {
   r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
   r.nominal_radius = s.wheel / 2 * kMillimetre;
   r.depth = s.depth * kMillimetre;
-  r.least_swivel = -60 * kDegree;
-  r.largest_swivel = 60 * kDegree;
+  r.min_swivel = -60 * kDegree;
+  r.max_swivel = 60 * kDegree;
   return r;
 }
 
@@ -90,8 +90,8 @@ TEST(SetupSolver, ThePapersCutterIsSetAsDocumented) {
   EXPECT_NEAR((s.setup.height + 0.0015 / std::cos(s.setup.swivel)) / kMillimetre, 4.552, 0.002);
   const GroundCutter g = ground(request, s);
   for (const double x : {0.0, 1.0, 9.0, 17.0, 29.0, 30.0}) EXPECT_NEAR(rakeAt(g, x), 8, 0.0115) << x;
-  EXPECT_NEAR(s.least_rake / kDegree, 8 - 0.011, 0.0005);
-  EXPECT_NEAR(s.largest_rake / kDegree, 8 + 0.011, 0.0005);
+  EXPECT_NEAR(s.min_rake / kDegree, 8 - 0.011, 0.0005);
+  EXPECT_NEAR(s.max_rake / kDegree, 8 + 0.011, 0.0005);
 }
 
 /// A cone whose rake, edge and cores are asked at both ends, ground 1.6 mm deep, in the shop's units.
@@ -103,7 +103,7 @@ SetupRequest requestForAll(const Shop& s) {
   return r;
 }
 
-/// By brute force, over the flute: the largest errors of rake and edge [deg], and of the core's diameter [mm].
+/// By brute force, over the flute: the maximum errors of rake and edge [deg], and of the core's diameter [mm].
 struct ErrorsOverFlute {
   double rake = 0, edge = 0, core = 0;
 };
@@ -115,7 +115,7 @@ ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
   ErrorsOverFlute errors;
   for (int i = 0; i <= 8; ++i) {
     const double x = length * i / 8;
-    const auto take = [](double& largest, double error) { largest = std::max(largest, std::abs(error)); };
+    const auto take = [](double& max, double error) { max = std::max(max, std::abs(error)); };
     take(errors.rake, (bench.rake(x) - r.rake) / kDegree);
     take(errors.edge, (bench.edge(x) - bench.edge(0) - bench.turned(x)) / kDegree);
     take(errors.core, (2 * bench.core(x) - *r.core_diameter - x / length * wider) / kMillimetre);
@@ -256,9 +256,9 @@ TEST(SetupSolver, ADepthThatIsFoundDoesNotDependOnTheJobs) {
 TEST(SetupSolver, AnEdgeThatCannotBeHadIsNotDropped) {
   SetupRequest request = requestAtHeight(8.5, 0.02, 0.3);
   EXPECT_NEAR(solved(request).setup.swivel / kDegree, 33.797, 0.005);
-  request.least_swivel = 34.3 * kDegree;
+  request.min_swivel = 34.3 * kDegree;
   EXPECT_GT(solved(request).setup.lead / kMillimetre, 13);
-  request.least_swivel = 34.6 * kDegree;
+  request.min_swivel = 34.6 * kDegree;
   const SetupRefusal r = refused(request);
   EXPECT_EQ(r.problem, SetupProblem::kSwivel);
   EXPECT_LT(r.asked, 34.6 * kDegree);
@@ -283,8 +283,8 @@ TEST(SetupSolver, SteeperConesAreSetAsDocumented) {
   SolvedSetup s = solved(request);
   EXPECT_NEAR(s.setup.swivel / kDegree, 23.28, 0.1);
   EXPECT_NEAR(heightOfAll(right, s.setup.height), 0.603, 0.01);
-  EXPECT_NEAR(s.least_rake / kDegree, 14 - 0.61 / 2, 0.01);
-  EXPECT_NEAR(s.largest_rake / kDegree, 14 + 0.61 / 2, 0.01);
+  EXPECT_NEAR(s.min_rake / kDegree, 14 - 0.61 / 2, 0.01);
+  EXPECT_NEAR(s.max_rake / kDegree, 14 + 0.61 / 2, 0.01);
 
   const Shop left{6, 7, -25, 12, 18, 0.9, 80, 2};
   request = requestFor(middleOf(left));
@@ -293,32 +293,30 @@ TEST(SetupSolver, SteeperConesAreSetAsDocumented) {
   s = solved(request);
   EXPECT_NEAR(s.setup.swivel / kDegree, -28.46, 0.1);
   EXPECT_NEAR(heightOfAll(left, s.setup.height), -0.230, 0.01);
-  EXPECT_NEAR(s.least_rake / kDegree, 12 - 0.28 / 2, 0.01);
-  EXPECT_NEAR(s.largest_rake / kDegree, 12 + 0.28 / 2, 0.01);
+  EXPECT_NEAR(s.min_rake / kDegree, 12 - 0.28 / 2, 0.01);
+  EXPECT_NEAR(s.max_rake / kDegree, 12 + 0.28 / 2, 0.01);
 }
 
-/// The largest error of the rake over the flute, by brute force, of a set-up or beside it [deg].
-double largestError(const SetupRequest& r, const SolvedSetup& s, double swivel = 0, double height = 0) {
+/// The maximum error of the rake over the flute, by brute force, of a set-up or beside it [deg].
+double maxError(const SetupRequest& r, const SolvedSetup& s, double swivel = 0, double height = 0) {
   const brute::Bench bench{r, s.setup.swivel + swivel, s.setup.height + height, s.depth, 400, 50};
-  double largest = 0;
+  double max = 0;
   for (int i = 0; i <= 12; ++i) {
-    largest = std::max(largest, std::abs(bench.rake(r.cutter.flute_length * i / 12) - r.rake) / kDegree);
+    max = std::max(max, std::abs(bench.rake(r.cutter.flute_length * i / 12) - r.rake) / kDegree);
   }
-  return largest;
+  return max;
 }
 
 TEST(SetupSolver, NoOtherSetUpNearbyHasASmallerErrorOverTheFlute) {
   for (const Shop& shop : {Shop{5, 10, 20, 14, 15, 0.7, 75, 1.5}, Shop{8.4, 1.8, -12, 11, 14, 1, 62, 3.6}, Shop{}}) {
     SetupRequest request = requestFor(shop);
     const SolvedSetup s = solved(request);
-    const double error = largestError(request, s);
-    EXPECT_NEAR(error, std::max(s.largest_rake - request.rake, request.rake - s.least_rake) / kDegree,
-                0.005 + error / 50);
-    EXPECT_NEAR((s.least_rake + s.largest_rake) / 2, request.rake, 0.001 * kDegree);
+    const double error = maxError(request, s);
+    EXPECT_NEAR(error, std::max(s.max_rake - request.rake, request.rake - s.min_rake) / kDegree, 0.005 + error / 50);
+    EXPECT_NEAR((s.min_rake + s.max_rake) / 2, request.rake, 0.001 * kDegree);
     const double angle = 0.1 * error * kDegree, rise = angle * request.cutter.end_diameter / 2;
     for (int i = 0; i < 8; ++i) {
-      EXPECT_GT(largestError(request, s, angle * std::cos(i * kPi / 4), rise * std::sin(i * kPi / 4)), error - 0.001)
-          << i;
+      EXPECT_GT(maxError(request, s, angle * std::cos(i * kPi / 4), rise * std::sin(i * kPi / 4)), error - 0.001) << i;
     }
   }
 }
@@ -411,15 +409,15 @@ TEST(SetupSolver, AStraightFluteOnACylinderIsSetSquare) {
 }
 
 // The rake over the swivel is a tent whose peak, at the spiral angle, is the asked rake.
-TEST(SetupSolver, ARakeThatIsJustTheLargestIsFound) {
+TEST(SetupSolver, ARakeThatIsJustTheMaxIsFound) {
   for (const double spiral : {0.0, 0.02}) {
     for (const double rake : {5.0, 8.0}) {
       SetupRequest request = requestFor({12, 0, spiral, rake, 20, 2, 100, 4});
       request.cutter.rake_tolerance = 0.5 * kDegree;
-      request.least_swivel = -35.3 * kDegree;
+      request.min_swivel = -35.3 * kDegree;
       const SolvedSetup s = solved(request);
       EXPECT_NEAR(s.setup.swivel / kDegree, spiral, spiral == 0 ? 1e-9 : 0.1);
-      EXPECT_NEAR(s.least_rake / kDegree, rake, 0.05);
+      EXPECT_NEAR(s.min_rake / kDegree, rake, 0.05);
     }
   }
 }
@@ -493,11 +491,11 @@ TEST(SetupSolver, WithItsOvertravelTheFluteIsCompleteAndWithLessItIsNot) {
 
 TEST(SetupSolver, WhatCannotBeSetIsRefusedWithWhatCanBeHad) {
   SetupRequest request = requestFor({});
-  request.largest_swivel = 30 * kDegree;
+  request.max_swivel = 30 * kDegree;
   SetupRefusal r = refused(request);
   EXPECT_EQ(r.problem, SetupProblem::kSwivel);
   EXPECT_NEAR(r.asked / kDegree, 31.769, 0.002);
-  EXPECT_EQ(r.largest, 30 * kDegree);
+  EXPECT_EQ(r.max, 30 * kDegree);
 
   request = requestFor({});
   request.tooth_angles = equalTeeth(8);
@@ -505,7 +503,7 @@ TEST(SetupSolver, WhatCannotBeSetIsRefusedWithWhatCanBeHad) {
   EXPECT_EQ(r.problem, SetupProblem::kLand);
   EXPECT_STREQ(rowOf(r.problem).change, "process.wheel_width");
   // The flute takes 48.6 deg at the small end, of a pitch of 45.
-  EXPECT_NEAR(r.least / kMillimetre, 5 * (45 - 48.613) * kDegree, 1e-3);
+  EXPECT_NEAR(r.min / kMillimetre, 5 * (45 - 48.613) * kDegree, 1e-3);
 
   // With the wheel over the axis the core is least.
   request = requestFor({10, 0, 30, 8, 30, 1.6, 100, 6});
@@ -537,7 +535,7 @@ TEST(SetupSolver, WhatIsNoRequestIsAnError) {
   wrong([](SetupRequest& r) { r.depth = 0; });
   wrong([](SetupRequest& r) { r.rake = std::nan(""); });
   wrong([](SetupRequest& r) { r.core_diameter = 0.01; });
-  wrong([](SetupRequest& r) { r.least_swivel = r.largest_swivel; });
+  wrong([](SetupRequest& r) { r.min_swivel = r.max_swivel; });
   wrong([](SetupRequest& r) { r.tooth_angles.clear(); });
   wrong([](SetupRequest& r) { r.cutter.end_diameter = -1; });
 }
@@ -560,8 +558,8 @@ SetupRequest randomRequest(int i, const std::function<double(double, double)>& u
   r.nominal_radius = wheel / 2;
   r.depth = uniform(0.15, 0.5) * diameter / 2;
   if (i % 3 == 0) r.core_diameter = uniform(0.5, 0.85) * diameter;
-  r.largest_swivel = uniform(25, 60) * kDegree;
-  r.least_swivel = -r.largest_swivel;
+  r.max_swivel = uniform(25, 60) * kDegree;
+  r.min_swivel = -r.max_swivel;
   return r;
 }
 
@@ -590,10 +588,10 @@ class CoarseSearch {
   Found best() const {
     constexpr int kSteps = 16, kStarts = 4;
     std::vector<Found> grid;
-    const double width = request_.largest_swivel - request_.least_swivel;
+    const double width = request_.max_swivel - request_.min_swivel;
     for (int i = 0; i <= kSteps; ++i) {
       for (int k = 0; k <= kSteps; ++k) {
-        const double swivel = request_.least_swivel + width * i / kSteps;
+        const double swivel = request_.min_swivel + width * i / kSteps;
         const double face = highest(swivel) * (2.0 * k / kSteps - 1);
         grid.push_back({error(swivel, face), swivel, face});
       }
@@ -624,7 +622,7 @@ class CoarseSearch {
       bool better = false;
       for (int i = 0; i < 8 && !better; ++i) {
         const double swivel = at.swivel + step * std::cos(i * kPi / 4), face = at.face + rise * std::sin(i * kPi / 4);
-        if (swivel < request_.least_swivel || swivel > request_.largest_swivel) continue;
+        if (swivel < request_.min_swivel || swivel > request_.max_swivel) continue;
         const double e = error(swivel, face);
         if (e < at.error) at = {e, swivel, face}, better = true;
       }
@@ -650,16 +648,15 @@ TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
     if (const auto* s = std::get_if<SolvedSetup>(&result)) {
       ++count;
       const brute::Bench bench{request, s->setup.swivel, s->setup.height, s->depth, 800, 100};
-      EXPECT_NEAR(largestError(request, *s) * kDegree,
-                  std::max(s->largest_rake - request.rake, request.rake - s->least_rake),
-                  0.01 * kDegree + (s->largest_rake - s->least_rake) / 50)
+      EXPECT_NEAR(maxError(request, *s) * kDegree, std::max(s->max_rake - request.rake, request.rake - s->min_rake),
+                  0.01 * kDegree + (s->max_rake - s->min_rake) / 50)
           << i;
-      EXPECT_NEAR((s->least_rake + s->largest_rake) / 2, request.rake, 0.002 * kDegree) << i;
+      EXPECT_NEAR((s->min_rake + s->max_rake) / 2, request.rake, 0.002 * kDegree) << i;
       EXPECT_GT(s->depth, 0) << i;
       EXPECT_LT(s->depth, std::min(bench.radius(0), bench.radius(request.cutter.flute_length))) << i;
       EXPECT_GT(bench.land(), 0) << i;
-      EXPECT_GE(s->setup.swivel, request.least_swivel) << i;
-      EXPECT_LE(s->setup.swivel, request.largest_swivel) << i;
+      EXPECT_GE(s->setup.swivel, request.min_swivel) << i;
+      EXPECT_LE(s->setup.swivel, request.max_swivel) << i;
       if (request.core_diameter) {
         const double depth =
             brute::Bench::depthFor(request, s->setup.swivel, s->setup.height, *request.core_diameter / 2, 1000, 200);

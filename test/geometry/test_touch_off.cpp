@@ -39,7 +39,7 @@ GrindJob tapered() {
   return job;
 }
 
-TEST(TouchOff, TellsWhatTheAxesRead) {
+TEST(TouchOff, ReportsWhatTheAxesRead) {
   TouchReadings touch = touchReadings(paper());
   EXPECT_EQ(touch.y, 0);
   EXPECT_NEAR(touch.z_for_y / kMillimetre, -2.788, 1e-9);
@@ -74,7 +74,7 @@ TEST(TouchOff, ATaperedWheelTouchesAtItsLargerFace) {
       << heightRefusal(tapered(), -2.788 * kMillimetre);
 }
 
-/// The least gap between a blank and the wheel, over the wheel's whole surface: its meridian (w, radius) by
+/// The minimum gap between a blank and the wheel, over the wheel's whole surface: its meridian (w, radius) by
 /// trigonometry alone, turned about the spindle, at the work positions Y and Z.
 double gapToBlank(const GrindJob& job, double blank_diameter, double y, double z,
                   const std::function<double(double)>& radius) {
@@ -95,7 +95,7 @@ double gapToBlank(const GrindJob& job, double blank_diameter, double y, double z
   return gap;
 }
 
-/// The meridian of a bevelled wheel whose largest diameter is given, its larger face up or down, and its corners
+/// The meridian of a bevelled wheel whose maximum diameter is given, its larger face up or down, and its corners
 /// rounded: circles that touch the face and the line.
 class Bevel {
  public:
@@ -169,26 +169,25 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
 TEST(TouchOff, TheOtherProfilesMeasureTheirDiameterToo) {
   GrindJob job = worn();
   GrindProcess& p = job.process;
-  const double largest = p.wheel_diameter / 2;
-  EXPECT_DOUBLE_EQ(wheelOf(job).largestRadius(), largest);
+  const double max = p.wheel_diameter / 2;
+  EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
   p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0.4 * kMillimetre;
-  EXPECT_DOUBLE_EQ(wheelOf(job).largestRadius(), largest);
+  EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
   p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
   p.wheel_profile = WheelShape::kFullRadius;
-  EXPECT_DOUBLE_EQ(wheelOf(job).largestRadius(), largest);
+  EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
   EXPECT_NEAR(touchReadings(job).z_for_y, -p.setup_height, 1e-12);
   // A line of 45 deg up to a corner of 0.5 mm: its profile is as high as if it were rounded from outside.
   p.wheel_profile = WheelShape::kPoints;
   p.wheel_corner_radius_upper = 0.5 * kMillimetre;
-  job.wheel_points = {{-0.0015, largest - 0.003}, {0.0015, largest}};
-  EXPECT_NEAR(wheelOf(job).largestRadius(), largest, 1e-15);
-  EXPECT_NEAR(wheelOf(job).radius(-0.0015), largest - 0.003 + 0.0005 * std::sqrt(2), 1e-12);
+  job.wheel_points = {{-0.0015, max - 0.003}, {0.0015, max}};
+  EXPECT_NEAR(wheelOf(job).maxRadius(), max, 1e-15);
+  EXPECT_NEAR(wheelOf(job).radius(-0.0015), max - 0.003 + 0.0005 * std::sqrt(2), 1e-12);
   const double top = 0.0015 - 0.0005;
   EXPECT_NEAR(touchReadings(job).z_for_y, -(p.setup_height + top * std::cos(p.setup_swivel)), 1e-12);
   // Of two ribs, the upper one touches.
   p.wheel_corner_radius_upper = 0;
-  job.wheel_points = {
-      {-0.0015, largest}, {-0.0010, largest}, {0, largest - 0.001}, {0.0005, largest}, {0.0015, largest}};
+  job.wheel_points = {{-0.0015, max}, {-0.0010, max}, {0, max - 0.001}, {0.0005, max}, {0.0015, max}};
   EXPECT_NEAR(touchReadings(job).z_for_y, -(p.setup_height + 0.001 * std::cos(p.setup_swivel)), 1e-12);
   EXPECT_EQ(heightRefusal(job, touchReadings(job).z_for_y), "");
 }

@@ -17,7 +17,7 @@ TEST(WheelProfile, AStraightWheelHasOneRadius) {
   EXPECT_DOUBLE_EQ(wheel.lowerFace(), -0.003);
   EXPECT_DOUBLE_EQ(wheel.upperFace(), 0.003);
   for (const double w : {-0.003, -0.001, 0.0, 0.003}) EXPECT_DOUBLE_EQ(wheel.radius(w), 0.05);
-  EXPECT_DOUBLE_EQ(wheel.largestRadius(), 0.05);
+  EXPECT_DOUBLE_EQ(wheel.maxRadius(), 0.05);
 }
 
 TEST(WheelProfile, ABevelFallsFromItsLargerFace) {
@@ -33,7 +33,7 @@ TEST(WheelProfile, AFullRadiusIsASemicircle) {
   for (const double w : {-0.003, -0.002, 0.0, 0.0011, 0.003}) {
     EXPECT_NEAR(wheel.radius(w), 0.047 + std::sqrt(0.003 * 0.003 - w * w), 1e-12);
   }
-  EXPECT_NEAR(wheel.largestRadius(), 0.05, 1e-15);
+  EXPECT_NEAR(wheel.maxRadius(), 0.05, 1e-15);
 }
 
 TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
@@ -44,7 +44,7 @@ TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
     const double a = std::abs(angle) * kDegree;
     const double outside = size * (std::tan(a) + 1 / std::cos(a) - 1);
     const auto sharp = WheelProfile::angled(0.08 + 2 * outside, 0.005, angle * kDegree);
-    EXPECT_NEAR(wheel.largestRadius(), 0.04, 1e-15) << angle;
+    EXPECT_NEAR(wheel.maxRadius(), 0.04, 1e-15) << angle;
     const double centre_w = wheel.upperFace() - size;
     const double centre_r = wheel.radius(wheel.upperFace());
     const double touch = centre_w - size * std::sin(angle * kDegree);

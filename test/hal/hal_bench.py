@@ -157,6 +157,6 @@ class Node:
             raise
 
 
-def largest_steps(rows):
+def max_steps(rows):
     """Of each axis' position, from one servo cycle to the next."""
     return [max(abs(b.position[axis] - a.position[axis]) for a, b in zip(rows, rows[1:])) for axis in range(4)]

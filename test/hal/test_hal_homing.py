@@ -116,8 +116,8 @@ class TestHoming(unittest.TestCase):
         first = RECORDER.now()
         run = self.grinder.run(JOB)
         self.assertEqual((run.status, run.text), ('SUCCEEDED', ''))
-        for told, expected in zip(run.setpoints[0].position, reading):
-            self.assertAlmostEqual(told, expected, delta=1e-12)
+        for reported, expected in zip(run.setpoints[0].position, reading):
+            self.assertAlmostEqual(reported, expected, delta=1e-12)
         self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertEqual(checks.excesses(run.setpoints, self.limits, self.period), [])
         self.check_reading(self.grinder.park())

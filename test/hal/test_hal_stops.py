@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows on the real HAL what stops the axes in the midst of a stroke: the emergency stop, a node that no longer lives, a node
-that is late, a motor that does not follow. HAL does it by itself, the node tells it, nothing that was still to come is
+that is late, a motor that does not follow. HAL does it by itself, the node reports it, nothing that was still to come is
 played later, and the axes start again from where they stand."""
 
 import re
@@ -65,7 +65,7 @@ class Stop:
         self.check_steps(rows)
 
     def check_steps(self, rows):
-        for step, velocity in zip(hal_bench.largest_steps(rows), self.limits['max_velocity']):
+        for step, velocity in zip(hal_bench.max_steps(rows), self.limits['max_velocity']):
             self.assertLessEqual(step, velocity * self.period * (1 + 1e-9))
 
     def check_goal(self, code, text):
@@ -114,7 +114,7 @@ class TestEmergencyStop(Stop, unittest.TestCase):
         self.check_goal(GrindResult.HARDWARE_FAULT, r'^the drive has switched its power off')
         self.check_start_from_standing()
 
-    def test_hal_stops_and_the_node_tells_it(self):
+    def test_hal_stops_and_the_node_reports_it(self):
         hal_bench.press_emergency_stop(True)
         self.check_goal(GrindResult.EMERGENCY_STOP, r'^emergency stop')
         self.check_standing()
@@ -166,7 +166,7 @@ class TestHeartbeat(Stop, unittest.TestCase):
 
 
 class TestUnderrun(Stop, unittest.TestCase):
-    def test_late_node_is_told_with_count_and_setpoint(self):
+    def test_late_node_is_reported_with_count_and_setpoint(self):
         before = RECORDER.rows[self.first - 1].underruns
         self.node.send(signal.SIGSTOP)
         self.wait_power_off()
@@ -211,7 +211,7 @@ class TestHold(Stop, unittest.TestCase):
     def test_hold_takes_the_buffer_and_the_ramp(self):
         self.assertTrue(self.grinder._call('hold', gc.Trigger).success)
         self.grinder.wait_state(GrinderState.HELD)
-        # Held is told when the axes have got the last setpoint.
+        # Held is reported when the axes have got the last setpoint.
         row = RECORDER.over(1)[0]
         self.assertEqual(row.command, row.position)
         self.assertEqual({r.command for r in RECORDER.over(300)}, {row.command})

@@ -57,7 +57,7 @@ TEST(GrindJob, TakesTheEndsOfAnglesHoweverTheyWereComputed) {
   }
 }
 
-TEST(GrindJob, TellsEveryBadFigure) {
+TEST(GrindJob, ReportsEveryBadFigure) {
   GrindJob job = paperJob();
   job.cutter.end_diameter = kNan;
   job.process.feed = 0;
@@ -79,7 +79,7 @@ std::ostream& operator<<(std::ostream& out, const Contradiction& c) { return out
 
 class GrindJobContradiction : public ::testing::TestWithParam<Contradiction> {};
 
-TEST_P(GrindJobContradiction, IsToldOnceWithFieldValueAndAllowed) {
+TEST_P(GrindJobContradiction, IsReportedOnceWithFieldValueAndAllowed) {
   const Contradiction& c = GetParam();
   GrindJob job = paperJob();
   c.change(job);
@@ -90,7 +90,7 @@ TEST_P(GrindJobContradiction, IsToldOnceWithFieldValueAndAllowed) {
   EXPECT_TRUE(contains(errors[0].allowed, c.allowed)) << errors[0].allowed;
 }
 
-TEST_P(GrindJobContradiction, IsToldByTheFilesKey) {
+TEST_P(GrindJobContradiction, IsReportedByTheFilesKey) {
   const Contradiction& c = GetParam();
   GrindJob job = paperJob();
   c.change(job);

@@ -249,13 +249,13 @@ std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out
 
 class JobFileMistake : public ::testing::TestWithParam<Mistake> {};
 
-TEST_P(JobFileMistake, IsToldWithFileLineKeyAndWhatIsAllowed) {
+TEST_P(JobFileMistake, IsReportedWithFileLineKeyAndWhatIsAllowed) {
   const Mistake& mistake = GetParam();
   const std::string error = errorOf(with(mistake.piece, mistake.replacement));
   EXPECT_TRUE(hasLineWith(error, mistake.message)) << "got: " << error;
 }
 
-TEST_P(JobFileMistake, IsToldOnce) {
+TEST_P(JobFileMistake, IsReportedOnce) {
   const std::string error = errorOf(with(GetParam().piece, GetParam().replacement));
   EXPECT_EQ(linesOf(error), 1) << error;
 }
@@ -395,7 +395,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"job.yaml:18", "process.depth_mm", "2.8 mm", "less than 2.56", "radius at the flute's end"}}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(JobFile, TellsAllOfSeveralErrors) {
+TEST(JobFile, ReportsAllOfSeveralErrors) {
   std::string text = with("depth_mm: 1.5", "depth_mm: deep");
   text.replace(text.find("pass_major"), 10, "any");
   text += "extra: 1\n";
@@ -406,7 +406,7 @@ TEST(JobFile, TellsAllOfSeveralErrors) {
   EXPECT_TRUE(hasLineWith(error, {"job.yaml:39", "extra"}));
 }
 
-TEST(JobFile, TellsAllFiguresOutOfRange) {
+TEST(JobFile, ReportsAllFiguresOutOfRange) {
   std::string text = with("depth_mm: 1.5", "depth_mm: 51");
   text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
   const std::string error = errorOf(text);
@@ -440,7 +440,7 @@ TEST(JobFile, RefusesASectionThatIsNotAMap) {
   EXPECT_TRUE(hasLineWith(error, {"interpolation.tolerance_um", "missing"})) << error;
 }
 
-TEST(JobFile, TellsWhereYamlIsBroken) {
+TEST(JobFile, ReportsWhereYamlIsBroken) {
   EXPECT_TRUE(hasLineWith(errorOf(with("teeth: 4", "teeth: [4")), {"job.yaml:"}));
   EXPECT_TRUE(hasLineWith(errorOf("cutter:\n  teeth: 4\n bad: : :\n"), {"job.yaml:3"}));
 }
@@ -525,7 +525,7 @@ TEST_F(JobFileOnDisk, ThatIsTooLong) {
   EXPECT_EQ(fileErrorOf(path_), path_ + ": is too long; allowed: 65536 bytes");
 }
 
-TEST(JobFile, TellsTheFirstOfManyErrorsAndHowManyMore) {
+TEST(JobFile, ReportsTheFirstOfManyErrorsAndHowManyMore) {
   std::string text;
   for (int i = 1; i <= 25; ++i) text += "key_" + std::to_string(i) + ": 1\n";
   const std::string error = errorOf(kGood + text);
@@ -572,11 +572,11 @@ TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
     const std::string text = spoiled(dice);
     const std::string error = errorOf(text);
     std::istringstream lines(error);
-    int told = 0;
-    for (std::string line; std::getline(lines, line); ++told)
+    int reported = 0;
+    for (std::string line; std::getline(lines, line); ++reported)
       EXPECT_EQ(line.rfind("job.yaml:", 0), 0u) << text << error;
-    EXPECT_LE(told, 21) << text;
-    read += told == 0 ? 1 : 0;
+    EXPECT_LE(reported, 21) << text;
+    read += reported == 0 ? 1 : 0;
   }
   EXPECT_GT(read, 10);
   EXPECT_LT(read, 2000);

@@ -80,9 +80,9 @@ const Row kRows[]{
      [](Reason& r) { r.field = "process.setup_swivel", r.detail = "to which the machine swivels", r.low = -kPi / 3; },
      "process.setup_swivel = 1.570796327 rad; allowed: -1.047197551 to 1.047197551 rad, to which the machine swivels",
      "process.setup.swivel_deg = 90 deg; allowed: -60 to 60 deg, to which the machine swivels"},
-    {Kind::kNotBelow, "Depth", Unit::kMetre, 0.006, 0.005, field("process.depth", "the cutter's smallest radius"),
-     "process.depth = 0.006 m; allowed: less than 0.005 m, the cutter's smallest radius",
-     "process.depth_mm = 6 mm; allowed: less than 5 mm, the cutter's smallest radius"},
+    {Kind::kNotBelow, "Depth", Unit::kMetre, 0.006, 0.005, field("process.depth", "the cutter's minimum radius"),
+     "process.depth = 0.006 m; allowed: less than 0.005 m, the cutter's minimum radius",
+     "process.depth_mm = 6 mm; allowed: less than 5 mm, the cutter's minimum radius"},
     {Kind::kAbove, "Finish", Unit::kMetre, 0.00075, 0.0005, field("process.finish_infeed", "the depth"),
      "process.finish_infeed = 0.00075 m; allowed: up to the depth, 0.0005 m",
      "process.finish_infeed_mm = 0.75 mm; allowed: up to the depth, 0.5 mm"},
@@ -100,9 +100,9 @@ const Row kRows[]{
      "park position axis_y = 0.05 m; allowed for this job: at least 0.0625 m, clear of the work",
      "park position axis Y = 50 mm; allowed for this job: at least 62.5 mm, clear of the work"},
     {Kind::kTolerance, "Tolerance", Unit::kDeviationMetre, 2.5e-6, 1e-6, setpointsOf(kX, 3),
-     "interpolation.tolerance = 1e-06 m: the path deviates by 2.5e-06 m at the largest feed override (stroke, cycle "
+     "interpolation.tolerance = 1e-06 m: the path deviates by 2.5e-06 m at the maximum feed override (stroke, cycle "
      "1204, X = 0.0123 m); lower process.feed, or set interpolation.even_step to exact; the worst of 3 setpoints",
-     "interpolation.tolerance_um = 1 um: the path deviates by 2.5 um at the largest feed override (stroke, tooth 1, "
+     "interpolation.tolerance_um = 1 um: the path deviates by 2.5 um at the maximum feed override (stroke, tooth 1, "
      "pass "
      "2, X = 12.3 mm); lower process.feed_mm_min, or set interpolation.even_step to exact; the worst of 3 setpoints"},
     {Kind::kTooLong, "TooLong", Unit::kSecond, 7200.5, 3600, [](Reason& r) { r.count = 12; },

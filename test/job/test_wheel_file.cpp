@@ -17,8 +17,8 @@
 #include <vector>
 
 /// @file
-/// A job gets the wheel of a wheel file as it would get it from keys of its own, and a wheel file's mistakes are told
-/// with its own name and lines.
+/// A job gets the wheel of a wheel file as it would get it from keys of its own, and a wheel file's mistakes are
+/// reported with its own name and lines.
 
 namespace flute_grinder {
 namespace test_wheel_file {
@@ -124,7 +124,7 @@ TEST(WheelFile, ReadsTheWheelAsItWasMeasured) {
   EXPECT_EQ(wheel.by, "anna@grinder-2");
 }
 
-TEST(WheelFile, MayTellWhereItLiesOnTheFlange) {
+TEST(WheelFile, MayStateWhereItLiesOnTheFlange) {
   const WheelFile wheel = parseWheel(with(kWheel, "side: lower\n", "side: lower\nflange_mm: -2.5\n"), "f");
   ASSERT_TRUE(wheel.flange);
   EXPECT_DOUBLE_EQ(*wheel.flange, -0.0025);
@@ -218,7 +218,7 @@ TEST_F(WheelOfAJob, StandsAloneInTheJob) {
   }
 }
 
-TEST_F(WheelOfAJob, ThatIsNotThereIsToldAtTheJobsLine) {
+TEST_F(WheelOfAJob, ThatIsNotThereIsReportedAtTheJobsLine) {
   const std::string path = write("jobs/job.yaml", jobText("    file: ../wheels/none.yaml\n"));
   EXPECT_EQ(jobErrorOf(path), path + ":14: process.wheel.file = ../wheels/none.yaml: " + folder_ +
                                   "/jobs/../wheels/none.yaml: cannot be read: No such file or directory; allowed: "
@@ -235,7 +235,7 @@ TEST_F(WheelOfAJob, IsNamedByItsKey) {
                                   "file: PATH for a wheel file");
 }
 
-TEST_F(WheelOfAJob, TellsItsMistakesBesideThoseOfTheJob) {
+TEST_F(WheelOfAJob, ReportsItsMistakesBesideThoseOfTheJob) {
   write("wheels/wheel.yaml", with(kWheel, "diameter_mm: 100", "diameter_mm: large"));
   std::string text = jobText("    file: ../wheels/wheel.yaml\n");
   text.replace(text.find("spark_out: 1"), 12, "spark_out: x");
@@ -273,7 +273,7 @@ std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out
 
 class WheelFileMistake : public ::testing::TestWithParam<Mistake> {};
 
-TEST_P(WheelFileMistake, IsToldWithFileLineKeyAndWhatIsAllowed) {
+TEST_P(WheelFileMistake, IsReportedWithFileLineKeyAndWhatIsAllowed) {
   EXPECT_EQ(errorOf(with(kWheel, GetParam().piece, GetParam().replacement)),
             std::string("wheel.yaml:") + GetParam().message);
 }

@@ -96,7 +96,7 @@ bool answer(const GrindGoal& goal) {
 
 TEST(GoalFuzz, TheGoodGoalIsGood) { EXPECT_TRUE(answer(goodGoal())); }
 
-TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestTellsWhich) {
+TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
   GrindGoal goal = goodGoal();
   const std::string published = jobDigest(jobFromGoal(goal));
   goal.process.z_law = Process::CONSTANT_RAKE;

@@ -14,7 +14,7 @@
 #include <type_traits>
 
 /// @file
-/// A job told in JSON is a job file, which reads back as the same job; no other job has its digest.
+/// A job reported in JSON is a job file, which reads back as the same job; no other job has its digest.
 
 namespace flute_grinder {
 namespace test_json {
@@ -22,7 +22,7 @@ namespace test_json {
 using units::kDegree;
 using units::kMillimetre;
 
-GrindJob readBack(const GrindJob& job) { return parseJob(text(toJson(job), -1), "told"); }
+GrindJob readBack(const GrindJob& job) { return parseJob(text(toJson(job), -1), "reported"); }
 
 void expectSameBits(const GrindJob& job) {
   const GrindJob back = readBack(job);
@@ -65,7 +65,7 @@ TEST(JobJson, OfUnequalTeethAndHelices) {
 }
 
 // So that a job whose file was changed is another one, which is not continued.
-TEST(JobDigest, TellsEveryFigureAndChoice) {
+TEST(JobDigest, DependsOnEveryFigureAndChoice) {
   const GrindJob job = paper();
   const std::string digest = jobDigest(job);
   visitJobFields([&](const JobField& field, auto of) {

@@ -202,8 +202,8 @@ inline rc::Gen<Work> correctedWork(double cycles) {
     w.job.z_corrections.assign(w.job.tooth_angles.size(), *zCorrection(w.job));
     const ZCorrection::Bounds bend = w.job.z_corrections[0].bounds();
     const double speed = w.job.process.feed / edgePerTravel(w.job.cutter);
-    const auto keep = [&](double& limit, double taken, double least) {
-      limit = std::clamp(taken / *uniform(0.1, 1), least, limit);
+    const auto keep = [&](double& limit, double taken, double min) {
+      limit = std::clamp(taken / *uniform(0.1, 1), min, limit);
     };
     keep(w.machine.limits.max_acceleration[kZ], bend.second * speed * speed, 0.01);
     keep(w.machine.limits.max_jerk[kZ], bend.third * speed * speed * speed, 0.1);

@@ -48,9 +48,9 @@ inline std::vector<SeenPair> pairsOf(const std::vector<Setpoint>& setpoints) {
 
 /// What rounding makes of an axis: some sums of numbers as large as those seen.
 inline Axes roundingOf(const std::vector<Setpoint>& setpoints) {
-  Axes largest = Axes::Zero();
-  for (const Setpoint& p : setpoints) largest = largest.max(p.position.abs());
-  return 2 * kEps * largest;
+  Axes max = Axes::Zero();
+  for (const Setpoint& p : setpoints) max = max.max(p.position.abs());
+  return 2 * kEps * max;
 }
 
 /// How far the setpoints go beyond a limit, as text; empty where they do not. Position and speed at every one,
@@ -182,14 +182,14 @@ inline std::vector<std::string> movesOf(const std::vector<Setpoint>& setpoints) 
   return moves;
 }
 
-/// The largest deviation of the strokes' points. [m]
-inline double largestDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
+/// The maximum deviation of the strokes' points. [m]
+inline double maxDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
   const Deviation deviation(job);
-  double largest = 0;
+  double max = 0;
   for (const Setpoint& p : setpoints) {
-    if (p.step != StepKind::kNone) largest = std::max(largest, deviation.of(p));
+    if (p.step != StepKind::kNone) max = std::max(max, deviation.of(p));
   }
-  return largest;
+  return max;
 }
 
 /// What the rounding of A makes of a deviation. [m]
@@ -202,7 +202,7 @@ inline double noiseOfDeviation(const std::vector<Setpoint>& setpoints, const Gri
 
 /// What a deviation may be: the tolerance, or what the plan of the undisturbed job reports and refuses. [m]
 inline double allowedDeviation(const std::vector<Setpoint>& undisturbed, const GrindJob& job) {
-  return std::max(job.interpolation.tolerance, largestDeviation(undisturbed, job)) * (1 + 1e-9) +
+  return std::max(job.interpolation.tolerance, maxDeviation(undisturbed, job)) * (1 + 1e-9) +
          noiseOfDeviation(undisturbed, job);
 }
 

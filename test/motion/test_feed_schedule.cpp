@@ -195,7 +195,7 @@ RC_GTEST_PROP(FeedScheduleProperty, LeavesNoRoomForMoreWhereSomethingHoldsTheFee
   RC_ASSERT(schedule.limits().velocity == schedule.feedSpeed());
 }
 
-RC_GTEST_PROP(FeedScheduleProperty, TellsWhereAHoldsTheFeedBack, ()) {
+RC_GTEST_PROP(FeedScheduleProperty, ReportsWhereAHoldsTheFeedBack, ()) {
   Case c = Case::draw();
   c.machine.limits.max_velocity[kA] *= *test_support::logUniform(0.01, 1);
   const FeedSchedule schedule = c.schedule();
@@ -252,7 +252,7 @@ RC_GTEST_PROP(FeedScheduleProperty, LeavesTheProfileSomethingToGoBy, ()) {
 RC_GTEST_PROP(FeedScheduleProperty, AnEvenMotionKeepsAllAxesWithinTheirLimits, ()) {
   const Case c = Case::draw();
   const FeedSchedule schedule = c.schedule();
-  const double speed = schedule.limits().velocity;  // of the largest override
+  const double speed = schedule.limits().velocity;  // of the maximum override
   const double duration = schedule.length() / speed;
   // At the control cycle or finer, a few thousand places in a window of the stroke.
   const double h = std::max(std::min(c.machine.period, duration / 2000), 2e-4);
@@ -339,7 +339,7 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
   }
 }
 
-TEST(FeedSchedule, TellsEveryCauseWithItsRange) {
+TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
   // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
   // and as much as X where the radius is v tan S / 5 rad/s.
   Machine machine = boundless();

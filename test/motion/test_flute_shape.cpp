@@ -72,14 +72,14 @@ RC_GTEST_PROP(FluteShape, EveryStrokeIsOnItsToothsHelixAtItsDepth, ()) {
 
 TEST(FluteShape, ADepthThatIsTheSameAtBothEndsChangesNoBit) {
   const GrindJob plain = paperJob();
-  GrindJob told = plain;
-  told.process.depth_end = told.process.depth;
-  told.spiral_angles = {told.cutter.spiral_angle};
+  GrindJob reported = plain;
+  reported.process.depth_end = reported.process.depth;
+  reported.spiral_angles = {reported.cutter.spiral_angle};
   const Machine machine = plainMachine();
   std::vector<Setpoint> expected;
   planJob(plain, machine, machine.park, {}, [&](const Setpoint& p) { expected.push_back(p); });
   std::size_t i = 0;
-  const JobPlan plan = planJob(told, machine, machine.park, {}, [&](const Setpoint& p) {
+  const JobPlan plan = planJob(reported, machine, machine.park, {}, [&](const Setpoint& p) {
     ASSERT_LT(i, expected.size());
     ASSERT_TRUE((p.position == expected[i++].position).all());
   });

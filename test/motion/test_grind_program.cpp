@@ -135,7 +135,7 @@ TEST(GrindProgram, EveryPassGoesToItsDepth) {
   }
 }
 
-TEST(GrindProgram, GoesFromTheShankToTheEndWhenTold) {
+TEST(GrindProgram, GoesFromTheShankToTheEndWhenAsked) {
   GrindJob job = paperJob();
   job.process.direction = StrokeDirection::kToEnd;
   const GrindProgram program = programOf(job);
@@ -224,7 +224,7 @@ TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
   EXPECT_TRUE(contains(error, "axis_a velocity")) << error;
 }
 
-TEST(GrindProgram, TellsTheHeightAtWhichAllOfTheStrokeIsClear) {
+TEST(GrindProgram, ReportsTheHeightAtWhichAllOfTheStrokeIsClear) {
   EXPECT_NEAR(programOf(paperJob()).clearanceHeight(), 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-17);
   GrindJob back_taper = paperJob();
   back_taper.cutter.cone_angle = -3 * units::kDegree;

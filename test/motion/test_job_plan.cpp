@@ -239,12 +239,12 @@ TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
     SetpointStream stream(GrindProgram(job, strongMachine(), strongMachine().park));
     stream.setFeedOverride(override_fraction);
     const ConicalCutter cutter(job.cutter);
-    double largest = 0;
+    double max = 0;
     for (Setpoint p; stream.next(p);) {
       const double deviation = std::abs(p.path_error) * cutter.radius(p.position[kX]) * cutter.cosHelixToGeneratrix();
-      largest = std::max(largest, deviation);
+      max = std::max(max, deviation);
     }
-    return largest;
+    return max;
   };
   job.interpolation.tolerance = 1e-6;  // not in the way
   const double at_feed = deviationAt(1);

@@ -308,7 +308,7 @@ TEST(LimitCheck, HasNoneOfASetpointThatIsGood) {
   EXPECT_EQ(check.begin(), check.end());
 }
 
-TEST(LimitCheck, HasAllOfASetpointOfWhichTheFirstIsTold) {
+TEST(LimitCheck, HasAllOfASetpointOfWhichTheFirstIsReported) {
   LimitCheck check(plainLimits(), kPeriod);
   Setpoint p;
   p.position[kX] = 1;
@@ -342,7 +342,7 @@ TEST(LimitCheck, HasEveryKindOfEveryAxisAtOnce) {
 
 // At 16 rad a position is exact to 3.6e-15 rad at best, which over a period makes 3.6e-12 rad/s; the limit of 1e-3
 // rad/s lets 1e-12 rad/s of its own pass.
-TEST(LimitCheck, LetsAsManyRoundingsPassAsItIsTold) {
+TEST(LimitCheck, LetsAsManyRoundingsPassAsItIsGiven) {
   AxisLimits l = plainLimits();
   l.max_velocity[kA] = 1.0 / 1024;
   const auto passes = [&](double roundings, int epsilons) {
@@ -377,7 +377,7 @@ TEST(LimitCheck, ForgetsThoseOfTheSetpointBefore) {
   EXPECT_EQ(check.begin(), check.end());
 }
 
-TEST(LimitCheck, TellsWhatTheSetpointsAskOfTheAxes) {
+TEST(LimitCheck, ReportsWhatTheSetpointsAskOfTheAxes) {
   AxisLimits l = plainLimits();
   l.max_velocity.setConstant(1e9);
   l.max_acceleration.setConstant(1e9);

@@ -82,9 +82,9 @@ void expectSame(const GrindJob& job, const Machine& machine) {
   expectNear(s.ripple_acceleration, expected.ripple_acceleration, 1e-8);
 }
 
-TEST(JobPlan, TellsTheStatisticsOfThePapersJob) { expectSame(paperJob(), plainMachine()); }
+TEST(JobPlan, ReportsTheStatisticsOfThePapersJob) { expectSame(paperJob(), plainMachine()); }
 
-TEST(JobPlan, TellsTheStatisticsWhereTheEdgeIsAheadOfTheWheelOrBehind) {
+TEST(JobPlan, ReportsTheStatisticsWhereTheEdgeIsAheadOfTheWheelOrBehind) {
   GrindJob job = paperJob();
   job.cutter.cone_angle = 9.6 * units::kDegree;
   for (const double lead : {-15e-3, 11.847e-3}) {
@@ -94,7 +94,7 @@ TEST(JobPlan, TellsTheStatisticsWhereTheEdgeIsAheadOfTheWheelOrBehind) {
   }
 }
 
-TEST(JobPlan, TellsTheStatisticsOfManyTeethAndPasses) {
+TEST(JobPlan, ReportsTheStatisticsOfManyTeethAndPasses) {
   GrindJob job = steepJob();
   job.interpolation.even_step = EvenStepRule::kThirdOrder;
   job.interpolation.tolerance = 10e-6;
@@ -129,14 +129,14 @@ void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& sta
   }
 }
 
-TEST(JobPlan, TellsWhereMovesOfNoLengthEnd) {
+TEST(JobPlan, ReportsWhereMovesOfNoLengthEnd) {
   GrindJob job = paperJob();
   job.cutter.spiral_angle = 0;  // A never turns
   job.process.spark_out = 2;
   expectMoveEnds(job, plainMachine(), plainMachine().park);
 }
 
-RC_GTEST_PROP(JobPlanProperty, TellsWhereEveryMoveEnds, ()) {
+RC_GTEST_PROP(JobPlanProperty, ReportsWhereEveryMoveEnds, ()) {
   const Work work = *test_support::toothedWork(500);
   expectMoveEnds(work.job, work.machine, work.start, true);
 }

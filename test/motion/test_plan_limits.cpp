@@ -75,7 +75,7 @@ TEST(JobPlan, RefusesAWayBeyondAnAxisLimitWithTheAmount) {
   EXPECT_EQ(plan.statistics.setpoints, visited.size());
 }
 
-TEST(JobPlan, TellsOfEveryAxisThatIsBeyondItsLimits) {
+TEST(JobPlan, ReportsEveryAxisThatIsBeyondItsLimits) {
   Machine machine = plainMachine();
   machine.limits.max_position << 0.030, 0.04, 0.2, 2;
   machine.limits.min_position[kZ] = -1e-5;  // the stroke begins at -12 um
@@ -93,7 +93,7 @@ TEST(JobPlan, TellsOfEveryAxisThatIsBeyondItsLimits) {
   EXPECT_FALSE(low.empty());
 }
 
-TEST(JobPlan, TellsOfASingleSetpointWithoutACount) {
+TEST(JobPlan, ReportsASingleSetpointWithoutACount) {
   std::vector<double> xs;
   const auto see = [&](const Setpoint& p) {
     if (p.move == MoveKind::kStroke) xs.push_back(p.position[kX]);
@@ -111,7 +111,7 @@ TEST(JobPlan, TellsOfASingleSetpointWithoutACount) {
   EXPECT_FALSE(contains(reasons[0], "worst of")) << reasons[0];
 }
 
-TEST(JobPlan, TellsAllLimitsOfManyTeethInOneTextEach) {
+TEST(JobPlan, ReportsAllLimitsOfManyTeethInOneTextEach) {
   Machine machine = plainMachine();
   machine.limits.max_position[kX] = 0.030;
   GrindJob job = paperJob();
@@ -133,7 +133,7 @@ TEST(JobPlan, RefusesAStartBeyondALimit) {
   EXPECT_TRUE(contains(textOf(plan), "limit -0.3 m")) << textOf(plan);
 }
 
-TEST(JobPlan, TellsToleranceAndLimitsTogether) {
+TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   GrindJob job = steepJob();
   job.process.feed = 0.1;
   job.interpolation.tolerance = 0.2e-6;

@@ -48,16 +48,16 @@ rc::Gen<Work> wholeTool() {
 }
 
 /// The largest of the positions of a work's moves, by axis.
-Axes largestPosition(const JobPlan& plan) {
-  Axes largest = plan.program->start().abs();
-  for (const Move& move : plan.program->moves()) largest = largest.max(move.to.abs());
-  return largest;
+Axes maxPosition(const JobPlan& plan) {
+  Axes max = plan.program->start().abs();
+  for (const Move& move : plan.program->moves()) max = max.max(move.to.abs());
+  return max;
 }
 
-/// Equal but for the rounding of differences between `largest` positions, over a time to the power of `order`.
-void requireNear(const Axes& a, const Axes& b, const Axes& largest, double time, int order) {
+/// Equal but for the rounding of differences between `max` positions, over a time to the power of `order`.
+void requireNear(const Axes& a, const Axes& b, const Axes& max, double time, int order) {
   const double epsilon = std::numeric_limits<double>::epsilon();
-  const Axes rounding = 8 * epsilon * largest * std::pow(2 / time, order) + 1e-12 * b;
+  const Axes rounding = 8 * epsilon * max * std::pow(2 / time, order) + 1e-12 * b;
   RC_ASSERT(((a - b).abs() <= rounding).all());
 }
 
@@ -76,12 +76,12 @@ void requireSame(const JobPlan& plan, const JobPlan& all) {
   RC_ASSERT(s.max_feed == t.max_feed);
   RC_ASSERT(causesOf(plan) == causesOf(all));
   if (!plan.program) return;
-  const Axes largest = largestPosition(all);
+  const Axes max = maxPosition(all);
   const double period = plan.program->machine().period;
-  requireNear(s.max_velocity, t.max_velocity, largest, period, 1);
-  requireNear(s.ripple_acceleration, t.ripple_acceleration, largest, period, 2);
-  requireNear(s.max_acceleration, t.max_acceleration, largest, 2 * period, 2);
-  requireNear(s.max_jerk, t.max_jerk, largest, 2 * period, 3);
+  requireNear(s.max_velocity, t.max_velocity, max, period, 1);
+  requireNear(s.ripple_acceleration, t.ripple_acceleration, max, period, 2);
+  requireNear(s.max_acceleration, t.max_acceleration, max, 2 * period, 2);
+  requireNear(s.max_jerk, t.max_jerk, max, 2 * period, 3);
 }
 
 RC_GTEST_PROP(PlanShapes, GiveWhatAllSetpointsGive, ()) {

@@ -136,7 +136,7 @@ RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndTellsTheMeanVelocityOfTheCycle, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndReportsTheMeanVelocityOfTheCycle, ()) {
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
   RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
@@ -146,7 +146,7 @@ RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndTellsTheMeanVelo
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, TellsTheoryMinusCommandedAsPathError, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, ReportsTheoryMinusCommandedAsPathError, ()) {
   const Work work = *test_support::work(kCycles);
   const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const auto setpoints = all(work);
@@ -189,7 +189,7 @@ TEST(SetpointStream, IsFinishedAtItsEndOnly) {
   EXPECT_FALSE(stream.next(p));
 }
 
-TEST(SetpointStream, TellsMoveAndProgress) {
+TEST(SetpointStream, ReportsMoveAndProgress) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 2};
   SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));

@@ -293,7 +293,7 @@ RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAsk
 TEST(SetpointStream, WhereACutsTheFeedNoOverrideMakesItFaster) {
   Work work{paperJob(), plainMachine(), plainMachine().park};
   work.machine.limits.max_velocity[kA] = 0.95;  // 8.637 mm/s ask for 1.015 rad/s at X = -1 mm, and for 0.653 at 31 mm
-  const auto largestTurn = [&](double fraction) {
+  const auto maxTurn = [&](double fraction) {
     SetpointStream stream(work.program());
     stream.setFeedOverride(fraction);
     double turn = 0;
@@ -306,14 +306,14 @@ TEST(SetpointStream, WhereACutsTheFeedNoOverrideMakesItFaster) {
     }
     return std::make_pair(turn, speed);
   };
-  const auto [turn, speed] = largestTurn(1);
+  const auto [turn, speed] = maxTurn(1);
   EXPECT_LE(turn, 0.95);
   EXPECT_GT(turn, 0.94);
   EXPECT_NEAR(speed, paperSpeed(), 1e-4 * paperSpeed());
-  const auto [faster_turn, faster_speed] = largestTurn(1.2);
+  const auto [faster_turn, faster_speed] = maxTurn(1.2);
   EXPECT_LE(faster_turn, 0.95);
   EXPECT_NEAR(faster_speed, speed, 1e-9);
-  const auto [slower_turn, slower_speed] = largestTurn(0.5);
+  const auto [slower_turn, slower_speed] = maxTurn(0.5);
   EXPECT_LE(slower_turn, 0.95 / 2 * (1 + 1e-3));
   EXPECT_NEAR(slower_speed, speed / 2, 1e-4 * speed);
 }

@@ -108,22 +108,22 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ())
   for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
   RC_ASSERT(movesOf(setpoints) == movesOf(undisturbed));
   checkStrokes(setpoints, work);
-  RC_ASSERT(largestDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
+  RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
   RC_ASSERT((setpoints.back().position == work.machine.park).all());
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
   Work work = *test_support::work(kCycles / 3);
   work.job.interpolation.even_step = *rc::gen::element(EvenStepRule::kThirdOrder, EvenStepRule::kExact);
-  const double without = largestDeviation(all(work), work.job);
+  const double without = maxDeviation(all(work), work.job);
   RC_PRE(without > 1e-12);
   work.job.interpolation.tolerance = without * *uniform(0.3, 3);  // at a third it cuts the feed to some half
   const auto undisturbed = all(work);
   const double allowed = work.job.interpolation.tolerance * (1 + 1e-9) + noiseOfDeviation(undisturbed, work.job);
-  RC_ASSERT(largestDeviation(undisturbed, work.job) <= allowed);
+  RC_ASSERT(maxDeviation(undisturbed, work.job) <= allowed);
   const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(undisturbed, 3));
-  RC_ASSERT(largestDeviation(ride.setpoints(), work.job) <= allowed);
-  RC_ASSERT(largestDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
+  RC_ASSERT(maxDeviation(ride.setpoints(), work.job) <= allowed);
+  RC_ASSERT(maxDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsAndThePapersConstruction, ()) {

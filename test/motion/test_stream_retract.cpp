@@ -88,7 +88,7 @@ RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveTheWorkRadiallyAndComeBackAhe
   RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
   for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
   checkStrokes(setpoints, work);
-  RC_ASSERT(largestDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
+  RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
   RC_ASSERT((setpoints.back().position == work.machine.park).all());
 }
 

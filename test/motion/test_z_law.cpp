@@ -21,10 +21,10 @@ double zOf(const GrindJob& job, double x) {
   return static_cast<double>(x * slope + referenceCorrection(job.z_corrections.at(0), x));
 }
 
-double largestCoefficient(const ZCorrection& c) {
-  double largest = 0;
-  for (const double v : c.coefficients) largest = std::max(largest, std::abs(v));
-  return largest;
+double maxCoefficient(const ZCorrection& c) {
+  double max = 0;
+  for (const double v : c.coefficients) max = std::max(max, std::abs(v));
+  return max;
 }
 
 /// The paper's job with a bow of Z, in coefficients of `height`.
@@ -47,7 +47,7 @@ RC_GTEST_PROP(ZCorrectionProperty, IsTheSplineOfItsCoefficients, ()) {
   const ZCorrection c = *zCorrection(job);
   const double x = c.from + c.piece * c.pieces * *uniform(0, 1);
   const double expected = static_cast<double>(referenceCorrection(c, x));
-  RC_ASSERT(std::abs(c.at(x).z - expected) <= 1e-14 * largestCoefficient(c));
+  RC_ASSERT(std::abs(c.at(x).z - expected) <= 1e-14 * maxCoefficient(c));
 }
 
 RC_GTEST_PROP(ZCorrectionProperty, ItsDerivativesKeepWithinTheirBounds, ()) {
@@ -57,8 +57,8 @@ RC_GTEST_PROP(ZCorrectionProperty, ItsDerivativesKeepWithinTheirBounds, ()) {
   double second = 0;
   for (int i = 0; i <= 200; ++i) {
     const ZCorrection::Value v = c.at(c.from + c.piece * c.pieces * i / 200);
-    RC_ASSERT(v.first >= bounds.least_first - 1e-9 * std::abs(bounds.least_first));
-    RC_ASSERT(v.first <= bounds.largest_first + 1e-9 * std::abs(bounds.largest_first));
+    RC_ASSERT(v.first >= bounds.min_first - 1e-9 * std::abs(bounds.min_first));
+    RC_ASSERT(v.first <= bounds.max_first + 1e-9 * std::abs(bounds.max_first));
     RC_ASSERT(std::abs(v.second) <= bounds.second * (1 + 1e-9));
     RC_ASSERT(std::abs(v.third) <= bounds.third * (1 + 1e-9));
     second = std::max(second, std::abs(v.second));
@@ -78,7 +78,7 @@ RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrection, ()) {
     const bool to_end = move.kind == MoveKind::kStroke || move.kind == MoveKind::kRetract;
     if (!to_end && move.kind != MoveKind::kPosition && move.kind != MoveKind::kInfeed) continue;
     const double x = to_end ? program.strokeTo() : program.strokeFrom();
-    const double rounding = 1e-14 * largestCoefficient(work.job.z_corrections[0]) + roundingOf(setpoints)[kZ];
+    const double rounding = 1e-14 * maxCoefficient(work.job.z_corrections[0]) + roundingOf(setpoints)[kZ];
     RC_ASSERT(std::abs(move.to[kZ] - zOf(work.job, x)) <= rounding);
   }
 }

@@ -20,9 +20,9 @@ parent.postMessage(JSON.stringify({
 </script></body>'''
 
 # A window is no narrower than 500 px; a frame in it can be.
-FRAME = '''<!DOCTYPE html><html><body style="margin: 0"><pre id="told"></pre>
+FRAME = '''<!DOCTYPE html><html><body style="margin: 0"><pre id="reported"></pre>
 <iframe src="%s" scrolling="no" style="border: 0; width: %dpx; height: 2000px"></iframe>
-<script>onmessage = message => { document.getElementById('told').textContent = message.data; };</script></body></html>'''
+<script>onmessage = message => { document.getElementById('reported').textContent = message.data; };</script></body></html>'''
 
 
 NUMBERS_PAGES = 131  # the first version that prints what a style sheet puts into a page's margin
@@ -31,10 +31,10 @@ NUMBERS_PAGES = 131  # the first version that prints what a style sheet puts int
 def version():
     """Of Chromium, its first number; 0 where it is not installed."""
     try:
-        told = subprocess.check_output(['chromium', '--version'], universal_newlines=True)
+        reported = subprocess.check_output(['chromium', '--version'], universal_newlines=True)
     except FileNotFoundError:
         return 0
-    return int(re.search(r'\d+', told).group())
+    return int(re.search(r'\d+', reported).group())
 
 
 def chromium(*arguments):
@@ -64,7 +64,7 @@ def look_at(source, width, dark=False):
         # Virtual time, so that the message has come.
         dom = chromium('--dump-dom', '--window-size=1400,2000', '--virtual-time-budget=10000',
                        '--blink-settings=preferredColorScheme=%d' % (0 if dark else 1), 'file://' + frame)
-    return json.loads(html.unescape(re.search(r'<pre id="told">(.*)</pre>', dom).group(1)))
+    return json.loads(html.unescape(re.search(r'<pre id="reported">(.*)</pre>', dom).group(1)))
 
 
 def lightness(colour):

@@ -209,7 +209,7 @@ class Run:
     def __init__(self, grinder, goal, confirm=True):
         self._grinder = grinder
         if confirm and not goal.dry_run:
-            # Refused during another job or if the drive measures it: then the goal's answer tells.
+            # Refused during another job or if the drive measures it: then the goal's answer says so.
             grinder.confirm_swivel(goal.process.setup_swivel)
         self.feedback = []
         self.sent = time.time()
@@ -266,12 +266,12 @@ class Run:
 
     @property
     def last(self):
-        """The setpoint told last, if there is one."""
+        """The setpoint reported last, if there is one."""
         batches = self.batches
         return batches[-1].setpoints[-1] if batches else None
 
     def wait_past(self, past, what):
-        """Waits until the setpoint told last is one that is wanted."""
+        """Waits until the setpoint reported last is one that is wanted."""
         self._grinder.wait_for(lambda: self.done or self.last is not None and past(self.last), what)
         assert not self.done, 'the goal ended ahead of %s: %s %s' % (what, self.status, self.text)
         return self
@@ -450,24 +450,24 @@ class Grinder:
         return self.states[-1]
 
     def wait_state(self, state):
-        """Waits for a state that is told from now on."""
+        """Waits for a state that is reported from now on."""
         seen = len(self.states)
         self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == state, 'state %d' % state)
         return self.states[-1]
 
     def wait_power_off(self):
-        """Waits for the state disabled with the power off, which the drive tells a cycle later, told from now on."""
+        """Waits for the state disabled with the power off, which the drive reports a cycle later, reported from now on."""
         seen = len(self.states)
         self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == GrinderState.DISABLED and
                       not self.states[-1].enabled, 'the end of the power')
         return self.states[-1]
 
     def positions(self):
-        """Of all axes, as told last."""
+        """Of all axes, as reported last."""
         return list(axes_of(self.joints[-1]))
 
     def wait_rest(self):
-        """Waits until the positions told no longer change, and returns them."""
+        """Waits until the positions reported no longer change, and returns them."""
 
         seen = len(self.joints)
 
@@ -481,7 +481,7 @@ class Grinder:
         return self.positions()
 
     def positions_over(self, seconds):
-        """All positions told from now on over a time, by the messages' own stamps."""
+        """All positions reported from now on over a time, by the messages' own stamps."""
         first = len(self.joints)
         self.wait_for(lambda: len(self.joints) > first + 1 and
                       (self.joints[-1].header.stamp - self.joints[first].header.stamp).to_sec() >= seconds,

@@ -34,26 +34,26 @@ class TestMachine(CommandLine):
     def test_status_as_json(self):
         run = grinder().run(gc.SHORT)
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        told, _ = self.json(0, 'status')
+        reported, _ = self.json(0, 'status')
         progress = grinder().fresh_state().progress
-        digest = told['last_job'].pop('digest')
+        digest = reported['last_job'].pop('digest')
         self.assertRegex(digest, '^[0-9a-f]{64}$')
         self.assertEqual(digest, progress.job_digest)
-        self.assertEqual(told['last_job'].pop('x_mm'), progress.x / MM)
-        cutter = told['last_job'].pop('cutter')
+        self.assertEqual(reported['last_job'].pop('x_mm'), progress.x / MM)
+        cutter = reported['last_job'].pop('cutter')
         self.assertEqual(cutter.pop('teeth'), len(progress.cutter.tooth_angles))
         self.assertEqual(cutter, {
             'end_diameter_mm': progress.cutter.end_diameter / MM, 'cone_angle_deg': progress.cutter.cone_angle / DEG,
             'spiral_angle_deg': progress.cutter.spiral_angle / DEG, 'rake_angle_deg': progress.cutter.rake_angle / DEG,
             'flute_length_mm': progress.cutter.flute_length / MM})
-        self.assertAlmostEqual(told.pop('swivel_deg'), 31.769, delta=1e-12)
-        self.assertEqual(told.pop('to_go'), {'x_mm': 0, 'y_mm': 0, 'z_mm': 0, 'a_deg': 0})
+        self.assertAlmostEqual(reported.pop('swivel_deg'), 31.769, delta=1e-12)
+        self.assertEqual(reported.pop('to_go'), {'x_mm': 0, 'y_mm': 0, 'z_mm': 0, 'a_deg': 0})
         for coordinates in ('machine', 'work'):  # without offsets the same
-            at = told.pop(coordinates)
+            at = reported.pop(coordinates)
             for (key, unit), position in zip({'x_mm': MM, 'y_mm': MM, 'z_mm': MM, 'a_deg': DEG}.items(), grinder().park()):
                 self.assertAlmostEqual(at[key] * unit, position, delta=2e-6)
-        self.assertEqual(told, {
-            'grinder': '/grinder', 'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': told['spindle_at_speed'],
+        self.assertEqual(reported, {
+            'grinder': '/grinder', 'state': 'ready', 'enabled': True, 'homed': True, 'spindle_at_speed': reported['spindle_at_speed'],
             'zero_points': dict.fromkeys('xyza'), 'coolant_on': False, 'spindle_commanded': False, 'coolant_commanded': False,
             'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
@@ -88,8 +88,8 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'state +fault\n')
         self.assertRegex(printed, r'emergency stop +pressed\n')
         self.assertRegex(printed, r'fault +emergency stop\n')
-        told, _ = self.json(0, 'status')
-        self.assertEqual((told['fault'], told['emergency_stop'], told['enabled']), ('emergency stop', True, False))
+        reported, _ = self.json(0, 'status')
+        self.assertEqual((reported['fault'], reported['emergency_stop'], reported['enabled']), ('emergency stop', True, False))
         self.assertRegex(self.grind(1, 'enable').stderr,
                          r'^enable refused: the machine is in state fault; allowed: disable, reset\n$')
         self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the emergency stop is pressed')
@@ -170,12 +170,12 @@ class TestMachine(CommandLine):
             self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
         self.assertEqual(run.wait().code, GrindResult.CANCELED)
 
-    def test_status_tells_why_the_job_is_held(self):
+    def test_status_reports_why_the_job_is_held(self):
         run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
-        told, _ = self.json(0, 'status')
-        self.assertEqual((told['state'], told['tooth'], told['pass'], told['last_job']['finished'], told['coolant_on']),
+        reported, _ = self.json(0, 'status')
+        self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
                          ('running', 1, 1, False, True))
-        self.assertIn(told['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
+        self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
         grinder().inject('coolant_lost')
         grinder().wait_state(GrinderState.RETRACTED)
         self.assertEqual(self.json(0, 'status')[0]['hold_reason'], 'no coolant flows')
@@ -188,11 +188,11 @@ class TestMachine(CommandLine):
         run.wait()
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
 
-    def test_dry_run_tells_what_plan_tells(self):
+    def test_dry_run_reports_what_plan_reports(self):
         grinder().make_ready_at_park()
-        told = self.grind(0, 'plan', PAPER_JOB).stdout
-        self.assertRegex(told, r'(?m)^setpoints +\d{4}')
-        self.assertEqual(self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout, told)
+        reported = self.grind(0, 'plan', PAPER_JOB).stdout
+        self.assertRegex(reported, r'(?m)^setpoints +\d{4}')
+        self.assertEqual(self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout, reported)
 
     def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):

@@ -82,7 +82,7 @@ TEST_F(DiagnosticsTest, LoopThatStopsIsAnError) {
   EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::ERROR);
 }
 
-TEST_F(DiagnosticsTest, LoopTellsItsPeriods) {
+TEST_F(DiagnosticsTest, LoopReportsItsPeriods) {
   watch(3);
   record_.period = 0.0012;
   watch();
@@ -97,7 +97,7 @@ TEST_F(DiagnosticsTest, LoopTellsItsPeriods) {
   EXPECT_EQ(value(status, "Cycles"), "4");
 }
 
-TEST_F(DiagnosticsTest, LoopTellsItsCyclesDurationsAndItsWakeUpsDelays) {
+TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
   const auto seconds = [&](const Diagnostics::Status& status, const std::string& key) {
     return std::stod(value(status, key));
   };
@@ -111,7 +111,7 @@ TEST_F(DiagnosticsTest, LoopTellsItsCyclesDurationsAndItsWakeUpsDelays) {
   watch();
   auto status = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
-  // Quantiles are told to 4.4 %.
+  // Quantiles are reported to 4.4 %.
   EXPECT_NEAR(seconds(status, "Median cycle duration [s]"), 2e-6, 0.1e-6);
   EXPECT_NEAR(seconds(status, "99 % cycle duration [s]"), 5e-6, 0.25e-6);
   EXPECT_EQ(value(status, "Longest cycle duration [s]"), "7e-05");
@@ -210,7 +210,7 @@ TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
   EXPECT_EQ(ask(&Diagnostics::reportDrive).level, DiagnosticStatus::OK);
 }
 
-TEST_F(DiagnosticsTest, FaultIsToldOnceAndWithAllElse) {
+TEST_F(DiagnosticsTest, FaultIsReportedOnceAndWithAllElse) {
   record_.state = MachineState::kFault;
   record_.fault.kind = FaultKind::kEmergencyStop;
   record_.drive.emergency_stop = record_.drive.fault = true;
@@ -246,10 +246,10 @@ TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
   EXPECT_EQ(drive.message, "axis_z position is nan");
   const auto following = ask(&Diagnostics::reportFollowing);
   EXPECT_EQ(following.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(value(following, "axis_z largest [m]"), "nan");
+  EXPECT_EQ(value(following, "axis_z max [m]"), "nan");
 }
 
-TEST_F(DiagnosticsTest, FollowingErrorIsTheLargestOfEachAxis) {
+TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxis) {
   record_.command_in_effect << 0.1, 0, 0, 3;
   record_.position << 0.1004, 0, 0, 3;
   watch();
@@ -257,11 +257,11 @@ TEST_F(DiagnosticsTest, FollowingErrorIsTheLargestOfEachAxis) {
   watch();
   const auto status = ask(&Diagnostics::reportFollowing);
   EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(value(status, "axis_x largest [m]"), "0.0004");
+  EXPECT_EQ(value(status, "axis_x max [m]"), "0.0004");
   EXPECT_EQ(value(status, "axis_x of the allowed [%]"), "40");
   EXPECT_EQ(value(status, "axis_y of the allowed [%]"), "20");
   EXPECT_EQ(value(status, "axis_z of the allowed [%]"), "0");
-  EXPECT_EQ(value(status, "axis_a largest [rad]"), "0.025");
+  EXPECT_EQ(value(status, "axis_a max [rad]"), "0.025");
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorIsAWarningAndThenAnError) {
@@ -396,7 +396,7 @@ TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
   }
 }
 
-TEST_F(DiagnosticsTest, DriveWithoutBufferIsToldSo) {
+TEST_F(DiagnosticsTest, DriveWithoutBufferIsReportedSo) {
   watch();
   const auto status = ask(&Diagnostics::reportBuffer);
   EXPECT_EQ(status.level, DiagnosticStatus::OK);
@@ -404,7 +404,7 @@ TEST_F(DiagnosticsTest, DriveWithoutBufferIsToldSo) {
 }
 
 TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
-  const auto least = [&](std::uint32_t commands) {
+  const auto min = [&](std::uint32_t commands) {
     record_.drive.commands_waiting = 50;
     watch(3);
     record_.drive.commands_waiting = commands;
@@ -413,17 +413,17 @@ TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
     watch(3);
     return ask(&Diagnostics::reportBuffer);
   };
-  const auto good = least(25);
+  const auto good = min(25);
   EXPECT_EQ(good.level, DiagnosticStatus::OK);
   EXPECT_EQ(good.message, "filled");
-  EXPECT_EQ(value(good, "Least fill [%]"), "50");
+  EXPECT_EQ(value(good, "Minimum fill [%]"), "50");
   EXPECT_EQ(value(good, "Commands waiting"), "49");
-  const auto warning = least(24);
+  const auto warning = min(24);
   EXPECT_EQ(warning.level, DiagnosticStatus::WARN);
   EXPECT_EQ(warning.message, "down to 24 of 50 commands");
-  EXPECT_EQ(least(10).level, DiagnosticStatus::WARN);
-  EXPECT_EQ(least(9).level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(least(49).level, DiagnosticStatus::OK);
+  EXPECT_EQ(min(10).level, DiagnosticStatus::WARN);
+  EXPECT_EQ(min(9).level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(min(49).level, DiagnosticStatus::OK);
 }
 
 TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
@@ -442,7 +442,7 @@ TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
   record_.state = MachineState::kReady;
   record_.drive.commands_waiting = 20;
   watch();
-  EXPECT_EQ(value(ask(&Diagnostics::reportBuffer), "Least fill [%]"), "100");
+  EXPECT_EQ(value(ask(&Diagnostics::reportBuffer), "Minimum fill [%]"), "100");
 }
 
 TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
@@ -458,7 +458,7 @@ TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
   EXPECT_EQ(value(next, "Underruns"), "3");
 }
 
-TEST_F(DiagnosticsTest, JournalTellsWhatIsAmiss) {
+TEST_F(DiagnosticsTest, JournalReportsWhatIsAmiss) {
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
   diagnostics_.setJournalError("journal /x: No space left on device");
   const auto status = ask(&Diagnostics::reportJournal);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows what /diagnostics tells of a running node at rest and of an axis that is stuck. The figures and thresholds are gone through
+"""Shows what /diagnostics reports of a running node at rest and of an axis that is stuck. The figures and thresholds are gone through
 in test_diagnostics.cpp."""
 
 import unittest
@@ -16,7 +16,7 @@ NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffe
 
 
 class Reports:
-    """All that a node tells on /diagnostics."""
+    """All that a node reports on /diagnostics."""
 
     def __init__(self, node):
         self.node = node

@@ -60,7 +60,7 @@ class TestDriveAbi(unittest.TestCase):
 
     def test_no_version(self):
         """Though the libraries that it is linked with, and the node itself, may have one."""
-        self.assertRegex(self.refusal('no'), r'parameter /doubtful/hardware/type = refused/Drive tells no version of the drive '
+        self.assertRegex(self.refusal('no'), r'parameter /doubtful/hardware/type = refused/Drive states no version of the drive '
                          r'interface; allowed: version \d+\. Build it again: \S+/libflute_grinder_drive_of_no_version\.so')
 
 

@@ -26,7 +26,7 @@ JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=5 * MM, cle
 HELIX = checks.Helix(JOB)
 # Of a cutter of 12 mm and a wheel of 100 mm.
 BETWEEN_AXES = 56 * MM
-# Positions are told to the bit; what is left is rounding.
+# Positions are reported to the bit; what is left is rounding.
 EXACT = 1e-9
 # Farther from the cutter's axis are neither wheel nor contact.
 REACH = 2 * BETWEEN_AXES
@@ -73,7 +73,7 @@ class Story:
         self.frames = Frames()
         self.before = {frame: self.frames.find(frame, within) for frame, within in (('wheel', 'cutter'), ('cutter', 'work'))}
         self.position_before = g.positions()
-        # All that is told of one time is here once the wheel is.
+        # All that is reported of one time is here once the wheel is.
         self.contact_before = self.frames.buffer.can_transform('work', 'contact', rospy.Time())
         g.make_ready()
         for joint, offset in zip(gc.JOINTS, OFFSETS):
@@ -138,7 +138,7 @@ class TestStroke(unittest.TestCase):
             seen['delta'] = sum(off[:3]) + REACH * seen['turn']
         return strokes
 
-    def test_frames_are_told_of_the_joint_states_times(self):
+    def test_frames_have_the_joint_states_times(self):
         stamps = {joint.header.stamp for joint in grinder().joints}
         self.assertLessEqual({seen['stamp'] for seen in self.strokes()}, stamps)
 
@@ -220,7 +220,7 @@ class TestSetUp(unittest.TestCase):
         for frame, within in (('work', 'table'), ('cutter', 'chuck')):
             gc.poll(lambda: abs(story().late.find(frame, within)[0][0] - x) < EXACT, 'the new place of ' + frame)
 
-    def test_change_of_a_work_offset_is_told(self):
+    def test_change_of_a_work_offset_is_reported(self):
         story()
         self.addCleanup(self.move_work, OFFSETS[X])
         self.move_work(-0.03)

@@ -151,7 +151,7 @@ TEST_F(HistoryTest, IsNeverReadHalf) {
   close();
 }
 
-TEST_F(HistoryTest, TellsAFolderThatCannotBe) {
+TEST_F(HistoryTest, ReportsAFolderThatCannotBe) {
   std::ofstream(folder_ / "a") << "a file";
   open(kPlenty);
   keep(nameOf(0), "x");
@@ -166,7 +166,7 @@ TEST_F(HistoryTest, TellsAFolderThatCannotBe) {
   EXPECT_EQ(files().back(), nameOf(1));
 }
 
-TEST_F(HistoryTest, ARecordThatCannotBeMadeIsTold) {
+TEST_F(HistoryTest, ARecordThatCannotBeMadeIsReported) {
   open(kPlenty);
   history_->keep(nameOf(0), []() -> std::string { throw std::runtime_error("no such thing"); });
   waitForError(true);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that the grinder keeps a record of every job that moved, with the figures that follow from its setpoints, that the
-disk cannot hold up a job, and what `grind history` lists of the records; and that the node tells which machine it is."""
+disk cannot hold up a job, and what `grind history` lists of the records; and that the node reports which machine it is."""
 
 import calendar
 import json
@@ -162,10 +162,10 @@ class TestRecords(Kept):
     def check_broken_off(self, record, outcome, run):
         self.assertEqual(record['outcome'], outcome)
         # The result is in SI; the record is for the operator.
-        told, place = (re.split(r'X = (\S+) (mm|m)\b', text) for text in (
+        reported, place = (re.split(r'X = (\S+) (mm|m)\b', text) for text in (
             record['reason'], run.text.replace('at stroke of tooth', 'stroke, tooth')))
-        self.assertEqual((told[0], told[3], told[2]), (place[0], place[3], 'mm'))
-        self.assertAlmostEqual(float(told[1]), float(place[1]) / MM, delta=0.01)
+        self.assertEqual((reported[0], reported[3], reported[2]), (place[0], place[3], 'mm'))
+        self.assertAlmostEqual(float(reported[1]), float(place[1]) / MM, delta=0.01)
         stroke, = record['strokes']
         self.assertFalse(stroke['complete'])
         self.assertLess(stroke['duration_s'], record['planned']['duration_s'])
@@ -196,7 +196,7 @@ class TestRecords(Kept):
         self.assertEqual((hold['reason'], hold['tooth'], hold['pass']), ('no coolant flows', 1, 1))
         self.assertEqual(len(record['strokes']), 4)
 
-    def test_continued_job_tells_where_it_began(self):
+    def test_continued_job_reports_where_it_began(self):
         record, _ = self.record_of(lambda: self.grinder.run(JOB, first_tooth=1, first_pass=1))
         self.assertEqual(record['first'], {'tooth': 2, 'pass': 2})
         self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(2, 2)])
@@ -242,9 +242,9 @@ class TestLimit(Kept):
 
 
 class TestBadFolder(gc.OwnNode):
-    """It is told, and the job does not mind."""
+    """It is reported, and the job does not mind."""
 
-    def test_is_told_and_the_job_is_ground(self):
+    def test_is_reported_and_the_job_is_ground(self):
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
         with open(os.path.join(folder, 'file'), 'w'):
@@ -252,8 +252,8 @@ class TestBadFolder(gc.OwnNode):
         grinder = self.start(dict(gc.machine(), history=folder + '/file/history'))
         reports = Reports(self.node.name)
         self.addCleanup(reports.subscriber.unregister)
-        told = reports.wait('History', DiagnosticStatus.WARN, 'history %s/file/history: ' % folder)
-        self.assertIn('Not a directory', told.message)
+        reported = reports.wait('History', DiagnosticStatus.WARN, 'history %s/file/history: ' % folder)
+        self.assertIn('Not a directory', reported.message)
         grinder.make_ready()
         self.assertEqual(grinder.run(gc.SHORT).status, 'SUCCEEDED')
         reports.wait('History', DiagnosticStatus.WARN, 'Not a directory')

@@ -140,7 +140,7 @@ class JobRecordTest : public ::testing::Test {
   }
   double since(const CycleRecord& record) const { return record.time - cycles_.front().record.time; }
 
-  void expectStroke(const Json& told, int tooth, int pass) const;
+  void expectStroke(const Json& reported, int tooth, int pass) const;
 
   const LoopConfig config_ = test_support::machineConfig();
   const GrindJob job_ = shortJob();
@@ -152,13 +152,13 @@ class JobRecordTest : public ::testing::Test {
   Axes command_ = config_.machine.park;
 };
 
-void JobRecordTest::expectStroke(const Json& told, int tooth, int pass) const {
+void JobRecordTest::expectStroke(const Json& reported, int tooth, int pass) const {
   const std::vector<Cycle> stroke = strokeCycles(tooth, pass);
-  EXPECT_EQ(told["tooth"], tooth + 1);
-  EXPECT_EQ(told["pass"], pass + 1);
-  EXPECT_TRUE(told["complete"]);
-  EXPECT_NEAR(told["started_s"], since(stroke.front().record), 1e-6);
-  EXPECT_NEAR(told["duration_s"], stroke.back().record.time - stroke.front().record.time, 1e-6);
+  EXPECT_EQ(reported["tooth"], tooth + 1);
+  EXPECT_EQ(reported["pass"], pass + 1);
+  EXPECT_TRUE(reported["complete"]);
+  EXPECT_NEAR(reported["started_s"], since(stroke.front().record), 1e-6);
+  EXPECT_NEAR(reported["duration_s"], stroke.back().record.time - stroke.front().record.time, 1e-6);
   double low = 1e9, high = 0, deviation = 0;
   Axes following = Axes::Zero();
   const double spiral = std::tan(job_.spiral_angles[static_cast<std::size_t>(tooth)]), cone = job_.cutter.cone_angle;
@@ -172,10 +172,10 @@ void JobRecordTest::expectStroke(const Json& told, int tooth, int pass) const {
     low = std::min(low, c.setpoint.feed);
     high = std::max(high, c.setpoint.feed);
   }
-  EXPECT_NEAR(told["feed_min_mm_min"], low * 60e3, 1e-6);
-  EXPECT_NEAR(told["feed_max_mm_min"], high * 60e3, 1e-6);
-  EXPECT_NEAR(told["deviation_um"], deviation * 1e6, 1e-9);
-  const Json& error = told["following_error"];
+  EXPECT_NEAR(reported["feed_min_mm_min"], low * 60e3, 1e-6);
+  EXPECT_NEAR(reported["feed_max_mm_min"], high * 60e3, 1e-6);
+  EXPECT_NEAR(reported["deviation_um"], deviation * 1e6, 1e-9);
+  const Json& error = reported["following_error"];
   EXPECT_NEAR(error["x_um"], following[kX] * 1e6, 1e-9);
   EXPECT_NEAR(error["y_um"], following[kY] * 1e6, 1e-9);
   EXPECT_NEAR(error["z_um"], following[kZ] * 1e6, 1e-9);
@@ -191,9 +191,9 @@ TEST_F(JobRecordTest, StrokesAreThoseOfTheSetpoints) {
   std::size_t i = 0;
   for (const int tooth : {0, 1}) {
     for (const int pass : {0, 1}) {
-      const Json& told = record["strokes"][i++];
-      expectStroke(told, tooth, pass);
-      EXPECT_NEAR(told["depth_mm"], depths[pass], 1e-12);
+      const Json& reported = record["strokes"][i++];
+      expectStroke(reported, tooth, pass);
+      EXPECT_NEAR(reported["depth_mm"], depths[pass], 1e-12);
     }
   }
 }
@@ -246,13 +246,13 @@ TEST_F(JobRecordTest, LateCyclesAreCounted) {
     longest = std::max(longest, c.record.period);
     late += c.record.period > 0.0015;
   }
-  const Json told = recorded()["late_cycles"];
-  EXPECT_EQ(told["count"], late);
+  const Json reported = recorded()["late_cycles"];
+  EXPECT_EQ(reported["count"], late);
   EXPECT_GT(late, 0);
-  EXPECT_NEAR(told["longest_ms"], longest * 1000, 1e-9);
+  EXPECT_NEAR(reported["longest_ms"], longest * 1000, 1e-9);
 }
 
-TEST_F(JobRecordTest, TellsJobMachineAndPlan) {
+TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
   makeCycles();
   const Json record = recorded();
   EXPECT_EQ(record["record"], 1);
@@ -266,7 +266,7 @@ TEST_F(JobRecordTest, TellsJobMachineAndPlan) {
   EXPECT_NEAR(record["machine"]["max_following_error"]["a_deg"], 12 * 180 / units::kPi, 1e-9);
   EXPECT_EQ(record["job"]["name"], "short.yaml");
   EXPECT_EQ(record["job"]["digest"], jobDigest(job_));
-  EXPECT_EQ(jobDigest(parseJob(record["job"]["file"].dump(), "told")), jobDigest(job_));
+  EXPECT_EQ(jobDigest(parseJob(record["job"]["file"].dump(), "reported")), jobDigest(job_));
   EXPECT_EQ(record["planned"]["setpoints"], 4321);
   EXPECT_EQ(record["planned"]["duration_s"], 4.32);
   EXPECT_EQ(record["planned"]["max_deviation_um"], 0.5);
@@ -276,7 +276,7 @@ TEST_F(JobRecordTest, TellsJobMachineAndPlan) {
   EXPECT_FALSE(record.contains("omitted"));
 }
 
-TEST_F(JobRecordTest, TellsWhatItLeavesOut) {
+TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {
   JobRecord record(plan_, "");
   for (int i = 0; i < 10004; ++i) {
     override_ = i % 2 == 0 ? 0.5 : 1;
@@ -284,11 +284,11 @@ TEST_F(JobRecordTest, TellsWhatItLeavesOut) {
     record.addCycle(cycle(MachineState::kHeld).record);
     record.addCycle(cycle(MachineState::kHeld).record);
   }
-  const Json told = record.json("/grinder", kMachine);
-  EXPECT_EQ(told["holds"].size(), 10000U);
-  EXPECT_EQ(told["overrides"].size(), 10000U);
-  EXPECT_EQ(told["omitted"], 8);
-  EXPECT_NEAR(told["holds"].back()["duration_s"], cycles_[29999].record.time - cycles_[29998].record.time, 0.01);
+  const Json reported = record.json("/grinder", kMachine);
+  EXPECT_EQ(reported["holds"].size(), 10000U);
+  EXPECT_EQ(reported["overrides"].size(), 10000U);
+  EXPECT_EQ(reported["omitted"], 8);
+  EXPECT_NEAR(reported["holds"].back()["duration_s"], cycles_[29999].record.time - cycles_[29998].record.time, 0.01);
 }
 
 TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that the grinder knows how far a job has come, whatever becomes of its process: after a kill at any moment the
-journal is whole, and continuing grinds every pass that was not finished, and none that the grinder's state told as
+journal is whole, and continuing grinds every pass that was not finished, and none that the grinder's state reported as
 finished. The journal belongs to one node, and no job that is not finished is forgotten without a word."""
 
 import hashlib
@@ -64,9 +64,9 @@ def sealed(content):
     return content + b'checksum: %s\n' % hashlib.sha256(content).hexdigest().encode()
 
 
-def end_of(told):
-    """How many passes of the job are finished, by what is told of its progress."""
-    return PASSES.index((told.tooth, told.pass_)) + told.finished
+def end_of(reported):
+    """How many passes of the job are finished, by what is reported of its progress."""
+    return PASSES.index((reported.tooth, reported.pass_)) + reported.finished
 
 
 def strokes_of(setpoints):
@@ -137,14 +137,14 @@ class JournalTest(gc.OwnNode):
         gc.poll(lambda: self.read_journal()['x_m'] == x, 'the place in the journal')
         return self.read_journal()
 
-    def check_told(self, journal):
-        """That the node tells the progress that is in the journal."""
-        told = self.client.fresh_state().progress
-        self.assertEqual((told.job_digest, told.job_name, told.finished, told.tooth, told.pass_, told.x),
+    def check_reported(self, journal):
+        """That the node reports the progress that is in the journal."""
+        reported = self.client.fresh_state().progress
+        self.assertEqual((reported.job_digest, reported.job_name, reported.finished, reported.tooth, reported.pass_, reported.x),
                          tuple(journal[key] for key in ('job_digest', 'job_name', 'finished', 'tooth', 'pass', 'x_m')))
-        self.assertEqual([getattr(told.cutter, name) for name in CUTTER[:-1]],
+        self.assertEqual([getattr(reported.cutter, name) for name in CUTTER[:-1]],
                          [journal[key] for key in CUTTER_KEYS[:-1]])
-        self.assertEqual(list(told.cutter.tooth_angles), journal['tooth_angles_rad'])
+        self.assertEqual(list(reported.cutter.tooth_angles), journal['tooth_angles_rad'])
 
     def grind(self, status, *arguments):
         done = super().grind(*arguments)
@@ -163,7 +163,7 @@ class JournalTest(gc.OwnNode):
         gc.poll(lambda: reports, 'diagnostics')
         return reports
 
-    def check_trouble_is_told(self):
+    def check_trouble_is_reported(self):
         """That the journal cannot be used is in the log and in the diagnostics, and nothing can be continued."""
         self.assertIn('journal ' + self.journal, self.node.output)
         state = self.client.fresh_state()
@@ -198,7 +198,7 @@ class TestKills(JournalTest):
     def check_progress(self, run, states, begin):
         """What a run that was killed, or came to its end, has left; returns how many passes are finished."""
         journal = self.read_journal()
-        self.check_told(journal)
+        self.check_reported(journal)
         begun, ended = strokes_of(run.setpoints)
         self.assertTrue(checks.is_gapless(run.setpoints))
         self.assertEqual(begun, PASSES[begin:begin + len(begun)], 'strokes go on from where they were left')
@@ -208,14 +208,14 @@ class TestKills(JournalTest):
             self.assertTrue(FROM - 1e-9 <= journal['x_m'] <= TO + 1e-9)
 
         end = PASSES.index((journal['tooth'], journal['pass'])) + journal['finished']
-        # A pass that is finished may not be told yet; one that ended just now may not be in the journal yet.
+        # A pass that is finished may not be reported yet; one that ended just now may not be in the journal yet.
         self.assertTrue(begin <= end <= begin + len(ended) + 1, 'the journal is ahead of the strokes')
         for state in states:
             if state.header.stamp > run.batches[0].header.stamp:
-                self.assertLessEqual(end_of(state.progress), end, 'a pass that was told as finished is not')
+                self.assertLessEqual(end_of(state.progress), end, 'a pass that was reported as finished is not')
         return end
 
-    def test_no_pass_told_as_finished_is_ground_again_and_none_is_left_out(self):
+    def test_no_pass_reported_as_finished_is_ground_again_and_none_is_left_out(self):
         chance = random.Random(SEED)
         print('kills with seed %d' % SEED)
         planned = None
@@ -252,7 +252,7 @@ class TestKills(JournalTest):
 
 class TestContinue(JournalTest):
     def test_killed_in_a_stroke_it_goes_on_with_that_pass(self):
-        """From a stroke in which the axes rest, so that all setpoints were told."""
+        """From a stroke in which the axes rest, so that all setpoints were reported."""
         self.start_ready()
         run = self.hold_in_stroke_of(1, 0)
         at = run.setpoints[-1]
@@ -266,7 +266,7 @@ class TestContinue(JournalTest):
         self.assertEqual([journal[key] for key in CUTTER_KEYS], [self.job['cutter.' + name] for name in CUTTER])
 
         self.start()
-        self.check_told(journal)
+        self.check_reported(journal)
         state = self.client.fresh_state()
         self.assertEqual((bool(state.wheel_in_work), state.override), (True, 0.05))
         self.assertTrue(self.client.set_feed_override(1).success)
@@ -297,15 +297,15 @@ class TestContinue(JournalTest):
         journal = self.wait_finished()
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
         self.assertEqual(self.read_journal(), journal)
-        self.check_told(journal)
+        self.check_reported(journal)
 
 
 class TestDamagedJournal(JournalTest):
-    def test_it_is_told_and_the_next_job_makes_a_new_one(self):
+    def test_it_is_reported_and_the_next_job_makes_a_new_one(self):
         with open(self.journal, 'wb') as file:
             file.write(b'nothing of a journal')
         self.start()
-        self.check_trouble_is_told()
+        self.check_trouble_is_reported()
         state = self.client.fresh_state()
         self.assertIn('journal ' + self.journal, state.journal_error)
         self.assertTrue(state.journal_damaged)
@@ -316,7 +316,7 @@ class TestDamagedJournal(JournalTest):
         self.client.wait_state(GrinderState.READY)
         self.assertRegex(self.client.send(self.job, discard=False).wait().text, 'its checksum is missing; .*, or discard it$')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        self.check_told(self.wait_finished())
+        self.check_reported(self.wait_finished())
 
 
 class TestOwner(JournalTest):
@@ -330,7 +330,7 @@ class TestOwner(JournalTest):
         self.assertIn('journal %s is in use by node /%s, process %d' % (self.journal, self.node.name,
                                                                          self.node.process.pid), second.output)
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        self.check_told(self.wait_finished())
+        self.check_reported(self.wait_finished())
 
 
 class TestUnfinishedJob(JournalTest):
@@ -362,7 +362,7 @@ class TestUnfinishedJob(JournalTest):
     def check_ground(self, job, discard=False, **fields):
         self.assertEqual(self.client.run(job, discard=discard, **fields).status, 'SUCCEEDED')
         journal = self.wait_finished()
-        self.check_told(journal)
+        self.check_reported(journal)
         return journal
 
     def test_it_is_remembered_until_it_is_continued_or_discarded(self):
@@ -386,7 +386,7 @@ class TestUnfinishedJob(JournalTest):
 
 
 class TestSlowDisk(JournalTest):
-    """Nobody waits for the disk; what is told as finished is on it."""
+    """Nobody waits for the disk; what is reported as finished is on it."""
 
     def setUp(self):
         super().setUp()
@@ -406,7 +406,7 @@ class TestSlowDisk(JournalTest):
         self.disk.release()
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.check_told(self.wait_finished())
+        self.check_reported(self.wait_finished())
 
     def test_cancel_does_not_wait_for_the_entry(self):
         self.disk.stop()
@@ -421,17 +421,17 @@ class TestSlowDisk(JournalTest):
     def test_strokes_go_on_and_progress_waits_for_the_disk(self):
         run = self.hold_in_stroke_of(0, 1)
         journal = self.wait_left(run)
-        gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place told')
+        gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place reported')
         self.disk.stop()
         self.assertTrue(self.client.set_feed_override(1).success)
         self.assertTrue(self.client.resume().success)
         run.wait_past(lambda s: (s.tooth, s.pass_) == (2, 0), 'the last tooth')
-        self.check_told(journal)
+        self.check_reported(journal)
         self.assertEqual(self.read_journal(), journal)
         self.disk.release()
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.check_told(self.wait_finished())
+        self.check_reported(self.wait_finished())
 
 
 class TestFailingDisk(JournalTest):
@@ -450,10 +450,10 @@ class TestFailingDisk(JournalTest):
         self.client.wait_state(GrinderState.READY)
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
         gc.poll(lambda: not self.client.fresh_state().spindle_at_speed, 'the spindle stopped')
-        self.check_told(before)
+        self.check_reported(before)
         os.rmdir(new)
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
-        self.check_told(self.wait_finished())
+        self.check_reported(self.wait_finished())
 
 
 if __name__ == '__main__':

@@ -201,7 +201,7 @@ void expectUnusable(const std::string& path) {
   }
 }
 
-TEST_F(JournalFileTest, PathsThatCannotBeUsedAreToldByReadAndWrite) {
+TEST_F(JournalFileTest, PathsThatCannotBeUsedAreRefusedByReadAndWrite) {
   std::filesystem::create_directory(folder_ + "/folder");
   std::filesystem::create_symlink("loop", folder_ + "/loop");
   std::filesystem::create_symlink("/dev/full", folder_ + "/device");
@@ -219,7 +219,7 @@ TEST_F(JournalFileTest, PathsThatCannotBeUsedAreToldByReadAndWrite) {
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/folder.lock"));
 }
 
-TEST_F(JournalFileTest, ForbiddenFoldersAreToldByReadAndWrite) {
+TEST_F(JournalFileTest, ForbiddenFoldersAreRefusedByReadAndWrite) {
   const std::string forbidden = folder_ + "/forbidden";
   std::filesystem::create_directory(forbidden);
   std::filesystem::permissions(forbidden, std::filesystem::perms::none);

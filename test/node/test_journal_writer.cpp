@@ -226,13 +226,13 @@ TEST_F(JournalWriterTest, WritesAndQueriesMayComeFromManyThreads) {
     std::vector<std::thread> threads;
     for (int t = 0; t < kThreads; ++t) {
       threads.emplace_back([&, t] {
-        std::uint64_t told = 0;
+        std::uint64_t reported = 0;
         for (int i = 0; i < kWrites; ++i) {
           const double x = kWrites * t + i;
           writes[static_cast<std::size_t>(t)][writer.write(progressAt(static_cast<int>(x)))] = x;
           const JournalWriter::Status now = writer.status();
-          EXPECT_GE(now.number, told);
-          told = now.number;
+          EXPECT_GE(now.number, reported);
+          reported = now.number;
         }
       });
     }

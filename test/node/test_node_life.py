@@ -85,7 +85,7 @@ class TestLoopback(unittest.TestCase):
             launch.send_signal(signal.SIGINT)
             launch.wait(timeout=gc.PATIENCE)
 
-    def test_probe_tells_other_addresses(self):
+    def test_probe_reports_other_addresses(self):
         with socket.socket() as elsewhere:
             elsewhere.bind(('127.0.0.2', 0))
             elsewhere.listen()
@@ -175,7 +175,7 @@ class TestStartFailsClosed(unittest.TestCase):
 
 
 class TestMarkersDoNotOutliveTheNode(gc.OwnNode):
-    """What rviz was told of a job is taken back: at the node's end, or else when it is started again."""
+    """What was published of a job is taken back: at the node's end, or else when it is started again."""
 
     TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
 

@@ -186,7 +186,7 @@ TEST_F(OffsetStoreTest, AfterDamageEachIsUnknownUntilItIsSet) {
   EXPECT_EQ(next.unknown(), "");
 }
 
-TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsTold) {
+TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsReported) {
   std::filesystem::create_directory(path_);
   OffsetStore store(path_, "/grinder");
   EXPECT_NE(store.unknown(), "");

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that a job is ground where its work offsets say: setpoints are the work's, joint states and limits the machine's; that
-the offsets outlive the process, or are told to be unknown; and that nothing changes them while a job depends on them."""
+the offsets outlive the process, or are reported to be unknown; and that nothing changes them while a job depends on them."""
 
 import json
 import math
@@ -85,7 +85,7 @@ class TestJob(OffsetsTest):
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertEqual(self.strokes(run), self.strokes(without), 'the same, bit for bit')
 
-        # What is told of a setpoint is all in work coordinates.
+        # What is reported of a setpoint is all in work coordinates.
         tolerance = [rospy.get_param('/%s/constraints/%s/trajectory' % (self.client.name, joint)) for joint in gc.JOINTS]
         for s in run.setpoints:
             for axis in range(4):
@@ -194,7 +194,7 @@ class TestSetting(OffsetsTest):
 
 
 class TestRestart(OffsetsTest):
-    def test_damaged_ones_are_told_and_no_job_starts_until_all_are_set(self):
+    def test_damaged_ones_are_reported_and_no_job_starts_until_all_are_set(self):
         self.set_offsets(OFFSETS)
         self.node.end(signal.SIGTERM)
         with open(self.file) as file:
@@ -203,18 +203,18 @@ class TestRestart(OffsetsTest):
             file.write(text.replace('axis_x_m: -', 'axis_x_m: '))
         self.start()
         self.client.make_ready()
-        told = 'unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets %s: its checksum is wrong' % self.file
-        self.assertIn(told, self.node.output)
+        reported = 'unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets %s: its checksum is wrong' % self.file
+        self.assertIn(reported, self.node.output)
         offsets = self.offsets()
         self.assertTrue(all(math.isnan(v) for v in offsets.values))
-        self.assertIn(told, offsets.error)
+        self.assertIn(reported, offsets.error)
         self.assertTrue(all(math.isnan(v) for v in self.client.fresh_state().work_position))
         self.assertEqual(self.grind('offsets').stdout.count(' cannot be read\n'), 4)
-        self.assertIn(told, self.client.plan(gc.goal_of(gc.SHORT)).reasons[0])
+        self.assertIn(reported, self.client.plan(gc.goal_of(gc.SHORT)).reasons[0])
         for fields in ({}, {'dry_run': True}):
             run = self.client.send(gc.SHORT, **fields).wait()
             self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
-            self.assertIn(told, run.text)
+            self.assertIn(reported, run.text)
         self.set_offsets(OFFSETS[:3])
         self.restart()
         self.client.make_ready()
@@ -252,7 +252,7 @@ class TestZeroPoints(OffsetsTest):
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertIn(text, run.text)
 
-    def check_told(self, *texts):
+    def check_reported(self, *texts):
         """As a warning where nothing moves."""
         plan = self.client.plan(gc.goal_of(gc.SHORT))
         self.assertTrue(plan.valid, plan.reasons)
@@ -265,7 +265,7 @@ class TestZeroPoints(OffsetsTest):
 
     def test_of_another_diameter(self):
         never = 'X was never set; Y was never set; Z was never set'
-        self.check_told(never)
+        self.check_reported(never)
         self.check_rejected(never + '; set them for this job, or start it with --ignore-offset-check')
         self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    never set$')
 
@@ -277,10 +277,10 @@ class TestZeroPoints(OffsetsTest):
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
         done = self.grind('offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)
         self.assertEqual(done.returncode, 0, done.stderr)
-        told = 'Y was set by hand for D 6 mm, wheel D 100 mm (d6.yaml); this job has D 10 mm; ' \
+        reported = 'Y was set by hand for D 6 mm, wheel D 100 mm (d6.yaml); this job has D 10 mm; ' \
                "'grind offsets --fit JOB' computes Y"
-        self.check_told(told)
-        self.check_rejected(told)
+        self.check_reported(reported)
+        self.check_rejected(reported)
         self.check_rejected('Y was set by hand', first_tooth=0, discard=False)
 
         done = self.grind('offsets', '--fit', d10)
@@ -288,12 +288,12 @@ class TestZeroPoints(OffsetsTest):
         self.assertRegex(done.stdout, r'(?m)^Y +3\.0000 .*; computed for D 10 mm, wheel D 100 mm \(d10\.yaml\)$')
         for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
             self.assertAlmostEqual(got, expected, delta=1e-15)
-        self.check_told()
+        self.check_reported()
         run = self.client.send(gc.SHORT, ignore_offset_check=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertRegex(self.grind('status').stdout, r'(?m)^zero point Y    computed for D 10 mm, wheel')
-        told = json.loads(self.grind('status', '--json').stdout)['zero_points']
-        self.assertEqual((told['a'], told['y']['method'], told['y']['job']), (None, 'computed', 'd10.yaml'))
+        reported = json.loads(self.grind('status', '--json').stdout)['zero_points']
+        self.assertEqual((reported['a'], reported['y']['method'], reported['y']['job']), (None, 'computed', 'd10.yaml'))
 
         # Of a wheel that has become thinner Y alone could be computed: nothing is.
         other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
@@ -315,7 +315,7 @@ class TestZeroPoints(OffsetsTest):
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         done = self.grind('run', job, '--dry-run')
         self.assertEqual((done.returncode, done.stderr.count('warning')), (0, 0), done.stderr)
-        self.check_told()
+        self.check_reported()
         self.assertEqual(json.loads(self.grind('offsets', '--json').stdout)['axes']['z']['set_for']['method'], 'computed')
 
 
@@ -338,14 +338,14 @@ class TestCommandLine(OffsetsTest):
         values = self.offsets().values
         self.assertAlmostEqual(values[X], 12.5 * MM, delta=1e-15)
         self.assertAlmostEqual(values[A], -90 * DEG, delta=1e-15)
-        told = json.loads(self.grind('offsets', '--json').stdout)
+        reported = json.loads(self.grind('offsets', '--json').stdout)
         self.assertEqual(done.stdout.splitlines()[0], 'work offsets of /%s' % self.client.name)
-        self.assertEqual((told['grinder'], told['homed'], told['error']), ('/' + self.client.name, True, ''))
-        self.assertAlmostEqual(told['axes']['x']['work_mm'], -62.5, delta=0.001)
-        self.assertAlmostEqual(told['axes']['x']['offset_mm'], 12.5, delta=1e-9)
-        self.assertAlmostEqual(told['axes']['a']['offset_deg'], -90, delta=1e-9)
-        self.assertEqual((told['axes']['y']['set_by'], told['axes']['y']['set_at']), (None, None))
-        self.assertRegex(told['axes']['x']['set_at'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$')
+        self.assertEqual((reported['grinder'], reported['homed'], reported['error']), ('/' + self.client.name, True, ''))
+        self.assertAlmostEqual(reported['axes']['x']['work_mm'], -62.5, delta=0.001)
+        self.assertAlmostEqual(reported['axes']['x']['offset_mm'], 12.5, delta=1e-9)
+        self.assertAlmostEqual(reported['axes']['a']['offset_deg'], -90, delta=1e-9)
+        self.assertEqual((reported['axes']['y']['set_by'], reported['axes']['y']['set_at']), (None, None))
+        self.assertRegex(reported['axes']['x']['set_at'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$')
         status = json.loads(self.grind('status', '--json').stdout)
         self.assertAlmostEqual(status['machine']['x_mm'], -50, delta=0.001)
         self.assertAlmostEqual(status['work']['x_mm'], -62.5, delta=0.001)

@@ -103,7 +103,7 @@ class Attacked(unittest.TestCase):
         cls.api = urllib.parse.urlparse(rosgraph.Master(CALLER).lookupNode('/attacked'))
         state = cls.proxy().requestTopic(CALLER, '/attacked/state', [['TCPROS']])
         cls.tcpros_port = state[2][2]
-        # Reset, so that it tells the most since now.
+        # Reset, so that it reports the most since now.
         with open('/proc/%d/clear_refs' % cls.node.process.pid, 'w') as references:
             references.write('5')
         cls.before = cls.memory()
@@ -317,7 +317,7 @@ class TestPeers(Attacked):
     def test_what_follows_a_message_that_is_too_long_arrives(self):
         cancels, goals = (self.publisher('/attacked/grind/' + name, kind) for name, kind in
                           (('cancel', GoalID), ('goal', GrindActionGoal)))
-        told = len(self.node.output)
+        reported = len(self.node.output)
         too_long = 'x' * (LONGEST_MESSAGE + 1)
         cancels.publish(GoalID(id=too_long))
         goals.publish(GrindActionGoal(goal_id=GoalID(id=too_long), goal=gc.goal_of(gc.paper())))
@@ -337,7 +337,7 @@ class TestPeers(Attacked):
         self.assertEqual(self.run_.wait().status, 'PREEMPTED')
         self.assertEqual([publisher.get_num_connections() for publisher in (cancels, goals)], [1, 1])
         self.assertEqual(len(re.findall(r'a message of \d+ bytes on /attacked/grind/(?:cancel|goal) is dropped; allowed: 262144',
-                                        self.node.output[told:])), 3)
+                                        self.node.output[reported:])), 3)
 
     def publisher(self, topic, kind):
         publisher = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)

@@ -132,7 +132,7 @@ TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
   EXPECT_EQ(preview->plan->program, nullptr);
 }
 
-TEST(Planner, TellsWhyAJobCannotBeGround) {
+TEST(Planner, ReportsWhyAJobCannotBeGround) {
   Planner planner(machine(), kShapes);
   GrindJob job = paper();
   job.process.feed = -1;
@@ -145,7 +145,7 @@ TEST(Planner, TellsWhyAJobCannotBeGround) {
   EXPECT_FALSE(preview->stream);
 }
 
-TEST(Planner, OneJobAtATimeWhichTellsItsProgressAndCanBeGivenUp) {
+TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
   Planner planner(machine(), kShapes);
   Asked first(endless()), second(paper()), third(paper());
   ASSERT_TRUE(planner.submit(first.request));

@@ -94,10 +94,10 @@ class TestCycles(ProbeTest):
     def test_zeros_become_the_offsets_by_the_grinders_own_geometry(self):
         geometry = gc.machine()['geometry']
         self.start(geometry=dict(geometry, collet_face={'x': geometry['collet_face']['x'] + 1 * MM}))
-        told = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
+        reported = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
         done = self.grind('zeros', JOB, '--stickout', '45', '--set')
         self.assertEqual((done.returncode, done.stderr), (0, ''))
-        for axis, value in ((X, told['x_mm'] + 1), (Y, told['y_mm']), (Z, told['z_mm'])):
+        for axis, value in ((X, reported['x_mm'] + 1), (Y, reported['y_mm']), (Z, reported['z_mm'])):
             self.assertAlmostEqual(self.offset(axis)['offset_mm'], value, delta=1e-9)
         self.assertIsNone(self.offset(A)['set_by'])
         refused = self.grind('zeros', JOB, '--stickout', '20', '--set')
@@ -243,7 +243,7 @@ class TestStop(ProbeTest):
     def test_a_stop_while_it_backs_off_for_the_last_time_ends_it_too(self):
         probing = gc.machine()['probing']
         probing.update(slow=1.0, back_off=dict(probing['back_off'], axis_x=4 * MM),
-                       largest_spread=dict(probing['largest_spread'], axis_x=1.0))
+                       max_spread=dict(probing['max_spread'], axis_x=1.0))
         self.start(probing=probing)
         self.bring_ball(12 * MM, 0)
         with self.client.probing(8 * MM) as cycle:

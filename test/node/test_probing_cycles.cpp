@@ -39,7 +39,7 @@ LoopConfig config() {
   config.probing.velocity << 0.01, 0.01, 0.01, 0.1;
   config.probing.slow = 0.01;
   config.probing.back_off << 0.0005, 0.0005, 0.0005, 0.02;
-  config.probing.largest_spread << 1e-6, 1e-6, 1e-6, 1e-4;
+  config.probing.max_spread << 1e-6, 1e-6, 1e-6, 1e-4;
   config.probing.touches = 2;
   return config;
 }

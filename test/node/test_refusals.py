@@ -64,7 +64,7 @@ class TestBadGoals(unittest.TestCase):
                 plan = grinder().plan(gc.goal_of(dict(gc.MOTION, **{field: wrong})))
                 self.assertRegex('; '.join(plan.reasons), r'(^|; )%s = %.10g\b' % (field, wrong))
 
-    def test_all_that_is_wrong_is_told_at_once(self):
+    def test_all_that_is_wrong_is_reported_at_once(self):
         run = grinder().send(gc.paper(feed=NAN, flute_length=-1.0, tooth_angles=[], order=9)).wait()
         for field in ('process.feed', 'cutter.flute_length', 'cutter.teeth', 'process.order'):
             self.assertIn(field + ' = ', run.text)

@@ -308,9 +308,9 @@ class TestTable(ReportCase):
         page = self.report(FILES['table ' + length])
         self.assert_page(page, PATH)
         self.assertEqual(page.rows['points'], [str(points)])
-        self.assertEqual(page.rows['largest odd error'], [odd + ' rad'])
+        self.assertEqual(page.rows['maximum odd error'], [odd + ' rad'])
         if even:
-            self.assertEqual(page.rows['largest even error'], [even + ' rad'])
+            self.assertEqual(page.rows['maximum even error'], [even + ' rad'])
         self.assertIn('the points of a table have no time', page.text)
 
     def test_papers_figures_at_02(self):
@@ -350,9 +350,9 @@ class TestPlan(ReportCase):
         self.assertEqual(self.found['points'], int(printed('setpoints')))
         self.assertEqual(float(printed('duration').split()[0]), round(self.found['duration_s'], 3))
         for parity in ('odd', 'even'):
-            self.assertEqual(printed('largest %s error' % parity).split()[0], '%.4e' % self.found[parity + '_error_rad'])
+            self.assertEqual(printed('maximum %s error' % parity).split()[0], '%.4e' % self.found[parity + '_error_rad'])
         for key, name in (('speed', 'velocity'), ('acceleration', 'acceleration')):
-            figures = re.match(r'X (\S+) +Y (\S+) +Z (\S+) \S+ +A (\S+) ', printed('largest ' + name)).groups()
+            figures = re.match(r'X (\S+) +Y (\S+) +Z (\S+) \S+ +A (\S+) ', printed('maximum ' + name)).groups()
             found = ['%.5g' % max(axis[key]['stroke'], axis[key]['rapid']) for axis in self.found['axes']]
             self.assertEqual(found, list(figures), name)
 
@@ -376,7 +376,7 @@ class TestPlan(ReportCase):
         page = self.report(FILES['plan'], '--machine', self.path('machine.yaml'))
         self.assertEqual([row[3] for row in page.tables['Acceleration of the axes'][1:4]], ['750 mm/s²'] * 3)
 
-    def test_line_is_as_high_as_the_largest_value(self):
+    def test_line_is_as_high_as_the_max_value(self):
         for axis, found in zip('xyza', self.found['axes']):
             for name in ('speed', 'acceleration'):
                 picture = self.page.pictures['%s-%s' % (name, axis)]
@@ -384,9 +384,9 @@ class TestPlan(ReportCase):
                     ticks = {float(t.replace('−', '-')): y for t, y in picture.ticks(panel)}
                     scale = (ticks[max(ticks)] - ticks[min(ticks)]) / (max(ticks) - min(ticks))
                     ys = [y for line in picture.lines(panel) for _, y in line]
-                    told = float(re.search(r'largest (\S+) ', picture.title(panel)).group(1))
-                    self.assertAlmostEqual(max(abs(y - ticks[min(ticks)] + scale * min(ticks)) for y in ys) / abs(scale), told,
-                                           delta=0.01 * told + 1e-9, msg=(name, axis, part))
+                    reported = float(re.search(r'max (\S+) ', picture.title(panel)).group(1))
+                    self.assertAlmostEqual(max(abs(y - ticks[min(ticks)] + scale * min(ticks)) for y in ys) / abs(scale), reported,
+                                           delta=0.01 * reported + 1e-9, msg=(name, axis, part))
 
     def test_enlarged_points_are_the_strokes_first_and_last(self):
         stroke = [(float(r['x_mm']), float(r['a_rad']), r['step']) for r in self.rows if r['step'] != 'none']
@@ -459,15 +459,15 @@ class TestBag(ReportCase):
         self.assertNotIn('missing', self.page.rows)
         self.assertNotIn('Left out', self.page.text)
 
-    def test_first_page_tells_job_wheel_setup_machine_and_software(self):
+    def test_first_page_reports_job_wheel_setup_machine_and_software(self):
         package = xml.parse(gc.package_file('package.xml'))
         machine = xml.parse(gc.package_file('urdf/grinder.urdf')).getroot().get('name')
-        for row, told in (('end diameter', '10 mm'), ('flute length', '30 mm'), ('cone', '5 deg'), ('rake', '8 ± 0.5 deg'),
+        for row, reported in (('end diameter', '10 mm'), ('flute length', '30 mm'), ('cone', '5 deg'), ('rake', '8 ± 0.5 deg'),
                           ('spiral angle', '30 ± 4 deg'), ('core', '7.1 to 12.4 ± 0.1 mm'),
                           ('shank', '16 mm'), ('set-up', 'swivel 31.769 deg, height 2.788 mm'), ('grinder', '/recorded'),
                           ('wheel', 'straight, Ø 100 mm, 3 mm wide, corners 0 and 0 mm'),
                           ('machine', machine), ('software', 'flute_grinder ' + package.findtext('version'))):
-            self.assertEqual(self.page.rows[row], [told])
+            self.assertEqual(self.page.rows[row], [reported])
         self.assertEqual(self.page.headings[0], 'paper.yaml')
         for dimension in ('Ø 10', 'Ø 16', '30', 'cone 5°'):
             self.assertIn(dimension, self.page.pictures['tool'].text)
@@ -489,7 +489,7 @@ class TestBag(ReportCase):
         stroke = [s for s in self.setpoints if s.move == STROKE]
         for name, is_odd in (('odd', True), ('even', False)):
             largest = max(abs(s.path_error) for s in stroke if (s.step == ODD) == is_odd)
-            self.assertEqual(self.page.rows['largest %s error' % name], ['%.4e rad' % largest])
+            self.assertEqual(self.page.rows['maximum %s error' % name], ['%.4e rad' % largest])
 
     def test_deviation_is_that_at_the_surface(self):
         helix = checks.Helix(gc.PAPER)
@@ -562,9 +562,9 @@ class TestBag(ReportCase):
             lines = [x for panel in (1, 2) if picture.panel(panel) for line in picture.lines(panel) for x, _ in line]
             times = picture.ticks(2 if picture.panel(2) else 1, along='x')
             (first, at_first), (second, at_second) = [(float(t), x) for t, x in times][:2]
-            told = first + (max(lines) - at_first) * (second - first) / (at_second - at_first)
-            self.assertLessEqual(told, last + 0.1, name)
-            self.assertGreater(told, last - 6, name)
+            reported = first + (max(lines) - at_first) * (second - first) / (at_second - at_first)
+            self.assertLessEqual(reported, last + 0.1, name)
+            self.assertGreater(reported, last - 6, name)
 
     def test_loop_timing(self):
         periods = [s.cycle_period for s in self.setpoints]
@@ -810,23 +810,23 @@ class TestLayout(ReportCase):
                               '--serial', '4711-03')
         # A form feed ends each sheet.
         cls.sheets = subprocess.check_output(['pdftotext', paper, '-'], universal_newlines=True).split('\f')[:-1]
-        told = subprocess.check_output(['pdfinfo', '-l', '-1', paper], universal_newlines=True)
-        cls.sizes = re.findall(r'^Page +\d+ size: +([\d.]+) x ([\d.]+) pts', told, re.MULTILINE)
+        reported = subprocess.check_output(['pdfinfo', '-l', '-1', paper], universal_newlines=True)
+        cls.sizes = re.findall(r'^Page +\d+ size: +([\d.]+) x ([\d.]+) pts', reported, re.MULTILINE)
 
     def test_nothing_sticks_out_and_pictures_can_be_read(self):
         for width in (390, 1280):
-            told = browser.look_at(self.page.source, width)
-            self.assertEqual((told['width'], told['out']), (width, []))
-            self.assertLessEqual(told['scroll'], width)
-            self.assertGreater(told['smallest'], 6.5)  # px
+            reported = browser.look_at(self.page.source, width)
+            self.assertEqual((reported['width'], reported['out']), (width, []))
+            self.assertLessEqual(reported['scroll'], width)
+            self.assertGreater(reported['smallest'], 6.5)  # px
 
     def test_dark_and_light(self):
         dark, light = browser.look_at(self.page.source, 1280, dark=True), browser.look_at(self.page.source, 1280)
-        for told, is_dark in ((dark, True), (light, False)):
-            ink, paper = browser.lightness(told['ink']), browser.lightness(told['background'])
+        for reported, is_dark in ((dark, True), (light, False)):
+            ink, paper = browser.lightness(reported['ink']), browser.lightness(reported['background'])
             self.assertGreater((ink - paper) * (1 if is_dark else -1), 0.6)
             # Text in the pictures too.
-            for fill in told['inks']:
+            for fill in reported['inks']:
                 self.assertGreater(abs(browser.lightness(fill) - paper), 0.35)
 
     def test_paper_is_a4(self):
@@ -898,7 +898,7 @@ class TestLayout(ReportCase):
 
 
 class TestMissingSetpoints(ReportCase):
-    def test_gap_is_told_and_not_taken_for_motion(self):
+    def test_gap_is_reported_and_not_taken_for_motion(self):
         with open(FILES['plan']) as file:
             lines = file.readlines()
         # In a rapid: the difference over the gap would be far beyond the limit.
@@ -918,7 +918,7 @@ class TestMissingSetpoints(ReportCase):
         page = self.report(self.path('early.csv'))
         self.assertEqual(list(page.pictures), COMMANDED)
         self.assertIn('the job ended before its first stroke', page.text)
-        self.assertNotIn('largest odd error', page.rows)
+        self.assertNotIn('maximum odd error', page.rows)
 
 
 class TestBadFiles(ReportCase):

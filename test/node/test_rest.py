@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows how often the node tells positions and state: seldom while nothing changes, at the full rate while an axis moves, and at
+"""Shows how often the node reports positions and state: seldom while nothing changes, at the full rate while an axis moves, and at
 once when the rest ends. All times are the messages' stamps, by the loop's clock."""
 
 import statistics
@@ -22,16 +22,16 @@ def intervals(messages):
     return [b - a for a, b in zip(stamps, stamps[1:])]
 
 
-def wait_less_told(messages):
+def wait_for_fewer(messages):
     """Waits until messages come as seldom as at rest."""
     seen = len(messages)
     grinder().wait_for(lambda: len(messages) > seen + 2 and min(intervals(messages[-3:])) > REST - TICK, 'the rest')
 
 
 def change_emergency_stop(pressed):
-    """Presses or releases it, and returns how long after the state before it the first one tells of it."""
+    """Presses or releases it, and returns how long after the state before it the first one reports it."""
     g = grinder()
-    wait_less_told(g.states)
+    wait_for_fewer(g.states)
     seen = len(g.states)
     g.inject('emergency_stop' if pressed else 'none')
     g.wait_for(lambda: g.states[-1].emergency_stop == pressed, 'the emergency stop')
@@ -47,14 +47,14 @@ class TestRest(unittest.TestCase):
         g = grinder()
         at = g.make_ready()
         for messages in (g.joints, g.states):
-            wait_less_told(messages)
+            wait_for_fewer(messages)
             seen = len(messages)
-            g.wait_for(lambda: len(messages) >= seen + 10, 'what is told at rest')
+            g.wait_for(lambda: len(messages) >= seen + 10, 'what is reported at rest')
             # A message may come late, and the next one in time.
             self.assertGreater(statistics.mean(intervals(messages[seen:])), REST - TICK / 2)
         self.assertEqual(g.positions(), at)
 
-    def test_a_change_is_told_at_once(self):
+    def test_a_change_is_reported_at_once(self):
         g = grinder()
         g.make_ready()
         self.assertTrue(g.disable().success)
@@ -64,7 +64,7 @@ class TestRest(unittest.TestCase):
     def test_axis_moves(self):
         g = grinder()
         g.make_ready()
-        wait_less_told(g.joints)
+        wait_for_fewer(g.joints)
         seen = len(g.joints)
         step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN)
         self.assertTrue(step.success, step.message)
@@ -78,7 +78,7 @@ class TestRest(unittest.TestCase):
         """Though the axes do not move yet, as while the spindle runs up."""
         g = grinder()
         g.make_ready()
-        wait_less_told(g.joints)
+        wait_for_fewer(g.joints)
         seen = len(g.joints)
         run = g.send(gc.SHORT).wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)

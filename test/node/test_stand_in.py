@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows the command line with a stand-in for the grinder, which tells what a good one hardly ever does: a job that takes
+"""Shows the command line with a stand-in for the grinder, which reports what a good one hardly ever does: a job that takes
 long to plan, setpoints that were lost, those of others' jobs amid one's own, a wheel that is left in the work."""
 
 import json
@@ -36,9 +36,9 @@ class StandIn:
             valid=True, complete_from=0, complete_to=0.03, rake=NONE, chordal_rake=NONE, spiral_angle=NONE, edge=math.nan, core_diameter=NONE))
         self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
         self.server.start()
-        threading.Thread(target=self.tell, daemon=True).start()
+        threading.Thread(target=self.publish, daemon=True).start()
 
-    def tell(self):
+    def publish(self):
         while not rospy.is_shutdown():
             with self.lock:
                 self.states.publish(self.state)
@@ -81,9 +81,9 @@ class TestStandIn(RunTest):
 
     def status(self):
         done = gc.grind('status')
-        told = gc.grind('status', '--json')
-        self.assertEqual((done.returncode, told.returncode), (0, 0), done.stderr + told.stderr)
-        return done.stdout, json.loads(told.stdout)
+        reported = gc.grind('status', '--json')
+        self.assertEqual((done.returncode, reported.returncode), (0, 0), done.stderr + reported.stderr)
+        return done.stdout, json.loads(reported.stdout)
 
     def start_run(self, *arguments):
         command = self.grind('run', PAPER_JOB, *arguments)
@@ -129,11 +129,11 @@ class TestStandIn(RunTest):
         goal.set_aborted(GrindResult(error_code=-8, error_string='enough'))
         self.assertEqual(command.end(), 1)
 
-    def test_setpoints_that_were_lost_are_told_and_those_of_others_not_taken(self):
+    def test_setpoints_that_were_lost_are_reported_and_those_of_others_not_taken(self):
         csv = self.folder + '/streamed.csv'
         command, goal = self.start_run('--csv', csv)
         own, other = goal.get_goal_id().id, '/someone_else-1-1.0'
-        # Told: 0 to 9 and 15 to 19. Lost: 10 to 12. On the way: 13 and 14, and 20 at the end.
+        # Reported: 0 to 9 and 15 to 19. Lost: 10 to 12. On the way: 13 and 14, and 20 at the end.
         for batch in ((other, range(500, 700)), (own, range(10)), (other, range(700, 900), 4), (own, range(15, 20), 3)):
             self.node.batch(*batch)
         goal.set_succeeded(GrindResult(setpoints_written=21))
@@ -143,7 +143,7 @@ class TestStandIn(RunTest):
             self.assertEqual([line.split(',')[0] for line in lines],
                              ['cycle'] + [str(i) for i in [*range(10), *range(15, 20)]])
 
-    def test_setpoints_of_which_none_could_be_told(self):
+    def test_setpoints_of_which_none_could_be_reported(self):
         command, goal = self.start_run()
         self.node.batch(goal.get_goal_id().id, [], 7)
         goal.set_succeeded(GrindResult(setpoints_written=7))
@@ -160,9 +160,9 @@ class TestStandIn(RunTest):
 
     def test_lift_waits_until_the_wheel_is_off_the_work(self):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
-        text, told = self.status()
+        text, reported = self.status()
         self.assertRegex(text, r'(?m)^wheel in work   yes$')
-        self.assertIs(told['wheel_in_work'], True)
+        self.assertIs(reported['wheel_in_work'], True)
         command = self.grind('lift')
         gc.poll(lambda: self.node.state.state == GrinderState.LIFTING, 'the lift')
         self.assertRegex(self.status()[0], r'(?m)^state           lifting$')

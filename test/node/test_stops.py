@@ -210,7 +210,7 @@ class TestTheWayDown(NodeTest):
         run.wait_complete()
         self.assertEqual(run.status, 'PREEMPTED')
         self.client.wait_state(GrinderState.READY)
-        # What the journal does not have is not told.
+        # What the journal does not have is not reported.
         self.assertEqual(self.client.fresh_state().progress.pass_, 0)
         disk.release()
         gc.poll(lambda: self.client.fresh_state().progress.pass_ == 1, 'the pass in the journal')
@@ -332,8 +332,8 @@ class TestTheEnd(NodeTest):
             self.assertEqual(self.node.end(signal.SIGTERM), 0)
         self.client.wait_end_of_connections()
         self.check_stopped_on_path_and_lifted(run)
-        told = {batch.goal_id for batch in self.client.batches}
-        self.assertEqual(told, {run.id})
+        reported = {batch.goal_id for batch in self.client.batches}
+        self.assertEqual(reported, {run.id})
 
     def test_frozen_loop_is_a_fault(self):
         """The axes stay where the last setpoint was. A stalled host does not freeze it for 0.3 s."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that the paper's job is streamed as it was planned: every setpoint arrives once and in order, bit for bit the same as
-`grind plan` lists, with its velocity, and the feedback tells how far it is; and what rviz is shown of it."""
+`grind plan` lists, with its velocity, and the feedback reports how far it is; and what rviz is shown of it."""
 
 import functools
 import os
@@ -55,7 +55,7 @@ class TestPaperJob(unittest.TestCase):
                 difference = (setpoint.position[axis] - before.position[axis]) / self.period
                 self.assertAlmostEqual(setpoint.velocity[axis], difference, delta=1e-12 / self.period)
 
-    def test_feedback_tells_the_planning_ahead_of_all_else(self):
+    def test_feedback_reports_the_planning_ahead_of_all_else(self):
         self.assertGreater(len(self.planning), 0)
         for f in self.planning:
             self.assertTrue(0 <= f.planned <= 1)
@@ -77,7 +77,7 @@ class TestPaperJob(unittest.TestCase):
         self.assertEqual(feedback[len(feedback) // 2].state, 'running')
         self.assertLessEqual({f.state for f in feedback}, {'ready', 'starting', 'running'})
 
-    def test_feedback_tells_the_largest_path_error(self):
+    def test_feedback_reports_the_max_path_error(self):
         largest = max(f.path_error for f in self.feedback)
         self.assertAlmostEqual(largest, max(abs(s.path_error) for s in self.setpoints if s.move == STROKE), delta=1e-15)
         # It is the largest since the feedback before, and so never one from before the stroke.
@@ -122,7 +122,7 @@ class TestDryRun(unittest.TestCase):
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
 
-    def test_plan_service_tells_the_same(self):
+    def test_plan_service_reports_the_same(self):
         planned = stream().result.statistics
         grinder().make_ready_at_park()
         plan = grinder().plan(gc.goal_of(gc.MOTION))
@@ -160,7 +160,7 @@ class TestMarkers(unittest.TestCase):
     def test_legend_is_that_of_the_job(self):
         self.assertEqual(self.legend.cutter, gc.goal_of(gc.MOTION).cutter)
         self.assertEqual(self.legend.tolerance, gc.MOTION['interpolation.tolerance'])
-        self.assertEqual(self.legend.largest_error, 0)
+        self.assertEqual(self.legend.max_error, 0)
 
 
 if __name__ == '__main__':

@@ -120,7 +120,7 @@ class TestTwoJobsAtOnce(unittest.TestCase):
                 done = gc.grind('--node', name, command)
                 self.assertIn('/' + name, done.stdout.splitlines()[0], done.stderr)
 
-    def test_nobody_tells_transforms_or_joint_states_for_all(self):
+    def test_nobody_publishes_transforms_or_joint_states_for_all(self):
         published, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
         topics = {topic for topic, nodes in published}
         own = {'tf', 'tf_static', 'joint_states'}
@@ -128,14 +128,14 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         self.assertLessEqual({'/%s/%s' % (side, topic) for side in ('left', 'right')
                               for topic in own | {'grinder/tool_path'}}, topics)
 
-    def test_rviz_is_told_topics_of_its_own_namespace(self):
+    def test_rviz_shows_topics_of_its_own_namespace(self):
         topics = re.findall(r'(?m)^ *(?:\w+ )?Topic: *(.*)$', read(gc.package_file('rviz/grinder.rviz')).decode())
         self.assertTrue(topics)
         self.assertEqual([topic for topic in topics if topic.startswith('/')], [])
 
     def test_diagnostics_tell_them_apart(self):
         names = set()
-        # One connection to each: a new one for every message may be told by the same grinder each time.
+        # One connection to each: a new one for every message may be reported by the same grinder each time.
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda m: names.update(s.name for s in m.status))
         self.addCleanup(subscriber.unregister)
         both = {'left/grinder: Drive link', 'right/grinder: Drive link'}

@@ -58,7 +58,7 @@ class Stage {
     state.homed = 1;
     state.override = 1;
     state.swivel = 31.769 * M_PI / 180;  // as test/jobs/paper.yaml needs it
-    timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { tell(); });
+    timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { publish(); });
   }
   ~Stage() { release(); }
 
@@ -82,20 +82,20 @@ class Stage {
   }
   void shutResults() { results_.shutdown(); }
   void openResults() { results_ = nh_.advertise<GrindActionResult>("grind/result", 10); }
-  /// Tells the end of a goal.
+  /// Reports the end of a goal.
   void end(const std::string& goal_id, const GrindResult& result) {
     GrindActionResult message;
     message.status.goal_id.id = goal_id;
     message.result = result;
     results_.publish(message);
   }
-  void tellOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
-  /// Tells which goal starts, and that the progress is its.
-  void tellJob(const GrindActionGoal& goal) {
+  void publishOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
+  /// Reports which goal starts, and that the progress is its.
+  void publishJob(const GrindActionGoal& goal) {
     change([&] { goal_id = goal.goal_id.id; });
     job_.publish(goal);
   }
-  void tellLegend(const Legend& legend) { legend_.publish(legend); }
+  void publishLegend(const Legend& legend) { legend_.publish(legend); }
   void refuseJog(const std::string& why) {
     std_msgs::String message;
     message.data = why;
@@ -130,7 +130,7 @@ class Stage {
   Plan::Response plan;
 
  private:
-  void tell() {
+  void publish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (silent) return;
     state_topic_.publish(state);

@@ -225,33 +225,33 @@ Legend legendOf(const QString& job) {
   Legend legend;
   legend.cutter = goalFromJob(readJobFile(job.toStdString())).cutter;
   legend.tolerance = 0.5e-6;
-  legend.largest_error = 0.0698e-6;
+  legend.max_error = 0.0698e-6;
   legend.arrow_scale = 2e5;
   return legend;
 }
 
-TEST_F(OnStage, WhatTheColoursMeanIsTold) {
+TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   Panel panel("cell/stage");
   panel.openTab("View");
   stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   EXPECT_EQ(panel.label("shown_cutter"), "No job is shown.");
-  EXPECT_EQ(panel.label("largest_error"), "");
-  stage.tellLegend(legendOf(kPaper));
+  EXPECT_EQ(panel.label("max_error"), "");
+  stage.publishLegend(legendOf(kPaper));
   WAIT_FOR(panel.label("shown_cutter") == "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth");
   EXPECT_EQ(panel.label("flutes") + ", " + panel.label("flutes_end"), "Measured error, 0.5 um");
   EXPECT_EQ(panel.label("rake_faces") + ", " + panel.label("rake_faces_end"), "Rake error, off 8 deg, 0.5 deg");
   EXPECT_EQ(panel.label("arrows") + ", " + panel.label("arrows_end"), "Path error x 2e5, 0.5 um");
-  EXPECT_EQ(panel.label("largest_error"), "Largest error measured: 0.0698 um");
+  EXPECT_EQ(panel.label("max_error"), "Maximum error measured: 0.0698 um");
   panel.picture("view");
   Legend other = legendOf(kPaper);
   other.arrow_scale = 0;
-  stage.tellLegend(other);
+  stage.publishLegend(other);
   WAIT_FOR(panel.label("arrows") == "Path error");
   // A process that has just begun shows nothing.
-  stage.tellLegend(Legend());
+  stage.publishLegend(Legend());
   WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
-  stage.tellLegend(legendOf(kPaper));
+  stage.publishLegend(legendOf(kPaper));
   WAIT_FOR(panel.label("shown_cutter") != "No job is shown.");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
@@ -271,7 +271,7 @@ TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
                                      {10e-6, "X  -100.000 mm"},
                                      {1e-9, "X  -100.0004 mm"}}) {
     legend.tolerance = tolerance;
-    stage.tellLegend(legend);
+    stage.publishLegend(legend);
     WAIT_FOR(panel.label("position_x") == x);
   }
   EXPECT_EQ(panel.label("position_a"), "A -3780.0000 deg");
@@ -283,7 +283,7 @@ TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
   WAIT_FOR(panel.label("feed") == "0 mm/min");
 }
 
-TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsTold) {
+TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsReported) {
   Panel panel("cell/stage");
   stage.change([&] { stage.resume_hangs = true; });
   stage.be(GrinderState::HELD, "held");
@@ -387,7 +387,7 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   other.goal = goalFromJob(readJobFile(kPaper.toStdString()));
   other.goal.job_name = "four_teeth_of_the_night_shift.yaml";
   other.goal.cutter.end_diameter = 0.012;
-  stage.tellJob(other);
+  stage.publishJob(other);
   stage.change([&] { stage.progress.tooth = 3, stage.progress.pass = 19, stage.progress.feed = 0.01; });
   stage.be(GrinderState::RUNNING, "running");
   WAIT_FOR(panel.the<QWidget>("other_job").isVisible());
@@ -425,10 +425,10 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   job.goal_id.id = "of the night shift";
   job.goal = goalFromJob(readJobFile(kPaper.toStdString()));
   job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
-  stage.tellJob(job);
+  stage.publishJob(job);
   Legend legend = legendOf(kPaper);
   legend.tolerance = 0.1e-6;
-  stage.tellLegend(legend);
+  stage.publishLegend(legend);
   stage.change([&] {
     stage.joints.position = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
     stage.state.distance_to_go = {-0.1234567, -0.1234567, -0.1234567, -21 * M_PI};
@@ -468,13 +468,13 @@ TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
   WAIT_FOR(panel.enabled("start"));
   panel.click("start");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
-  stage.tellJob(stage.get([&] { return stage.goals[0]; }));
+  stage.publishJob(stage.get([&] { return stage.goals[0]; }));
   stage.be(GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("place").find("paper.yaml, tooth 1") == 0);
   EXPECT_FALSE(panel.the<QWidget>("other_job").isVisible());
 }
 
-TEST_F(OnStage, AStopThatNobodyHearsIsTold) {
+TEST_F(OnStage, AStopThatNobodyHearsIsReported) {
   Panel panel("cell/stage");
   stage.stopListening();
   stage.be(GrinderState::RUNNING, "running");
@@ -626,8 +626,8 @@ class BeforeTheSwivelIsSet : public OnStage {
     panel.click("start");
     WAIT_FOR(asks());
   }
-  /// Tells the panel where the swivel stands, and waits until it knows: what is told later shows.
-  void tell(double angle, bool measured) {
+  /// Publishes where the swivel is, and waits until it knows: what is reported later shows.
+  void publish(double angle, bool measured) {
     stage.change(
         [&] { stage.state.swivel = angle, stage.state.swivel_measured = static_cast<std::uint8_t>(measured); });
     stage.be(GrinderState::LIFTING, "lifting");
@@ -660,15 +660,15 @@ TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
 
 TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
   EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
-  tell(43.32 * M_PI / 180, false);
+  publish(43.32 * M_PI / 180, false);
   for (const char* tab : {"Job", "Section", "Jog", "View"}) {
     panel.openTab(tab);
     EXPECT_TRUE(panel.the<QWidget>("swivel").isVisible());
     EXPECT_EQ(panel.label("swivel"), "Swivel set to 43.32 deg");
   }
-  tell(43.32 * M_PI / 180, true);
+  publish(43.32 * M_PI / 180, true);
   EXPECT_EQ(panel.label("swivel"), "Swivel at 43.32 deg");
-  tell(std::numeric_limits<double>::quiet_NaN(), true);
+  publish(std::numeric_limits<double>::quiet_NaN(), true);
   EXPECT_EQ(panel.label("swivel"), "Swivel not known");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.label("swivel").empty());
@@ -698,13 +698,13 @@ TEST_F(BeforeTheSwivelIsSet, TheQuestionGoesWhenSomebodyElseConfirmsIt) {
 }
 
 TEST_F(BeforeTheSwivelIsSet, AnAngleThatIsOffIsAskedForToo) {
-  tell(31.83 * M_PI / 180, false);
+  publish(31.83 * M_PI / 180, false);
   start();
   EXPECT_EQ(goals(), 0U);
 }
 
 TEST_F(BeforeTheSwivelIsSet, ADriveThatMeasuresItIsNotAsked) {
-  tell(0.1, true);
+  publish(0.1, true);
   panel.click("start");
   WAIT_FOR(goals() == 1);
   EXPECT_FALSE(asks());
@@ -993,7 +993,7 @@ TEST_F(OnStage, TheNodeCanBeChosen) {
   EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
 }
 
-TEST_F(OnStage, WhatHeldTheJobIsToldInPlainWords) {
+TEST_F(OnStage, WhatHeldTheJobIsReportedInPlainWords) {
   Panel panel("cell/stage");
   stage.change([&] { stage.state.hold_reason = "the spindle is not at speed"; });
   stage.be(GrinderState::RETRACTED, "retracted");
@@ -1032,7 +1032,7 @@ TEST_F(OnStage, PositionsAreThoseOfTheWork) {
   EXPECT_EQ(tip("position_z"), "Position in work coordinates.\nMachine: 20.000 mm\nWork offset: - mm");
 }
 
-TEST_F(OnStage, AxesThatAreNotHomedAreTold) {
+TEST_F(OnStage, AxesThatAreNotHomedAreReported) {
   Panel panel("cell/stage");
   stage.change([&] { stage.state.homed = 0; });
   stage.be(GrinderState::READY, "ready");

@@ -185,9 +185,9 @@ class BesideADialog : public Input {
     stage.change([&] { stage.plan.valid = 1; });
     WAIT_FOR(panel.enabled("plan"));
   }
-  /// Changes the grinder, and waits until the panel knows: what is told later shows.
+  /// Changes the grinder, and waits until the panel knows: what is reported later shows.
   template <typename Change>
-  void tell(Change how) {
+  void publish(Change how) {
     stage.change(how);
     be(GrinderState::LIFTING, "lifting");
     WAIT_FOR(panel.state() == "Lifting");
@@ -263,7 +263,7 @@ TEST_F(BesideADialog, HoldWorksBesideTheSetUp) {
 }
 
 TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheSwivel) {
-  tell([&] { stage.state.swivel = 0; });
+  publish([&] { stage.state.swivel = 0; });
   plan();
   panel.click("start");
   WAIT_FOR(panel.the<QPushButton>("confirm_swivel").isVisible());
@@ -271,7 +271,7 @@ TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheSwivel) {
 }
 
 TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheUnfinishedJob) {
-  tell([&] {
+  publish([&] {
     stage.state.progress.job_digest = std::string(64, 'a');
     stage.state.progress.cutter.tooth_angles = {0};
   });
@@ -298,7 +298,7 @@ class Asked : public Input {
       // Later than anything before, so that the panel knows the rest once it shows this.
       stage.state.override = 0.5;
     });
-    stage.tellOffsets({});
+    stage.publishOffsets({});
     WAIT_FOR(panel.label("override_value") == "50 %");
     WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z" && panel.enabled("plan"));
     panel.click("plan");

@@ -176,7 +176,7 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   const QDateTime when(QDate(2024, 2, 29), QTime(23, 59, 1));
   offsets.set_at[kY] = ros::Time(static_cast<double>(when.toSecsSinceEpoch()));
   offsets.error = "its file is damaged";
-  stage.tellOffsets(offsets);
+  stage.publishOffsets(offsets);
   WAIT_FOR(offset() == "Work offset of X: -51.5000 mm, never set");
   axes.setCurrentText("Y");
   WAIT_FOR(offset() == "Work offset of Y: 1.4900 mm, set by anna@cell-3, 2024-02-29 23:59:01");

@@ -51,7 +51,7 @@ class ZeroPoints : public ::testing::Test {
       offsets.set_at[i] = ros::Time(1.7e9);
       offsets.basis[i] = toMessage(basisOf(goal, OffsetMethod::kTouchOff));
     }
-    stage.tellOffsets(offsets);
+    stage.publishOffsets(offsets);
   }
   bool asks() { return panel.the<QPushButton>("ignore_offset_check").isVisible(); }
   std::vector<GrindActionGoal> goals() {
@@ -77,7 +77,7 @@ TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
     offsets.basis[i].wheel_diameter = 0.0751234;
     offsets.basis[i].wheel_width = 0.0041234;
   }
-  stage.tellOffsets(offsets);
+  stage.publishOffsets(offsets);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
   panel.click("start");
   WAIT_FOR(asks());
@@ -120,7 +120,7 @@ TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
   setFor(0.01);
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began");
   panel.widget().resize(1, panel.widget().height());
-  stage.tellOffsets({});
+  stage.publishOffsets({});
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: X, Y, Z");
   const QSize text = zeros.fontMetrics().size(0, zeros.text());
   EXPECT_EQ(zeros.size().expandedTo(text), zeros.size()) << "it is clipped where the panel is narrow";
@@ -164,7 +164,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   EXPECT_TRUE(goals().empty()) << "only planned";
 }
 
-TEST_F(ZeroPoints, ThatAreFittedAreToldWithWhatTheyWereBesideThePlan) {
+TEST_F(ZeroPoints, ThatAreFittedAreShownWithWhatTheyWereBesideThePlan) {
   setFor(0.006, 0.001788);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y, Z");
   panel.click("start");
@@ -178,7 +178,7 @@ TEST_F(ZeroPoints, ThatAreFittedAreToldWithWhatTheyWereBesideThePlan) {
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
-  stage.tellOffsets({});
+  stage.publishOffsets({});
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
   panel.click("start");
   WAIT_FOR(asks());

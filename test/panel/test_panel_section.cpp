@@ -128,7 +128,7 @@ TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   std::vector<double> pitches = readJobFile(job.toStdString()).tooth_angles;
   pitches.push_back(2 * M_PI);
   std::adjacent_difference(pitches.begin(), pitches.end(), pitches.begin());
-  const auto [least, largest] = std::minmax_element(pitches.begin() + 1, pitches.end());
+  const auto [min, max] = std::minmax_element(pitches.begin() + 1, pitches.end());
   Panel panel("cell/stage", job);
   stage.be(GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
@@ -136,7 +136,7 @@ TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   WAIT_FOR(shows(panel, "Land "));
   const std::vector<double> shown = numbers(panel);
   ASSERT_EQ(shown.size(), 14U) << panel.label("section_figures");
-  EXPECT_NEAR(shown[11] - shown[10], (*largest - *least) * 180 / M_PI, 0.02);
+  EXPECT_NEAR(shown[11] - shown[10], (*max - *min) * 180 / M_PI, 0.02);
   panel.picture("section_of_a_tool");
 }
 

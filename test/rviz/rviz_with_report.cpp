@@ -1,5 +1,5 @@
 /// @file
-/// rviz as it is, and services beside it: `~report` tells how many frames it has drawn, where its window and the
+/// rviz as it is, and services beside it: `~report` reports how many frames it has drawn, where its window and the
 /// screen are, how small the window can be, its title, where its view looks, and what its displays say of themselves;
 /// `~look` turns the view as the parameter `~camera` says.
 

@@ -214,7 +214,7 @@ def measured(setpoints):
 
 
 class Story:
-    """A job from before its plan to after its end, with what rviz was told and what it showed."""
+    """A job from before its plan to after its end, with what was published and what it showed."""
 
     def __init__(self):
         self.rviz, g = Rviz(), grinder()
@@ -283,7 +283,7 @@ class Story:
         g.wait_for(lambda: g.states[-1].state_name == 'held', 'held')
         g.wait_rest()
         largest = max(error for _, error in measured(self.run.setpoints))
-        gc.poll(lambda: self.rviz.legends[-1].largest_error > 0.99 * largest, 'the legend of what is measured')
+        gc.poll(lambda: self.rviz.legends[-1].max_error > 0.99 * largest, 'the legend of what is measured')
         self.during = self.snapshot('during')
         self.setpoints_when_held = self.run.setpoints
         scenes = len(self.rviz.messages['scene'])
@@ -315,7 +315,7 @@ class Story:
 
 @functools.lru_cache(maxsize=None)
 def story():
-    """The one story, for all tests; what went wrong with it is told once more to each."""
+    """The one story, for all tests; what went wrong with it is reported once more to each."""
     try:
         return Story()
     except Exception as error:
@@ -425,13 +425,13 @@ class TestFlutes(unittest.TestCase):
     def test_plan_of_another_job_does_not_change_what_is_shown_of_the_running_one(self):
         self.assertEqual(story().scenes_by_plan, 0)
 
-    def largest_of(self, setpoints, tooth):
-        """The largest error of a tooth's last pass, and where it was."""
+    def max_of(self, setpoints, tooth):
+        """The maximum error of a tooth's last pass, and where it was."""
         return max((error, x) for x, error in measured([s for s in setpoints if (s.tooth, s.pass_) == (tooth, 1)]))
 
     def test_colours_are_those_of_the_measured_errors(self):
         markers = story().after.markers['tool_path']
-        largest = [self.largest_of(story().run.setpoints, tooth) for tooth in range(4)]
+        largest = [self.max_of(story().run.setpoints, tooth) for tooth in range(4)]
         end = story().after.legend.tolerance
         for marker, (error, x) in zip(of_namespace(markers, 'tool_path'), largest):
             self.assertEqual(len(marker.colors), len(marker.points))
@@ -441,16 +441,16 @@ class TestFlutes(unittest.TestCase):
             self.assertAlmostEqual(colour.r, max(0.1, min(4 * fraction - 1.5, 1)), delta=0.01)
             self.assertAlmostEqual(colour.g, max(0.1, min(1.6 - abs(4 * fraction - 2), 1)), delta=0.01)
 
-    def test_legend_tells_the_cutter_and_where_the_colours_end(self):
+    def test_legend_reports_the_cutter_and_where_the_colours_end(self):
         for legend in (story().before.legend, story().during.legend, story().after.legend):
             self.assertEqual(legend.cutter, gc.goal_of(JOB).cutter)
             self.assertEqual(legend.tolerance, JOB['interpolation.tolerance'])
 
-    def test_legend_tells_the_largest_error(self):
-        self.assertEqual(story().before.legend.largest_error, 0)
+    def test_legend_reports_the_max_error(self):
+        self.assertEqual(story().before.legend.max_error, 0)
         for moment, setpoints in ((story().during, story().setpoints_when_held), (story().after, story().run.setpoints)):
             largest = max(error for _, error in measured(setpoints))
-            self.assertAlmostEqual(moment.legend.largest_error, largest, delta=0.01 * largest)
+            self.assertAlmostEqual(moment.legend.max_error, largest, delta=0.01 * largest)
 
 
 class TestPictures(unittest.TestCase):
@@ -471,8 +471,8 @@ class TestPictures(unittest.TestCase):
             self.assertEqual(picture.image.size, (1280, 800))
             self.assertTrue(left >= 0 and top >= 0 and left + width <= 1280 and top + height <= 800)
             # With room for the title of a window, and a task bar.
-            _, _, least_width, least_height = picture.report['least']
-            self.assertTrue(least_width <= 800 and least_height <= 760, picture.report['least'])
+            _, _, min_width, min_height = picture.report['least']
+            self.assertTrue(min_width <= 800 and min_height <= 760, picture.report['least'])
 
     def test_nothing_is_shown_of_a_job_before_a_plan(self):
         self.assertEqual(story().before_plan, dict(dict.fromkeys(TOPICS, set()), scene={'wheel', 'blank'}))

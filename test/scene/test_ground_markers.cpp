@@ -187,15 +187,15 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
   }
 }
 
-/// The largest radius of all points between two X [m]; 0 if there are none.
-double largestRadius(const std::vector<Marker>& solid, double from, double to) {
-  double largest = 0;
+/// The maximum radius of all points between two X [m]; 0 if there are none.
+double maxRadius(const std::vector<Marker>& solid, double from, double to) {
+  double max = 0;
   for (const Marker& m : solid) {
     for (const geometry_msgs::Point& p : m.points) {
-      if (from < p.x && p.x < to) largest = std::max(largest, std::hypot(p.y, p.z));
+      if (from < p.x && p.x < to) max = std::max(max, std::hypot(p.y, p.z));
     }
   }
-  return largest;
+  return max;
 }
 
 /// The corners of the shank's end.
@@ -218,8 +218,8 @@ TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
         solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
     ASSERT_EQ(solid.size(), 1U);
     const Marker& m = solid[0];
-    EXPECT_NEAR(largestRadius(solid, -1e-9, 1e-9), job.cutter.end_diameter / 2, 1e-12);
-    EXPECT_NEAR(largestRadius(solid, 60 * kMillimetre, 1), job.cutter.shank_diameter / 2, 1e-12);
+    EXPECT_NEAR(maxRadius(solid, -1e-9, 1e-9), job.cutter.end_diameter / 2, 1e-12);
+    EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), job.cutter.shank_diameter / 2, 1e-12);
     // Edges across the facets: a circle of so many corners that none shows.
     std::set<long> angles;
     for (const geometry_msgs::Point& p : m.points) {
@@ -253,13 +253,13 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
         const std::vector<Marker> solid =
             solidOf(groundMarkers(ground ? groundCutterOf(job) : groundSoFar(job, reached), job, "ground"), "ground");
         const double begin = job.cutter.flute_length + job.cutter.neck_length, end = 66 * kMillimetre;
-        EXPECT_NEAR(largestRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
-        EXPECT_NEAR(largestRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
-        EXPECT_EQ(largestRadius(solid, end + 1e-9, 1), 0);
+        EXPECT_NEAR(maxRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
+        EXPECT_NEAR(maxRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
+        EXPECT_EQ(maxRadius(solid, end + 1e-9, 1), 0);
         // On the cone all the way to the shank, flutes and neck.
         for (int i = 1; i <= 8; ++i) {
           const double x = begin * i / 8, cone = 0.1 * kMillimetre + x * std::tan(3 * kDegree);
-          EXPECT_LE(largestRadius(solid, begin * (i - 1) / 8, x - 1e-9), cone);
+          EXPECT_LE(maxRadius(solid, begin * (i - 1) / 8, x - 1e-9), cone);
         }
       }
     }
@@ -271,9 +271,9 @@ TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
   job.cutter.shank_diameter = 20 * kMillimetre;
   const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
   const double stroke_end = 37 * kMillimetre;
-  EXPECT_LT(largestRadius(solid, 0, stroke_end - 1e-9), 9 * kMillimetre);
-  EXPECT_NEAR(largestRadius(solid, stroke_end - 1e-9, stroke_end + 1e-9), 10 * kMillimetre, 1e-9);
-  EXPECT_NEAR(largestRadius(solid, 60 * kMillimetre, 1), 10 * kMillimetre, 1e-9);
+  EXPECT_LT(maxRadius(solid, 0, stroke_end - 1e-9), 9 * kMillimetre);
+  EXPECT_NEAR(maxRadius(solid, stroke_end - 1e-9, stroke_end + 1e-9), 10 * kMillimetre, 1e-9);
+  EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), 10 * kMillimetre, 1e-9);
 }
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {

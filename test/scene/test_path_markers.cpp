@@ -43,9 +43,9 @@ void expectFinite(const MarkerArray& array) {
   }
 }
 
-/// The largest error measured and all markers of the paper's job, with every so-many-th position of an axis replaced.
+/// The maximum error measured and all markers of the paper's job, with every so-many-th position of an axis replaced.
 struct Shown {
-  double largest = 0;
+  double max = 0;
   MarkerArray flutes, executed;
 };
 
@@ -62,7 +62,7 @@ Shown show(int every, int axis, double value) {
     flutes.add(p, actual);
     executed.add(p, actual);
   }
-  result.largest = flutes.largestMeasured();
+  result.max = flutes.maxMeasured();
   result.flutes = flutes.markers();
   executed.append(result.executed);
   return result;
@@ -70,14 +70,14 @@ Shown show(int every, int axis, double value) {
 
 TEST(PathMarkers, LeaveOutPositionsThatAreNone) {
   const Shown clean = show(0, kX, 0);
-  ASSERT_GT(clean.largest, 0);
+  ASSERT_GT(clean.max, 0);
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                                -std::numeric_limits<double>::infinity()}) {
       SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
       const Shown spoiled = show(7, axis, value);
-      EXPECT_GT(spoiled.largest, 0.9 * clean.largest);
-      EXPECT_LE(spoiled.largest, clean.largest);
+      EXPECT_GT(spoiled.max, 0.9 * clean.max);
+      EXPECT_LE(spoiled.max, clean.max);
       expectFinite(spoiled.flutes);
       expectFinite(spoiled.executed);
       EXPECT_EQ(spoiled.flutes.markers.size(), clean.flutes.markers.size());
@@ -91,7 +91,7 @@ TEST(PathMarkers, StayFiniteWhateverTheDriveSays) {
       SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
       for (const int every : {1, 7}) {
         const Shown spoiled = show(every, axis, value);
-        EXPECT_TRUE(std::isfinite(spoiled.largest));
+        EXPECT_TRUE(std::isfinite(spoiled.max));
         expectFinite(spoiled.flutes);
         expectFinite(spoiled.executed);
       }
@@ -172,7 +172,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     ExecutedPath executed(of_job, edges);
     PathErrorMarkers errors(job, edges);
     SetpointStream stream(of_job);
-    double largest = 0;
+    double max = 0;
     const double normal = std::cos(std::atan(std::tan(job.cutter.spiral_angle) * std::cos(job.cutter.cone_angle)));
     for (Setpoint p; stream.next(p) && p.tooth == 0 && p.move != MoveKind::kRetract;) {
       errors.add(p);
@@ -182,9 +182,9 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
       flutes.add(p, off);
       if (p.step == StepKind::kNone) continue;
       const double error = std::abs(of_job.helix(0).curve.a(p.position[kX]) - off[kA]);
-      largest = std::max(largest, error * cutter.cutter().radius(p.position[kX] - job.process.setup_lead) * normal);
+      max = std::max(max, error * cutter.cutter().radius(p.position[kX] - job.process.setup_lead) * normal);
     }
-    EXPECT_NEAR(flutes.largestMeasured(), largest, 1e-15);
+    EXPECT_NEAR(flutes.maxMeasured(), max, 1e-15);
     const MarkerArray arrows = errors.markers();
     ASSERT_EQ(arrows.markers.size(), 2u);
     const std::vector<geometry_msgs::Point>& ends = arrows.markers[1].points;

@@ -30,9 +30,9 @@ struct CollisionJob {
   double shank_diameter = 0;         ///< [m]
   std::optional<double> shank_from;  ///< X where the shank begins; absent: where the run-out ends, see runOutEnd() [m]
   Axes stroke_end = Axes::Zero();    ///< of the deepest stroke, on the shank's side
-  double clearance = 0;              ///< the least distance that is allowed [m]
+  double clearance = 0;              ///< the minimum distance that is allowed [m]
   double x_offset = 0;               ///< work offset of X: how far the cutter stands in its holder, or out of it [m]
-  double work_clearance = 0;         ///< the least distance of the wheel from the work outside the cut [m]
+  double work_clearance = 0;         ///< the minimum distance of the wheel from the work outside the cut [m]
 };
 
 /// Finds how close the bodies of a machine and a job come to each other along a path.

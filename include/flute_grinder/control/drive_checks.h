@@ -18,7 +18,7 @@ class DriveChecks {
   /// Power has come on: counts underruns from now on.
   void powerOn(const DriveStatus& drive) noexcept { underruns_at_power_on_ = drive.underruns; }
 
-  /// The drive has been told to clear its fault.
+  /// The drive has been commanded to clear its fault.
   void reset() noexcept { was_reset_ = true; }
   /// To be called in each cycle: a fault that comes after this one has cleared is a new one.
   void observe(const DriveStatus& drive) noexcept { was_reset_ = was_reset_ && drive.fault; }

@@ -10,11 +10,11 @@ namespace flute_grinder {
 
 /// How a probing move touches.
 struct ProbingConfig {
-  Axes velocity = Axes::Zero();        ///< of the first touch [m/s], A [rad/s]
-  double slow = 0;                     ///< speed of the touches that count, fraction of `velocity`
-  Axes back_off = Axes::Zero();        ///< off the surface between the touches [m], A [rad]
-  Axes largest_spread = Axes::Zero();  ///< allowed, of the touches that count [m], A [rad]
-  int touches = 0;                     ///< that count
+  Axes velocity = Axes::Zero();    ///< of the first touch [m/s], A [rad/s]
+  double slow = 0;                 ///< speed of the touches that count, fraction of `velocity`
+  Axes back_off = Axes::Zero();    ///< off the surface between the touches [m], A [rad]
+  Axes max_spread = Axes::Zero();  ///< allowed, of the touches that count [m], A [rad]
+  int touches = 0;                 ///< that count
 };
 
 /// The machine, and the control loop's limits and timeouts.
@@ -22,7 +22,7 @@ struct LoopConfig {
   std::string name;  ///< of the robot description
   Machine machine;
   MachineGeometry geometry;
-  Axes following_error = Axes::Zero();  ///< largest |command - position| [m], A [rad]
+  Axes following_error = Axes::Zero();  ///< maximum |command - position| [m], A [rad]
   double feedback_timeout = 0;          ///< longest allowed time without fresh positions [s]
   double enable_timeout = 0;            ///< longest allowed time from the enable command to power [s]
   double homing_timeout = 0;            ///< longest allowed time for homing [s]

@@ -23,7 +23,7 @@ enum class Refusal : std::uint8_t {
   kState,
   kEmergencyStop,
   kDriveFault,
-  kDriveFaultStays,  ///< the drive was told to clear its fault, and still reports it
+  kDriveFaultStays,  ///< the drive was commanded to clear its fault, and still reports it
   kInterlock,
   kNoPower,
   kMoved,

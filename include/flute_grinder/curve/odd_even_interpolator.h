@@ -57,10 +57,10 @@ class OddEvenInterpolator {
   /// The step length for which the next pair advances by `dx` [m] in X; solved to within rounding.
   double stepLengthForAdvance(double dx) const noexcept;
 
-  /// The largest step length at `x` whose odd point deviates from the curve by at most `a_error` [rad] in A (leading
+  /// The maximum step length at `x` whose odd point deviates from the curve by at most `a_error` [rad] in A (leading
   /// order: |k b| step^2 / (2 h^2), which is the paper's tangent deviation step^2 |kappa| / 2 measured along A).
   /// Infinite where the curve is straight. [m]
-  static double largestStepLength(const LogCurve& curve, double rotary_scale, double x, double a_error) noexcept;
+  static double maxStepLength(const LogCurve& curve, double rotary_scale, double x, double a_error) noexcept;
 
  private:
   /// Increments of the two steps from p0_. [m]; A is scaled to the metric [m]

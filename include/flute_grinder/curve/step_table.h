@@ -15,12 +15,12 @@ struct StepTable {
     double theory = 0;  ///< A of the curve at the point's X [rad]
     double error() const { return theory - point.a; }
   };
-  std::vector<Row> rows;          ///< the start at X = 0, then alternating odd and even points
-  double largest_odd_error = 0;   ///< [rad]
-  double largest_even_error = 0;  ///< [rad]
-  bool complete = false;          ///< false if the steps are too long to continue on the curve after the last row
+  std::vector<Row> rows;      ///< the start at X = 0, then alternating odd and even points
+  double max_odd_error = 0;   ///< [rad]
+  double max_even_error = 0;  ///< [rad]
+  bool complete = false;      ///< false if the steps are too long to continue on the curve after the last row
 
-  double largestError() const { return std::max(largest_odd_error, largest_even_error); }
+  double maxError() const { return std::max(max_odd_error, max_even_error); }
 };
 
 /// Interpolates a cutter's curve from X = 0 until a pair ends at or beyond the end of the flute.

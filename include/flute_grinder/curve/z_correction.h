@@ -51,13 +51,13 @@ struct ZCorrection {
 
   /// What the derivatives keep within over the whole range.
   struct Bounds {
-    double least_first = 0, largest_first = 0;
+    double min_first = 0, max_first = 0;
     double second = 0;  ///< of its magnitude [1/m]
     double third = 0;   ///< of its magnitude [1/m^2]
   };
 
   /// A derivative of a B-spline in equal pieces is one too, of the coefficients' differences, and lies between the
-  /// least and the largest of them.
+  /// minimum and the maximum of them.
   Bounds bounds() const noexcept {
     Bounds bounds;
     std::array<double, kMaxPieces + kDegree> difference = coefficients;
@@ -67,9 +67,9 @@ struct ZCorrection {
       return std::minmax_element(difference.begin(), difference.begin() + static_cast<std::ptrdiff_t>(count));
     };
     if (pieces == 0) return bounds;
-    const auto [least, largest] = differentiate(1);
-    bounds.least_first = *least;
-    bounds.largest_first = *largest;
+    const auto [min, max] = differentiate(1);
+    bounds.min_first = *min;
+    bounds.max_first = *max;
     for (const int order : {2, 3}) {
       const auto [lowest, highest] = differentiate(order);
       (order == 2 ? bounds.second : bounds.third) = std::max(-*lowest, *highest);

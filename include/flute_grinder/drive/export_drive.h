@@ -5,7 +5,7 @@
 #include <cstdint>
 
 /// @file
-/// How the library of a drive plugin exports its drives, and tells which version of the drive interface it was built
+/// How the library of a drive plugin exports its drives, and states which version of the drive interface it was built
 /// against.
 namespace flute_grinder {
 

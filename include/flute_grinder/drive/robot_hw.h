@@ -85,7 +85,7 @@ struct DriveStatus {
   double swivel = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The largest number of commands that a drive may buffer; the loop keeps as many, for comparison with the positions.
+/// The maximum number of commands that a drive may buffer; the loop keeps as many, for comparison with the positions.
 constexpr std::uint32_t kMaxCommandsWaiting = 4095;
 
 /// Commands to a drive, apart from positions.

@@ -34,13 +34,13 @@ GroundCutter groundCutterOf(const GrindJob& job);
 /// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
 struct CutterFigures {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Range rake{kNone, kNone};          ///< least and largest, where the flutes are complete [rad]
+  Range rake{kNone, kNone};          ///< minimum and maximum, where the flutes are complete [rad]
   Range chordal_rake{kNone, kNone};  ///< the same of the chords [rad]
   Range spiral{kNone, kNone};        ///< the same of the edge [rad]
   /// How far an edge departs from the asked helix, turned to where it departs the least either way [rad].
   double edge = kNone;
   std::array<double, 2> core_diameter{kNone, kNone};  ///< at X = 0 and at the flute's end [m]
-  double land = kNone;                                ///< least, along the circle; 0 if a tooth has none [m]
+  double land = kNone;                                ///< minimum, along the circle; 0 if a tooth has none [m]
 };
 
 /// What a ground cutter was found to be.

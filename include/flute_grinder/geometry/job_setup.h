@@ -11,7 +11,7 @@
 #include <vector>
 
 /// @file
-/// The set-up for a job: what `grind setup` and the panel tell, and write into the job's file.
+/// The set-up for a job: what `grind setup` and the panel show, and write into the job's file.
 namespace flute_grinder {
 
 /// The set-up for a job, and the tool that the job then grinds.

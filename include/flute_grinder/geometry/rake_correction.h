@@ -10,7 +10,7 @@ namespace flute_grinder {
 /// A correction of Z, and the rake that is ground with it.
 struct RakeCorrection {
   ZCorrection z;
-  double least_rake = 0, largest_rake = 0;  ///< over the flute [rad]
+  double min_rake = 0, max_rake = 0;  ///< over the flute [rad]
 };
 
 /// The correction of Z over X with which the rake is the same over the whole flute, which no set-up makes it with the

@@ -33,13 +33,13 @@ struct SetupRequest {
   std::optional<double> core_diameter_end;                  ///< at the flute's end, in place of y_per_x [m]
   bool asks_spiral = false;                                 ///< the edge's angle between the ends, by a lead
   bool incomplete_ok = false;                               ///< the flute may end before its ends
-  double least_swivel = 0, largest_swivel = 0;              ///< that the machine allows [rad]
+  double min_swivel = 0, max_swivel = 0;                    ///< that the machine allows [rad]
   /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then
   /// passes the axis at the height R sin r.
   std::optional<SetupFigure> keep;
   WheelSetup kept;  ///< the swivel or height that is kept
-  /// The published one takes the set-up with the least largest error of the rake over the flute. For a law that
-  /// corrects Z, the set-up is exact at both ends, where the correction then begins and ends with little.
+  /// The published one takes the set-up with the minimum of the maximum error of the rake over the flute. For a law
+  /// that corrects Z, the set-up is exact at both ends, where the correction then begins and ends with little.
   ZLaw z_law = ZLaw::kPublished;
 };
 
@@ -54,10 +54,10 @@ struct SolvedSetup {
   WheelSetup setup;
   double depth = 0;                           ///< of the flute: Y = -depth at X = 0 [m]
   double depth_end = 0;                       ///< the same at the flute's end [m]
-  double least_rake = 0, largest_rake = 0;    ///< over the flute [rad]
+  double min_rake = 0, max_rake = 0;          ///< over the flute [rad]
   double core_diameter = 0;                   ///< at X = 0 [m]
   double core_diameter_end = 0;               ///< at the flute's end [m]
-  double land = 0;                            ///< least over the flute and the teeth, along the circle [m]
+  double land = 0;                            ///< minimum over the flute and the teeth, along the circle [m]
   std::array<double, 2> overtravel{};         ///< beyond X = 0 and beyond the flute's end, for it to be complete [m]
   double complete_from = 0, complete_to = 0;  ///< along the cutter; less than the flute only near a cone's apex [m]
   SetupLimit limit = SetupLimit::kSwivel;
@@ -91,8 +91,8 @@ constexpr const auto& rowsOf(SetupProblem) noexcept { return kSetupProblems; }
 /// No set-up gives what is asked, and what could be had. Without a figure the last three are 0.
 struct SetupRefusal {
   SetupProblem problem = SetupProblem::kTolerance;
-  double asked = 0;               ///< [rad] or [m]
-  double least = 0, largest = 0;  ///< reachable [rad] or [m]
+  double asked = 0;         ///< [rad] or [m]
+  double min = 0, max = 0;  ///< reachable [rad] or [m]
   /// What the set-up gives that is nearest to the tolerances.
   struct Nearest {
     Range rake, chordal_rake, spiral;       ///< over the flute [rad]; the spiral angle only if it is asked

@@ -7,7 +7,7 @@
 namespace flute_grinder {
 
 /// Writes a solid as binary STL, in millimetres: the format has no units, and the trade takes millimetres. Triangles
-/// of which two corners are the same as single-precision numbers are left out. The stream tells whether that succeeded.
+/// of which two corners are the same as single-precision numbers are left out. The stream says whether that succeeded.
 /// @param out opened in binary mode.
 void writeStl(std::ostream& out, const CutterSolid& solid);
 

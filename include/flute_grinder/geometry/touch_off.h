@@ -26,7 +26,7 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel = 0);
 /// @param file of the job. @param machine its flange alone is used. @throw JobFileError if a file cannot be read.
 std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine);
 
-/// The work Y at which the job's wheel touches a blank with its largest diameter. @param diameter of the blank [m].
+/// The work Y at which the job's wheel touches a blank with its maximum diameter. @param diameter of the blank [m].
 double touchY(const GrindJob& job, double diameter);
 
 /// Why the wheel would not touch a blank on its highest line, with what is largest on the wheel, so that touchY() would

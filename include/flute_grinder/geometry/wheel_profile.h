@@ -31,10 +31,10 @@ class WheelProfile {
 
   double lowerFace() const noexcept { return corners_.front().w; }  ///< w of the lower face [m]
   double upperFace() const noexcept { return corners_.back().w; }   ///< w of the upper face [m]
-  double largestRadius() const noexcept { return largest_radius_; }
+  double maxRadius() const noexcept { return max_radius_; }
 
   /// Where the radius is the largest: a place, or a cylinder's length; of several, the one nearest to the upper face.
-  const Range& largestPlace() const noexcept { return largest_place_; }
+  const Range& maxPlace() const noexcept { return max_place_; }
 
   /// Where the profile's lines meet, before the ends are rounded.
   const std::vector<ProfilePoint>& corners() const noexcept { return corners_; }
@@ -51,7 +51,7 @@ class WheelProfile {
   /// The wheel after its radius has worn by `wear` [m].
   WheelProfile worn(double wear) const;
 
-  /// The wheel with the same profile farther out or in, so that its largest diameter is this [m].
+  /// The wheel with the same profile farther out or in, so that its maximum diameter is this [m].
   WheelProfile withDiameter(double diameter) const;
 
   /// A straight wheel of another width. @return nothing if the profile is another, or its corners do not fit.
@@ -70,13 +70,13 @@ class WheelProfile {
 
   std::size_t lineAt(double w) const noexcept;  ///< the corner at its upper end
   Fillet fillet(bool upper, double size) const;
-  void findLargest();
+  void findMax();
 
   std::vector<ProfilePoint> corners_;
   std::array<double, 2> corner_radii_;
   std::array<Fillet, 2> fillets_;
-  double largest_radius_ = 0;
-  Range largest_place_;  ///< w [m]
+  double max_radius_ = 0;
+  Range max_place_;  ///< w [m]
 };
 
 }  // namespace flute_grinder

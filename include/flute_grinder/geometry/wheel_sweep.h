@@ -71,11 +71,12 @@ class WheelSweep {
   /// @param high the end at the larger angle, else the other one.
   std::optional<Wall> wall(double x, double r, bool high) const;
 
-  /// The least radius that is removed from a blank at `x`, to a nanometre; infinite if nothing is, 0 if the wheel cuts
-  /// through the axis [m].
-  double leastRadius(double x, double blank_radius) const;
+  /// The minimum radius that is removed from a blank at `x`, to a nanometre; infinite if nothing is, 0 if the wheel
+  /// cuts through the axis [m].
+  double minRadius(double x, double blank_radius) const;
 
-  /// How much deeper the stroke must go for the least radius at `x` to become `radius`; infinite if no depth does [m].
+  /// How much deeper the stroke must go for the minimum radius at `x` to become `radius`; infinite if no depth does
+  /// [m].
   double deeperFor(double x, double radius) const;
 
   /// How far toward the cone's apex a stroke may go. Near the apex the cutter turns ever faster, and a wheel that still
@@ -135,12 +136,12 @@ class WheelSweep {
   };
   Normal normal(const Pose& pose, double r, double theta, double w) const noexcept;
   /// The least of a function of the wheel's lower side in a section, and where on the stroke.
-  struct Least {
+  struct Minimum {
     double value, axis_x;
   };
   template <typename Function>
-  Least least(double x, double largest_height, const Function& f) const;
-  Least leastSquare(double x) const;
+  Minimum minimum(double x, double max_height, const Function& f) const;
+  Minimum minSquare(double x) const;
   std::optional<Window> narrowWindow(double x, double r, double step) const;
 
   LogCurve curve_;

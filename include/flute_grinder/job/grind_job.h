@@ -109,7 +109,7 @@ struct ToothPass {
 /// How the flutes are interpolated.
 struct GrindInterpolation {
   EvenStepRule even_step = EvenStepRule::kPublished;
-  double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
+  double tolerance = 0;     ///< maximum allowed deviation at the cutter's surface [m]
   double rotary_scale = 0;  ///< step length equivalent to one radian of A [m/rad]
 };
 
@@ -132,7 +132,7 @@ std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 /// The cutter with the spiral angle of one of its teeth.
 CutterGeometry cutterOf(const GrindJob& job, int tooth);
 
-/// The least and the largest spiral angle of the teeth [rad].
+/// The minimum and maximum spiral angle of the teeth [rad].
 Range askedSpiral(const GrindJob& job);
 
 /// What the strokes of a tooth add to the published law of Z.

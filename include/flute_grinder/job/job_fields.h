@@ -68,7 +68,7 @@ void visitJobFields(const Visit& visit) {
 }
 
 /// Visits the choices and counts of a job, which have other types in a goal.
-/// @param visit called with the path, the largest allowed value, and a function like that of visitJobFields().
+/// @param visit called with the path, the maximum allowed value, and a function like that of visitJobFields().
 template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off

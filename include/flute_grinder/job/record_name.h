@@ -9,7 +9,7 @@
 /// named after the time at which the job started, so that the names sort by it.
 namespace flute_grinder {
 
-/// A time as records tell it, to the nearest millisecond, e.g. "2026-11-22T17:04:13.123Z". @param time since the epoch
+/// A time as records write it, to the nearest millisecond, e.g. "2026-11-22T17:04:13.123Z". @param time since the epoch
 /// [s].
 std::string utcText(double time);
 

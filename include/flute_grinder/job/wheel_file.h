@@ -18,12 +18,12 @@ struct WheelFile {
   GrindProcess process;
   std::vector<ProfilePoint> points;  ///< as GrindJob::wheel_points
   double new_width = 0;              ///< the width before any measurement [m]
-  std::optional<double> flange;      ///< from the flange's face down to the wheel's upper face, if the file tells [m]
+  std::optional<double> flange;  ///< from the flange's face down to the wheel's upper face, if the file states it [m]
   bool measured = false;
   std::string date;  ///< of the measurement: YYYY-MM-DD, or YYYY-MM-DDThh:mm:ssZ
   std::string by;    ///< who measured; may be empty
 
-  /// The largest diameter, as the wheel is now [m].
+  /// The maximum diameter, as the wheel is now [m].
   double diameter() const noexcept { return process.wheel_diameter - 2 * process.wheel_wear; }
 };
 

@@ -8,9 +8,9 @@
 
 namespace flute_grinder {
 
-/// Largest difference between a job's swivel and the swivel as it stands [rad].
+/// Maximum difference between a job's swivel and the swivel as it stands [rad].
 constexpr double kSwivelTolerance = 0.05 * units::kDegree;
-/// Largest angle that can be confirmed, to either side [rad].
+/// Maximum angle that can be confirmed, to either side [rad].
 constexpr double kMaxSwivel = units::kPi / 2;
 
 /// Where the wheel's swivel stands. It is set by hand: an operator confirms its angle, unless the drive measures it.

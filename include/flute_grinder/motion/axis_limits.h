@@ -24,7 +24,7 @@ struct Machine {
   double period = 0;                              ///< control cycle T [s]
   Axes park = Axes::Zero();                       ///< machine position at a job's end, clear of the work [m], A [rad]
   double max_job_duration = 86400;                ///< longest job accepted [s]
-  double collision_clearance = 0;                 ///< least distance of what moves with the wheel from all else [m]
+  double collision_clearance = 0;                 ///< minimum distance of what moves with the wheel from all else [m]
   Range swivel{-units::kPi / 2, units::kPi / 2};  ///< to which the wheel's plane can be set [rad]
   /// Of the job that is planned: machine position - work position. See WorkOffsets. [m], A [rad]
   Axes work_offset = Axes::Zero();

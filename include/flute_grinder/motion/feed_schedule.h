@@ -11,7 +11,7 @@
 
 namespace flute_grinder {
 
-constexpr double kMaxFeedOverride = 1.2;  ///< largest feed override, as a fraction of the job's feed
+constexpr double kMaxFeedOverride = 1.2;  ///< maximum feed override, as a fraction of the job's feed
 
 namespace core {
 
@@ -53,8 +53,8 @@ class FeedSchedule {
     double from = 0;          ///< X at the start [m]
     double to = 0;            ///< X at the end, before or after the start [m]
     double surface_feed = 0;  ///< along the cutting edge [m/s]
-    double tolerance = 0;     ///< largest allowed deviation at the cutter's surface [m]
-    double taper = 0;         ///< largest value, by magnitude, that passes add to the cone's dY/dX; they may add less
+    double tolerance = 0;     ///< maximum allowed deviation at the cutter's surface [m]
+    double taper = 0;         ///< maximum value, by magnitude, that passes add to the cone's dY/dX; they may add less
     ZCorrection z_correction{};  ///< added to Z
     double lead = 0;             ///< shift of A's curve along X, see LogCurve [m]
   };
@@ -105,12 +105,12 @@ class FeedSchedule {
 
   // Speeds: v = min(speed_, speed_per_radius_ * u).
   double feed_speed_ = 0;        ///< dX/dt at the job's feed, where A does not limit it [m/s]
-  double speed_ = 0;             ///< as feed_speed_, at the largest override [m/s]
+  double speed_ = 0;             ///< as feed_speed_, at the maximum override [m/s]
   double speed_per_radius_ = 0;  ///< c [m/s]
-  double y_per_x_ = 0;           ///< largest |dY/dX|
-  double z_per_x_ = 0;           ///< largest |dZ/dX|
-  double z_bend_ = 0;            ///< largest |d^2 Z/dX^2| [1/m]
-  double z_twist_ = 0;           ///< largest |d^3 Z/dX^3| [1/m^2]
+  double y_per_x_ = 0;           ///< maximum |dY/dX|
+  double z_per_x_ = 0;           ///< maximum |dZ/dX|
+  double z_bend_ = 0;            ///< maximum |d^2 Z/dX^2| [1/m]
+  double z_twist_ = 0;           ///< maximum |d^3 Z/dX^3| [1/m^2]
   std::vector<core::FeedLimit> feed_limits_;
 
   // The blend's parameter q: reduced feed below 0, blend from 0 to blend_, full feed above.

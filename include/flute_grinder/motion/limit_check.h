@@ -85,8 +85,8 @@ class LimitCheck {
   std::uint64_t seen_ = 0;
   double slow_down_ = 1;  ///< for the next pair
   Axes last_ = Axes::Zero();
-  Axes largest_ = Axes::Zero();  ///< largest magnitude of the position so far
-  Axes ends_[3];                 ///< the last pair ends, newest first
+  Axes max_ = Axes::Zero();  ///< maximum magnitude of the position so far
+  Axes ends_[3];             ///< the last pair ends, newest first
   Axes velocity_ = Axes::Zero();
   Axes acceleration_ = Axes::Zero();
   Axes jerk_ = Axes::Zero();

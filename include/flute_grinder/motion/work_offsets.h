@@ -9,7 +9,7 @@
 
 namespace flute_grinder {
 
-/// Largest size of a work offset; farther than any axis goes, and with a rounding far below any encoder's [m], A [rad].
+/// Maximum size of a work offset; farther than any axis goes, and with a rounding far below any encoder's [m], A [rad].
 constexpr double kMaxOffset = 1000;
 
 /// By what a work offset was set.

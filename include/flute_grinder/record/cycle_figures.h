@@ -8,8 +8,8 @@ namespace flute_grinder {
 inline bool isLate(double period, double nominal) { return !(period <= 1.5 * nominal); }
 
 /// Keeps the larger value; NaN is kept.
-inline void updateMax(double& largest, double value) {
-  if (!(value <= largest) && !std::isnan(largest)) largest = value;
+inline void updateMax(double& max, double value) {
+  if (!(value <= max) && !std::isnan(max)) max = value;
 }
 
 }  // namespace flute_grinder

@@ -9,7 +9,7 @@
 /// Building blocks of the markers for rviz.
 namespace flute_grinder {
 
-/// The largest number of points in one marker: rviz crashes on a line strip of more than 16,384.
+/// The maximum number of points in one marker: rviz crashes on a line strip of more than 16,384.
 constexpr std::size_t kMaxMarkerPoints = 16000;
 
 geometry_msgs::Point point(double x, double y, double z);

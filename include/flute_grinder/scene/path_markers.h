@@ -27,8 +27,8 @@ class ToolPath {
   /// No tooth is active any more; measurements of an unfinished pass are discarded.
   void deactivate();
 
-  /// The largest error measured so far, normal to the helix on the cutter's surface [m].
-  double largestMeasured() const { return largest_; }
+  /// The maximum error measured so far, normal to the helix on the cutter's surface [m].
+  double maxMeasured() const { return max_; }
 
   /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes what was shown
   /// before.
@@ -53,7 +53,7 @@ class ToolPath {
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
   std::vector<float> measured_;  ///< in the current pass, as in Flute; negative where not yet measured
-  double largest_ = 0;           ///< [m]
+  double max_ = 0;               ///< [m]
 };
 
 /// Where the wheel has gone along the edge in the current stroke, from measured positions, as a line strip in the frame
@@ -109,7 +109,7 @@ class PathErrorMarkers {
   double tolerance_;  ///< [m]
   std::optional<std::uint32_t> move_;
   std::vector<Point> points_;
-  double largest_ = 0;  ///< [m]
+  double max_ = 0;  ///< [m]
   std::uint64_t pairs_ = 0;
   std::uint64_t every_ = 1;  ///< only every n-th pair is kept
 };

@@ -15,15 +15,16 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
-ROSBASH = '/usr/share/bash-completion/completions/rosbash'  # noqa: E402
-# Completes the command line given as arguments, of which the last word is begun.  # noqa: E402
-ASK = '''  # noqa: E402
-COMP_WORDS=("$@")  # noqa: E402
-COMP_CWORD=$(($# - 1))  # noqa: E402
-function=$(complete -p "$1" | sed 's/.*-F \\([^ ]*\\).*/\\1/')  # noqa: E402
-$function "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"  # noqa: E402
-[ ${#COMPREPLY[@]} = 0 ] || printf '%s\\n' "${COMPREPLY[@]}"  # noqa: E402
-'''  # noqa: E402
+
+ROSBASH = '/usr/share/bash-completion/completions/rosbash'
+# Completes the command line given as arguments, of which the last word is begun.
+ASK = '''
+COMP_WORDS=("$@")
+COMP_CWORD=$(($# - 1))
+function=$(complete -p "$1" | sed 's/.*-F \\([^ ]*\\).*/\\1/')
+$function "$1" "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD-1]}"
+[ ${#COMPREPLY[@]} = 0 ] || printf '%s\\n' "${COMPREPLY[@]}"
+'''
 
 
 class TestCompletion(unittest.TestCase):
@@ -31,7 +32,9 @@ class TestCompletion(unittest.TestCase):
     def setUpClass(cls):
         cls.script = gc.grind('completion', 'bash').stdout
         cls.folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.ros_home = tempfile.mkdtemp()
+        for folder in (cls.folder, cls.ros_home):
+            cls.addClassCleanup(shutil.rmtree, folder)
         for name in ('a.yaml', 'b job.yaml', 'grinder.urdf', 'notes.txt'):
             with open(os.path.join(cls.folder, name), 'w'):
                 pass
@@ -40,8 +43,10 @@ class TestCompletion(unittest.TestCase):
             pass
 
     def offered(self, *words, before=''):
+        # rosbash takes the packages from a cache in ROS_HOME, however old it is.
+        environment = dict(os.environ, ROS_HOME=self.ros_home)
         done = subprocess.run(['bash', '--norc', '-c', before + self.script + ASK, 'bash', *words], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
+                              env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
                               timeout=gc.PATIENCE)
         self.assertEqual(done.stderr, '')
         return set(done.stdout.splitlines())

@@ -521,8 +521,10 @@ class TestBag(ReportCase):
         self.assertAlmostEqual(stroke['feed_max_mm_min'], max(inside) * 60 / MM, delta=1e-6)
         self.assertAlmostEqual(stroke['feed_min_mm_min'], min(inside) * 60 / MM, delta=1e-6)
         self.assertLess(stroke['feed_min_mm_min'], 1)
-        self.assertAlmostEqual(stroke['started_s'], points[0][1].header.stamp.to_sec() - self.start, delta=0.06)
-        self.assertAlmostEqual(stroke['started_s'] + stroke['duration_s'], points[-1][1].end_stamp.to_sec() - self.start, delta=0.06)
+        # A stamp is of a batch as a whole, which takes longer than its cycles if the host stalls.
+        for at, (_, batch) in ((stroke['started_s'], points[0]), (stroke['started_s'] + stroke['duration_s'], points[-1])):
+            self.assertGreaterEqual(self.start + at, batch.header.stamp.to_sec() - batch.period)
+            self.assertLessEqual(self.start + at, batch.end_stamp.to_sec() + batch.period)
         self.assertAlmostEqual(stroke['depth_mm'], 1.6, delta=1e-9)
         hold, = self.found['holds']
         self.assertEqual((hold['tooth'], hold['pass'], hold['reason']), (1, 1, 'operator'))

@@ -29,6 +29,9 @@ rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
 # A job that names its wheel by a file.
 rosrun flute_grinder grind table share/flute_grinder/jobs/unequal_d12_t4.yaml --step-length 1 >/dev/null
 rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$folder/table.csv" >/dev/null
+# A client in Python, which has the goal from the program beside it.
+/usr/bin/python3 -c 'import sys; from flute_grinder import job; print(job.goal(sys.argv[1]).job_name, job.__file__)' "$job" |
+  grep -q "^paper.yaml $space/lib/"
 rosrun flute_grinder grind report "$folder/table.csv" -o "$folder/table.html"
 grep -q '3\.9785e-05 rad' "$folder/table.html"
 await_grinder env

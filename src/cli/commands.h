@@ -43,7 +43,7 @@ class Commands {
 // One function for each group of commands, in the order of the help. Its commands refer to `commands`, which must
 // outlive their actions.
 
-/// What is done with a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `report`, `history`.
+/// What is done with a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `goal`, `report`, `history`.
 void addJobCommands(Commands& commands);
 
 /// What is done with a wheel, and the zeros that follow from it: `wheel`, `zeros`.

@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
+#include "cli/goal.h"
 #include "cli/history.h"
 #include "cli/offline.h"
 #include "cli/online.h"
@@ -95,6 +96,14 @@ void addRun(Commands& commands) {
   addCsv(command, options->csv, "write the streamed setpoints to this file");
 }
 
+void addGoal(Commands& commands) {
+  const auto job = std::make_shared<std::string>();
+  auto& command =
+      commands.add("goal", "write the goal that run sends for the job: a serialized flute_grinder/GrindGoal",
+                   "jobs/paper.yaml > goal", [job] { return writeGoal(*job); });
+  addJob(command, *job);
+}
+
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
   auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
@@ -140,6 +149,7 @@ void addJobCommands(Commands& commands) {
   addSetup(commands);
   addSimulate(commands);
   addRun(commands);
+  addGoal(commands);
   addReport(commands);
   addHistory(commands);
 }

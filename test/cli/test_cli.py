@@ -5,10 +5,12 @@ unreadable file."""
 import math
 import os
 import pathlib
+import pty
 import re
 import subprocess
 import sys
 
+import flute_grinder.job
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
@@ -181,6 +183,45 @@ class TestPlan(CommandLine):
                          '%s:%d: a second document begins here; allowed: one\n' % (machine, text.count('\n') + 1))
 
 
+class TestGoal(CommandLine):
+    """`grind goal`, and the module for clients in Python that runs it."""
+
+    def test_goals_of_the_shipped_jobs(self):
+        jobs = sorted(pathlib.Path(gc.package_file('jobs')).glob('*.yaml'))
+        self.assertGreater(len(jobs), 5)
+        for path in jobs:
+            goal = flute_grinder.job.goal(path)
+            self.assertEqual(goal.job_name, path.name)
+            self.assertEqual((goal.dry_run, goal.discard, goal.ignore_offset_check, goal.first_tooth, goal.first_pass), (False,) * 3 + (0, 0))
+            for field, value in gc.job_from_file(str(path)).items():
+                part, name = field.split('.')
+                self.assert_close(getattr(getattr(goal, part), name), value, '%s: %s' % (path, field))
+
+    def assert_close(self, value, expected, text):
+        if isinstance(expected, (list, tuple)):
+            self.assertEqual(len(value), len(expected), text)
+            for pair in zip(value, expected):
+                self.assert_close(*pair, text)
+        else:
+            self.assertTrue(math.isclose(value, expected, rel_tol=1e-12), '%s = %r, not %r' % (text, value, expected))
+
+    def test_what_is_refused_is_said_as_by_plan(self):
+        bad = gc.job_file(self.path('bad.yaml'), cone_angle_deg=90)
+        for path in (bad, self.path('none.yaml'), '--json'):
+            with self.assertRaises(ValueError) as raised:
+                flute_grinder.job.goal(path)
+            self.assertEqual(str(raised.exception), self.grind(2, 'plan', '--', path).stderr.strip())
+
+    def test_terminal_is_refused(self):
+        reader, writer = pty.openpty()
+        self.addCleanup(os.close, reader)
+        done = subprocess.run([gc.program('grind'), 'goal', PAPER_JOB], stdout=writer, stderr=subprocess.PIPE,
+                              universal_newlines=True, timeout=gc.PATIENCE)
+        os.close(writer)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, '^standard output is a terminal, .*; allowed: a file or a pipe')
+
+
 class TestOutput(CommandLine):
     """A disk that is full, and a pipe that nobody reads."""
 
@@ -207,7 +248,7 @@ class TestUsage(CommandLine):
 
     def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
-                          ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['--help'],
+                          ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['goal', PAPER_JOB], ['--help'],
                           ['plan', '--help']):
             self.check_not_printed(*arguments)
 

@@ -20,7 +20,7 @@ import re
 import sys
 from dataclasses import dataclass, field
 
-PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rostest|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|grind'
+PROGRAMS = r'(?:scripts|build)/\w\S*|rosrun|roslaunch|rostest|rosbag|rostopic|rosservice|rosparam|rviz|halcmd|halrun|python3|grind'
 COMMAND = re.compile(r'(?:%s|source|export|cd|cmake|catkin_make|git|rosdep|sudo|cp|chmod|sed|kill|uname|latency-histogram)(?= |$)'
                      % PROGRAMS)
 

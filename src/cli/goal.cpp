@@ -1,0 +1,27 @@
+#include "cli/goal.h"
+
+#include "flute_grinder/messages/offset_basis.h"
+
+#include <ros/serialization.h>
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <stdexcept>
+
+namespace flute_grinder {
+
+int writeGoal(const std::string& job) {
+  if (isatty(STDOUT_FILENO) != 0) {
+    throw std::invalid_argument(
+        "standard output is a terminal, and a goal is no text; allowed: a file or a pipe, as in "
+        "'grind goal JOB > FILE'");
+  }
+  const ros::SerializedMessage goal = ros::serialization::serializeMessage(goalFromFile(job));
+  // Without the length that a connection puts ahead.
+  const std::size_t ahead = static_cast<std::size_t>(goal.message_start - goal.buf.get());
+  std::fwrite(goal.message_start, 1, goal.num_bytes - ahead, stdout);
+  return 0;
+}
+
+}  // namespace flute_grinder

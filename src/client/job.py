@@ -1,0 +1,21 @@
+"""Goals of job files, for clients of the grinder; see docs/ros-interface.md."""
+
+import pathlib
+import subprocess
+
+from flute_grinder.msg import GrindGoal
+
+# In lib/flute_grinder of the space that has this module in lib/python3/dist-packages/flute_grinder.
+_GRIND = pathlib.Path(__file__).absolute().parents[3] / 'flute_grinder' / 'grind'
+
+
+def goal(path):
+    """The goal that `grind run` sends for a job file, to the last bit. Needs no ROS master.
+
+    Raises ValueError, with what `grind` says, if the file cannot be read or is refused."""
+    done = subprocess.run([str(_GRIND), 'goal', '--', str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE)
+    if done.returncode == 2:
+        raise ValueError(done.stderr.decode(errors='replace').strip())
+    done.check_returncode()
+    return GrindGoal().deserialize(done.stdout)

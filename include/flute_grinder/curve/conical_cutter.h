@@ -42,9 +42,9 @@ struct Range {
 /// A conical end mill with constant rake and spiral angle (paper, section 2).
 class ConicalCutter {
  public:
-  /// @param geometry the cutter's dimensions.
-  /// @throw std::invalid_argument naming the bad value unless every value is finite, the diameter and the length are
-  ///        positive, every angle lies within (-pi/2, pi/2), and the radius stays positive up to the flute's end.
+  /// @param geometry the cutter's dimensions; tolerances, core, neck and shank are not checked.
+  /// @throw std::invalid_argument naming the bad value unless end diameter and flute length are finite and positive,
+  ///        the three angles lie within (-pi/2, pi/2), and the radius stays positive up to the flute's end.
   explicit ConicalCutter(const CutterGeometry& geometry);
 
   const CutterGeometry& geometry() const noexcept { return geometry_; }

@@ -63,7 +63,7 @@ class OddEvenInterpolator {
   static double maxStepLength(const LogCurve& curve, double rotary_scale, double x, double a_error) noexcept;
 
  private:
-  /// Increments of the two steps from p0_. [m]; A is scaled to the metric [m]
+  /// Increments of the two steps from p0_, A scaled to the metric [m].
   struct Increments {
     double x1, ra1;
     double x2, ra2;

@@ -34,7 +34,7 @@ class SCurveProfile {
   bool begin(const MotionLimits& limits, double distance, double target) noexcept;
 
   /// Changes the target speed immediately; a target of 0 stops as soon as the limits allow, before the end of the
-  /// distance. A target above the limit, or NaN, is ignored.
+  /// distance, unless the motion already brakes to that end. A target outside 0 to limits().velocity is ignored.
   /// @return whether the target was accepted.
   bool setTarget(double target) noexcept;
 
@@ -47,8 +47,8 @@ class SCurveProfile {
   /// Advances by `dt` [s], not negative.
   void advance(double dt) noexcept;
 
-  /// Where the motion has run at the target speed for `margin` [s], and does so for longer than twice that: advances in
-  /// pairs of `dt` [s] for as long as it is more than twice `margin` to the end of the target speed.
+  /// If the motion has run at the target speed for `margin` [s], advances in pairs of `dt` [s] up to twice `margin`
+  /// before it leaves that speed; otherwise does nothing.
   /// @param at_most how often it may advance by `dt`.
   /// @return the number of times that it advanced by `dt`.
   std::uint64_t skipCruise(double dt, double margin, std::uint64_t at_most) noexcept;

@@ -21,7 +21,7 @@ class AxisMove {
   /// @param kind of its setpoints.
   /// @param from position of the axes, at rest [m], A [rad].
   /// @param axis the axis that moves.
-  /// @param to its position at the end, finite [m], A [rad]; the present one moves nothing.
+  /// @param to its position at the end, finite [m], A [rad]; if equal to `from`, nothing moves.
   /// @param speed target speed, 0 to the axis's limit [m/s], A [rad/s].
   void begin(MoveKind kind, const Axes& from, int axis, double to, double speed) noexcept;
 
@@ -29,7 +29,7 @@ class AxisMove {
   /// @return false while the axis is at rest: at its end, or at speed 0; `setpoint` is then unchanged.
   bool next(Setpoint& setpoint) noexcept;
 
-  /// Changes the target speed; 0 stops as soon as the limits allow. A speed above the limit, or NaN, is ignored.
+  /// Changes the target speed; 0 stops as soon as the limits allow. A speed outside 0 to the limit is ignored.
   void setSpeed(double speed) noexcept {
     if (speed >= 0 && speed <= law_.limits().velocity) speed_ = speed;
   }

@@ -68,7 +68,7 @@ class FeedSchedule {
   double length() const noexcept { return length_; }
 
   /// Limits of the motion along s. The velocity limit is the speed at the job's feed, times as much of kMaxFeedOverride
-  /// as the axes allow; no override above 1 is possible if A limits the feed [m/s].
+  /// as axes and tolerance allow; no override above 1 is possible if the feed is reduced [m/s].
   const MotionLimits& limits() const noexcept { return limits_; }
 
   /// Speed along s at the job's feed; equals the speed of X where A does not limit it [m/s].

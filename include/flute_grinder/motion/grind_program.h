@@ -45,8 +45,9 @@ class GrindProgram {
   /// @param machine the machine that runs the job, with the job's work offset.
   /// @param start the position of the axes at the start, in work coordinates [m], A [rad].
   /// @param first first pass to grind.
-  /// @throw std::invalid_argument if `first` is not a pass of the job, if the machine does not swivel as far as the
-  ///        job's set-up, if the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
+  /// @throw std::invalid_argument if `first` is not a pass of the job, if the machine's data or `start` are out of
+  ///        range, if the park position is in the work, if the machine does not swivel as far as the job's set-up, if
+  ///        the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
   GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
 
   const GrindJob& job() const noexcept { return job_; }
@@ -58,7 +59,7 @@ class GrindProgram {
 
   /// The path of a tooth's strokes; teeth with the same spiral angle have the same.
   const Helix& helix(int tooth) const noexcept { return helices_[helix_of_tooth_[static_cast<std::size_t>(tooth)]]; }
-  /// The distinct ones.
+  /// Each path once.
   const std::vector<Helix>& helices() const noexcept { return helices_; }
   /// The feed schedule of a tooth's strokes, the same for all passes.
   const FeedSchedule& schedule(int tooth = 0) const noexcept { return helix(tooth).schedule; }

@@ -36,8 +36,7 @@ class LimitCheck {
   /// @param limits the axes' limits.
   /// @param period control cycle [s].
   /// @param roundings how many times the rounding of a position is let pass in velocity, acceleration and jerk; 1 where
-  /// a
-  ///        motion is planned, kUnplannedRoundings where it is made.
+  ///        a motion is planned, kUnplannedRoundings where it is made.
   LimitCheck(const AxisLimits& limits, double period, double roundings = 1) noexcept;
 
   /// A plan generates and checks only the first of moves that differ by constant offsets, see planJob(). What passes

@@ -40,7 +40,7 @@ class SetpointStream {
 
   /// Changes the speed of the moves at feed, which are infeed and stroke; rapids keep their speed. Real-time safe.
   /// @param fraction of the job's feed, 0 to kMaxFeedOverride; other values are ignored. Above 1 the feed is raised as
-  ///        far as the axes allow.
+  ///        far as the limits allow, see FeedSchedule::limits().
   void setFeedOverride(double fraction) noexcept;
 
   /// Stops on the path, as soon as the limits allow. Real-time safe.
@@ -87,13 +87,13 @@ class SetpointStream {
   /// Time to the end of the current move, or to a stop before [s].
   double timeLeft() const noexcept { return law_.timeLeft(); }
 
-  /// Continues where another stream stands, as if the setpoints up to there had been taken. Both must be between two
+  /// Continues where another stream is, as if the setpoints up to there had been taken. Both must be between two
   /// pairs of a move of the same shape, of the same program, neither held nor slowed down.
   /// @param cycles by which the other is further on in its move.
   void skip(const SetpointStream& later, std::uint64_t cycles) noexcept;
 
-  /// Between two pairs of a straight move that runs at its speed, and has done so for some cycles: leaves out the
-  /// setpoints up to twice as many cycles before the end of that.
+  /// Between two pairs of a straight move that has run at constant speed for `cycles`: leaves out setpoints, up to
+  /// twice `cycles` before that speed ends.
   /// @param at_most how many setpoints may be left out.
   /// @return the number of setpoints left out; 0 at any other time.
   std::uint64_t skipCruise(std::uint64_t cycles, std::uint64_t at_most) noexcept;

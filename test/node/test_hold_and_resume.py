@@ -73,9 +73,9 @@ class TestInterference(unittest.TestCase):
 
     def test_states_follow_one_another(self):
         states = self.states[1:] if self.states[0] == 'ready' else self.states
-        # It is holding for a few cycles only, which may not be published.
-        self.assertEqual([s for s in states if s != 'holding'],
-                         ['starting', 'running', 'held', 'retracting', 'retracted', 'resuming', 'running', 'ready'])
+        # One that passes by itself may not be published on a host that stalls.
+        passing = ('starting', 'holding', 'retracting', 'resuming')
+        self.assertEqual([s for s in states if s not in passing], ['running', 'held', 'retracted', 'running', 'ready'])
 
     def test_axes_rest_while_held_retracted_and_without_feed(self):
         for rest in (self.held, self.retracted, self.stopped):

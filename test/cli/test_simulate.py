@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Shows that `grind simulate` reports the figures of the cutter that a job grinds, and those of a recorded run."""
 
-import csv
 import functools
 import math
 import os
@@ -188,8 +187,7 @@ class TestRecord(TestSimulate):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, 'plan.csv')
             gc.grind('plan', job, '--csv', path).check_returncode()
-            with open(path) as file:
-                return list(csv.DictReader(file))
+            return CommandLine.csv(path)
 
     def record(self, rows):
         lines = [','.join(COLUMNS + ACTUAL)]

@@ -208,7 +208,7 @@ TEST_F(WaitsForJournal, GivesUpAfterTheTimeout) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Commands to the drive
 
-TEST(SpindleAndCoolant, TheWheelTurnsWhileAJobHasTheMachine) {
+TEST(SpindleAndCoolant, TurnTheWheelWhileAJobHasTheMachine) {
   const std::set<S> without_job{S::kDisabled, S::kReady, S::kHoming, S::kFault, S::kLifting, S::kJogging};
   for (const StateRow& row : kMachineStates) {
     SCOPED_TRACE(row.name);
@@ -222,7 +222,7 @@ TEST(SpindleAndCoolant, TheWheelTurnsWhileAJobHasTheMachine) {
   }
 }
 
-TEST(SpindleAndCoolant, SpindleAndCoolantThroughAWholeJob) {
+TEST(SpindleAndCoolant, AreCommandedThroughAWholeJob) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -238,7 +238,7 @@ TEST(SpindleAndCoolant, SpindleAndCoolantThroughAWholeJob) {
   EXPECT_EQ(rig.last().state, S::kReady);
 }
 
-TEST(SpindleAndCoolant, NothingIsOnForAStartThatIsRefused) {
+TEST(SpindleAndCoolant, AreOffForAStartThatIsRefused) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -249,7 +249,7 @@ TEST(SpindleAndCoolant, NothingIsOnForAStartThatIsRefused) {
   EXPECT_FALSE(rig.drive.written_drive.coolant);
 }
 
-TEST(SpindleAndCoolant, NothingIsOnAfterTheLoopWasStopped) {
+TEST(SpindleAndCoolant, AreOffAfterTheLoopWasStopped) {
   ros::Time::init();
   FakeDrive drive;
   LoopConfig config = machineConfig();

@@ -62,7 +62,8 @@ class CommandLine(unittest.TestCase):
         done = self.grind(status, *arguments, '--json')
         return json.loads(done.stdout), done.stderr
 
-    def csv(self, path):
+    @staticmethod
+    def csv(path):
         with open(path) as lines:
             header, *rows = [line.rstrip('\n').split(',') for line in lines]
         return [dict(zip(header, row)) for row in rows]

@@ -8,7 +8,7 @@
 
 namespace flute_grinder {
 
-/// Maximum difference between a job's swivel and the swivel as it stands [rad].
+/// Maximum difference between a job's swivel and the swivel as it is [rad].
 constexpr double kSwivelTolerance = 0.05 * units::kDegree;
 /// Maximum angle that can be confirmed, to either side [rad].
 constexpr double kMaxSwivel = units::kPi / 2;
@@ -23,7 +23,7 @@ struct Swivel {
   bool isAt(double asked) const noexcept { return std::abs(angle - asked) <= kSwivelTolerance; }
 };
 
-/// Why a job cannot be ground with the swivel as it stands, and what to do about it.
+/// Why a job cannot be ground with the swivel as it is, and what to do about it.
 /// @param asked the job's angle [rad].
 core::Reason reasonOf(const Swivel& swivel, double asked);
 

@@ -20,30 +20,34 @@ ServiceCall::ServiceCall(std::string name, std::string md5sum, ros::SerializedMe
 ServiceCall::~ServiceCall() { end(); }
 
 void ServiceCall::end() {
-  abort();
+  close();
   if (thread_.joinable()) thread_.join();
 }
 
 void ServiceCall::abortIfOverdue() {
-  if (ros::SteadyTime::now() > due_) abort();
+  if (ros::SteadyTime::now() > due_) close();
 }
 
-void ServiceCall::abort() {
+void ServiceCall::close() {
   const std::lock_guard<std::mutex> lock(mutex_);
-  aborted_ = true;
+  closed_ = true;
   if (link_) link_->getConnection()->drop(ros::Connection::Destructing);
 }
 
 void ServiceCall::run() {
-  const auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, false, md5sum_, md5sum_, {});
+  // Persistent, since the server closes any other connection after its answer, and roscpp may see the end of the
+  // connection before it reads the answer (ros_comm #1976).
+  const auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, true, md5sum_, md5sum_, {});
   bool wanted = false;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     link_ = link;
-    wanted = link && !aborted_;
+    wanted = link && !closed_;
   }
   ros::SerializedMessage answer;
-  done_(wanted && link->call(request_, answer) ? &answer : nullptr);
+  const bool answered = wanted && link->call(request_, answer);
+  close();
+  done_(answered ? &answer : nullptr);
   finished_ = true;
 }
 

@@ -5,14 +5,17 @@ long to plan, setpoints that were lost, those of others' jobs amid one's own, a 
 import json
 import math
 import signal
+import socketserver
+import struct
 import threading
 
 import actionlib
+import rosgraph
 import rospy
 import rostest
 from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
                                WrittenSetpoint)
-from flute_grinder.srv import Plan, PlanResponse
+from flute_grinder.srv import Plan, PlanResponse, SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
 
 import grinder_client as gc
@@ -66,6 +69,23 @@ class StandIn:
     def batch(self, goal_id, cycles, lost=0):
         self.setpoints.publish(SetpointBatch(goal_id=goal_id, period=1e-3, lost=lost,
                                              setpoints=[WrittenSetpoint(cycle=cycle) for cycle in cycles]))
+
+
+class FeedOverride(socketserver.BaseRequestHandler):
+    """A connection to a `~set_feed_override` that sends header and answer as soon as it has the client's header."""
+
+    headers = []
+
+    def handle(self):
+        length, = struct.unpack('<I', gc.receive(self.request, 4))
+        header = gc.receive(self.request, length)
+        kind = SetFeedOverride
+        self.request.sendall(gc.tcpros_header({'md5sum': kind._md5sum, 'type': kind._type, 'callerid': rospy.get_name()}))
+        if b'probe=1' not in header:
+            self.headers.append(header)
+            self.request.sendall(struct.pack('<BIBI', True, 5, True, 0))
+        while self.request.recv(4096):
+            pass
 
 
 class TestStandIn(RunTest):
@@ -182,6 +202,20 @@ class TestStandIn(RunTest):
             self.node.set(GrinderState.READY, 'ready')
             self.assertEqual(command.end(), 1)
             self.assertEqual(command.text, "the lift was stopped: the wheel is still in the work; 'grind lift' lifts it\n")
+
+    def test_connection_to_a_service_is_the_clients_to_close(self):
+        # Where the server closes it after its answer, roscpp may see the end before it reads the answer.
+        server = socketserver.ThreadingTCPServer(('127.0.0.1', 0), FeedOverride)
+        self.addCleanup(server.server_close)
+        self.addCleanup(server.shutdown)
+        threading.Thread(target=server.serve_forever).start()
+        master = rosgraph.Master(rospy.get_name())
+        registered = '/grinder/set_feed_override', 'rosrpc://127.0.0.1:%d' % server.server_address[1]
+        master.registerService(*registered, rospy.get_node_uri())
+        self.addCleanup(master.unregisterService, *registered)
+        done = gc.grind('override', '50')
+        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        self.assertEqual([b'persistent=1' in header for header in FeedOverride.headers], [True])
 
     def test_fault_amid_a_lift(self):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)

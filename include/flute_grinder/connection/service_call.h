@@ -38,7 +38,7 @@ class ServiceCall {
 
  private:
   void run();
-  void abort();
+  void close();
 
   const std::string name_, md5sum_;
   const ros::SerializedMessage request_;
@@ -47,7 +47,7 @@ class ServiceCall {
   std::atomic<bool> finished_{false};
   std::mutex mutex_;  ///< guards the next two
   ros::ServiceServerLinkPtr link_;
-  bool aborted_ = false;
+  bool closed_ = false;
   std::thread thread_;
 };
 

@@ -35,10 +35,10 @@ namespace flute_grinder {
 
 namespace {
 
-const ros::WallDuration kSettling(1);        ///< longest time for an axis to stand still after a jog
-const ros::WallDuration kQuiet(1);           ///< without a word, while the ROS master does not answer
-const ros::WallDuration kOffsetPatience(1);  ///< with the work offsets, once the state is known
-constexpr double kJogTolerance = 10e-6;      ///< within which a jog has reached its end [m], A [rad]
+const ros::WallDuration kSettling(1);    ///< longest time for an axis to stand still after a jog
+const ros::WallDuration kQuiet(1);       ///< without a word, while the ROS master does not answer
+const ros::WallDuration kFreshness(1);   ///< longest wait for the present state, once the last one is known
+constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
 
 /// Whether there is something to cancel.
 bool takesCancel(const GrinderState& state) {
@@ -194,8 +194,8 @@ int printStatus(const std::string& node, bool json) {
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
-  // The state counts more than they do.
-  await(kOffsetPatience, [&] { return offsets.newest() != nullptr; });
+  // Both only for a while: the last that is known is better than nothing.
+  await(kFreshness, [&] { return watch.fresh() && offsets.newest(); });
   if (json) {
     print(toJson(nh.getNamespace(), watch.newest(), offsets.newest()));
   } else {

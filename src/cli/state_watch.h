@@ -33,6 +33,8 @@ class StateWatch {
 
   /// Whether a state has been received.
   bool begun() const { return heard() > 0; }
+  /// Whether one has been received that was published after this object was made. The first may be an old one.
+  bool fresh() const { return heard() > 1; }
   /// Waits for a state sent after this call. @return false if the connection is lost.
   bool awaitNext() const;
   GrinderState newest() const;

@@ -2,6 +2,7 @@
 """Shows the command line with a stand-in for the grinder, which reports what a good one hardly ever does: a job that takes
 long to plan, setpoints that were lost, those of others' jobs amid one's own, a wheel that is left in the work."""
 
+import copy
 import json
 import math
 import signal
@@ -14,7 +15,7 @@ import rosgraph
 import rospy
 import rostest
 from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
-                               WrittenSetpoint)
+                               WorkOffsets, WrittenSetpoint)
 from flute_grinder.srv import Plan, PlanResponse, SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
 
@@ -32,6 +33,8 @@ class StandIn:
         self.state = GrinderState(state=GrinderState.READY, state_name='ready', enabled=True, homed=True, override=1)
         self.goals, self.canceled, self.stops, self.lifts = [], [], [], 0
         self.states = rospy.Publisher('grinder/state', GrinderState, queue_size=10, latch=True)
+        self.offsets = rospy.Publisher('grinder/offsets', WorkOffsets, queue_size=1, latch=True)
+        self.offsets.publish(WorkOffsets())
         self.setpoints = rospy.Publisher('grinder/setpoints', SetpointBatch, queue_size=1000)
         rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
         rospy.Service('grinder/lift', Trigger, self.on_lift)
@@ -44,8 +47,8 @@ class StandIn:
     def publish(self):
         while not rospy.is_shutdown():
             with self.lock:
-                self.states.publish(self.state)
-            rospy.rostime.wallsleep(0.02)
+                self.states.publish(copy.deepcopy(self.state))  # a subscriber that comes later gets it as it was
+            rospy.rostime.wallsleep(0.1)
 
     def set(self, state, name, **fields):
         with self.lock:
@@ -64,6 +67,10 @@ class StandIn:
 
     def await_goal(self):
         gc.poll(lambda: self.goals, 'a goal')
+        client = self.goals[-1].get_goal_id().id.split('-')[0]
+        for topic in (self.server.feedback_pub, self.server.result_pub):
+            # rospy sends its header before it publishes to a connection.
+            gc.poll(lambda: client in [connection.endpoint_id for connection in topic.impl.connections], topic.name)
         return self.goals[-1]
 
     def batch(self, goal_id, cycles, lost=0):
@@ -177,6 +184,16 @@ class TestStandIn(RunTest):
             self.assertEqual((goal.get_goal().job_name, goal.get_goal().discard), ('paper.yaml', discard))
             goal.set_succeeded(GrindResult())
             self.assertEqual(command.end(), 0)
+
+    def test_status_is_the_present_one(self):
+        class Listener(rospy.SubscribeListener):
+            def peer_subscribe(_, topic, publish, peer_publish):
+                self.node.set(GrinderState.HELD, 'held')
+
+        listener = Listener()
+        self.node.states.impl.add_subscriber_listener(listener)
+        self.addCleanup(self.node.states.impl.subscriber_listeners.remove, listener)
+        self.assertRegex(gc.grind('status').stdout, '(?m)^state           held$')
 
     def test_lift_waits_until_the_wheel_is_off_the_work(self):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)

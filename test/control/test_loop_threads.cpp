@@ -1,5 +1,6 @@
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <atomic>

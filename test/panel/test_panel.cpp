@@ -1,5 +1,6 @@
 // The panel against a grinder of the test's own, which can be put into every state, and stay silent.
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "panel_fixture.h"

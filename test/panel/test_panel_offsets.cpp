@@ -1,5 +1,6 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"

@@ -1,5 +1,6 @@
 // The panel's section of the ground cutter, against figures in closed form.
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "panel_fixture.h"

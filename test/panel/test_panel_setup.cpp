@@ -1,6 +1,7 @@
 // The set-up sheet in the panel: solved for the machine of the running grinder, and written into the job file.
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "panel_fixture.h"
 

@@ -1,7 +1,6 @@
 #include "flute_grinder/collision/collision_check.h"
 
 #include "collision/closest_search.h"
-#include "flute_grinder/job/grind_job.h"
 
 #include <algorithm>
 #include <cmath>

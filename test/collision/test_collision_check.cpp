@@ -2,7 +2,6 @@
 
 #include "brute_force.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/grind_job.h"
 #include "machine.h"
 
 #include <gtest/gtest.h>

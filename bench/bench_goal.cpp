@@ -14,7 +14,7 @@
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/json.h"
-#include "jobs.h"
+#include "goals.h"
 
 #include <actionlib/TestAction.h>
 #include <actionlib/client/action_client.h>
@@ -174,13 +174,6 @@ class MotionWatch {
   ros::Subscriber subscriber_;
 };
 
-GrindGoal goalOf(const GrindJob& job) {
-  GrindGoal goal = goalFromJob(job);
-  goal.discard = true;              // whatever the job before has left in the journal
-  goal.ignore_offset_check = true;  // nobody has set them
-  return goal;
-}
-
 /// Of a thread like the control loop's that sleeps for a millisecond [s].
 void wakeUps(Json& out) {
   using Clock = std::chrono::steady_clock;
@@ -216,18 +209,18 @@ class Bench {
     while (!motion_.connected()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     call(node + "/enable", std_srvs::Trigger());
     ConfirmSwivel swivel;
-    swivel.request.swivel = paperJob(600).process.setup_swivel;  // that of all jobs here
+    swivel.request.swivel = paperGoal().process.setup_swivel;  // that of all jobs here
     call(node + "/confirm_swivel", swivel);
   }
 
   /// A job that the node has not planned before, over and over, and one after a dry run from the same place.
-  void measure(const std::string& name, GrindJob job) {
-    out_["values"][name + "/goal_bytes"] = ros::serialization::serializationLength(goalOf(job));
-    const GrindGoal repeated = goalOf(job);
-    const double feed = job.process.feed;
+  void measure(const std::string& name, GrindGoal goal) {
+    out_["values"][name + "/goal_bytes"] = ros::serialization::serializationLength(goal);
+    const GrindGoal repeated = goal;
+    const double feed = goal.process.feed;
     repeat(name + "/new", [&](int i) {
-      job.process.feed = feed * (1 - 1e-5 * (i + 1));
-      return goalOf(job);
+      goal.process.feed = feed * (1 - 1e-5 * (i + 1));
+      return goal;
     });
     repeat(name + "/repeated", [&](int) -> const GrindGoal& {
       dryRun(repeated);
@@ -330,8 +323,8 @@ int main(int argc, char** argv) {
     ros::AsyncSpinner spinner(1);
     spinner.start();
     Bench bench(node, argc > 2 ? std::stoi(argv[2]) : 100, argc > 3 ? std::stod(argv[3]) : 30);
-    bench.measure("paper", paperJob(600));
-    bench.measure("tool", wholeToolJob());
+    bench.measure("paper", paperGoal());
+    bench.measure("tool", wholeToolGoal());
     std::cout << bench.results() << '\n';
   } catch (const std::exception& error) {
     std::cerr << "bench_goal: " << error.what() << '\n';

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 
 /// @file

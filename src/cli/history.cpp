@@ -4,6 +4,7 @@
 #include "cli/json_output.h"
 #include "cli/time_text.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/record_name.h"
 

@@ -2,6 +2,7 @@
 
 #include "cli/state_watch.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 

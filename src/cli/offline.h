@@ -1,13 +1,14 @@
 #pragma once
 
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/plan/planned_job.h"
 
 #include <optional>
 #include <string>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// Arguments of `grind table`.
 struct TableOptions {

@@ -8,6 +8,7 @@
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"

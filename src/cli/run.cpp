@@ -9,6 +9,7 @@
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"

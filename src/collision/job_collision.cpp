@@ -1,6 +1,7 @@
 #include "flute_grinder/collision/job_collision.h"
 
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <algorithm>
 #include <cmath>

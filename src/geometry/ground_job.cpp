@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
 
 #include <boost/math/tools/minima.hpp>

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_correction.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <cmath>
 #include <map>

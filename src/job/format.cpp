@@ -1,5 +1,8 @@
 #include "flute_grinder/job/format.h"
 
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/curve/units.h"
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -20,6 +23,12 @@ std::string format(const char* pattern, ...) {
 bool hasForm(std::string_view text, std::string_view form) {
   return std::equal(text.begin(), text.end(), form.begin(), form.end(),
                     [](char c, char f) { return f == '0' ? c >= '0' && c <= '9' : c == f; });
+}
+
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
+  return format("D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s", cutter.end_diameter / units::kMillimetre,
+                cutter.cone_angle / units::kDegree, cutter.spiral_angle / units::kDegree,
+                cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
 }
 
 }  // namespace flute_grinder

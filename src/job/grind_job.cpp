@@ -203,12 +203,6 @@ void checkTogether(Checker& checker, const GrindJob& job) {
 
 }  // namespace
 
-std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
-  return format("D %g mm, cone %g deg, spiral %g deg, rake %g deg, %zu %s", cutter.end_diameter / units::kMillimetre,
-                cutter.cone_angle / units::kDegree, cutter.spiral_angle / units::kDegree,
-                cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
-}
-
 CutterGeometry cutterOf(const GrindJob& job, int tooth) {
   CutterGeometry cutter = job.cutter;
   if (!job.spiral_angles.empty()) cutter.spiral_angle = job.spiral_angles[static_cast<std::size_t>(tooth)];

@@ -1,5 +1,7 @@
 #include "flute_grinder/machine/machine_geometry.h"
 
+#include "flute_grinder/job/grind_job.h"
+
 #include <cmath>
 
 namespace flute_grinder {

@@ -1,5 +1,6 @@
 #include "flute_grinder/motion/grind_program.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/motion/work_offsets.h"
 
@@ -110,7 +111,7 @@ std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, c
 }  // namespace
 
 GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first)
-    : job_(job),
+    : job_(std::make_shared<const GrindJob>(job)),
       machine_(checked(machine, start)),
       start_(start),
       stroke_(strokeOf(job)),
@@ -151,6 +152,8 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   append(MoveKind::kReturn, order.back(), park);
 }
 
+double GrindProgram::swivel() const noexcept { return job_->process.setup_swivel; }
+
 void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear, double taper) {
   moves_.push_back(
       {kind, static_cast<std::uint16_t>(pass.tooth), static_cast<std::uint16_t>(pass.pass), to, wear, taper});
@@ -160,17 +163,17 @@ void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, 
   const Helix& helix = this->helix(pass.tooth);
   const ConicalCutter& cutter = helix.edge.cutter;
   const LogCurve& curve = helix.curve;
-  const DepthLaw law = depthLaw(job_, depth);
+  const DepthLaw law = depthLaw(*job_, depth);
   const double at_end = law.at_end + wear;
   const auto y = [&](double x) { return cutter.y(x) + x * law.taper - at_end; };
-  const double tooth_angle = job_.tooth_angles[static_cast<std::size_t>(pass.tooth)];
+  const double tooth_angle = job_->tooth_angles[static_cast<std::size_t>(pass.tooth)];
   const auto go = [&](MoveKind kind) { append(kind, pass, at); };
   at[kA] = tooth_angle + curve.a(stroke_.from);
   go(MoveKind::kIndex);
   at[kX] = stroke_.from;
   at[kZ] = helix.z(stroke_.from);
   go(MoveKind::kPosition);
-  at[kY] = cutter.y(stroke_.from) + job_.process.clearance;
+  at[kY] = cutter.y(stroke_.from) + job_->process.clearance;
   go(MoveKind::kApproach);
   at[kY] = y(stroke_.from);
   append(MoveKind::kInfeed, pass, at, wear, law.taper);

@@ -1,5 +1,6 @@
 #include "flute_grinder/motion/job_plan.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "motion/plan_checks.h"
 
 #include <algorithm>

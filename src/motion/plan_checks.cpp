@@ -1,5 +1,7 @@
 #include "motion/plan_checks.h"
 
+#include "flute_grinder/job/grind_job.h"
+
 #include <algorithm>
 #include <cmath>
 

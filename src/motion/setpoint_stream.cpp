@@ -1,5 +1,7 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
+#include "flute_grinder/job/grind_job.h"
+
 #include <algorithm>
 #include <limits>
 #include <tuple>

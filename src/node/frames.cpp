@@ -1,6 +1,7 @@
 #include "node/frames.h"
 
 #include "flute_grinder/collision/joint_pose.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <urdf_parser/urdf_parser.h>
 

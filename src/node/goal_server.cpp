@@ -1,5 +1,6 @@
 #include "node/goal_server.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/offset_basis.h"

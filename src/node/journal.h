@@ -1,7 +1,8 @@
 #pragma once
 
 #include "flute_grinder/control/loop_status.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/job/tooth_pass.h"
 #include "node/atomic_file.h"
 
 #include <optional>

@@ -1,5 +1,6 @@
 #include "node/plan_server.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"

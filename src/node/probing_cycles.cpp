@@ -4,6 +4,7 @@
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "node/plain_name.h"
 

@@ -1,5 +1,7 @@
 #include "node/progress_tracker.h"
 
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "flute_grinder/geometry/section_outline.h"
-#include "flute_grinder/job/grind_job.h"
 
 #include <QString>
 
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// A section of the cutter that a job grinds, with what is asked of it there.
 struct CutterSection {

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"

@@ -3,7 +3,6 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/machine/swivel.h"
 #include "flute_grinder/motion/work_offsets.h"
@@ -24,6 +23,8 @@
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
 /// without violations, and asks before an unfinished job is discarded, and for the swivel unless it is known to be set.

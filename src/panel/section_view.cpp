@@ -1,6 +1,7 @@
 #include "panel/section_view.h"
 
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/conversions.h"
 #include "panel/plain_words.h"

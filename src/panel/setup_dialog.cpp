@@ -2,6 +2,7 @@
 
 #include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/swivel_range.h"
+#include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
@@ -25,7 +26,7 @@ namespace flute_grinder {
 namespace {
 
 constexpr int kPollInterval = 50;  ///< [ms]
-constexpr int kSheetLines = 24, kColumns = 105;
+constexpr int kSheetLines = 24, kSheetColumns = 105;
 
 }  // namespace
 
@@ -58,13 +59,13 @@ SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidge
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
   layout->addLayout(buttons);
-  resize(kColumns * sheet_->fontMetrics().horizontalAdvance('0'), sizeHint().height());
+  resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'), sizeHint().height());
   connect(close, &QPushButton::clicked, this, &QDialog::close);
   connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
   connect(write_, &QPushButton::clicked, this, [this] {
     keep_->setEnabled(false);
     write_->setEnabled(false);
-    working_ = std::async(std::launch::async, [this, setup = *setup_] { return write(setup); });
+    working_ = std::async(std::launch::async, [this, setup = setup_] { return write(*setup); });
   });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
   guardFromWheel(*this);
@@ -85,9 +86,7 @@ void SetupDialog::beginToSolve() {
 }
 
 SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
-  const auto refused = [](const std::string& why) {
-    return Done{std::nullopt, false, QString::fromStdString(why), false};
-  };
+  const auto refused = [](const std::string& why) { return Done{nullptr, false, QString::fromStdString(why), false}; };
   try {
     const GrindJob job = readJobFile(file_, unsolvedFields(keep));
     auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
@@ -101,7 +100,7 @@ SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
     const std::string refusal = planRefusal(setup);
     const std::string text = setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
     if (!refusal.empty()) return refused(text + "It is not written.");
-    return {setup, false, QString::fromStdString(text), true};
+    return {std::make_shared<const JobSetup>(setup), false, QString::fromStdString(text), true};
   } catch (const std::exception& error) {
     return refused(error.what());
   }
@@ -118,9 +117,9 @@ std::optional<double> SetupDialog::aboveSwivel(const GrindJob& job) const {
 SetupDialog::Done SetupDialog::write(const JobSetup& setup) const {
   try {
     writeSetup(file_, setup);
-    return {std::nullopt, true, "Written into " + QString::fromStdString(file_) + ".", true};
+    return {nullptr, true, "Written into " + QString::fromStdString(file_) + ".", true};
   } catch (const std::exception& error) {
-    return {std::nullopt, false, error.what(), false};
+    return {nullptr, false, error.what(), false};
   }
 }
 
@@ -135,7 +134,7 @@ void SetupDialog::poll() {
 void SetupDialog::take(const Done& done) {
   setup_ = done.setup;
   keep_->setEnabled(true);
-  write_->setEnabled(setup_.has_value());
+  write_->setEnabled(setup_ != nullptr);
   if (done.written) {
     sheet_->appendPlainText(done.text);
     Q_EMIT written();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/geometry/job_setup.h"
+#include "flute_grinder/geometry/setup_solver.h"
 
 #include <QComboBox>
 #include <QDialog>
@@ -10,10 +10,14 @@
 
 #include <atomic>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace flute_grinder {
+
+struct GrindJob;
+struct JobSetup;
 
 /// Shows the set-up sheet of a job file, leaving a figure of it as it is if asked to, and writes the set-up into the
 /// file if asked to. Solving and writing have a thread of their own, and a master that hangs holds it up for a second
@@ -34,7 +38,7 @@ class SetupDialog : public QDialog {
  private:
   /// What the thread has done.
   struct Done {
-    std::optional<JobSetup> setup;  ///< that was solved and can be written
+    std::shared_ptr<const JobSetup> setup;  ///< that was solved and can be written
     bool written = false;
     QString text;
     bool good = false;
@@ -48,7 +52,7 @@ class SetupDialog : public QDialog {
   void take(const Done& done);
 
   const std::string file_, description_, flange_;
-  std::optional<JobSetup> setup_;
+  std::shared_ptr<const JobSetup> setup_;
   QPlainTextEdit* sheet_;
   QComboBox* keep_;
   QPushButton* write_;

@@ -1,6 +1,8 @@
 #include "flute_grinder/plan/planned_job.h"
 
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/messages/conversions.h"
 
 #include <stdexcept>
 #include <vector>
@@ -38,6 +40,9 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<core::Reason>& rea
 }
 
 }  // namespace
+
+JobWithDigest::JobWithDigest(GrindJob job)
+    : job_(std::make_shared<const GrindJob>(std::move(job))), digest_(jobDigest(*job_)) {}
 
 PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
                         const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,

@@ -1,6 +1,7 @@
 #include "flute_grinder/record/job_record.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"

@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <algorithm>
 #include <array>

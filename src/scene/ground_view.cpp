@@ -1,5 +1,7 @@
 #include "flute_grinder/scene/ground_view.h"
 
+#include "flute_grinder/job/grind_job.h"
+
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>

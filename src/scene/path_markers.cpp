@@ -1,5 +1,7 @@
 #include "flute_grinder/scene/path_markers.h"
 
+#include "flute_grinder/job/grind_job.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -25,7 +25,7 @@ const double kStrokeTo = 0.037;
 
 inline SetpointStream paperFromPark() {
   const LoopConfig config = machineConfig();
-  return SetpointStream(GrindProgram(readJobFile("test/jobs/paper.yaml"), config.machine, config.machine.park));
+  return paperStream(config.machine, config.machine.park);
 }
 
 /// The job's setpoints without interference.

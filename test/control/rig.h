@@ -2,9 +2,8 @@
 
 #include "control/fixtures.h"
 #include "control/heap.h"
+#include "control/paper_stream.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <memory>
 #include <optional>
@@ -104,8 +103,7 @@ class Rig {
 
   /// The paper's job from the commanded position; the machine may differ from the loop's.
   SetpointStream paperStream(const Machine& machine) const {
-    static const GrindJob job = readJobFile("test/jobs/paper.yaml");
-    return SetpointStream(GrindProgram(job, machine, last().command));
+    return test_support::paperStream(machine, last().command);
   }
   SetpointStream paperStream() const { return paperStream(config_.machine); }
 

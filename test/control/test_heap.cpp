@@ -1,6 +1,7 @@
 #include "control/fixtures.h"
 #include "control/heap.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 

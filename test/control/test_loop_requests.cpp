@@ -290,7 +290,7 @@ TEST_P(StartAfterMoving, IsRefused) {
   const int axis = GetParam();
   Axes planned = rig.last().command;
   planned[axis] = std::nextafter(planned[axis], 1.0);
-  SetpointStream stream(GrindProgram(readJobFile("test/jobs/paper.yaml"), machineConfig().machine, planned));
+  SetpointStream stream = paperStream(machineConfig().machine, planned);
   const RequestReply answer = rig.askToStart(stream);
   EXPECT_FALSE(answer.accepted);
   EXPECT_CONTAINS(answer.text, "do not stand where the job was planned to start");

@@ -1,6 +1,6 @@
 #include "control/fixtures.h"
+#include "control/paper_stream.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/job/job_file.h"
 
 #include <atomic>
 #include <chrono>
@@ -72,7 +72,7 @@ class LoopThreads : public testing::Test {
     if (before.state != S::kReady) return std::this_thread::yield();
     Axes at;
     std::copy(before.command.begin(), before.command.end(), at.data());
-    const auto stream = std::make_unique<SetpointStream>(GrindProgram(job_, machineConfig().machine, at));
+    const auto stream = std::make_unique<SetpointStream>(paperStream(machineConfig().machine, at));
     ASSERT_TRUE(loop_->startJob(stream.get()));
     std::optional<RequestReply> reply;
     ASSERT_TRUE(soon([&] { return (reply = loop_->startJobReply()).has_value(); }));
@@ -81,7 +81,6 @@ class LoopThreads : public testing::Test {
     ASSERT_TRUE(soon([&] { return loop_->status().jobs_ended == accepted_; }));
   }
 
-  const GrindJob job_ = readJobFile("test/jobs/paper.yaml");
   FakeDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
   std::atomic<bool> busy_{true}, cycling_{true};

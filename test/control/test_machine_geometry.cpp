@@ -1,3 +1,4 @@
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/machine/machine_geometry.h"
 #include "temp_folder.h"

@@ -1,6 +1,8 @@
 #include "control/checks.h"
 #include "control/paper_job.h"
 #include "control/rig.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include <rapidcheck.h>
@@ -25,7 +27,7 @@ Machine machineAt(const Axes& offset, const LoopConfig& config = machineConfig()
 
 /// The paper's job from where the axes stand.
 SetpointStream streamAt(const Axes& offset, const Axes& command, const LoopConfig& config = machineConfig()) {
-  return SetpointStream(GrindProgram(paper(), machineAt(offset, config), command - offset));
+  return paperStream(machineAt(offset, config), command - offset);
 }
 
 double between(double low, double high) {

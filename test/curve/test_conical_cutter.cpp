@@ -1,6 +1,6 @@
 #include "flute_grinder/curve/conical_cutter.h"
 
-#include "motion/generators.h"
+#include "curve/generators.h"
 #include "reference.h"
 
 #include <gtest/gtest.h>

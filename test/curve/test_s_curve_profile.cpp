@@ -1,6 +1,6 @@
 #include "flute_grinder/curve/s_curve_profile.h"
 
-#include "motion/generators.h"
+#include "curve/generators.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

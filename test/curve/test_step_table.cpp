@@ -1,6 +1,6 @@
 #include "flute_grinder/curve/step_table.h"
 
-#include "motion/generators.h"
+#include "curve/generators.h"
 #include "reference.h"
 
 #include <gtest/gtest.h>

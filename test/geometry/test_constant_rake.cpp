@@ -7,6 +7,7 @@
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_file.h"
 #include "motion/generators.h"
 

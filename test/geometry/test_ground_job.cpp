@@ -5,6 +5,7 @@
 #include "flute_grinder/job/job_file.h"
 
 #include "brute_force.h"
+#include "jobs.h"
 #include "motion/generators.h"
 
 #include <gtest/gtest.h>

@@ -7,6 +7,7 @@
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "jobs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // Where a ball touches the first tooth's rake face, against a plane and against membership in the swept wheel.
 
-#include "any_tool.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_touch.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/reason.h"
+#include "jobs.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>

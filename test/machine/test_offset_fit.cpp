@@ -1,3 +1,4 @@
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_geometry.h"
 #include "flute_grinder/machine/offset_fit.h"
 

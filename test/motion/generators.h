@@ -1,13 +1,9 @@
 #pragma once
 
-#include "any_tool.h"
-#include "flute_grinder/curve/conical_cutter.h"
-#include "flute_grinder/curve/units.h"
+#include "curve/generators.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/grind_program.h"
-
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,66 +11,8 @@
 #include <ostream>
 #include <stdexcept>
 
-// What the property tests draw from: cutters of both hands, machines and jobs.
+// What the property tests draw from: machines and jobs.
 namespace flute_grinder::test_support {
-
-/// Even over [low, high], whatever rapidcheck's size.
-inline rc::Gen<double> uniform(double low, double high) {
-  constexpr std::int64_t steps = std::int64_t{1} << 40;
-  return rc::gen::map(rc::gen::resize(rc::kNominalSize, rc::gen::inRange<std::int64_t>(0, steps + 1)),
-                      [=](std::int64_t i) { return low + (high - low) * (static_cast<double>(i) / steps); });
-}
-
-/// Even in the logarithm over [low, high].
-inline rc::Gen<double> logUniform(double low, double high) {
-  return rc::gen::map(uniform(0, 1), [=](double f) { return std::min(high, low * std::pow(high / low, f)); });
-}
-
-/// One of low, ..., high.
-inline rc::Gen<int> whole(int low, int high) {
-  return rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high + 1));
-}
-
-/// -3 to 30 deg, now and then none or next to none.
-inline rc::Gen<double> coneAngle() {
-  return rc::gen::weightedOneOf<double>({{1, rc::gen::just(0.0)},
-                                         {1, uniform(-1e-8 * units::kDegree, 1e-8 * units::kDegree)},
-                                         {6, uniform(-3 * units::kDegree, 30 * units::kDegree)}});
-}
-
-/// -60 to 60 deg, now and then none.
-inline rc::Gen<double> spiralAngle() {
-  return rc::gen::weightedOneOf<double>(
-      {{1, rc::gen::just(0.0)}, {7, uniform(-60 * units::kDegree, 60 * units::kDegree)}});
-}
-
-/// Length from X = 0 toward the shank (+1) or beyond the end (-1) over which the radius keeps a fifth of what it is at
-/// X = 0; at most `limit`. [m]
-inline double openLength(const CutterGeometry& g, int side, double limit) {
-  const double closing = -side * std::tan(g.cone_angle);
-  return closing > 0 ? std::min(limit, 0.8 * g.end_diameter / 2 / closing) : limit;
-}
-
-/// dZ/dY of the published law: a left-hand cutter is a right-hand one in the mirror.
-inline long double zPerY(const CutterGeometry& g) {
-  return (g.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(static_cast<long double>(g.rake_angle));
-}
-
-inline rc::Gen<CutterGeometry> cutterGeometry() {
-  return rc::gen::exec([] {
-    CutterGeometry g;
-    g.end_diameter = *logUniform(0.3e-3, 30e-3);
-    g.cone_angle = *coneAngle();
-    g.spiral_angle = *spiralAngle();
-    g.rake_angle = *uniform(-20 * units::kDegree, 20 * units::kDegree);
-    g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
-    g.cut = *rc::gen::arbitrary<bool>() ? CutDirection::kLeftHand : CutDirection::kRightHand;
-    g.rake_tolerance = 0.5 * units::kDegree;
-    askForRakeAlone(g);
-    g.shank_diameter = 10e-3;
-    return g;
-  });
-}
 
 /// Limits as of machines from slow and stiff to fast; wide in position. Period of 500 to 4000 Hz.
 inline rc::Gen<Machine> machine() {
@@ -145,10 +83,6 @@ inline rc::Gen<ZCorrection> zCorrection(const GrindJob& job) {
     for (int i = 0; i < c.coefficientCount(); ++i) c.coefficients[static_cast<std::size_t>(i)] = size * *uniform(-1, 1);
     return c;
   });
-}
-
-inline double edgePerTravel(const CutterGeometry& g) {
-  return std::sqrt(1 + std::pow(std::tan(g.cone_angle), 2) + std::pow(std::tan(g.spiral_angle), 2));
 }
 
 /// A job, and a machine and a start that suit it.
@@ -222,14 +156,6 @@ inline rc::Gen<Work> correctedWork(double cycles) {
   });
 }
 
-/// The paper's cutter: D1 10 mm, S 30 deg, C 5 deg, r 8 deg, 30 mm.
-inline CutterGeometry paperCutter() {
-  CutterGeometry g{10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
-                   30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
-  askForRakeAlone(g);
-  return g;
-}
-
 /// The paper's cutter at 600 mm/min in one pass.
 inline GrindJob paperJob() {
   GrindJob j;
@@ -271,14 +197,6 @@ inline Machine roomyMachine() {
 }  // namespace flute_grinder::test_support
 
 namespace flute_grinder {
-
-inline std::ostream& operator<<(std::ostream& out, const CutterGeometry& g) {
-  return out << "D1 " << g.end_diameter / units::kMillimetre << " mm, C " << g.cone_angle / units::kDegree << " deg, S "
-             << g.spiral_angle / units::kDegree << " deg, r " << g.rake_angle / units::kDegree << " deg, L "
-             << g.flute_length / units::kMillimetre << " mm";
-}
-
-inline std::ostream& operator<<(std::ostream& out, EvenStepRule rule) { return out << toString(rule); }
 
 inline std::ostream& operator<<(std::ostream& out, StrokeDirection direction) { return out << toString(direction); }
 

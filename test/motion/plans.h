@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/motion/job_plan.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "generators.h"
 
 #include <string>

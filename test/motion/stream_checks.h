@@ -3,6 +3,7 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include "curve/reference.h"
+#include "flute_grinder/job/grind_job.h"
 #include "generators.h"
 
 #include <gtest/gtest.h>

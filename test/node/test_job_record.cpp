@@ -2,6 +2,7 @@
 
 #include "any_tool.h"
 #include "control/fixtures.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"

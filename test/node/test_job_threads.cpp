@@ -1,6 +1,7 @@
 #include "collision/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "node/job_gate.h"
 #include "node/planner.h"

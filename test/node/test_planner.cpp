@@ -4,6 +4,7 @@
 
 #include "collision/machine.h"
 #include "control/fixtures.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <gtest/gtest.h>
 

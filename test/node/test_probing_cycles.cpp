@@ -1,6 +1,7 @@
 #include "node/probing_cycles.h"
 
 #include "control/fixtures.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 

@@ -2,6 +2,7 @@
 #include "node/progress_tracker.h"
 
 #include "control/fixtures.h"
+#include "flute_grinder/job/grind_job.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The panel against a grinder of the test's own, which can be put into every state, and stay silent.
 
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/WrittenSetpoint.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 #include "stage.h"
 
@@ -223,7 +223,7 @@ TEST_F(OnStage, TheWindowIsNamedAfterTheGrinder) {
 
 Legend legendOf(const QString& job) {
   Legend legend;
-  legend.cutter = goalFromJob(readJobFile(job.toStdString())).cutter;
+  legend.cutter = goalFromFile(job.toStdString()).cutter;
   legend.tolerance = 0.5e-6;
   legend.max_error = 0.0698e-6;
   legend.arrow_scale = 2e5;
@@ -384,7 +384,7 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   WAIT_FOR(panel.text("verdict").find("Takes 7.0 s") == 0);
   GrindActionGoal other;
   other.goal_id.id = "from a terminal";
-  other.goal = goalFromJob(readJobFile(kPaper.toStdString()));
+  other.goal = goalFromFile(kPaper.toStdString());
   other.goal.job_name = "four_teeth_of_the_night_shift.yaml";
   other.goal.cutter.end_diameter = 0.012;
   stage.publishJob(other);
@@ -423,7 +423,7 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   const int width = panel.widget().minimumSizeHint().width();
   GrindActionGoal job;
   job.goal_id.id = "of the night shift";
-  job.goal = goalFromJob(readJobFile(kPaper.toStdString()));
+  job.goal = goalFromFile(kPaper.toStdString());
   job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
   stage.publishJob(job);
   Legend legend = legendOf(kPaper);
@@ -721,7 +721,7 @@ class AfterAJobWasLeft : public OnStage {
       JobProgress& left = stage.state.progress;
       left.job_digest = std::string(64, 'a');
       left.job_name = "published.yaml";
-      left.cutter = goalFromJob(readJobFile(kPaper.toStdString())).cutter;
+      left.cutter = goalFromFile(kPaper.toStdString()).cutter;
       left.tooth = 1;
       left.pass = 2;
     });
@@ -740,7 +740,7 @@ class AfterAJobWasLeft : public OnStage {
   }
   void leavePaper(const QString& file = kPaper) {
     stage.change([&] {
-      stage.state.progress.job_digest = jobDigest(readJobFile(file.toStdString()));
+      stage.state.progress.job_digest = digestOf(file);
       stage.state.progress.job_name = "paper.yaml";
     });
   }

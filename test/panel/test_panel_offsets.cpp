@@ -1,6 +1,5 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
@@ -107,7 +106,7 @@ TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
 
 TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
   setFor(0.006);
-  stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });
+  stage.change([&] { stage.state.progress.job_digest = digestOf(kPaper); });
   auto& go_on = panel.the<QCheckBox>("continue");
   WAIT_FOR(go_on.isEnabled() && panel.label("zero_points") == "Zero points: not of this job: Y");
   const auto& zeros = panel.the<QLabel>("zero_points");

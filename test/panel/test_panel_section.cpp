@@ -1,7 +1,6 @@
 // The panel's section of the ground cutter, against figures in closed form.
 
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 #include "stage.h"
 
@@ -125,7 +124,7 @@ TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {
 
 TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   const QString job = QString(kPaper).replace("test/jobs/paper", "jobs/unequal_d12_t4");
-  std::vector<double> pitches = readJobFile(job.toStdString()).tooth_angles;
+  std::vector<double> pitches = goalFromFile(job.toStdString()).cutter.tooth_angles;
   pitches.push_back(2 * M_PI);
   std::adjacent_difference(pitches.begin(), pitches.end(), pitches.begin());
   const auto [min, max] = std::minmax_element(pitches.begin() + 1, pitches.end());
@@ -186,7 +185,7 @@ TEST_F(SectionOnStage, CoreSpiralAndChordHaveTheirTolerances) {
 
 TEST_F(SectionOnStage, ItFollowsTheWheel) {
   Panel panel("cell/stage", kPaper);
-  stage.change([&] { stage.state.progress.job_digest = jobDigest(readJobFile(kPaper.toStdString())); });
+  stage.change([&] { stage.state.progress.job_digest = digestOf(kPaper); });
   stage.be(GrinderState::RUNNING, "running");
   standAt(0.012345);
   openSection(panel);
@@ -206,7 +205,7 @@ TEST_F(SectionOnStage, ItSaysWhatItCannotShow) {
   stage.change([&] {
     stage.state.progress.job_digest = std::string(64, 'a');
     stage.state.progress.job_name = "published.yaml";
-    stage.state.progress.cutter = goalFromJob(readJobFile(kPaper.toStdString())).cutter;
+    stage.state.progress.cutter = goalFromFile(kPaper.toStdString()).cutter;
   });
   stage.be(GrinderState::RUNNING, "running");
   standAt(0.01);

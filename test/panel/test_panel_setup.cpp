@@ -1,7 +1,7 @@
 // The set-up sheet in the panel: solved for the machine of the running grinder, and written into the job file.
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 
 #include <ros/package.h>
@@ -66,7 +66,7 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
   EXPECT_FALSE(panel->enabled("write_setup"));
   EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U);
-  const GrindProcess written = readJobFile(file.toStdString()).process;
+  const Process written = goalFromFile(file.toStdString()).process;
   EXPECT_NEAR(written.setup_swivel, figure("swivel") * units::kDegree, 0.0005 * units::kDegree);
   EXPECT_NEAR(written.setup_height, figure("height") * units::kMillimetre, 0.0005 * units::kMillimetre);
   EXPECT_NEAR(written.setup_lead, figure("lead") * units::kMillimetre, 0.0005 * units::kMillimetre);
@@ -92,7 +92,7 @@ TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
   EXPECT_NE(height, -1.366);
   panel->click("write_setup");
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
-  const GrindProcess written = readJobFile(file.toStdString()).process;
+  const Process written = goalFromFile(file.toStdString()).process;
   EXPECT_DOUBLE_EQ(written.setup_swivel, 43 * units::kDegree);
   EXPECT_NEAR(written.setup_height, height * units::kMillimetre, 0.0005 * units::kMillimetre);
   QTest::keyClick(&keep, Qt::Key_Down);  // and once more

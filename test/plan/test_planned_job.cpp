@@ -5,6 +5,7 @@
 #include "flute_grinder/plan/planned_job.h"
 
 #include "collision/machine.h"
+#include "flute_grinder/messages/conversions.h"
 #include "motion/generators.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/collision/collision_check.h"
+#include "flute_grinder/job/reason.h"
 #include "flute_grinder/motion/grind_program.h"
 
 #include <optional>

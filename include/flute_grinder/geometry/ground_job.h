@@ -2,13 +2,15 @@
 
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/geometry/ground_edge.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/reason.h"
 
 #include <array>
 #include <limits>
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// The wheel of a job, when new.
 /// @param job a job that validate() accepts.

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/setup_solver.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_edit.h"
 
 #include <array>

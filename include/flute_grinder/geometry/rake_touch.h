@@ -1,10 +1,10 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
-
 #include <Eigen/Core>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// The work A at which the rake face of a job's first tooth comes to a ball that stands in its flute, as a measuring
 /// probe does. A turns there from where the ball stands free: upward for a right-hand cutter, downward for a left-hand

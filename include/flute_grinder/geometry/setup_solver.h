@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/job/z_law.h"
 
 #include <array>
 #include <cstdint>

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_geometry.h"
 
 #include <optional>
 #include <string>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// What the axes read when the wheel touches a blank, of any diameter D where it touches.
 struct TouchReadings {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/job/wheel_shape.h"
 
 #include <array>
 #include <optional>

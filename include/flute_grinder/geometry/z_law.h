@@ -1,9 +1,10 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/job_plan.h"
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// A job with what it needs to know of Z: for kConstantRake, the correction of Z with which the rake is as asked within
 /// kEvenRake over the whole flute, for each tooth; for kPublished none. The wheel is that of the job's start, the

@@ -5,10 +5,15 @@
 
 namespace flute_grinder {
 
+struct CutterGeometry;
+
 /// Text as by std::printf, of any length.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
 /// Whether a text has the form of another, in which 0 stands for any digit, e.g. "0000-00-00".
 bool hasForm(std::string_view text, std::string_view form);
+
+/// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
+std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 
 }  // namespace flute_grinder

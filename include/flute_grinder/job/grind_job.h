@@ -6,6 +6,9 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/job/reason.h"
+#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/job/wheel_shape.h"
+#include "flute_grinder/job/z_law.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -28,34 +31,6 @@ inline constexpr EnumRow<StrokeDirection> kStrokeDirections[]{
     {StrokeDirection::kFromEnd, "from_end"},
     {StrokeDirection::kToEnd, "to_end"},
 };
-/// The shape of a grinding wheel.
-enum class WheelShape { kStraight, kAngled, kFullRadius, kCup, kPoints };
-/// The face of a wheel, as the machine carries it.
-enum class WheelFace { kUpper, kLower };
-inline constexpr EnumRow<WheelShape> kWheelShapes[]{
-    {WheelShape::kStraight, "straight"}, {WheelShape::kAngled, "angled"}, {WheelShape::kFullRadius, "full_radius"},
-    {WheelShape::kCup, "cup"},           {WheelShape::kPoints, "points"},
-};
-inline constexpr EnumRow<WheelFace> kWheelFaces[]{
-    {WheelFace::kUpper, "upper"},
-    {WheelFace::kLower, "lower"},
-};
-/// How Z follows X along a stroke.
-enum class ZLaw {
-  kPublished,     ///< Z = X tan C sin r, mirrored for a left-hand cutter
-  kConstantRake,  ///< that and a smooth correction, with which the rake is the same over the whole flute
-};
-inline constexpr EnumRow<ZLaw> kZLaws[]{
-    {ZLaw::kPublished, "published"},
-    {ZLaw::kConstantRake, "constant_rake"},
-};
-constexpr auto& rowsOf(ZLaw) noexcept { return kZLaws; }
-constexpr auto& rowsOf(WheelShape) noexcept { return kWheelShapes; }
-constexpr auto& rowsOf(WheelFace) noexcept { return kWheelFaces; }
-/// Whether a wheel of the shape has one face larger than the other.
-constexpr bool isTapered(WheelShape shape) noexcept {
-  return shape == WheelShape::kAngled || shape == WheelShape::kCup;
-}
 constexpr auto& rowsOf(GrindOrder) noexcept { return kGrindOrders; }
 constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
 
@@ -91,21 +66,6 @@ struct GrindProcess {
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< where the flute is deepest [m]
 };
 
-/// A corner of a wheel's profile.
-struct ProfilePoint {
-  double w = 0;       ///< along the spindle, from the middle of the width [m]
-  double radius = 0;  ///< from the spindle's axis [m]
-};
-
-/// A pass of a tooth.
-struct ToothPass {
-  int tooth = 0;  ///< from 0
-  int pass = 0;   ///< from 0
-
-  bool operator==(const ToothPass& other) const { return tooth == other.tooth && pass == other.pass; }
-  bool operator!=(const ToothPass& other) const { return !(*this == other); }
-};
-
 /// How the flutes are interpolated.
 struct GrindInterpolation {
   EvenStepRule even_step = EvenStepRule::kPublished;
@@ -126,9 +86,6 @@ struct GrindJob {
   std::vector<ZCorrection> z_corrections;
 };
 
-/// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
-std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
-
 /// The cutter with the spiral angle of one of its teeth.
 CutterGeometry cutterOf(const GrindJob& job, int tooth);
 
@@ -140,10 +97,8 @@ Range askedSpiral(const GrindJob& job);
 ZCorrection zCorrectionOf(const GrindJob& job, int tooth);
 
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< how well kConstantRake keeps the rake [rad]
-constexpr int kMaxTeeth = 64;
-constexpr int kMaxWheelPoints = 100;  ///< of a wheel's profile
+constexpr int kMaxWheelPoints = 100;                  ///< of a wheel's profile
 constexpr int kMaxSparkOut = 100;
-constexpr int kMaxPasses = 10000;         ///< per tooth
 constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/yaml_text.h"
 
 #include <string>
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// Reads and checks a job from a YAML file in the operator's units (mm, deg, mm/min), with its wheel from the wheel
 /// file that it may name, relative to the job file.

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
-
 #include <Eigen/Core>
 
 #include <optional>
 
 namespace flute_grinder {
+
+struct GrindJob;
+struct GrindProcess;
 
 /// The ball of a measuring probe that the wheel head carries.
 struct ProbeBall {

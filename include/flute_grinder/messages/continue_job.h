@@ -2,11 +2,12 @@
 
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/JobProgress.h"
-#include "flute_grinder/job/grind_job.h"
 
 #include <string>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// Makes a goal start where a job was left, according to the journal.
 /// @param progress progress reported by the grinder.

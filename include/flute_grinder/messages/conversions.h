@@ -4,7 +4,6 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/WrittenSetpoint.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/job_plan.h"
 #include "flute_grinder/motion/setpoint.h"
 
@@ -14,6 +13,8 @@
 /// @file
 /// The only conversion between messages and core types. Both use SI units.
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// The job of a goal, unchecked: a choice that is out of range is kept, so validate() rejects it.
 GrindJob jobFromGoal(const GrindGoal& goal);

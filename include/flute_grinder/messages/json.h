@@ -1,7 +1,6 @@
 #pragma once
 
 #include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include <nlohmann/json.hpp>
@@ -10,6 +9,8 @@
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// JSON output: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
 #if NLOHMANN_JSON_VERSION_MAJOR > 3 || NLOHMANN_JSON_VERSION_MINOR >= 9

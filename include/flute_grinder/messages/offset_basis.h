@@ -3,7 +3,6 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/OffsetBasis.h"
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/json.h"
 
@@ -13,6 +12,8 @@
 /// @file
 /// Which figures of a goal its zero points depend on, and whether work offsets were set for them.
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// The goal of a job file, with the names of the file and its wheel file. @throw JobFileError
 GrindGoal goalFromFile(const std::string& path);

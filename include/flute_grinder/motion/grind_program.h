@@ -2,14 +2,18 @@
 
 #include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/log_curve.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/curve/z_correction.h"
+#include "flute_grinder/job/tooth_pass.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/feed_schedule.h"
 #include "flute_grinder/motion/setpoint.h"
 
+#include <memory>
 #include <vector>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// One move of a job, from the end of the previous move.
 struct Move {
@@ -50,10 +54,11 @@ class GrindProgram {
   ///        the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
   GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
 
-  const GrindJob& job() const noexcept { return job_; }
+  const GrindJob& job() const noexcept { return *job_; }
   const Machine& machine() const noexcept { return machine_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
   const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
+  double swivel() const noexcept;  ///< of the job's set-up [rad]
   const Axes& start() const noexcept { return start_; }
   const std::vector<Move>& moves() const noexcept { return moves_; }
 
@@ -73,7 +78,7 @@ class GrindProgram {
   void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
   void appendPass(const ToothPass& pass, double depth, double wear, Axes& at);
 
-  GrindJob job_;
+  std::shared_ptr<const GrindJob> job_;
   Machine machine_;
   Axes start_;
   FeedSchedule::Stroke stroke_;

@@ -2,13 +2,12 @@
 
 #include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -16,13 +15,13 @@ namespace flute_grinder {
 /// A job with its digest, which is computed once.
 class JobWithDigest {
  public:
-  explicit JobWithDigest(GrindJob job) : job_(std::move(job)), digest_(jobDigest(job_)) {}
+  explicit JobWithDigest(GrindJob job);
 
-  const GrindJob& job() const noexcept { return job_; }
+  const GrindJob& job() const noexcept { return *job_; }
   const std::string& digest() const noexcept { return digest_; }
 
  private:
-  GrindJob job_;
+  std::shared_ptr<const GrindJob> job_;
   std::string digest_;
 };
 

@@ -1,13 +1,15 @@
 #pragma once
 
 #include "flute_grinder/geometry/ground_cutter.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/tooth_pass.h"
 #include "flute_grinder/motion/setpoint.h"
 #include "flute_grinder/scene/markers.h"
 
 #include <optional>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// How far a job has come: the pass that runs, and the X that its stroke has reached.
 struct Reached {

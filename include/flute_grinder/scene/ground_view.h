@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/scene/ground_markers.h"
 
 #include <ros/ros.h>
@@ -12,6 +11,8 @@
 #include <thread>
 
 namespace flute_grinder {
+
+struct GrindJob;
 
 /// Shows the ground cutter in rviz on `~ground_cutter`, latched. It is computed in a thread of its own, at low
 /// priority: a plan at once, what is being ground at most once a second and in a twentieth of a core. Of several

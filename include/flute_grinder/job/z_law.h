@@ -1,0 +1,18 @@
+#pragma once
+
+#include "flute_grinder/curve/enum_table.h"
+
+namespace flute_grinder {
+
+/// How Z follows X along a stroke.
+enum class ZLaw {
+  kPublished,     ///< Z = X tan C sin r, mirrored for a left-hand cutter
+  kConstantRake,  ///< that and a smooth correction, with which the rake is the same over the whole flute
+};
+inline constexpr EnumRow<ZLaw> kZLaws[]{
+    {ZLaw::kPublished, "published"},
+    {ZLaw::kConstantRake, "constant_rake"},
+};
+constexpr auto& rowsOf(ZLaw) noexcept { return kZLaws; }
+
+}  // namespace flute_grinder

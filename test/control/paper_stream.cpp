@@ -1,0 +1,13 @@
+#include "control/paper_stream.h"
+
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
+
+namespace flute_grinder::test_support {
+
+SetpointStream paperStream(const Machine& machine, const Axes& start) {
+  static const GrindJob job = readJobFile("test/jobs/paper.yaml");
+  return SetpointStream(GrindProgram(job, machine, start));
+}
+
+}  // namespace flute_grinder::test_support

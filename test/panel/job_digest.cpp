@@ -1,0 +1,10 @@
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/messages/conversions.h"
+#include "panel_fixture.h"
+
+namespace flute_grinder {
+
+std::string digestOf(const QString& job) { return jobDigest(readJobFile(job.toStdString())); }
+
+}  // namespace flute_grinder

@@ -256,60 +256,6 @@ TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Faults injected into the simulated drive
-
-struct InjectedCase {
-  const char* name;
-  SimulatedDrive::Fault fault;
-  int axis;
-  FaultKind kind;
-};
-std::ostream& operator<<(std::ostream& out, const InjectedCase& c) { return out << c.name; }
-
-class InjectedFault : public testing::TestWithParam<InjectedCase> {};
-
-TEST_P(InjectedFault, EndsTheJobAndTheMachineRecovers) {
-  Rig<SimulatedDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  rig.runTo(MoveKind::kStroke);
-  rig.run(500);
-  rig.drive.inject(GetParam().fault, GetParam().axis);
-  for (int i = 0; i < 1000 && rig.last().state == S::kRunning; ++i) rig.cycle();
-  ASSERT_EQ(rig.last().state, S::kFault);
-  EXPECT_EQ(rig.last().fault.kind, GetParam().kind);
-  EXPECT_EQ(rig.last().fault.axis, GetParam().axis);
-  EXPECT_EQ(rig.jobsEnded(), 1);
-  rig.cycle();
-  EXPECT_FALSE(rig.last().drive.enabled);
-
-  rig.drive.inject(SimulatedDrive::Fault::kNone);
-  rig.cycle();
-  const Axes rest = rig.last().position;
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  rig.cycle();
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
-  rig.run(50);
-  EXPECT_TRUE(sameBits(rig.last().position, rest)) << "power on moved an axis";
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
-  rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
-  rig.runToEnd();
-  EXPECT_EQ(rig.last().state, S::kReady);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    , InjectedFault,
-    testing::Values(InjectedCase{"EmergencyStop", SimulatedDrive::Fault::kEmergencyStop, 0, FaultKind::kEmergencyStop},
-                    InjectedCase{"StuckX", SimulatedDrive::Fault::kStuckAxis, kX, FaultKind::kFollowingError},
-                    InjectedCase{"StuckA", SimulatedDrive::Fault::kStuckAxis, kA, FaultKind::kFollowingError},
-                    InjectedCase{"StaleFeedback", SimulatedDrive::Fault::kStaleFeedback, 0, FaultKind::kStaleFeedback},
-                    InjectedCase{"NanZ", SimulatedDrive::Fault::kNanFeedback, kZ, FaultKind::kInvalidFeedback},
-                    InjectedCase{"DriveFault", SimulatedDrive::Fault::kDriveFault, 0, FaultKind::kDriveFault}),
-    [](const testing::TestParamInfo<InjectedCase>& info) { return std::string(info.param.name); });
-
-// ---------------------------------------------------------------------------------------------------------------------
 // Faults, in every state under power
 
 class FaultIn : public testing::TestWithParam<S> {

@@ -130,38 +130,6 @@ TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
   }
 }
 
-Rig<SimulatedDrive> simulatedRig(double spindle_run_up_time) {
-  return {machineConfig(), [=](SimulatedDrive& d) { d.init(driveModel(), {true, spindle_run_up_time}); }};
-}
-
-TEST(BeforeAJob, SpindleRunsUpOnTheSimulatedDrive) {
-  Rig<SimulatedDrive> rig = simulatedRig(0.0145);
-  rig.cycle();
-  rig.enable();
-  rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
-  // At speed with the 15th reading after the one in which it was started.
-  rig.run(14);
-  EXPECT_EQ(rig.last().state, S::kStarting);
-  EXPECT_TRUE(rig.last().drive.coolant_on);
-  EXPECT_EQ(rig.cycle().state, S::kRunning);
-  rig.runToEnd();
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_FALSE(rig.cycle().drive.spindle_at_speed);
-  EXPECT_FALSE(rig.last().drive.coolant_on);
-}
-
-TEST(BeforeAJob, SpindleThatIsTooSlowOnTheSimulatedDriveEndsIt) {
-  Rig<SimulatedDrive> rig = simulatedRig(0.0300);
-  rig.cycle();
-  rig.enable();
-  rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
-  rig.runUntil(S::kReady);
-  EXPECT_EQ(rig.last().fault.interlock, Interlock::kSpindle);
-  EXPECT_TRUE(rig.setpoints().empty());
-}
-
 class WaitsForJournal : public testing::Test {
  protected:
   void SetUp() override {

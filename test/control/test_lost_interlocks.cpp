@@ -276,19 +276,6 @@ class LostOnTheSimulatedDrive : public testing::TestWithParam<std::tuple<Simulat
   Rig<SimulatedDrive> rig_;
 };
 
-TEST_P(LostOnTheSimulatedDrive, TheJobGoesOnOnceItIsBack) {
-  const bool accepted = rig_.ask(E::kResume).accepted;
-  if (std::get<1>(GetParam()) == Interlock::kNotHomed) {
-    EXPECT_FALSE(accepted) << "a reference comes back by homing only";
-    return;
-  }
-  ASSERT_TRUE(accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().command == machineConfig().machine.park).all());
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
 TEST_P(LostOnTheSimulatedDrive, CancelLetsTheMachineHomeAndGrindAgain) {
   ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
   if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);

@@ -45,6 +45,14 @@ class DiagnosticsTest : public ::testing::Test {
     return status;
   }
 
+  /// Asks, and expects this answer.
+  Diagnostics::Status expect(Report report, int level, const std::string& message) {
+    const Diagnostics::Status status = ask(report);
+    EXPECT_EQ(status.level, level) << status.message;
+    EXPECT_EQ(status.message, message);
+    return status;
+  }
+
   static std::string value(const Diagnostics::Status& status, const std::string& key) {
     for (const auto& item : status.values) {
       if (item.key == key) return item.value;
@@ -71,9 +79,7 @@ class DiagnosticsTest : public ::testing::Test {
 };
 
 TEST_F(DiagnosticsTest, LoopThatHasNotRunIsAnError) {
-  const auto status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "not running");
+  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "not running");
 }
 
 TEST_F(DiagnosticsTest, LoopThatStopsIsAnError) {
@@ -86,9 +92,7 @@ TEST_F(DiagnosticsTest, LoopReportsItsPeriods) {
   watch(3);
   record_.period = 0.0012;
   watch();
-  const auto status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(status.message, "running");
+  const auto status = expect(&Diagnostics::reportLoop, DiagnosticStatus::OK, "running");
   EXPECT_EQ(value(status, "State"), "ready");
   EXPECT_EQ(value(status, "Nominal period [s]"), "0.001");
   EXPECT_EQ(value(status, "Mean period [s]"), "0.00105");
@@ -147,23 +151,17 @@ TEST_F(DiagnosticsTest, LateCyclesAreAWarningAndThenAnError) {
 TEST_F(DiagnosticsTest, SchedulingThatWasNotGrantedIsAWarning) {
   scheduling_ = {false, true};
   watch();
-  auto status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "no real-time scheduling");
+  expect(&Diagnostics::reportLoop, DiagnosticStatus::WARN, "no real-time scheduling");
   scheduling_ = {true, false};
   watch();
-  status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "memory is not locked");
+  const auto status = expect(&Diagnostics::reportLoop, DiagnosticStatus::WARN, "memory is not locked");
   EXPECT_EQ(value(status, "Memory locked"), "False");
 }
 
 TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
   record_.records_lost = 7;
   watch();
-  const auto status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "7 cycle records were lost");
+  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "7 cycle records were lost");
   watch();
   const auto next = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(next.level, DiagnosticStatus::OK);
@@ -175,26 +173,20 @@ TEST_F(DiagnosticsTest, DriveIsOkWhenHomed) {
   EXPECT_EQ(ask(&Diagnostics::reportDrive).message, "enabled");
   record_.drive.enabled = false;
   watch();
-  const auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(status.message, "disabled");
+  const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "disabled");
   EXPECT_EQ(value(status, "Enabled"), "False");
 }
 
 TEST_F(DiagnosticsTest, DriveThatIsNotHomedIsAWarning) {
   record_.drive.homed = false;
   watch();
-  const auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "not homed");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "not homed");
 }
 
 TEST_F(DiagnosticsTest, InterlockIsAWarning) {
   record_.interlock = Interlock::kCoolant;
   watch();
-  const auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "no coolant flows");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "no coolant flows");
 }
 
 TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
@@ -202,9 +194,7 @@ TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
   watch();
   record_.drive.emergency_stop = false;
   watch(100);
-  auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "emergency stop");
+  const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop");
   EXPECT_EQ(value(status, "Emergency stop"), "True");
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportDrive).level, DiagnosticStatus::OK);
@@ -216,9 +206,7 @@ TEST_F(DiagnosticsTest, FaultIsReportedOnceAndWithAllElse) {
   record_.drive.emergency_stop = record_.drive.fault = true;
   record_.drive.homed = false;
   watch();
-  const auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "emergency stop; the drive reports a fault; not homed");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop; the drive reports a fault; not homed");
 }
 
 TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
@@ -231,9 +219,7 @@ TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
   EXPECT_EQ(value(status, "Longest feedback age [s]"), "0.002");
   EXPECT_EQ(value(status, "Allowed feedback age [s]"), "0.0025");
   for (int i = 0; i < 3; ++i) watchStale();
-  status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "no fresh positions for 0.003 s");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "no fresh positions for 0.003 s");
 }
 
 TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
@@ -241,9 +227,7 @@ TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
   watch();
   record_.position[kZ] = 0;
   watch();
-  const auto drive = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(drive.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(drive.message, "axis_z position is nan");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "axis_z position is nan");
   const auto following = ask(&Diagnostics::reportFollowing);
   EXPECT_EQ(following.level, DiagnosticStatus::ERROR);
   EXPECT_EQ(value(following, "axis_z max [m]"), "nan");
@@ -267,14 +251,11 @@ TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxis) {
 TEST_F(DiagnosticsTest, FollowingErrorIsAWarningAndThenAnError) {
   record_.position << 0, 0.0006, 0, 0;
   watch();
-  auto status = ask(&Diagnostics::reportFollowing);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "axis_y 0.0006 m of 0.001 m");
+  expect(&Diagnostics::reportFollowing, DiagnosticStatus::WARN, "axis_y 0.0006 m of 0.001 m");
   record_.position << 0, 0.0006, 0, -0.046;
   watch();
-  status = ask(&Diagnostics::reportFollowing);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
+  expect(&Diagnostics::reportFollowing, DiagnosticStatus::ERROR,
+         "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
   record_.position.setZero();
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
@@ -295,9 +276,7 @@ TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
 
 TEST_F(DiagnosticsTest, NoSetpointsLeaveNoMargin) {
   watch();
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(status.message, "no setpoints");
+  expect(&Diagnostics::reportLimits, DiagnosticStatus::OK, "no setpoints");
 }
 
 TEST_F(DiagnosticsTest, MarginOfPositionIsTheNearerLimits) {
@@ -340,9 +319,8 @@ TEST_F(DiagnosticsTest, MarginOfMotionIsThatOfThePositionsWritten) {
 TEST_F(DiagnosticsTest, UseOfALimitIsAWarning) {
   write({0.1, 0.065, 0.025, 0});
   write({0.1, 0.065 + 0.00009, 0.025, 0});
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "axis_y velocity at 90 % of its limit");
+  const auto status =
+      expect(&Diagnostics::reportLimits, DiagnosticStatus::WARN, "axis_y velocity at 90 % of its limit");
 }
 
 TEST_F(DiagnosticsTest, SetpointsAfterAGapAreNotComparedWithThoseBefore) {
@@ -371,9 +349,8 @@ TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
   record_.fault.kind = FaultKind::kLimit;
   record_.fault.violation = {kA, LimitedQuantity::kVelocity, -25.132, 12.566, 8, 0, MoveKind::kStroke};
   watch();
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "axis_a velocity at 200 % of its limit");
+  const auto status =
+      expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, "axis_a velocity at 200 % of its limit");
   EXPECT_EQ(value(status, "axis_a velocity margin [%]"), "-100");
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportLimits).message, "no setpoints");
@@ -398,9 +375,7 @@ TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
 
 TEST_F(DiagnosticsTest, DriveWithoutBufferIsReportedSo) {
   watch();
-  const auto status = ask(&Diagnostics::reportBuffer);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(status.message, "the drive does not buffer");
+  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "the drive does not buffer");
 }
 
 TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
@@ -435,9 +410,7 @@ TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
   record_.drive.commands_waiting = 0;
   ask(&Diagnostics::reportBuffer);
   watch();
-  const auto off = ask(&Diagnostics::reportBuffer);
-  EXPECT_EQ(off.level, DiagnosticStatus::OK);
-  EXPECT_EQ(off.message, "no power");
+  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "no power");
   // How full it was before does not count.
   record_.state = MachineState::kReady;
   record_.drive.commands_waiting = 20;
@@ -449,9 +422,7 @@ TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
   record_.drive.commands_waiting = 50;
   record_.drive.underruns = 3;
   watch();
-  const auto status = ask(&Diagnostics::reportBuffer);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "3 underruns");
+  expect(&Diagnostics::reportBuffer, DiagnosticStatus::ERROR, "3 underruns");
   watch();
   const auto next = ask(&Diagnostics::reportBuffer);
   EXPECT_EQ(next.level, DiagnosticStatus::OK);
@@ -461,9 +432,7 @@ TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
 TEST_F(DiagnosticsTest, JournalReportsWhatIsAmiss) {
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
   diagnostics_.setJournalError("journal /x: No space left on device");
-  const auto status = ask(&Diagnostics::reportJournal);
-  EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(status.message, "journal /x: No space left on device");
+  expect(&Diagnostics::reportJournal, DiagnosticStatus::ERROR, "journal /x: No space left on device");
   diagnostics_.setJournalError("");
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
 }
@@ -471,9 +440,7 @@ TEST_F(DiagnosticsTest, JournalReportsWhatIsAmiss) {
 TEST_F(DiagnosticsTest, HistoryWarnsOfWhatIsAmiss) {
   EXPECT_EQ(ask(&Diagnostics::reportHistory).level, DiagnosticStatus::OK);
   diagnostics_.setHistoryError("history /x: No space left on device");
-  const auto status = ask(&Diagnostics::reportHistory);
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "history /x: No space left on device");
+  expect(&Diagnostics::reportHistory, DiagnosticStatus::WARN, "history /x: No space left on device");
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
 }
 

@@ -44,6 +44,19 @@ TEST(FirstView, HasWheelAndBlankOfTheirSizes) {
   EXPECT_NEAR(blank.radius, 0.006, 1e-12);
 }
 
+TEST(FirstView, TheWheelTurnsAboutZAndHasFewPoints) {
+  std::size_t points = 0;
+  for (const Marker& m : firstViewMarkers({0.08, 0.006, 0.012, 0.05}).markers) {
+    if (m.ns != "wheel") continue;
+    points += m.points.size();
+    const auto& q = m.pose.orientation;
+    // Where the outline's axis X comes to.
+    EXPECT_NEAR(2 * (q.x * q.z - q.y * q.w), 1, 1e-12);
+  }
+  EXPECT_GT(points, 1000u);
+  EXPECT_LT(points, 5000u) << "each costs time in every frame";
+}
+
 /// Six times the volume of closed triangles that face outward is positive.
 TEST(FirstView, TheBlankIsClosedAndFacesOutward) {
   double volume = 0;

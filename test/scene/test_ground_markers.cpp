@@ -47,6 +47,7 @@ void expectFit(const GrindJob& job) {
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   const std::vector<Marker> solid = solidOf(array, "planned");
   EXPECT_GT(solid.size(), 3u) << textsOf(array);
+  EXPECT_EQ(textsOf(array).find_first_not_of('\n'), std::string::npos) << textsOf(array);
   for (const Marker& m : solid) {
     EXPECT_EQ(m.header.frame_id, "cutter");
     EXPECT_LE(m.points.size(), 16384u);

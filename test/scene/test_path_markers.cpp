@@ -9,10 +9,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace flute_grinder {
@@ -66,6 +68,68 @@ Shown show(int every, int axis, double value) {
   result.flutes = flutes.markers();
   executed.append(result.executed);
   return result;
+}
+
+/// What each flute looks like: planned (p), active (a) or measured (m).
+std::string looksOf(const ToolPath& flutes) {
+  std::string looks;
+  for (const Marker& m : flutes.markers().markers) {
+    if (m.action != Marker::ADD) continue;
+    EXPECT_TRUE(m.colors.empty() || m.colors.size() == m.points.size());
+    looks += !m.colors.empty() ? 'm' : m.color.r == 1 ? 'a' : 'p';
+  }
+  return looks;
+}
+
+TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
+  job.tooth_angles = {0, 2, 4};
+  job.process.infeed = job.process.depth / 2;
+  const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
+  ToolPath flutes(of_job, edgesOf(of_job));
+  std::string done(job.tooth_angles.size(), 'p');
+  EXPECT_EQ(looksOf(flutes), done);
+  int changes = 0;
+  SetpointStream stream(of_job);
+  for (Setpoint p; stream.next(p);) {
+    if (!flutes.add(p, p.position)) continue;
+    ++changes;
+    const bool ends = p.move == MoveKind::kStroke && p.move_fraction == 1;
+    if (ends) done[p.tooth] = 'm';
+    std::string looks = done;
+    if (!ends) looks[p.tooth] = 'a';
+    EXPECT_EQ(looksOf(flutes), looks);
+    ToolPath canceled = flutes;
+    canceled.deactivate();
+    EXPECT_EQ(looksOf(canceled), done);
+  }
+  EXPECT_EQ(changes, 2 * 2 * 3) << "begin and end of each pass";
+  EXPECT_EQ(done, "mmm");
+}
+
+// The error grows along the flute from nothing to twice the tolerance.
+TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
+  const GrindProgram job = program();
+  const ConicalCutter& cutter = job.cutter();
+  const double length = job.job().cutter.flute_length, tolerance = job.job().interpolation.tolerance;
+  ToolPath flutes(job, {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  SetpointStream stream(job);
+  for (Setpoint p; stream.next(p);) {
+    Axes actual = p.position;
+    const double x = actual[kX], error = 2 * tolerance * x / length;
+    actual[kA] = job.helix(0).curve.a(x) + error / (cutter.radius(x) * cutter.cosHelixToGeneratrix());
+    flutes.add(p, actual);
+  }
+  const Marker strip = flutes.markers().markers.at(1);
+  ASSERT_EQ(strip.colors.size(), strip.points.size());
+  for (std::size_t i = 0; i < strip.points.size(); ++i) {
+    // Blue, green, yellow, red at the tolerance and beyond.
+    const double fraction = std::min(2 * strip.points[i].x / length, 1.0);
+    const std_msgs::ColorRGBA& c = strip.colors[i];
+    EXPECT_NEAR(c.r, std::clamp(4 * fraction - 1.5, 0.1, 1.0), 0.05);
+    EXPECT_NEAR(c.g, std::clamp(1.6 - std::abs(4 * fraction - 2), 0.1, 1.0), 0.05);
+    EXPECT_NEAR(c.b, std::clamp(1.5 - 3 * fraction, 0.1, 1.0), 0.05);
+  }
 }
 
 TEST(PathMarkers, LeaveOutPositionsThatAreNone) {
@@ -194,6 +258,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     MarkerArray path;
     executed.append(path);
     ASSERT_EQ(path.markers.size(), 1u);
+    EXPECT_LE(path.markers[0].points.size(), 2001u) << "thinned out as it grows";
     const DepthLaw depth = depthLaw(job, passDepths(job.process)[0]);
     int on_cutter = 0;
     for (const geometry_msgs::Point& p : path.markers[0].points) {

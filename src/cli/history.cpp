@@ -6,7 +6,7 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/record_name.h"
+#include "flute_grinder/record/record_name.h"
 
 #include <ros/names.h>
 

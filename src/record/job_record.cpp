@@ -2,10 +2,10 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/record/cycle_figures.h"
+#include "flute_grinder/record/record_name.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "flute_grinder/job/record_name.h"
+#include "flute_grinder/record/record_name.h"
 
 #include "flute_grinder/job/format.h"
 

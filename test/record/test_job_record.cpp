@@ -4,9 +4,9 @@
 #include "control/fixtures.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/record_name.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
+#include "flute_grinder/record/record_name.h"
 #include "node/job_recorder.h"
 
 #include <gtest/gtest.h>

@@ -2,16 +2,19 @@
 
 #include "cli/csv.h"
 #include "cli/json_output.h"
+#include "cli/machine_file.h"
 #include "cli/time_text.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/verdict.h"
 
 #include <ros/names.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -19,6 +22,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -36,6 +40,8 @@ struct Entry {
   std::size_t passes = 0;   ///< of the job, from the first to grind on
   double duration = 0;      ///< [s]
   std::size_t holds = 0;
+  std::string verdict;
+  std::vector<std::string> because;
 };
 
 /// The passes of a job from a first one on, whose tooth and pass count from 1 here.
@@ -49,11 +55,20 @@ std::size_t passesFrom(const GrindJob& job, const Json& first) {
   return static_cast<std::size_t>(passes.end() - begin);
 }
 
+/// As `grind report` judges the record.
+void judge(Json record, const Tolerances& tolerances, Entry& entry) {
+  record["kind"] = "record";
+  record["duration_s"] = entry.duration;
+  addVerdict(record, tolerances);
+  entry.verdict = record["verdict"];
+  entry.because = record["verdict_because"].get<std::vector<std::string>>();
+}
+
 /// @throw std::exception if it is no record.
-Entry readEntry(const std::string& path) {
+Entry readEntry(const std::string& path, const Tolerances& tolerances) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw std::runtime_error("cannot be read");
-  const Json record = Json::parse(file);
+  Json record = Json::parse(file);
   if (record.at("record") != 1) throw std::runtime_error("record = " + record["record"].dump() + "; allowed: 1");
   const GrindJob job = parseJob(record.at("job").at("file").dump(), "job.file");
   const Json& strokes = record.at("strokes");
@@ -67,8 +82,10 @@ Entry readEntry(const std::string& path) {
   entry.strokes = static_cast<std::size_t>(std::count_if(
       strokes.begin(), strokes.end(), [](const Json& stroke) { return stroke.at("complete").get<bool>(); }));
   entry.passes = passesFrom(job, record.at("first"));
-  entry.duration = timeOf(record.at("ended")) - timeOf(entry.started);
+  // The times are in whole milliseconds.
+  entry.duration = std::round(1000 * (timeOf(record.at("ended")) - timeOf(entry.started))) / 1000;
   entry.holds = record.at("holds").size();
+  judge(std::move(record), tolerances, entry);
   return entry;
 }
 
@@ -76,10 +93,19 @@ Json toJson(const Entry& entry) {
   return {{"file", entry.file},       {"started", entry.started}, {"job", entry.job},
           {"tool", entry.tool},       {"outcome", entry.outcome}, {"reason", entry.reason},
           {"strokes", entry.strokes}, {"passes", entry.passes},   {"duration_s", entry.duration},
-          {"holds", entry.holds}};
+          {"holds", entry.holds},     {"verdict", entry.verdict}, {"verdict_because", entry.because}};
 }
 
-using Row = std::array<std::string, 7>;
+/// In short; what failed is named.
+std::string verdictText(const Entry& entry) {
+  if (entry.verdict == "incomplete") return "passed as far as measured";
+  if (entry.verdict != "failed") return entry.verdict;
+  std::string reasons;
+  for (const std::string& reason : entry.because) reasons += (reasons.empty() ? ": " : "; ") + reason;
+  return "FAILED" + reasons;
+}
+
+using Row = std::array<std::string, 8>;
 
 Row toRow(const Entry& entry) {
   return {timeText(timeOf(entry.started), false),
@@ -88,11 +114,12 @@ Row toRow(const Entry& entry) {
           entry.outcome,
           format("%zu of %zu", entry.strokes, entry.passes),
           format("%.1f s", entry.duration),
-          std::to_string(entry.holds)};
+          std::to_string(entry.holds),
+          verdictText(entry)};
 }
 
 void printTable(const std::vector<Entry>& entries) {
-  std::vector<Row> rows{{"start", "job", "tool", "outcome", "strokes", "duration", "holds"}};
+  std::vector<Row> rows{{"start", "job", "tool", "outcome", "strokes", "duration", "holds", "verdict"}};
   std::transform(entries.begin(), entries.end(), std::back_inserter(rows), toRow);
   std::array<std::size_t, std::tuple_size_v<Row>> widths{};
   for (const Row& row : rows) {
@@ -142,11 +169,13 @@ std::optional<std::string> newestRecord(const std::string& folder) {
 
 int printHistory(const std::string& node, const HistoryOptions& options) {
   const std::string folder = options.folder.empty() ? historyFolder(node) : options.folder;
+  const Tolerances tolerances =
+      readTolerances(options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
   std::vector<Entry> entries;
   int status = 0;
   for (const std::string& path : pathsIn(folder)) {
     try {
-      entries.push_back(readEntry(path));
+      entries.push_back(readEntry(path, tolerances));
     } catch (const std::exception& error) {
       const std::string reason = error.what();
       std::fprintf(stderr, "%s: no record of a job: %s\n", path.c_str(), reason.substr(0, reason.find('\n')).c_str());

@@ -7,7 +7,8 @@ namespace flute_grinder {
 
 /// Arguments of `grind history`.
 struct HistoryOptions {
-  std::string folder;  ///< empty for the default folder of the grinder
+  std::string folder;      ///< empty for the default folder of the grinder
+  std::string tolerances;  ///< YAML of what a tool is passed by; empty for the package's own
   bool json = false;
 };
 
@@ -20,9 +21,9 @@ std::string historyFolder(const std::string& node);
 /// @throw FileError if the folder cannot be read.
 std::optional<std::string> newestRecord(const std::string& folder);
 
-/// Lists the records of a grinder, the newest last. @param node as for historyFolder().
+/// Lists the records of a grinder with the verdict on each, the newest last. @param node as for historyFolder().
 /// @return the exit status: 2 if a record could not be read.
-/// @throw FileError if the folder cannot be read.
+/// @throw FileError if the folder cannot be read, JobFileError if the tolerances cannot.
 int printHistory(const std::string& node, const HistoryOptions& options);
 
 }  // namespace flute_grinder

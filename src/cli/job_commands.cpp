@@ -104,6 +104,11 @@ void addGoal(Commands& commands) {
   addJob(command, *job);
 }
 
+void addTolerances(CLI::App& command, std::string& path) {
+  command.add_option("--tolerances", path, "what the tool is passed by (default: config/tolerances.yaml)")
+      ->type_name(kYamlFile);
+}
+
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
   auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
@@ -125,9 +130,7 @@ void addReport(Commands& commands) {
   command.add_option("--note", options->note, "the operator's words for the first page")->type_name("TEXT");
   command.add_option("--operator", options->operator_name, "who ground the tool, for every page")->type_name("NAME");
   command.add_option("--serial", options->serial, "serial number of the tool, for every page")->type_name("NUMBER");
-  command
-      .add_option("--tolerances", options->tolerances, "what the tool is passed by (default: config/tolerances.yaml)")
-      ->type_name(kYamlFile);
+  addTolerances(command, options->tolerances);
   addCountedJob(command, "--job", options->job);
   addMachine(command, options->parameters, options->urdf);
 }
@@ -138,6 +141,7 @@ void addHistory(Commands& commands) {
                                [&commands, options] { return printHistory(commands.node, *options); });
   command.add_option("--folder", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
       ->type_name(kFolder);
+  addTolerances(command, options->tolerances);
   addJson(command, options->json);
 }
 

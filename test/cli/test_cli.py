@@ -153,7 +153,7 @@ class TestPlan(CommandLine):
         said = fifo + ': cannot be read: not a regular file; allowed: a file on a disk, no FIFO and no device'
         for arguments in (['plan', fifo], ['plan', wheel], ['plan', PAPER_JOB, '--machine', fifo], ['wheel', 'show', fifo],
                           ['plan', PAPER_JOB, '--urdf', fifo], ['simulate', fifo], ['report', fifo, '--json'],
-                          ['report', PAPER_JOB, '--json', '--tolerances', fifo]):
+                          ['report', PAPER_JOB, '--json', '--tolerances', fifo], ['history', '--tolerances', fifo]):
             with self.subTest(arguments):
                 self.assertIn(said, self.grind(2, *arguments).stderr)
         os.mkdir(self.path('history'))

@@ -292,12 +292,12 @@ class TestCommand(Kept):
         done = self.grind()
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         head, *rows = [re.split('  +', line) for line in done.stdout.splitlines()]
-        self.assertEqual(head, ['start', 'job', 'tool', 'outcome', 'strokes', 'duration', 'holds'])
+        self.assertEqual(head, ['start', 'job', 'tool', 'outcome', 'strokes', 'duration', 'holds', 'verdict'])
         tool = 'D 10 mm, cone 8 deg, spiral 30 deg, rake 8 deg, 2 teeth'
         for row, record, name, strokes in zip(rows, (self.first, self.second), ('two.yaml', '-'), ('4 of 4', '1 of 4')):
             local = time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime(seconds(record['started']) + 3600))
             lasted = seconds(record['ended']) - seconds(record['started'])
-            self.assertEqual(row[:3] + row[4:5] + row[6:], [local, name, tool, strokes, '0'])
+            self.assertEqual(row[:3] + row[4:5] + row[6:7], [local, name, tool, strokes, '0'])
             self.assertAlmostEqual(float(row[5].split()[0]), lasted, delta=0.051)
             self.assertEqual(row[3], record['outcome'])
 
@@ -322,11 +322,25 @@ class TestCommand(Kept):
         done = self.grind('--json')
         first, second = json.loads(done.stdout)
         self.assertEqual(list(first), ['file', 'started', 'job', 'tool', 'outcome', 'reason', 'strokes', 'passes',
-                                       'duration_s', 'holds'])
+                                       'duration_s', 'holds', 'verdict', 'verdict_because'])
         self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))
         self.assertEqual([first[key] for key in ('started', 'job', 'outcome', 'reason', 'strokes', 'passes', 'holds')],
                          [self.first['started'], 'two.yaml', 'done', '', 4, 4, 0])
         self.assertEqual([second['outcome'], second['reason'], second['strokes']], ['canceled', self.second['reason'], 1])
+
+    def test_verdict_is_that_of_the_report(self):
+        tolerances = os.path.join(self.home, 'tolerances.yaml')
+        for most, verdict, text in ((1e5, 'incomplete', '^passed as far as measured$'), (0, 'failed', '^FAILED: .*feed constancy')):
+            with open(tolerances, 'w') as file:
+                json.dump(dict(land_mm=0, following_error_um=most, feed_percent=most, late_cycles_percent=most), file)
+            listed = json.loads(self.grind('--json', '--tolerances', tolerances).stdout)
+            for entry in listed:
+                report = json.loads(gc.grind('report', entry['file'], '--json', '--tolerances', tolerances).stdout)
+                self.assertEqual(*([of[key] for key in ('verdict', 'verdict_because')] for of in (entry, report)))
+            self.assertEqual([entry['verdict'] for entry in listed], [verdict, 'failed'])
+            last = [re.split('  +', line)[-1] for line in self.grind('--tolerances', tolerances).stdout.splitlines()]
+            self.assertRegex(last[1], text)
+            self.assertRegex(last[2], '^FAILED: the job ended as canceled')
 
     def test_what_cannot_be_read_is_named_and_the_rest_is_listed(self):
         folder = os.path.join(self.home, 'other')

@@ -66,12 +66,6 @@ void SetpointCsv::write(const Setpoint& setpoint, double period) {
   print("\n");
 }
 
-const std::string& RunCsv::columns() {
-  static const std::string columns =
-      std::string(SetpointCsv::kColumns) + ",actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad";
-  return columns;
-}
-
 void RunCsv::write(const Setpoint& setpoint, const Axes& actual, double period) {
   writeFields(setpoint, period);
   print(",%.17g,%.17g,%.17g,%.17g\n", actual[kX] / kMillimetre, actual[kY] / kMillimetre, actual[kZ] / kMillimetre,

@@ -1,26 +1,15 @@
 #pragma once
 
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/motion/setpoint.h"
+#include "flute_grinder/report/csv_columns.h"
 
 #include <cstdio>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 namespace flute_grinder {
-
-/// A file that cannot be opened or written.
-class FileError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// A file that could be opened, but not written to its end.
-class WriteError : public FileError {
- public:
-  using FileError::FileError;
-};
 
 /// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
 /// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
@@ -55,20 +44,17 @@ class CsvFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-/// `point,x_mm,a_rad,a_theory_rad,error_rad`, as in the paper's Table 1.
+/// A line for each point of a curve.
 class TableCsv : public CsvFile {
  public:
-  explicit TableCsv(const std::string& path) : CsvFile(path, "point,x_mm,a_rad,a_theory_rad,error_rad") {}
+  explicit TableCsv(const std::string& path) : CsvFile(path, kTableColumns) {}
   void write(int number, const CurvePoint& point, double theory);
 };
 
 /// A line for each setpoint.
 class SetpointCsv : public CsvFile {
  public:
-  static constexpr const char* kColumns =
-      "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min";
-
-  explicit SetpointCsv(const std::string& path) : CsvFile(path, kColumns) {}
+  explicit SetpointCsv(const std::string& path) : CsvFile(path, kSetpointColumns) {}
   /// @param period control cycle [s].
   void write(const Setpoint& setpoint, double period);
 
@@ -81,9 +67,7 @@ class SetpointCsv : public CsvFile {
 /// The same with the position that the drive read one cycle before.
 class RunCsv : public SetpointCsv {
  public:
-  static const std::string& columns();
-
-  explicit RunCsv(const std::string& path) : SetpointCsv(path, columns()) {}
+  explicit RunCsv(const std::string& path) : SetpointCsv(path, std::string(kSetpointColumns) + kActualColumns) {}
   /// @param actual [m], A [rad]. @param period control cycle [s].
   void write(const Setpoint& setpoint, const Axes& actual, double period);
 };

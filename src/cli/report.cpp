@@ -1,10 +1,15 @@
 #include "cli/report.h"
 
-#include "cli/csv.h"
+#include "cli/ground_tool.h"
 #include "cli/history.h"
+#include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/regular_file.h"
+#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/report/findings.h"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -41,11 +46,6 @@ std::vector<char*> pointersTo(std::vector<std::string>& arguments) {
   return argv;
 }
 
-void append(std::vector<std::string>& arguments, const char* option, const Axes& values) {
-  arguments.emplace_back(option);
-  for (int axis = 0; axis < kAxisCount; ++axis) arguments.push_back(format("%.17g", values[axis]));
-}
-
 /// The newest record in a folder. @throw FileError if there is none.
 std::string lastRecord(const std::string& folder) {
   const std::optional<std::string> newest = newestRecord(folder);
@@ -53,45 +53,120 @@ std::string lastRecord(const std::string& folder) {
   return *newest;
 }
 
-}  // namespace
+/// A file of the program's own, open to be read from its beginning. @throw FileError
+std::unique_ptr<std::FILE, int (*)(std::FILE*)> temporaryFile(const std::string& text) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  if (!file || std::fputs(text.c_str(), file.get()) < 0 || std::fseek(file.get(), 0, SEEK_SET) != 0)
+    throw FileError(std::string("a temporary file cannot be written: ") + std::strerror(errno));
+  return file;
+}
 
-void writeReport(const std::string& node, const ReportOptions& options) {
-  if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
-  if (options.html.empty() && options.pdf.empty() && !options.json)
-    throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
-  for (const std::string& path : {options.file, options.tolerances}) {
-    if (!path.empty()) requireRegularFile(path);
+/// X of the sections in which a report has the tool measured [m].
+std::vector<double> sectionsOf(const GrindJob& job) {
+  constexpr int count = 17;
+  std::vector<double> at;
+  for (int i = 0; i < count; ++i) at.push_back(job.cutter.flute_length * i / (count - 1));
+  return at;
+}
+
+/// @return why an action failed, for the reader; empty if it did not.
+template <typename Action>
+std::string reasonWhyNot(const Action& action) {
+  try {
+    action();
+    return "";
+  } catch (const core::ReasonError& error) {
+    return core::text(error.reason(), UnitSystem::kShop);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
   }
-  const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
-  std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath(), "--grind", ownPath()};
-  const auto add = [&](const char* option, const std::string& value) {
-    // In one word, since a value may begin with a dash.
-    if (!value.empty()) arguments.push_back(std::string(option) + "=" + value);
-  };
-  add("--output", options.html);
-  add("--pdf", options.pdf);
-  add("--note", options.note);
-  add("--operator", options.operator_name);
-  add("--serial", options.serial);
-  add("--tolerances", options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
-  add("--job", std::to_string(options.job));
-  if (options.json) arguments.emplace_back("--json");
-  append(arguments, "--max-velocity", config.machine.limits.max_velocity);
-  append(arguments, "--max-acceleration", config.machine.limits.max_acceleration);
-  append(arguments, "--max-following-error", config.following_error);
-  arguments.insert(
-      arguments.end(),
-      {"--", options.last ? lastRecord(options.folder.empty() ? historyFolder(node) : options.folder) : options.file});
+}
+
+/// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
+void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
+  std::optional<RecordedStrokes> strokes;
+  std::string& why = context.no_tool;
+  if (run.kind() == FileKind::kBag) {
+    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withZLaw(*run.job())); })
+                    : "the bag does not have the goal of " + run.place();
+  }
+  run.visit([&](const RunRow& row) {
+    survey.add(row);
+    if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
+  });
+  if (!strokes || !why.empty()) return;
+  why = reasonWhyNot([&] {
+    strokes->finish();
+    const GrindJob job = withZLaw(*run.job());
+    context.tool = toJson(measure(job, context.file + ", " + run.place(), *strokes, sectionsOf(job)));
+  });
+}
+
+/// What a report says of a file, with the points of its pictures if they are wanted.
+Json documentOf(const std::string& path, int job, bool draws, ReportContext& context) {
+  if (kindOf(path) == FileKind::kRecord) {
+    if (job != 0) throw FileError(path + ": job " + std::to_string(job) + ": only a bag has several jobs");
+    const Json record = readRecord(path);
+    context.no_tool = reasonWhyNot([&] {
+      const GrindJob asked = withZLaw(parseJob(record["job"]["file"].dump(), path));
+      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), sectionsOf(asked)));
+    });
+    return findingsOfRecord(record, context);
+  }
+  const std::unique_ptr<RunFile> run = RunFile::open(path, job);
+  Survey survey(*run, draws);
+  surveyRun(*run, survey, context);
+  Json document = survey.findings(context);
+  if (draws) document["plots"] = survey.plots();
+  return document;
+}
+
+/// Replaces this process by the program that draws the report.
+[[noreturn]] void draw(const Json& document, const ReportOptions& options) {
+  std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath()};
+  // In one word, since a value may begin with a dash.
+  if (!options.html.empty()) arguments.push_back("--output=" + options.html);
+  if (!options.pdf.empty()) arguments.push_back("--pdf=" + options.pdf);
+  const auto input = temporaryFile(text(document));
+  ::dup2(::fileno(input.get()), STDIN_FILENO);
   std::vector<char*> argv = pointersTo(arguments);
   execv(argv[0], argv.data());
   throw FileError(arguments[0] + ": cannot be started: " + std::strerror(errno));
 }
 
+}  // namespace
+
+void writeReport(const std::string& node, const ReportOptions& options) {
+  if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
+  const bool draws = !options.html.empty() || !options.pdf.empty();
+  if (!draws && !options.json) throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
+  ReportContext context;
+  context.limits = machineInfo(readMachineFiles(options.parameters, options.urdf), "");
+  context.tolerances =
+      readTolerances(options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
+  context.words = Json::object();
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) context.words[key] = value;
+  };
+  add("note", options.note);
+  add("operator", options.operator_name);
+  add("serial", options.serial);
+  const std::string path =
+      options.last ? lastRecord(options.folder.empty() ? historyFolder(node) : options.folder) : options.file;
+  context.file = std::filesystem::path(path).filename();
+  Json document = documentOf(path, options.job, draws, context);
+  if (options.json) {
+    Json data = document;
+    data.erase("plots");
+    print(data);
+    if (std::fflush(stdout) != 0) return;  // which the program itself reports
+  }
+  if (draws) draw(document, options);
+}
+
 bool drawTool(const std::string& json, const std::string& svg) {
   // By a file, so that nothing waits for the other end of a pipe.
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> input(std::tmpfile(), std::fclose);
-  if (!input || std::fputs(json.c_str(), input.get()) < 0 || std::fseek(input.get(), 0, SEEK_SET) != 0)
-    throw FileError(std::string("a temporary file cannot be written: ") + std::strerror(errno));
+  const auto input = temporaryFile(json);
   std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath() / "tool.py", svg};
   const std::vector<char*> argv = pointersTo(arguments);
   posix_spawn_file_actions_t actions;

@@ -21,12 +21,12 @@ struct ReportOptions {
   std::string urdf;
 };
 
-/// Writes a report: replaces this process by the Python program that draws it.
+/// Writes a report: works out what it says, and replaces this process by the Python program that draws it, if it is to
+/// be drawn.
 /// @param node the grinder's name, as for historyFolder().
-/// @throw JobFileError or ParameterError if the machine cannot be read, FileError if there is no record or if the
-/// program is
-///        missing, std::invalid_argument if nothing is asked for.
-[[noreturn]] void writeReport(const std::string& node, const ReportOptions& options);
+/// @throw JobFileError or ParameterError if the machine or the tolerances cannot be read, FileError if the file cannot,
+/// there is no record, or the program is missing, std::invalid_argument if nothing is asked for.
+void writeReport(const std::string& node, const ReportOptions& options);
 
 /// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return whether that succeeded; the
 /// reason is on stderr. @throw FileError if the program is missing.

@@ -2,13 +2,13 @@
 
 #include "cli/ground_tool.h"
 #include "cli/report.h"
-#include "cli/run_record.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/recorded_strokes.h"
 #include "flute_grinder/geometry/stl.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/report/run_file.h"
 
 #include <cerrno>
 #include <cmath>
@@ -16,7 +16,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <functional>
+#include <memory>
 #include <sstream>
 
 namespace flute_grinder {
@@ -69,47 +69,40 @@ void writeStlFile(const GroundTool& tool, const std::string& path) {
   if (!file) throw WriteError(path + ": write failed: " + std::strerror(errno));
 }
 
-/// What is simulated: the job alone, or a record of it.
+/// What is simulated: the job alone, or a run of it.
 struct Source {
   GrindJob job;
   std::string name;  ///< for the reader
-  bool recorded = false;
-  std::function<void(const RecordVisitor&)> visit;  ///< the record
+  std::unique_ptr<RunFile> run;
 };
-
-std::string fileName(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
 /// @throw FileError, JobFileError
 Source sourceOf(const SimulateOptions& options) {
-  switch (kindOf(options.file)) {
-    case FileKind::kJob: break;
-    case FileKind::kRunCsv: {
-      if (options.job.empty()) {
-        throw FileError(options.file + ": a CSV file does not have the job; give its file with --job");
-      }
-      const auto visit = [&](const RecordVisitor& visitor) { visitRunCsv(options.file, visitor); };
-      return {readJobFile(options.job), fileName(options.file), true, visit};
-    }
-    case FileKind::kBag: {
-      const BagRecord bag(options.file, options.run);
-      if (!bag.job() && options.job.empty()) {
-        throw FileError(options.file + ": the bag does not have the goal of " + bag.name() +
-                        "; give its job file with --job");
-      }
-      const GrindJob job = options.job.empty() ? *bag.job() : readJobFile(options.job);
-      const auto visit = [bag](const RecordVisitor& visitor) { bag.visit(visitor); };
-      return {job, fileName(options.file) + ", " + bag.name(), true, visit};
-    }
+  const std::string name = std::filesystem::path(options.file).filename();
+  const FileKind kind = kindOf(options.file);
+  if (kind == FileKind::kOther || kind == FileKind::kRecord) return {readJobFile(options.file), name, nullptr};
+  if (kind == FileKind::kTable || kind == FileKind::kPlan) {
+    throw FileError(options.file +
+                    ": is no file of 'grind run --csv'; without the positions that the drive read there is "
+                    "nothing to simulate");
   }
-  return {readJobFile(options.file), fileName(options.file), false, {}};
+  if (kind == FileKind::kRun && options.job.empty())
+    throw FileError(options.file + ": a CSV file does not have the job; give its file with --job");
+  std::unique_ptr<RunFile> run = RunFile::open(options.file, options.run);
+  if (!run->job() && options.job.empty()) {
+    throw FileError(options.file + ": the bag does not have the goal of " + run->place() +
+                    "; give its job file with --job");
+  }
+  const GrindJob job = options.job.empty() ? *run->job() : readJobFile(options.job);
+  return {job, name + (run->place().empty() ? "" : ", ") + run->place(), std::move(run)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
   const GrindJob job = withZLaw(source.job);
-  if (!source.recorded) return measure(job, source.name, groundCutterOf(job), at);
+  if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
   RecordedStrokes strokes(job);
-  source.visit([&](const Setpoint& setpoint, const Axes& actual) { strokes.add(setpoint, actual); });
+  source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
   return measure(job, source.name, strokes, at);
 }

@@ -11,4 +11,14 @@ core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive
           config.following_error};
 }
 
+Json toJson(const core::MachineInfo& machine) {
+  return {{"name", machine.name},
+          {"software", machine.version},
+          {"drive", machine.drive},
+          {"period_ms", machine.period * 1e3},
+          {"max_velocity", toJson(machine.max_velocity, "_s")},
+          {"max_acceleration", toJson(machine.max_acceleration, "_s2")},
+          {"max_following_error", toJson(machine.max_following_error, "")}};
+}
+
 }  // namespace flute_grinder

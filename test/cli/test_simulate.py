@@ -291,7 +291,7 @@ class TestRecord(TestSimulate):
         self.check_same(reported['sections'], self.planned())
         self.assertEqual(reported['source'], 'run.bag, job 2 of 2')
         self.json(1, 'simulate', bag, '--run', '1')
-        self.assertRegex(self.grind(2, 'simulate', bag, '--run', '3').stderr, r'--run 3; the bag has 2 job\(s\)')
+        self.assertRegex(self.grind(2, 'simulate', bag, '--run', '3').stderr, r'job 3: the bag has 2 job\(s\)')
 
     def test_report_of_a_bag_shows_the_tool(self):
         bag = self.bag(self.plan(PAPER_JOB))
@@ -315,14 +315,13 @@ class TestRecord(TestSimulate):
         rows = self.plan(PAPER_JOB)
         record = self.record(rows[:100])
         self.assertRegex(self.grind(2, 'simulate', record).stderr, '--job')
-        self.assertRegex(self.grind(2, 'simulate', self.write('plan.csv', 'cycle,time_s\n'), '--job', PAPER_JOB).stderr,
-                         'its first line')
-        self.record([dict(rows[0], tooth='7')])
-        self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, ':2: .*tooth 8.*1 teeth')
-        self.record([dict(rows[0], x_mm='nan')])
-        self.grind(2, 'simulate', record, '--job', PAPER_JOB)
-        self.record([dict(rows[0], move='dance')])
-        self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, ':2: "dance" is not known')
+        for changed, reason in (({'tooth': '7'}, 'line 2: .*tooth 8.*1 teeth'),
+                                ({'x_mm': 'nan'}, 'cycle 0: position is not a finite number'),
+                                ({'move': 'dance'}, 'line 2: "dance" is not known')):
+            self.record([dict(rows[0], **changed), *rows[1:3]])
+            self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, reason)
+        self.write('plan.csv', ','.join(COLUMNS[:12]) + '\n')
+        self.assertRegex(self.grind(2, 'simulate', self.path('plan.csv'), '--job', PAPER_JOB).stderr, 'is no file of')
         self.write('cut.bag', '#ROSBAG V2.0\n')
         self.grind(2, 'simulate', self.path('cut.bag'))
 

@@ -5,12 +5,13 @@
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/plan/planned_job.h"
+#include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/record/stroke_log.h"
 
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 namespace flute_grinder {
 
@@ -49,32 +50,7 @@ class JobRecord {
   Json json(const std::string& grinder, const core::MachineInfo& machine) const;
 
  private:
-  /// Times are since the start [s].
-  struct Stroke {
-    ToothPass pass;
-    double from = 0, to = 0;
-    bool complete = false;
-    bool has_feed = false;
-    double min_feed = 0, max_feed = 0;  ///< within the flute [m/s]
-    double deviation = 0;               ///< largest [m]
-    Axes following_error = Axes::Zero();
-  };
-  struct Hold {
-    double from = 0, to = 0;
-    std::string reason;
-    ToothPass pass;
-  };
-  struct Override {
-    double at = 0;
-    double fraction = 1;
-    ToothPass pass;
-  };
-
   double since(const CycleRecord& record) const { return record.time - started_; }
-  void addToHold(const CycleRecord& record);
-  template <typename Entry>
-  bool hasRoom(const std::vector<Entry>& list);
-  void addToStroke(const Setpoint& setpoint, const CycleRecord& record);
   Json jobJson() const;
   Json strokesJson() const;
   Json zeroPointsJson() const;
@@ -86,7 +62,6 @@ class JobRecord {
   std::string name_;
   core::WorkOffsets offsets_;
   bool offsets_said_right_ = false;
-  std::vector<double> depths_;  ///< of every pass, where the flute is deepest [m]
 
   std::uint64_t cycles_ = 0;
   double started_ = 0, ended_ = 0;  ///< since the epoch [s]
@@ -94,13 +69,12 @@ class JobRecord {
   std::uint64_t late_ = 0;
   double longest_ = 0;  ///< period of a cycle [s]
   ToothPass pass_;      ///< of the setpoint that reached the axes last
-  bool held_ = false, hold_listed_ = false;
-  double override_ = 1;
-  std::vector<Stroke> strokes_;
-  std::vector<Hold> holds_;
-  std::vector<Override> overrides_;
-  std::uint64_t omitted_ = 0;  ///< holds and changes of the override that are too many
+  StrokeLog strokes_;
+  JobEvents events_;
   JobConclusion conclusion_;
 };
+
+/// A job's plan as records have it.
+Json plannedJson(const core::PathStatistics& planned);
 
 }  // namespace flute_grinder

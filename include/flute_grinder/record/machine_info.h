@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/messages/json.h"
 
 #include <string>
 
@@ -25,5 +26,8 @@ struct MachineInfo {
 
 /// @param drive type of the drive's plugin.
 core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
+
+/// As records have it, see docs/ros-interface.md.
+Json toJson(const core::MachineInfo& machine);
 
 }  // namespace flute_grinder

@@ -5,34 +5,33 @@ import shutil
 import subprocess
 import tempfile
 
-from record import SourceError
+from document import Failure, write, writing
 
 TIMEOUT = 300  # [s]
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
 def print_pdf(text, path):
-    """By a browser without a window, on A4 as the page's style sheet says. @raise SourceError, OSError"""
+    """By a browser without a window, on A4 as the page's style sheet says. @raise Failure"""
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if not browser:
-        raise SourceError('cannot be printed without a browser; install chromium, or print the HTML file with another')
+        raise Failure(path + ': cannot be printed without a browser; install chromium, or print the HTML file with another')
     # Fail before the browser does, which says less.
     was_there = os.path.exists(path)
-    with open(path, 'ab'):
+    with writing(path), open(path, 'ab'):
         pass
     try:
         print_page(browser, text, path)
-    except SourceError:
+    except Failure:
         if not was_there:
             os.remove(path)
         raise
 
 
 def print_page(browser, text, path):
-    with tempfile.TemporaryDirectory() as folder:
+    with writing(path), tempfile.TemporaryDirectory() as folder:
         page, made = os.path.join(folder, 'report.html'), os.path.join(folder, 'report.pdf')
-        with open(page, 'w', encoding='utf-8') as file:
-            file.write(text)
+        write(page, text)
         # The page is our own file and loads nothing; root, as in a container, has no sandbox.
         sandbox = ['--no-sandbox'] if os.geteuid() == 0 else []
         command = [browser, '--headless=new', '--disable-gpu', *sandbox, '--no-pdf-header-footer',
@@ -41,10 +40,7 @@ def print_page(browser, text, path):
             done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True,
                                   timeout=TIMEOUT)
         except subprocess.TimeoutExpired:
-            raise SourceError('%s does not end within %d s' % (browser, TIMEOUT))
+            raise Failure('%s: %s does not end within %d s' % (path, browser, TIMEOUT))
         if not os.path.exists(made):
-            raise SourceError('%s printed nothing: %s' % (browser, done.stderr.strip()[-500:]))
-        try:
-            shutil.copyfile(made, path)
-        except OSError as error:
-            raise OSError(error.errno, error.strerror, path)
+            raise Failure('%s: %s printed nothing: %s' % (path, browser, done.stderr.strip()[-500:]))
+        shutil.copyfile(made, path)

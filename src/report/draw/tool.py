@@ -1,14 +1,13 @@
 """The pictures of a ground cutter, from what `grind simulate --json` prints. As a program, draws them into one SVG file:
-tool.py FILE.svg < JSON; exit status 2 if it cannot be written."""
+tool.py FILE.svg < JSON."""
 
-import json
 import math
-import signal
 import sys
 
 import numpy as np
 from matplotlib.figure import Figure
 
+from document import run, write
 from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
 
 # Key, asked key, title; of the section or of each tooth.
@@ -147,19 +146,5 @@ def draw_file(tool):
     return svg_of(figure)
 
 
-def main():
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    svg = draw_file(json.load(sys.stdin))
-    try:
-        with open(sys.argv[1], 'w', encoding='utf-8') as file:
-            file.write(svg)
-    except OSError as error:
-        return '%s: cannot be written: %s' % (sys.argv[1], error.strerror or error)
-    return None
-
-
 if __name__ == '__main__':
-    reason = main()
-    if reason:
-        print(reason, file=sys.stderr)
-        sys.exit(2)
+    run(lambda tool: write(sys.argv[1], draw_file(tool)))

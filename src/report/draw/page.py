@@ -3,10 +3,10 @@
 import html
 import os
 import re
+from datetime import datetime
 
 from cutter import spiral_angles, tooth_angles
 from figures import QUANTITIES
-from findings import time_of
 
 PAGE = '''<!DOCTYPE html>
 <html lang="en">
@@ -75,7 +75,7 @@ def three_digits(value):
 
 def local(stamp):
     """A point in time on the clock of this computer."""
-    return time_of(stamp).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
+    return datetime.fromisoformat(stamp.replace('Z', '+00:00')).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
 
 
 def clock(seconds):
@@ -286,7 +286,7 @@ def appendix(data, parts):
 
 
 def page(data, parts):
-    """@param data of Findings. @param parts of draw()."""
+    """@param data the document. @param parts of draw_all()."""
     body = first_page(data, parts)
     if data.get('strokes') or data.get('holds') or data.get('overrides'):
         body += ['<h2>Teeth and passes</h2>', stroke_table(data) if data['strokes'] else '', events_between(data)]

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "flute_grinder/curve/formed_edge.h"
+#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/messages/json.h"
+#include "flute_grinder/motion/setpoint.h"
+
+#include <vector>
+
+namespace flute_grinder {
+
+/// Figures of a stroke as it was ground; the feed is that within the flute. A stroke that was held, and resumed, is
+/// one.
+struct StrokeFigures {
+  ToothPass place;
+  double from = 0, to = 0;  ///< since the start [s]
+  bool complete = false;    ///< ground to its end
+  bool has_feed = false;
+  double min_feed = 0, max_feed = 0;    ///< [m/s]
+  double min_feed_x = 0;                ///< where the feed was lowest [m]
+  double deviation = 0;                 ///< maximum [m]
+  double deviation_x = 0;               ///< where [m]
+  Axes following_error = Axes::Zero();  ///< maximum of each axis [m], A [rad]
+};
+
+/// The strokes of a job, setpoint by setpoint. Not thread safe.
+class StrokeLog {
+ public:
+  /// Of a job that is not known: depth and deviation are missing, and the overtravel counts as flute.
+  StrokeLog() = default;
+  /// @param job a job that validate() accepts.
+  explicit StrokeLog(const GrindJob& job);
+
+  /// Adds a setpoint of a stroke. @param time since the start [s].
+  void add(const Setpoint& setpoint, double time);
+  /// Adds how far the axes were from their command in that cycle, from 0; NaN stays [m], A [rad].
+  void addFollowingError(const Axes& error);
+
+  const std::vector<StrokeFigures>& strokes() const noexcept { return strokes_; }
+  /// The strokes as records have them, see docs/ros-interface.md; without `complete`. @param following_error is known.
+  Json json(bool following_error) const;
+
+ private:
+  std::vector<FormedEdge> edges_;  ///< of the teeth
+  std::vector<double> depths_;     ///< of the passes at the small end [m]
+  std::vector<StrokeFigures> strokes_;
+};
+
+}  // namespace flute_grinder

@@ -1,0 +1,87 @@
+#include "flute_grinder/record/stroke_log.h"
+
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/record/cycle_figures.h"
+
+#include <cmath>
+
+namespace flute_grinder {
+
+namespace {
+
+using namespace units;
+
+constexpr double kMillidegree = 1e-3 * kDegree;
+
+Json followingJson(const Axes& error) {
+  return {{"x_um", error[kX] / kMicrometre},
+          {"y_um", error[kY] / kMicrometre},
+          {"z_um", error[kZ] / kMicrometre},
+          {"a_mdeg", error[kA] / kMillidegree}};
+}
+
+}  // namespace
+
+StrokeLog::StrokeLog(const GrindJob& job) {
+  for (int tooth = 0; tooth < static_cast<int>(job.tooth_angles.size()); ++tooth) {
+    edges_.push_back({ConicalCutter(cutterOf(job, tooth)), job.process.setup_lead});
+  }
+  for (const double depth : passDepths(job.process)) depths_.push_back(depthLaw(job, depth).at_end);
+}
+
+void StrokeLog::add(const Setpoint& setpoint, double time) {
+  const ToothPass place{setpoint.tooth, setpoint.pass};
+  if (strokes_.empty() || strokes_.back().place != place) {
+    StrokeFigures& fresh = strokes_.emplace_back();
+    fresh.place = place;
+    fresh.from = time;
+  }
+  StrokeFigures& stroke = strokes_.back();
+  stroke.to = time;
+  stroke.complete |= setpoint.move_fraction == 1;
+  const double x = setpoint.position[kX];
+  bool in_flute = true;
+  if (setpoint.tooth < edges_.size()) {
+    const FormedEdge& edge = edges_[setpoint.tooth];
+    in_flute = x >= 0 && x <= edge.cutter.geometry().flute_length;
+    const double deviation = edge.deviation(x, std::abs(setpoint.path_error));
+    if (!(deviation <= stroke.deviation)) stroke.deviation_x = x;
+    updateMax(stroke.deviation, deviation);
+  }
+  if (!in_flute || setpoint.step != StepKind::kEven) return;
+  if (!stroke.has_feed || setpoint.feed < stroke.min_feed) {
+    stroke.min_feed = setpoint.feed;
+    stroke.min_feed_x = x;
+  }
+  updateMax(stroke.max_feed, setpoint.feed);
+  stroke.has_feed = true;
+}
+
+void StrokeLog::addFollowingError(const Axes& error) {
+  for (int axis = 0; axis < kAxisCount; ++axis) updateMax(strokes_.back().following_error[axis], error[axis]);
+}
+
+Json StrokeLog::json(bool following_error) const {
+  Json list = Json::array();
+  for (const StrokeFigures& stroke : strokes_) {
+    const auto if_any = [](bool any, double value) { return any ? Json(value) : Json(nullptr); };
+    const auto pass = static_cast<std::size_t>(stroke.place.pass);
+    const bool has_edge = static_cast<std::size_t>(stroke.place.tooth) < edges_.size();
+    Json json{{"tooth", stroke.place.tooth + 1},
+              {"pass", stroke.place.pass + 1},
+              {"depth_mm", pass < depths_.size() ? Json(depths_[pass] / kMillimetre) : Json(nullptr)},
+              {"started_s", stroke.from},
+              {"duration_s", stroke.to - stroke.from},
+              {"feed_min_mm_min", if_any(stroke.has_feed, stroke.min_feed / kMillimetrePerMinute)},
+              {"feed_min_x_mm", if_any(stroke.has_feed, stroke.min_feed_x / kMillimetre)},
+              {"feed_max_mm_min", if_any(stroke.has_feed, stroke.max_feed / kMillimetrePerMinute)},
+              {"deviation_um", if_any(has_edge, stroke.deviation / kMicrometre)},
+              {"deviation_x_mm", if_any(has_edge, stroke.deviation_x / kMillimetre)}};
+    if (following_error) json["following_error"] = followingJson(stroke.following_error);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+}  // namespace flute_grinder

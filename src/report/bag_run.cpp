@@ -1,0 +1,237 @@
+#include "report/bag_run.h"
+
+#include "flute_grinder/GrindActionGoal.h"
+#include "flute_grinder/GrindActionResult.h"
+#include "flute_grinder/GrinderState.h"
+#include "flute_grinder/WorkOffsets.h"
+#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/record/job_record.h"
+#include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/record/record_name.h"
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace flute_grinder {
+
+namespace {
+
+/// Types that are read of the grinder's topics, with the digests of their definitions.
+template <typename... Messages>
+std::map<std::string, std::string> digestsOf() {
+  return {{ros::message_traits::datatype<Messages>(), ros::message_traits::md5sum<Messages>()}...};
+}
+
+const char* outcomeOf(std::uint8_t status) {
+  switch (status) {
+    case actionlib_msgs::GoalStatus::SUCCEEDED: return "done";
+    case actionlib_msgs::GoalStatus::PREEMPTED: return "canceled";
+    case actionlib_msgs::GoalStatus::ABORTED: return "fault";
+    default: return "rejected";
+  }
+}
+
+core::MachineInfo fromMessage(const MachineInfo& m) {
+  return {m.name,
+          m.version,
+          m.drive,
+          m.period,
+          Axes(m.max_velocity.data()),
+          Axes(m.max_acceleration.data()),
+          Axes(m.max_following_error.data())};
+}
+
+/// @throw FileError if reading fails.
+template <typename Read>
+void readBag(const std::string& path, const Read& read) {
+  const std::string not_whole =
+      path + ": the bag was not closed, or is cut off; \"rosbag reindex\" saves what is in it";
+  try {
+    const rosbag::Bag bag(path);
+    read(bag);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw FileError(not_whole);
+  } catch (const rosbag::BagIOException&) {
+    throw FileError(not_whole);
+  } catch (const rosbag::BagException& error) {
+    throw FileError(path + ": cannot be read: " + error.what());
+  } catch (const ros::serialization::StreamOverrunException& error) {
+    throw FileError(path + ": cannot be read: " + error.what());
+  }
+}
+
+}  // namespace
+
+BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::kBag), asked_(job) {
+  readBag(path_, [this](const rosbag::Bag& bag) {
+    findTopics(bag);
+    rosbag::View view(bag, rosbag::TopicQuery(topics_));
+    for (const rosbag::MessageInstance& message : view) take(message);
+  });
+  if (goals_.empty()) fail("the bag has no setpoints: no job ran while it was recorded");
+  if (asked_ > static_cast<int>(goals_.size())) {
+    fail("job " + std::to_string(asked_) + ": the bag has " + std::to_string(goals_.size()) + " job(s)");
+  }
+  finish();
+  const std::size_t number = asked_ == 0 ? goals_.size() : static_cast<std::size_t>(asked_);
+  place_ = "job " + std::to_string(number) + " of " + std::to_string(goals_.size());
+  job_ = jobs_[goal_];
+  selectStates();
+  for (const auto& [name, status] : worst_) diagnostics_.emplace_back(name, status);
+  Json head{{"grinder", (node_.front() == '/' ? "" : "/") + node_.substr(0, node_.size() - 1)},
+            {"in_bag", place_.substr(4) + ", goal " + goal_},
+            {"started", utcText(start_)},
+            {"ended", utcText(end_)}};
+  head.update(head_);
+  for (const auto& [time, offsets] : offsets_) {
+    if (time <= start_) head["work_offsets"] = offsets;
+  }
+  if (heads_.count(goal_) > 0) head.update(heads_[goal_]);
+  head_ = std::move(head);
+}
+
+void BagRun::findTopics(const rosbag::Bag& bag) {
+  static const auto digests = digestsOf<SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, MachineInfo,
+                                        WorkOffsets, diagnostic_msgs::DiagnosticArray>();
+  rosbag::View view(bag);
+  const std::string batch = ros::message_traits::datatype<SetpointBatch>();
+  std::string found;
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    const auto known = std::find(topics_.begin(), topics_.end(), connection->topic);
+    if (connection->datatype != batch || known != topics_.end()) continue;
+    topics_.push_back(connection->topic);
+    found += (found.empty() ? "" : ", ") + connection->topic;
+  }
+  if (topics_.size() != 1) {
+    fail("the bag has setpoints (" + batch + ") on " + (found.empty() ? "no topic" : found) + "; allowed: one topic");
+  }
+  node_ = found.substr(0, found.rfind('/') + 1);
+  if (node_.empty()) fail("the setpoints' topic " + found + " has no namespace");
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    const std::string& topic = connection->topic;
+    const auto digest = digests.find(connection->datatype);
+    const bool is_diagnostics =
+        connection->datatype == ros::message_traits::datatype<diagnostic_msgs::DiagnosticArray>();
+    if (digest == digests.end() || (!is_diagnostics && topic.compare(0, node_.size(), node_) != 0)) continue;
+    if (digest->second != connection->md5sum) {
+      fail(topic + " has another definition of " + connection->datatype + " than this program");
+    }
+    if (std::find(topics_.begin(), topics_.end(), topic) == topics_.end()) topics_.push_back(topic);
+  }
+}
+
+void BagRun::take(const rosbag::MessageInstance& message) {
+  if (const auto batch = message.instantiate<SetpointBatch>()) {
+    takeBatch(*batch);
+  } else if (message.isType<GrinderState>()) {
+    takeState(message);
+  } else if (message.isType<diagnostic_msgs::DiagnosticArray>()) {
+    takeDiagnostics(message);
+  } else {
+    takeHead(message);
+  }
+}
+
+void BagRun::takeBatch(const SetpointBatch& batch) {
+  if (goals_.empty() || batch.goal_id != goals_.back()) {
+    goals_.push_back(batch.goal_id);
+    if (isAsked()) {
+      restart();
+      goal_ = batch.goal_id;
+      period_ = batch.period;
+      const std::uint64_t first = batch.setpoints.empty() ? 0 : batch.setpoints.front().cycle;
+      start_ = batch.header.stamp.toSec() - static_cast<double>(first) * period_;
+    }
+  }
+  if (!isAsked()) return;
+  end_ = batch.end_stamp.toSec();
+  visitBatch(batch, [this](const RunRow& row) { summarise(row); });
+}
+
+void BagRun::visitBatch(const SetpointBatch& batch, const RowVisitor& visitor) const {
+  const std::size_t count = batch.setpoints.size();
+  const double begin = batch.header.stamp.toSec();
+  // A batch is a few hundredths of a second: between its ends the cycles are evenly spaced.
+  const double step = (batch.end_stamp.toSec() - begin) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);
+  RunRow row;
+  for (std::size_t i = 0; i < count; ++i) {
+    const WrittenSetpoint& s = batch.setpoints[i];
+    row.setpoint = flute_grinder::fromMessage(s);
+    row.actual = Axes(s.actual.data());
+    row.time = begin - start_ + static_cast<double>(i) * step;
+    row.cycle_period = s.cycle_period;
+    visitor(row);
+  }
+}
+
+void BagRun::takeHead(const rosbag::MessageInstance& message) {
+  if (const auto goal = message.instantiate<GrindActionGoal>()) {
+    heads_[goal->goal_id.id]["job_name"] = goal->goal.job_name;
+    jobs_[goal->goal_id.id] = std::make_shared<const GrindJob>(jobFromGoal(goal->goal));
+  } else if (const auto result = message.instantiate<GrindActionResult>()) {
+    Json& head = heads_[result->status.goal_id.id];
+    head["outcome"] = outcomeOf(result->status.status);
+    head["reason"] = result->result.error_string;
+    head["planned"] = plannedJson(flute_grinder::fromMessage(result->result.statistics));
+  } else if (const auto machine = message.instantiate<MachineInfo>()) {
+    head_["machine"] = toJson(fromMessage(*machine));
+  } else if (const auto offsets = message.instantiate<WorkOffsets>()) {
+    offsets_.emplace_back(offsets->header.stamp.toSec(), toJson(Axes(offsets->values.data()), ""));
+  }
+}
+
+void BagRun::takeState(const rosbag::MessageInstance& message) {
+  const auto state = message.instantiate<GrinderState>();
+  const auto known = valueOf<MachineState>(state->state_name);
+  StateChange change{state->header.stamp.toSec(),
+                     state->state_name,
+                     known && rowOf(*known).holds_job,
+                     state->fault.empty() ? state->hold_reason : state->fault,
+                     state->override,
+                     {state->tooth, state->pass}};
+  const StateChange* last = changes_.empty() ? nullptr : &changes_.back();
+  if (last && last->state == change.state && last->reason == change.reason &&
+      last->feed_override == change.feed_override)
+    return;
+  changes_.push_back(std::move(change));
+}
+
+void BagRun::takeDiagnostics(const rosbag::MessageInstance& message) {
+  const auto array = message.instantiate<diagnostic_msgs::DiagnosticArray>();
+  for (const auto& status : array->status) {
+    WorstStatus& worst = worst_[status.name];
+    if (status.level > worst.level) worst = {status.level, status.message, 0};
+    if (status.level == worst.level) ++worst.count;
+  }
+}
+
+void BagRun::selectStates() {
+  auto begin = std::find_if(changes_.begin(), changes_.end(), [this](const auto& c) { return c.time > start_; });
+  if (begin != changes_.begin()) --begin;
+  const auto is_last = [this](const StateChange& change) { return change.time >= end_ && !change.held; };
+  auto end = std::find_if(begin, changes_.end(), is_last);
+  if (end != changes_.end()) ++end;
+  for (auto change = begin; change != end; ++change) {
+    states_.push_back(*change);
+    states_.back().time -= start_;
+  }
+}
+
+void BagRun::visit(const RowVisitor& visitor) const {
+  readBag(path_, [&](const rosbag::Bag& bag) {
+    rosbag::View view(bag, rosbag::TopicQuery(topics_.front()));
+    for (const rosbag::MessageInstance& message : view) {
+      const auto batch = message.instantiate<SetpointBatch>();
+      if (batch && batch->goal_id == goal_) visitBatch(*batch, visitor);
+    }
+  });
+}
+
+}  // namespace flute_grinder

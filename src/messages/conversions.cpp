@@ -1,9 +1,6 @@
 #include "flute_grinder/messages/conversions.h"
 
 #include "flute_grinder/job/job_fields.h"
-#include "flute_grinder/messages/sha256.h"
-
-#include <ros/serialization.h>
 
 #include <algorithm>
 #include <limits>
@@ -98,21 +95,6 @@ CutterGeometry fromMessage(const Cutter& message) {
   GrindGoal goal;
   goal.cutter = message;
   return jobFromGoal(goal).cutter;
-}
-
-std::string jobDigest(const GrindJob& job) {
-  const GrindGoal goal = goalFromJob(job);
-  std::vector<std::uint8_t> bytes;
-  const auto append = [&](const auto& part) {
-    std::vector<std::uint8_t> of_part(ros::serialization::serializationLength(part));
-    ros::serialization::OStream stream(of_part.data(), static_cast<std::uint32_t>(of_part.size()));
-    ros::serialization::serialize(stream, part);
-    bytes.insert(bytes.end(), of_part.begin(), of_part.end());
-  };
-  append(goal.cutter);
-  append(goal.process);
-  append(goal.interpolation);
-  return sha256Hex(bytes.data(), bytes.size());
 }
 
 PathStatistics toMessage(const core::PathStatistics& statistics) {

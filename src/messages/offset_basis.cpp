@@ -2,24 +2,17 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
-#include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/messages/sha256.h"
+#include "flute_grinder/plan/job_digest.h"
 
 #include <filesystem>
-#include <string_view>
 
 namespace flute_grinder {
 
 namespace {
 
 std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename(); }
-
-bool isOfWheel(std::string_view path) {
-  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
-  return begins("process.wheel_") && !begins("process.wheel_wear") && path != "process.wheel_width";
-}
 
 /// Copies between core and message; the members have the same names.
 template <typename From, typename To>
@@ -43,22 +36,6 @@ GrindGoal goalFromFile(const std::string& path) {
   goal.job_name = nameOf(path);
   goal.wheel_name = nameOf(wheelFileOf(path));
   return goal;
-}
-
-std::string wheelDigest(const GrindJob& job) {
-  std::string figures;
-  const auto add = [&](const char* name, double value) {
-    // A figure that a later version adds, and that is 0, leaves the digest as it was.
-    if (value != 0) figures += format("%s %a\n", name, value);
-  };
-  visitJobFields([&](const JobField& field, auto of) {
-    if (isOfWheel(field.path)) add(field.path, of(job));
-  });
-  visitJobChoices([&](const char* path, int, auto of) {
-    if (isOfWheel(path)) add(path, static_cast<double>(of(job)));
-  });
-  for (const ProfilePoint& point : job.wheel_points) figures += format("point %a %a\n", point.w, point.radius);
-  return sha256Hex(figures.data(), figures.size());
 }
 
 core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method) {

@@ -1,6 +1,6 @@
 #include "node/atomic_file.h"
 
-#include "flute_grinder/messages/sha256.h"
+#include "flute_grinder/plan/sha256.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

@@ -9,6 +9,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "panel/beside.h"
 #include "panel/plain_words.h"
 #include "panel/setup_dialog.h"

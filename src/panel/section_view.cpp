@@ -4,6 +4,7 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "panel/plain_words.h"
 
 #include <QHBoxLayout>

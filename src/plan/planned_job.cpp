@@ -2,7 +2,7 @@
 
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/plan/job_digest.h"
 
 #include <stdexcept>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/plan/job_digest.h"
 
 #include "motion/generators.h"
 

@@ -2,6 +2,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/plan/job_digest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/messages/sha256.h"
+#include "flute_grinder/plan/sha256.h"
 #include "node/offset_store.h"
 
 #include "journal_fixture.h"

@@ -2,6 +2,7 @@
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/plan/planned_job.h"
 
 #include "collision/machine.h"

@@ -1,3 +1,4 @@
+#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/job_record.h"
 
 #include "any_tool.h"

@@ -28,10 +28,6 @@ Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_
 /// Everything in a cutter's message except its teeth.
 CutterGeometry fromMessage(const Cutter& message);
 
-/// Identifies a job: SHA-256 of its numbers, in hexadecimal. The other data of a goal are not included.
-/// @throw std::runtime_error if the hash cannot be computed.
-std::string jobDigest(const GrindJob& job);
-
 PathStatistics toMessage(const core::PathStatistics& statistics);
 core::PathStatistics fromMessage(const PathStatistics& message);
 

@@ -13,14 +13,8 @@
 /// Which figures of a goal its zero points depend on, and whether work offsets were set for them.
 namespace flute_grinder {
 
-struct GrindJob;
-
 /// The goal of a job file, with the names of the file and its wheel file. @throw JobFileError
 GrindGoal goalFromFile(const std::string& path);
-
-/// Identifies the wheel of a job: SHA-256, in hexadecimal, of its figures but its wear, which the job follows, and its
-/// width. @throw std::runtime_error if the hash cannot be computed.
-std::string wheelDigest(const GrindJob& job);
 
 /// What a work offset is set for that is set for a goal.
 core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace flute_grinder {
+
+struct GrindJob;
+
+/// Identifies a job: SHA-256, in hexadecimal, of its figures and choices that are not 0, so that one that a later
+/// version adds leaves the digest of a job without it as it was. What is computed for a job is not included.
+/// @throw std::runtime_error if the hash cannot be computed.
+std::string jobDigest(const GrindJob& job);
+
+/// Identifies the wheel of a job in the same way: its figures but its wear, which the job follows, and its width.
+std::string wheelDigest(const GrindJob& job);
+
+}  // namespace flute_grinder

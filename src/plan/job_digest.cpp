@@ -1,0 +1,45 @@
+#include "flute_grinder/plan/job_digest.h"
+
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/plan/sha256.h"
+
+#include <string_view>
+
+namespace flute_grinder {
+
+namespace {
+
+bool isOfWheel(std::string_view path) {
+  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
+  return begins("process.wheel_") && !begins("process.wheel_wear") && path != "process.wheel_width";
+}
+
+/// The figures and choices that are not 0, a line for each.
+/// @param wanted whether a path counts.
+template <typename Wanted>
+std::string figuresOf(const GrindJob& job, const Wanted& wanted) {
+  std::string figures;
+  const auto add = [&](const char* path, double value) {
+    if (value != 0 && wanted(path)) figures += format("%s %a\n", path, value);
+  };
+  visitJobFields([&](const JobField& field, auto of) { add(field.path, of(job)); });
+  visitJobChoices([&](const char* path, int, auto of) { add(path, static_cast<double>(of(job))); });
+  for (const ProfilePoint& point : job.wheel_points) figures += format("point %a %a\n", point.w, point.radius);
+  return figures;
+}
+
+std::string digestOf(const std::string& figures) { return sha256Hex(figures.data(), figures.size()); }
+
+}  // namespace
+
+std::string jobDigest(const GrindJob& job) {
+  std::string figures = figuresOf(job, [](const char*) { return true; });
+  for (const double angle : job.tooth_angles) figures += format("tooth %a\n", angle);
+  for (const double angle : job.spiral_angles) figures += format("spiral %a\n", angle);
+  return digestOf(figures);
+}
+
+std::string wheelDigest(const GrindJob& job) { return digestOf(figuresOf(job, isOfWheel)); }
+
+}  // namespace flute_grinder

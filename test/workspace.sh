@@ -47,7 +47,11 @@ make_workspace install
 
 # check_space SPACE SHARE: in the shell of a user who has sourced it.
 check_space() (
+  # The workspace's other robots stay where they are.
+  unset ROS_IP ROS_HOSTNAME
   use_space "$1"
+  [ -z "${ROS_IP:-}${ROS_HOSTNAME:-}" ]
+  [[ ${ROS_ETC_DIR:-} != *flute_grinder* ]]
   [ "$(rospack find flute_grinder)" = "$2" ]
   rosrun flute_grinder grind table "$2/jobs/paper.yaml" --step-length 0.2 </dev/null | grep -q '^152 points'
   roslaunch -p "${ROS_MASTER_URI##*:}" flute_grinder grinder.launch config:="$folder/machine.yaml" \
@@ -57,8 +61,9 @@ check_space() (
   await_grinder env
   rosrun flute_grinder grind enable </dev/null
   ps -o args= --ppid "$launch" | grep -q "^$1/lib/flute_grinder/grinder "
-  # Without parameters it does not start, and says so.
-  { ! rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'parameter /second/'
+  # Without an address or without parameters it does not start, and says so.
+  { ! rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'neither ROS_HOSTNAME nor ROS_IP is set'
+  { ! ROS_IP=127.0.0.1 rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'parameter /second/'
   rosrun neighbour grinder </dev/null | tee "$folder/state"
   grep -q '^ready; axis_0 .*; A(1 m) = 2 rad$' "$folder/state"
 )

@@ -48,10 +48,10 @@ std::string ownHostName() {
 std::string ownAddressRefusal() {
   const char* variable = std::getenv("ROS_HOSTNAME") ? "ROS_HOSTNAME" : "ROS_IP";
   const char* value = std::getenv(variable);
-  if (!value) return "";
-  const std::string name = value;
   const std::string allowed =
       "; allowed: 127.0.0.1 or localhost for this computer alone, or the address under which others reach it";
+  if (!value) return "neither ROS_HOSTNAME nor ROS_IP is set, and every computer could move the machine" + allowed;
+  const std::string name = value;
   if (name.empty()) return std::string(variable) + " is empty" + allowed;
   if (name.find(':') != std::string::npos && !usesIpv6()) {
     return std::string(variable) + " = " + name +

@@ -15,7 +15,7 @@ namespace {
 // As hasForm() takes them.
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
-constexpr std::size_t kSuffix = 7;  ///< characters that writeFile() appends while it writes, a dot and six of mkstemp()
+constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
 
 }  // namespace
 
@@ -54,10 +54,7 @@ std::string recordName(double start) {
 
 bool isRecordName(std::string_view name) { return hasForm(name, kNameForm); }
 
-bool isUnfinishedRecordName(std::string_view name) {
-  return name.size() == kNameForm.size() + kSuffix && isRecordName(name.substr(0, kNameForm.size())) &&
-         name[kNameForm.size()] == '.';
-}
+bool isUnfinishedRecordName(std::string_view name) { return hasForm(name, kUnfinishedForm); }
 
 RecordFiles recordFilesIn(const std::string& folder) {
   RecordFiles files;

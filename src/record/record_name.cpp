@@ -1,11 +1,13 @@
 #include "flute_grinder/record/record_name.h"
 
+#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -69,6 +71,24 @@ RecordFiles recordFilesIn(const std::string& folder) {
   }
   for (auto* list : {&files.records, &files.unfinished, &files.others}) std::sort(list->begin(), list->end());
   return files;
+}
+
+Json readRecord(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be read");
+  Json record;
+  try {
+    record = Json::parse(file);
+  } catch (const Json::parse_error& error) {
+    throw FileError(path + ": is no record of a job: " + error.what());
+  }
+  if (!record.is_object() || record.value("record", Json()) != 1)
+    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
+  for (const char* key :
+       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
+    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
+  }
+  return record;
 }
 
 }  // namespace flute_grinder

@@ -56,10 +56,7 @@ void addFlange(CLI::App& command, std::optional<double>& flange_mm) {
   command
       .add_option("--flange", flange_mm, "from the flange's face to the wheel's upper face (default: the wheel file's)")
       ->type_name("MM")
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value >= -100 && value <= 100 ? "" : text + "; allowed: -100 to 100 mm";
-      });
+      ->check(within(-100, 100, "mm"));
 }
 
 }  // namespace flute_grinder

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/job/format.h"
 
 #include <CLI/CLI.hpp>
 
@@ -13,6 +14,14 @@
 namespace flute_grinder {
 
 // Arguments that several commands have.
+
+/// A check that a number is from min to max, in the unit.
+inline auto within(double min, double max, const char* unit) {
+  return [=](const std::string& text) {
+    const double value = std::strtod(text.c_str(), nullptr);
+    return value >= min && value <= max ? "" : format("%s; allowed: %g to %g %s", text.c_str(), min, max, unit);
+  };
+}
 
 /// The job file, required.
 void addJob(CLI::App& command, std::string& job);

@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 #include <tuple>
@@ -66,10 +65,7 @@ void judge(Json record, const Tolerances& tolerances, Entry& entry) {
 
 /// @throw std::exception if it is no record.
 Entry readEntry(const std::string& path, const Tolerances& tolerances) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot be read");
-  Json record = Json::parse(file);
-  if (record.at("record") != 1) throw std::runtime_error("record = " + record["record"].dump() + "; allowed: 1");
+  Json record = readRecord(path);
   const GrindJob job = parseJob(record.at("job").at("file").dump(), "job.file");
   const Json& strokes = record.at("strokes");
   Entry entry;
@@ -177,8 +173,9 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
     try {
       entries.push_back(readEntry(path, tolerances));
     } catch (const std::exception& error) {
-      const std::string reason = error.what();
-      std::fprintf(stderr, "%s: no record of a job: %s\n", path.c_str(), reason.substr(0, reason.find('\n')).c_str());
+      std::string reason = error.what();
+      if (reason.rfind(path, 0) != 0) reason = path + ": is no record of a job: " + reason;
+      std::fprintf(stderr, "%s\n", reason.substr(0, reason.find('\n')).c_str());
       status = 2;
     }
   }

@@ -23,10 +23,7 @@ void addTable(Commands& commands) {
   addJob(command, options->job);
   command.add_option("--step-length", options->step_length_mm, "step length in mm; A is weighted by rotary_scale")
       ->required()
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value >= 1e-4 && value <= 100 ? "" : text + "; allowed: 0.0001 to 100 mm";
-      });
+      ->check(within(1e-4, 100, "mm"));
   addChoice(command, "--even-step", options->even_step, "instead of the job's rule");
   addCsv(command, options->csv, "write the points to this file");
   addJson(command, options->json);
@@ -65,10 +62,7 @@ void addSimulate(Commands& commands) {
   at->type_name("MM,MM,...");
   command.add_option("--sections", options->sections, "number of sections over the flute's length (default: 9)")
       ->excludes(at)
-      ->check([](const std::string& text) {
-        const long value = std::strtol(text.c_str(), nullptr, 10);
-        return value >= 2 && value <= kMaxSections ? "" : text + "; allowed: 2 to " + std::to_string(kMaxSections);
-      });
+      ->check(within(2, kMaxSections, "sections"));
   addCsv(command, options->csv, "write the figures of every section and tooth to this file");
   command.add_option("--stl", options->stl, "write the cutter as a solid to this file, in mm")->type_name(kAnyFile);
   command.add_option("--svg", options->svg, "draw the sections at both ends and in the middle, and the figures over X")

@@ -17,12 +17,10 @@ void addOverride(Commands& commands) {
   auto& command =
       commands.add("override", "set the feed override; 0 stops the feed, rapids keep their speed", "50",
                    commands.online([&commands, percent] { return setFeedOverride(commands.node, *percent); }));
-  command.add_option("PERCENT", *percent, "of the job's feed, 0 to 120")
+  constexpr double max = kMaxFeedOverride * 100;
+  command.add_option("PERCENT", *percent, format("of the job's feed, 0 to %g", max))
       ->required()
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return value >= 0 && value <= kMaxFeedOverride * 100 ? "" : text + "; allowed: 0 to 120 %";
-      });
+      ->check(within(0, max, "%"));
 }
 
 void addConfirmSwivel(Commands& commands) {
@@ -32,10 +30,7 @@ void addConfirmSwivel(Commands& commands) {
                    commands.online([&commands, degrees] { return confirmSwivel(commands.node, *degrees); }));
   command.add_option("DEG", *degrees, "as setup.swivel_deg of the job, -90 to 90")
       ->required()
-      ->check([](const std::string& text) {
-        const double value = std::strtod(text.c_str(), nullptr);
-        return std::abs(value) <= 90 ? "" : text + "; allowed: -90 to 90 deg";
-      });
+      ->check(within(-90, 90, "deg"));
 }
 
 /// Arguments of `grind jog`.

@@ -53,7 +53,7 @@ int confirmSwivel(const std::string& node, double degrees);
 /// @return the exit status.
 int jog(const std::string& node, int axis, double distance, double feed);
 
-/// Sets the feed override. @param percent 0 to 120. @return the exit status.
+/// Sets the feed override. @param percent 0 to 100 * kMaxFeedOverride. @return the exit status.
 int setFeedOverride(const std::string& node, double percent);
 
 }  // namespace flute_grinder

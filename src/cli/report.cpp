@@ -9,6 +9,7 @@
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/record/record_name.h"
 #include "flute_grinder/report/findings.h"
 
 #include <spawn.h>

@@ -1,5 +1,6 @@
 #include "node/atomic_file.h"
 
+#include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/plan/sha256.h"
 
 #include <fcntl.h>
@@ -37,7 +38,7 @@ std::string unsealed(const std::string& text) {
 
 }  // namespace
 
-/// An open file or folder, closed by the destructor. No call blocks on a peer, as with a FIFO.
+/// An open file, closed by the destructor. No call blocks on a peer, as with a FIFO.
 class AtomicFile::File {
  public:
   File(const std::string& path, int flags)
@@ -68,17 +69,10 @@ class AtomicFile::File {
     return text;
   }
 
+  /// @param text short.
   void replace(const std::string& text) {
-    requireDone(ftruncate(fd_, 0) == 0);
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t count = ::write(fd_, text.data() + done, text.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      requireDone(count >= 0);
-      done += static_cast<std::size_t>(count);
-    }
+    requireDone(ftruncate(fd_, 0) == 0 && ::write(fd_, text.data(), text.size()) >= 0);
   }
-
-  void sync() { requireDone(fsync(fd_) == 0); }
 
   /// @return false if another process has locked it.
   bool lock() {
@@ -145,22 +139,14 @@ void AtomicFile::write(const std::string& text) const {
     const std::string sealed = text + seal(text);
     requireAllowed(sealed.size() <= kMaxFile, "size", sealed.size(), std::to_string(kMaxFile) + " bytes at most");
     acquire();
-    // Always the same name, so that a crash leaves one file behind at most; the lock keeps others away from it.
-    const std::string fresh = file_ + ".new";
-    {
-      File file(fresh, O_WRONLY | O_CREAT);
-      file.requireRegular();
-      file.replace(sealed);
-      file.sync();
-    }
-    std::filesystem::rename(fresh, file_);
+    writeFile(file_, sealed);
   });
 }
 
 void AtomicFile::settle() const {
   named([&] {
     acquire();
-    File(std::filesystem::path(file_).parent_path().string(), O_RDONLY | O_DIRECTORY).sync();
+    settleFile(file_);
   });
 }
 

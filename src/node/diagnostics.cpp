@@ -86,18 +86,7 @@ void Diagnostics::addTo(diagnostic_updater::Updater& updater) {
   updater.add("History", this, &Diagnostics::reportHistory);
 }
 
-void Diagnostics::setJournalError(const std::string& error) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  journal_error_ = error;
-}
-
-void Diagnostics::setHistoryError(const std::string& error) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  history_error_ = error;
-}
-
 void Diagnostics::add(const CycleRecord& record) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   ++loop_.cycles;
   loop_.total += record.period;
   updateMax(loop_.longest, record.period);
@@ -174,7 +163,6 @@ void Diagnostics::addBuffer(const DriveStatus& drive) {
 }
 
 void Diagnostics::reportLoop(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const Scheduling granted = scheduling_();
   const auto cycles = static_cast<double>(loop_.cycles);
   const std::uint64_t lost = last_.records_lost - records_lost_;
@@ -204,7 +192,6 @@ void Diagnostics::reportLoop(Status& status) {
 }
 
 void Diagnostics::reportDrive(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const FaultKind reported = drive_.loop_fault.kind;
   status.summary(DiagnosticStatus::OK, last_.drive.enabled ? "enabled" : "disabled");
   if (reported != FaultKind::kNone) status.mergeSummary(DiagnosticStatus::ERROR, drive_.loop_fault.text());
@@ -233,7 +220,6 @@ void Diagnostics::reportDrive(Status& status) {
 }
 
 void Diagnostics::reportFollowing(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   status.summary(DiagnosticStatus::OK, "within the thresholds");
   for (int i = 0; i < kAxisCount; ++i) {
     const double allowed = config_.following_error[i];
@@ -248,7 +234,6 @@ void Diagnostics::reportFollowing(Status& status) {
 }
 
 void Diagnostics::reportLimits(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   status.summary(DiagnosticStatus::OK, limits_.setpoints > 0 ? "within the thresholds" : "no setpoints");
   status.add("Setpoints", limits_.setpoints);
   for (std::size_t q = 0; q < kQuantityNames.size() && limits_.setpoints > 0; ++q) {
@@ -264,7 +249,6 @@ void Diagnostics::reportLimits(Status& status) {
 }
 
 void Diagnostics::reportBuffer(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
   const std::uint64_t underruns = last_.drive.underruns - underruns_;
   status.summary(DiagnosticStatus::OK, "filled");
   if (fullest_ == 0) {
@@ -284,14 +268,8 @@ void Diagnostics::reportBuffer(Status& status) {
   buffer_ = {};
 }
 
-void Diagnostics::reportJournal(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  reportKept(status, journal_error_, DiagnosticStatus::ERROR);
-}
+void Diagnostics::reportJournal(Status& status) { reportKept(status, journal_error_, DiagnosticStatus::ERROR); }
 
-void Diagnostics::reportHistory(Status& status) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  reportKept(status, history_error_, DiagnosticStatus::WARN);
-}
+void Diagnostics::reportHistory(Status& status) { reportKept(status, history_error_, DiagnosticStatus::WARN); }
 
 }  // namespace flute_grinder

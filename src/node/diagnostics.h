@@ -9,7 +9,6 @@
 
 #include <array>
 #include <functional>
-#include <mutex>
 #include <string>
 
 namespace flute_grinder {
@@ -38,8 +37,8 @@ struct Scheduling {
   bool memory_locked = false;
 };
 
-/// Monitors every cycle of the control loop, and reports the worst since the previous report on /diagnostics. Thread
-/// safe.
+/// Monitors every cycle of the control loop, and reports the worst since the previous report on /diagnostics. Not
+/// thread safe.
 class Diagnostics {
  public:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -54,9 +53,9 @@ class Diagnostics {
   /// Adds the record of a cycle. To be called for every cycle, in order.
   void add(const CycleRecord& record);
   /// Sets what is wrong with the journal; empty if nothing.
-  void setJournalError(const std::string& error);
+  void setJournalError(const std::string& error) { journal_error_ = error; }
   /// Sets why the records of jobs are not kept; empty if they are.
-  void setHistoryError(const std::string& error);
+  void setHistoryError(const std::string& error) { history_error_ = error; }
 
   void reportLoop(Status& status);
   void reportDrive(Status& status);
@@ -105,7 +104,6 @@ class Diagnostics {
   const DiagnosticThresholds thresholds_;
   const std::function<Scheduling()> scheduling_;
 
-  std::mutex mutex_;  ///< guards everything below
   CycleRecord last_;
   std::string journal_error_, history_error_;
   LimitCheck limit_check_;

@@ -100,8 +100,10 @@ void History::keep(const std::string& name, std::function<std::string()> text) {
   thread_.post([at = folder_, drops, name, text = std::move(text)] {
     at->attempt(drops, [&] {
       fs::create_directories(at->path);
-      writeFile(at->path / name, text());
-      at->removeOldest(at->path / name);
+      const fs::path file = at->path / name;
+      writeFile(file, text());
+      settleFile(file);
+      at->removeOldest(file);
     });
     const std::lock_guard<std::mutex> lock(at->mutex);
     --at->waiting;

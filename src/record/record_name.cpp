@@ -1,11 +1,13 @@
 #include "flute_grinder/record/record_name.h"
 
+#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <stdexcept>
 
 namespace flute_grinder {
@@ -15,7 +17,7 @@ namespace {
 // As hasForm() takes them.
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
-constexpr std::size_t kSuffix = 7;  ///< characters that writeFile() appends while it writes, a dot and six of mkstemp()
+constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
 
 }  // namespace
 
@@ -54,10 +56,7 @@ std::string recordName(double start) {
 
 bool isRecordName(std::string_view name) { return hasForm(name, kNameForm); }
 
-bool isUnfinishedRecordName(std::string_view name) {
-  return name.size() == kNameForm.size() + kSuffix && isRecordName(name.substr(0, kNameForm.size())) &&
-         name[kNameForm.size()] == '.';
-}
+bool isUnfinishedRecordName(std::string_view name) { return hasForm(name, kUnfinishedForm); }
 
 RecordFiles recordFilesIn(const std::string& folder) {
   RecordFiles files;
@@ -72,6 +71,24 @@ RecordFiles recordFilesIn(const std::string& folder) {
   }
   for (auto* list : {&files.records, &files.unfinished, &files.others}) std::sort(list->begin(), list->end());
   return files;
+}
+
+Json readRecord(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be read");
+  Json record;
+  try {
+    record = Json::parse(file);
+  } catch (const Json::parse_error& error) {
+    throw FileError(path + ": is no record of a job: " + error.what());
+  }
+  if (!record.is_object() || record.value("record", Json()) != 1)
+    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
+  for (const char* key :
+       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
+    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
+  }
+  return record;
 }
 
 }  // namespace flute_grinder

@@ -1,7 +1,6 @@
 #include "flute_grinder/report/findings.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
@@ -11,7 +10,6 @@
 #include "report/plots.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 namespace flute_grinder {
@@ -196,24 +194,6 @@ Json Survey::loopJson() const {
             {"longest_ms", longest_ / kMillisecond}}},
           {"states", states},
           {"diagnostics", diagnostics}};
-}
-
-Json readRecord(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError(path + ": cannot be read");
-  Json record;
-  try {
-    record = Json::parse(file);
-  } catch (const Json::parse_error& error) {
-    throw FileError(path + ": is no record of a job: " + error.what());
-  }
-  if (!record.is_object() || record.value("record", Json()) != 1)
-    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
-  for (const char* key :
-       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
-    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
-  }
-  return record;
 }
 
 Json findingsOfRecord(const Json& record, const ReportContext& context) {

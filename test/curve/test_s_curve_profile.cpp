@@ -204,6 +204,21 @@ TEST(SCurveProfile, StopsAsSoonAsTheLimitsAllow) {
   EXPECT_EQ(law.speed(), 0);
 }
 
+TEST(SCurveProfile, FinalBrakingTakesATargetButChangesOnlyWhenSlowedDown) {
+  for (const double target : {0.0, 0.1, 2.0}) {
+    SCOPED_TRACE(target);
+    SCurveProfile law({2, 1, 1}, 20, 2);
+    law.advance(law.timeLeft() - 2);
+    SCurveProfile untouched = law;
+    EXPECT_TRUE(law.setTarget(target));
+    EXPECT_EQ(law.target(), target);
+    EXPECT_EQ(law.timeLeft(), untouched.timeLeft());
+    law.slowDown(0.5);
+    untouched.slowDown(0.5);
+    EXPECT_EQ(law.timeLeft() == untouched.timeLeft(), target == 2);
+  }
+}
+
 TEST(SCurveProfile, TakesTheAccelerationBackBeforeItStops) {
   // After 1 s: 0.5 m/s and 1 m/s^2. 1 s to no acceleration at 1 m/s, 1 s and 1 s down with a peak of 1 m/s^2.
   SCurveProfile law({2, 1, 1}, 20, 2);

@@ -92,7 +92,7 @@ TEST_F(HistoryTest, RemovesNothingThatIsNotItsOwn) {
   const std::vector<std::string> foreign{"20261122T170413.123Z.json.bak", "20261122T170413.json", "a.json",
                                          "notes.txt"};
   for (const std::string& name : foreign) put(name, 1000);
-  put("20261122T170413.000Z.json.aB3xY9", 1000);  // left by a power failure
+  put("20261122T170413.000Z.json.new", 1000);  // left by a power failure
   open(250);
   for (int i = 0; i < 3; ++i) keep(nameOf(i), std::string(200, 'x'));
   close();
@@ -107,7 +107,7 @@ TEST_F(HistoryTest, SkipsWhatIsNamedLikeARecordButIsNoFile) {
   fs::create_directories(folder / "20201122T170413.000Z.json" / "inside");
   fs::create_symlink("nowhere", folder / "20201122T170413.001Z.json");
   fs::create_symlink("/proc/self/exe", folder / "20201122T170413.002Z.json");
-  ASSERT_EQ(mkfifo((folder / "20201122T170413.003Z.json.aB3xY9").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((folder / "20201122T170413.003Z.json.new").c_str(), 0600), 0);
   const std::vector<std::string> others = files();
   open(250);
   for (int i = 0; i < 4; ++i) keep(nameOf(i), std::string(100, 'x'));
@@ -115,7 +115,7 @@ TEST_F(HistoryTest, SkipsWhatIsNamedLikeARecordButIsNoFile) {
   EXPECT_EQ(history_->error(), "history " + folder.string() +
                                    ": named like records but no regular files, and skipped: 20201122T170413.000Z.json, "
                                    "20201122T170413.001Z.json, 20201122T170413.002Z.json, "
-                                   "20201122T170413.003Z.json.aB3xY9; move them elsewhere");
+                                   "20201122T170413.003Z.json.new; move them elsewhere");
   close();
   std::vector<std::string> left = others;
   left.insert(left.end(), {nameOf(2), nameOf(3)});

@@ -34,8 +34,9 @@ class SCurveProfile {
   bool begin(const MotionLimits& limits, double distance, double target) noexcept;
 
   /// Changes the target speed immediately; a target of 0 stops as soon as the limits allow, before the end of the
-  /// distance, unless the motion already brakes to that end. A target outside 0 to limits().velocity is ignored.
-  /// @return whether the target was accepted.
+  /// distance. Once the motion brakes to that end, a target changes it only after slowDown(). One outside 0 to
+  /// limits().velocity is ignored.
+  /// @return whether the target is in that range.
   bool setTarget(double target) noexcept;
 
   /// For axes that stood still for a while: continues the same motion at reduced speed from the current position. Speed

@@ -10,9 +10,15 @@ namespace flute_grinder {
 ///        synchronized.
 void replaceFile(const std::string& path, const std::string& text);
 
-/// Writes a file in one step in the same way, whether there is one or not. It can be read by all; a symbolic link is
-/// replaced itself. Until then the text is in a file of this name and a suffix of a dot and six characters.
-/// @throw std::system_error as replaceFile().
+/// Writes a file in one step in the same way, whether there is one or not; a symbolic link is replaced itself. Returns
+/// once the text is on the disk; after a power failure the new file is certain only once settleFile() has returned. One
+/// writer at a time: until then the text is in a file of this name and the suffix `.new`, and one that a crash has left
+/// is overwritten.
+/// @throw std::system_error if that cannot be done; the file is then as it was.
 void writeFile(const std::string& path, const std::string& text);
+
+/// Returns once the file's name on the disk stands for the text written last.
+/// @throw std::system_error if its folder cannot be synchronized.
+void settleFile(const std::string& path);
 
 }  // namespace flute_grinder

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/messages/json.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,5 +36,8 @@ struct RecordFiles {
 
 /// @throw std::filesystem::filesystem_error if the folder cannot be read.
 RecordFiles recordFilesIn(const std::string& folder);
+
+/// The record in a file. @throw FileError if it cannot be read, is no record, or lacks a part.
+Json readRecord(const std::string& path);
 
 }  // namespace flute_grinder

@@ -62,10 +62,7 @@ class Survey {
   std::uint64_t late_ = 0, count_ = 0;
 };
 
-/// A record that the grinder keeps of a job. @throw FileError
-Json readRecord(const std::string& path);
-
-/// What a report says of such a record.
+/// What a report says of a record that the grinder keeps of a job, see readRecord().
 Json findingsOfRecord(const Json& record, const ReportContext& context);
 
 }  // namespace flute_grinder

@@ -2,7 +2,7 @@
 
 #include "cli/online.h"
 #include "cli/state_watch.h"
-#include "flute_grinder/connection/service_call.h"
+#include "flute_grinder/network/service_call.h"
 
 #include <ros/ros.h>
 

@@ -2,7 +2,7 @@
 #include "cli/csv.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
-#include "flute_grinder/connection/init_ros.h"
+#include "flute_grinder/network/init_ros.h"
 
 #include <ros/ros.h>
 

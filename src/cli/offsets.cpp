@@ -6,12 +6,12 @@
 #include "cli/time_text.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <unistd.h>
 

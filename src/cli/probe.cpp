@@ -6,11 +6,11 @@
 #include "cli/state_watch.h"
 #include "cli/zeros.h"
 #include "flute_grinder/ProbeAction.h"
-#include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <actionlib/client/action_client.h>
 #include <std_msgs/Header.h>

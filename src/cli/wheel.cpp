@@ -3,12 +3,12 @@
 #include "cli/csv.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_edit.h"
 #include "flute_grinder/job/wheel_file.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 /// @file
-/// Limits for connections of topics and services. roscpp allocates whatever length a peer claims, up to 1 GB, trusts
-/// the answer of a publisher, and divides by a UDPROS datagram size that the peer chooses. These definitions override
-/// the library's own in the node's program.
+/// Limits for connections of topics and services. roscpp allocates whatever length a peer announces, up to 1 GB, and
+/// copies it for each callback: a client with a wrong loop would take the computer's memory, and with it the job. These
+/// definitions override the library's own in the node's program.
 
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
@@ -12,7 +12,6 @@
 #include <ros/subscription.h>
 #include <ros/transport/transport_udp.h>
 #include <ros/transport_publisher_link.h>
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,17 +23,8 @@
 using flute_grinder::kDroppedHead;
 using flute_grinder::kMaxPeerMessage;
 using flute_grinder::originalSymbol;
-using XmlRpc::XmlRpcValue;
 
 namespace {
-
-/// Whether an answer to requestTopic, [code, text, protocol], is well formed: TCPROS, host and port, or no protocol.
-bool isAddressOfTcpros(XmlRpcValue& answer) {
-  if (answer.getType() != XmlRpcValue::TypeArray || answer.size() != 3) return false;
-  XmlRpcValue& protocol = answer[2];
-  return protocol.getType() == XmlRpcValue::TypeArray && protocol.size() == 3 &&
-         protocol[0].getType() == XmlRpcValue::TypeString && static_cast<std::string&>(protocol[0]) == "TCPROS";
-}
 
 constexpr std::uint32_t kPiece = 16384;  ///< [bytes]
 
@@ -93,17 +83,8 @@ void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   }
 }
 
-/// A publisher has answered with its address. Anything else is turned into a plain refusal.
-void Subscription::pendingConnectionDone(const PendingConnectionPtr& connection, XmlRpcValue& answer) {
-  using Done = void (*)(Subscription*, const PendingConnectionPtr&, XmlRpcValue&);
-  static const auto next =
-      reinterpret_cast<Done>(originalSymbol("_ZN3ros12Subscription21pendingConnectionDoneERKN5boost10shared_ptrINS0_"
-                                            "17PendingConnectionEEERN6XmlRpc11XmlRpcValueE"));
-  if (!isAddressOfTcpros(answer)) answer.clear();
-  next(this, connection, answer);
-}
-
-/// Opens the UDP port, which roscpp polls but never reads: a single datagram would keep its thread busy for ever.
+/// Opens the UDP port, which roscpp polls but never reads: a single datagram, as of a port scan, would keep its thread
+/// busy for ever.
 bool TransportUDP::createIncoming(int port, bool is_server) {
   using Create = bool (*)(TransportUDP*, int, bool);
   static const auto next = reinterpret_cast<Create>(originalSymbol("_ZN3ros12TransportUDP14createIncomingEib"));
@@ -111,8 +92,5 @@ bool TransportUDP::createIncoming(int port, bool is_server) {
   if (is_server) disableRead();
   return true;
 }
-
-/// Refused: the node uses TCPROS only.
-TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { return {}; }
 
 }  // namespace ros

@@ -1,9 +1,9 @@
-#include "flute_grinder/connection/init_ros.h"
-#include "flute_grinder/connection/master_watch.h"
-#include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/network/init_ros.h"
+#include "flute_grinder/network/master_watch.h"
 #include "flute_grinder/network/own_address.h"
+#include "flute_grinder/network/ros_api.h"
 #include "node/grinder_node.h"
 #include "node/output.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/network/master_watch.h"
 #include "panel/grinder_link.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"

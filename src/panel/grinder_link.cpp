@@ -7,8 +7,8 @@
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/Stop.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/connection/user_at_host.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <std_srvs/Trigger.h>
 

@@ -7,10 +7,10 @@
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/connection/service_call.h"
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/motion/work_offsets.h"
+#include "flute_grinder/network/service_call.h"
 
 #include <actionlib/goal_id_generator.h>
 #include <ros/callback_queue.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/network/master_watch.h"
 #include "panel/grinder_link.h"
 
 #include <QLabel>

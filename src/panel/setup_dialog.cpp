@@ -1,11 +1,11 @@
 #include "panel/setup_dialog.h"
 
-#include "flute_grinder/connection/ros_api.h"
 #include "flute_grinder/control/swivel_range.h"
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/network/ros_api.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
 

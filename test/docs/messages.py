@@ -27,7 +27,7 @@ MESSAGES = {
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
     'src/cli/state_watch.cpp': (),
     'src/collision/machine_shapes.cpp': (),
-    'src/connection/master_watch.cpp': (),
+    'src/network/master_watch.cpp': (),
     'src/control/loop_requests.cpp': (),
     'src/control/loop_thread.cpp': (),
     'src/control/machine_config.cpp': (),

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// @file
-/// Whatever bytes a goal is made of, the answer is a plan or a refusal with its reasons.
+/// Whatever numbers a goal is made of, the answer is a plan or a refusal with its reasons.
 
 namespace flute_grinder {
 namespace test_goal_fuzz {
@@ -113,7 +113,17 @@ TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
   EXPECT_EQ(validate(jobFromGoal(goal)).at(0).field, "process.z_law");
 }
 
-/// Bytes of a goal, three of them spoiled or all up to its name.
+/// Where a goal's bytes say how many numbers an array has; no client writes a wrong count.
+template <typename Array>
+std::size_t countAt(Array array) {
+  GrindGoal longer = goodGoal();
+  array(longer).push_back(0);
+  const std::vector<std::uint8_t> good = bytesOf(goodGoal());
+  const std::vector<std::uint8_t> more = bytesOf(longer);
+  return static_cast<std::size_t>(std::mismatch(good.begin(), good.end(), more.begin()).first - good.begin());
+}
+
+/// Bytes of a goal, three of them spoiled or all up to its name, but for the counts of its arrays.
 std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   const GrindGoal good = goodGoal();
   std::vector<std::uint8_t> bytes = bytesOf(good);
@@ -122,6 +132,12 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   for (std::size_t n = 0; n < (all ? before_name : 3); ++n) {
     bytes[all ? n : dice() % bytes.size()] = static_cast<std::uint8_t>(dice());
   }
+  static const std::size_t counts[] = {
+      countAt([](GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
+      countAt([](GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
+      countAt([](GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; })};
+  const std::vector<std::uint8_t> whole = bytesOf(good);
+  for (const std::size_t at : counts) std::copy_n(whole.begin() + at, 4, bytes.begin() + at);
   if (dice() % 16 == 0) bytes.resize(dice() % (bytes.size() + 1));
   return bytes;
 }

@@ -1,7 +1,7 @@
 // The panel while ROS master and grinder are killed and started again. Both are the test's own: the master on a port
 // that was free, the grinder another process of this program.
 
-#include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/network/master_watch.h"
 #include "panel_fixture.h"
 #include "stage.h"
 

@@ -16,7 +16,7 @@ class JobFileError : public std::runtime_error {
 };
 
 constexpr std::size_t kMaxYamlFile = 65536;   ///< longest YAML file [bytes]
-constexpr std::size_t kMaxUrdfFile = 262144;  ///< longest robot description [bytes], as the node takes it
+constexpr std::size_t kMaxUrdfFile = 262144;  ///< longest robot description [bytes]
 
 /// The text of a file.
 /// @param most bytes.

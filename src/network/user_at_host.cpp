@@ -1,4 +1,4 @@
-#include "flute_grinder/connection/user_at_host.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <pwd.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/connection/ros_api.h"
+#include "flute_grinder/network/ros_api.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
-#include "flute_grinder/connection/master_watch.h"
+#include "flute_grinder/network/master_watch.h"
 
-#include "flute_grinder/connection/ros_api.h"
+#include "flute_grinder/network/ros_api.h"
 
 #include <ros/connection_manager.h>
 #include <ros/network.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/connection/init_ros.h"
+#include "flute_grinder/network/init_ros.h"
 
 #include <ros/init.h>
 

@@ -1,4 +1,4 @@
-#include "flute_grinder/connection/service_call.h"
+#include "flute_grinder/network/service_call.h"
 
 #include <ros/connection.h>
 #include <ros/service_manager.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/connection/ros_api.h"
+#include "flute_grinder/network/ros_api.h"
 
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>

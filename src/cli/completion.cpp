@@ -13,15 +13,10 @@ _grind_words() {
   mapfile -t COMPREPLY < <(compgen -W "$1" -- "$2")
 }
 
-# Files of an extension (none for all) and folders.
+# Files of an extension (none for all, / for no file) and folders.
 _grind_files() {
   compopt -o filenames 2>/dev/null
   mapfile -t COMPREPLY < <(compgen -f ${1:+-X "!*.$1"} -- "$2"; [ -z "$1" ] || compgen -d -- "$2")
-}
-
-_grind_folders() {
-  compopt -o filenames 2>/dev/null
-  mapfile -t COMPREPLY < <(compgen -d -- "$1")
 }
 
 # From the word that is grind on.
@@ -86,7 +81,7 @@ std::string completer(const CLI::Option& option) {
   if (type == kAnyFile) return "_grind_files '' \"$cur\"";
   if (type == kYamlFile) return "_grind_files yaml \"$cur\"";
   if (type == kUrdfFile) return "_grind_files urdf \"$cur\"";
-  if (type == kFolder) return "_grind_folders \"$cur\"";
+  if (type == kFolder) return "_grind_files / \"$cur\"";
   if (type.front() != '{') return "COMPREPLY=()";
   std::replace(type.begin(), type.end(), '|', ' ');
   return "_grind_words '" + type.substr(1, type.size() - 2) + "' \"$cur\"";

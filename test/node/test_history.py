@@ -34,8 +34,8 @@ NAME = r'\d{8}T\d{6}\.\d{3}Z\.json'
 MACHINE_KEYS = ['name', 'software', 'drive', 'period_ms', 'max_velocity', 'max_acceleration', 'max_following_error']
 KEYS = ['record', 'grinder', 'machine', 'job', 'started', 'ended', 'outcome', 'reason', 'first', 'work_offsets',
         'zero_points', 'planned', 'setpoints', 'late_cycles', 'strokes', 'holds', 'overrides']
-STROKE_KEYS = ['tooth', 'pass', 'depth_mm', 'started_s', 'duration_s', 'complete', 'feed_min_mm_min', 'feed_max_mm_min',
-               'deviation_um', 'following_error']
+STROKE_KEYS = ['tooth', 'pass', 'depth_mm', 'started_s', 'duration_s', 'feed_min_mm_min', 'feed_min_x_mm', 'feed_max_mm_min',
+               'deviation_um', 'deviation_x_mm', 'following_error', 'complete']
 
 
 def seconds(utc):

@@ -195,7 +195,8 @@ void wakeUps(Json& out) {
 
 template <typename Service>
 void call(const std::string& name, Service service) {
-  if (!ros::service::waitForService(name, ros::Duration(kPatience.count())) || !ros::service::call(name, service)) {
+  if (!ros::service::waitForService(name, ros::Duration(kPatience.count())) ||
+      !ros::NodeHandle().serviceClient<Service>(name, true).call(service)) {
     throw std::runtime_error("no answer of " + name);
   }
   if (!service.response.success) throw std::runtime_error(name + ": " + service.response.message);

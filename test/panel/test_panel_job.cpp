@@ -85,7 +85,9 @@ class WithGrinder : public ::testing::Test {
   static void inject(const std::string& fault) {
     InjectFault call;
     call.request.fault = fault;
-    ASSERT_TRUE(ros::service::call("grinder/hardware/inject_fault", call) && call.response.success);
+    // Persistent, since roscpp may lose the answer of any other (ros_comm #1976).
+    auto client = ros::NodeHandle().serviceClient<InjectFault>("grinder/hardware/inject_fault", true);
+    ASSERT_TRUE(client.call(call) && call.response.success);
   }
 
   const QTemporaryDir folder;

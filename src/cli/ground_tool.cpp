@@ -296,6 +296,12 @@ Json toJson(const GroundTool& tool, const MeasuredSection& section) {
 
 }  // namespace
 
+std::vector<double> evenSections(const GrindJob& job, int count) {
+  std::vector<double> at;
+  for (int i = 0; i < count; ++i) at.push_back(job.cutter.flute_length * i / (count - 1));
+  return at;
+}
+
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
   GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}, {}};
   tool.check = checkGroundCutter(job, tool.cutter);

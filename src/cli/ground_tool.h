@@ -32,6 +32,9 @@ struct GroundTool {
   std::vector<Gouge> gouges;  ///< those deeper than what sampling leaves
 };
 
+/// X of `count` sections that are even over the flute, its ends included [m]. @param count 2 or more.
+std::vector<double> evenSections(const GrindJob& job, int count);
+
 /// Measures a cutter. @param at X of the sections [m].
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
 

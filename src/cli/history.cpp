@@ -7,21 +7,19 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
 
 #include <ros/names.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <stdexcept>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 namespace flute_grinder {
@@ -54,15 +52,6 @@ std::size_t passesFrom(const GrindJob& job, const Json& first) {
   return static_cast<std::size_t>(passes.end() - begin);
 }
 
-/// As `grind report` judges the record.
-void judge(Json record, const Tolerances& tolerances, Entry& entry) {
-  record["kind"] = "record";
-  record["duration_s"] = entry.duration;
-  addVerdict(record, tolerances);
-  entry.verdict = record["verdict"];
-  entry.because = record["verdict_because"].get<std::vector<std::string>>();
-}
-
 /// @throw std::exception if it is no record.
 Entry readEntry(const std::string& path, const Tolerances& tolerances) {
   Json record = readRecord(path);
@@ -78,10 +67,11 @@ Entry readEntry(const std::string& path, const Tolerances& tolerances) {
   entry.strokes = static_cast<std::size_t>(std::count_if(
       strokes.begin(), strokes.end(), [](const Json& stroke) { return stroke.at("complete").get<bool>(); }));
   entry.passes = passesFrom(job, record.at("first"));
-  // The times are in whole milliseconds.
-  entry.duration = std::round(1000 * (timeOf(record.at("ended")) - timeOf(entry.started))) / 1000;
   entry.holds = record.at("holds").size();
-  judge(std::move(record), tolerances, entry);
+  judgeRecord(record, tolerances);
+  entry.duration = record["duration_s"];
+  entry.verdict = record["verdict"];
+  entry.because = record["verdict_because"].get<std::vector<std::string>>();
   return entry;
 }
 

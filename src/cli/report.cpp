@@ -9,7 +9,7 @@
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/machine_info.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/report/findings.h"
 
 #include <spawn.h>
@@ -28,6 +28,8 @@
 namespace flute_grinder {
 
 namespace {
+
+constexpr int kSections = 17;  ///< in which a report has the tool measured
 
 std::filesystem::path ownPath() {
   std::error_code error;
@@ -62,14 +64,6 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> temporaryFile(const std::string&
   return file;
 }
 
-/// X of the sections in which a report has the tool measured [m].
-std::vector<double> sectionsOf(const GrindJob& job) {
-  constexpr int count = 17;
-  std::vector<double> at;
-  for (int i = 0; i < count; ++i) at.push_back(job.cutter.flute_length * i / (count - 1));
-  return at;
-}
-
 /// @return why an action failed, for the reader; empty if it did not.
 template <typename Action>
 std::string reasonWhyNot(const Action& action) {
@@ -85,12 +79,15 @@ std::string reasonWhyNot(const Action& action) {
 
 /// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
 void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
+  GrindJob job;
   std::optional<RecordedStrokes> strokes;
   std::string& why = context.no_tool;
-  if (run.kind() == FileKind::kBag) {
-    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withZLaw(*run.job())); })
-                    : "the bag does not have the goal of " + run.place();
-  }
+  const auto begin = [&] {
+    job = withZLaw(*run.job());
+    strokes.emplace(job);
+  };
+  if (run.kind() == FileKind::kBag)
+    why = run.job() ? reasonWhyNot(begin) : "the bag does not have the goal of " + run.place();
   run.visit([&](const RunRow& row) {
     survey.add(row);
     if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
@@ -98,8 +95,7 @@ void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
   if (!strokes || !why.empty()) return;
   why = reasonWhyNot([&] {
     strokes->finish();
-    const GrindJob job = withZLaw(*run.job());
-    context.tool = toJson(measure(job, context.file + ", " + run.place(), *strokes, sectionsOf(job)));
+    context.tool = toJson(measure(job, context.file + ", " + run.place(), *strokes, evenSections(job, kSections)));
   });
 }
 
@@ -110,7 +106,7 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
     const Json record = readRecord(path);
     context.no_tool = reasonWhyNot([&] {
       const GrindJob asked = withZLaw(parseJob(record["job"]["file"].dump(), path));
-      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), sectionsOf(asked)));
+      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(asked, kSections)));
     });
     return findingsOfRecord(record, context);
   }

@@ -49,9 +49,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
     }
     at.push_back(x);
   }
-  if (!at.empty()) return at;
-  for (int i = 0; i < options.sections; ++i) at.push_back(job.cutter.flute_length * i / (options.sections - 1));
-  return at;
+  return at.empty() ? evenSections(job, options.sections) : at;
 }
 
 /// The cutter as a solid, with as much of the shank as the flutes run out into and a diameter more.

@@ -1,7 +1,7 @@
 #include "node/history.h"
 
 #include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 
 #include <ros/console.h>
 

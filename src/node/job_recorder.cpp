@@ -1,6 +1,6 @@
 #include "node/job_recorder.h"
 
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 
 #include <utility>
 

@@ -5,7 +5,7 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/record/cycle_figures.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 
 #include <algorithm>
 #include <cmath>

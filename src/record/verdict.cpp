@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/flat_file.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/record/record_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -265,13 +266,6 @@ Criterion lateCyclesOf(const Json& data, const Tolerances& tolerances) {
   return late;
 }
 
-/// Whether the record has a stroke of each tooth: of a job that was continued it has not.
-bool allTeethGround(const Json& tool) {
-  std::set<int> teeth;
-  for (const Json& stroke : tool.at("strokes")) teeth.insert(stroke.at("tooth").get<int>());
-  return teeth.size() == tool.at("teeth").get<std::size_t>();
-}
-
 /// The lines of the verdict, in the order of the report.
 Json criteriaOf(const Json& data, const Tolerances& tolerances) {
   const Json& job = data.at("job").at("file");
@@ -323,6 +317,12 @@ std::pair<const char*, std::vector<std::string>> verdictOf(const Json& data) {
 
 }  // namespace
 
+bool allTeethGround(const Json& tool) {
+  std::set<int> teeth;
+  for (const Json& stroke : tool.at("strokes")) teeth.insert(stroke.at("tooth").get<int>());
+  return teeth.size() == tool.at("teeth").get<std::size_t>();
+}
+
 Tolerances readTolerances(const std::string& path) {
   const auto refuse = [&](const std::string& why) { throw JobFileError(path + ": " + why); };
   const YAML::Node root = parseYaml(readTextFile(path), path);
@@ -352,6 +352,13 @@ void addVerdict(Json& data, const Tolerances& tolerances) {
   const auto [verdict, because] = verdictOf(data);
   data["verdict"] = verdict;
   data["verdict_because"] = because;
+}
+
+void judgeRecord(Json& record, const Tolerances& tolerances) {
+  record["kind"] = "record";
+  // The times are in whole milliseconds.
+  record["duration_s"] = std::round(1000 * (timeOf(record.at("ended")) - timeOf(record.at("started")))) / 1000;
+  addVerdict(record, tolerances);
 }
 
 }  // namespace flute_grinder

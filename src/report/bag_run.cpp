@@ -10,7 +10,7 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/record/job_record.h"
 #include "flute_grinder/record/machine_info.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <rosbag/bag.h>

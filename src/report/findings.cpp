@@ -5,12 +5,10 @@
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
-#include "flute_grinder/record/record_name.h"
 #include "report/motion.h"
 #include "report/plots.h"
 
 #include <algorithm>
-#include <set>
 
 namespace flute_grinder {
 
@@ -36,13 +34,6 @@ Json headOf(FileKind kind, const ReportContext& context) {
   Json data{{"file", context.file}, {"kind", key}, {"type", description}};
   data.update(context.words);
   return data;
-}
-
-/// Whether the record has a stroke of each tooth: of a job that was continued it has not.
-bool allTeethGround(const Json& tool) {
-  std::set<int> teeth;
-  for (const Json& stroke : tool["strokes"]) teeth.insert(stroke["tooth"].get<int>());
-  return teeth.size() == tool["teeth"];
 }
 
 /// What a report lacks, and why.
@@ -200,8 +191,7 @@ Json findingsOfRecord(const Json& record, const ReportContext& context) {
   Json data = headOf(FileKind::kRecord, context);
   data.update(record);
   if (!context.tool.is_null()) data["tool"] = context.tool;
-  data["duration_s"] = timeOf(data["ended"]) - timeOf(data["started"]);
-  addVerdict(data, context.tolerances);
+  judgeRecord(data, context.tolerances);
   data["left_out"] = {
       "Pictures of the axes: a record of the grinder keeps each stroke's figures only; a bag of record:=true has every "
       "setpoint. The tool is the one that the job asks for, not measured."};

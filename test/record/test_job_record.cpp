@@ -7,7 +7,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 #include "node/job_recorder.h"
 
 #include <gtest/gtest.h>

@@ -18,11 +18,17 @@ struct Tolerances {
 /// or unknown, or a value is no number from 0.
 Tolerances readTolerances(const std::string& path);
 
+/// Whether a tool, as `grind simulate` measures it, has a stroke of each tooth: of a job that was continued it has not.
+bool allTeethGround(const Json& tool);
+
 /// Passes or fails a ground tool: adds "criteria", "verdict" and "verdict_because", see docs/command-line.md.
 /// @param data in the keys of a record of a job, with "kind", which is "record" for the grinder's own. Such a one has
 /// no
 ///        positions, so that its tool is not measured, and needs "duration_s"; others may have "tool", as ground.
 /// @throw Json::exception if a key is missing or has another type.
 void addVerdict(Json& data, const Tolerances& tolerances);
+
+/// The same for a record that the grinder keeps of a job: adds "kind" and "duration_s", too.
+void judgeRecord(Json& record, const Tolerances& tolerances);
 
 }  // namespace flute_grinder

@@ -6,7 +6,6 @@
 #include "flute_grinder/record/verdict.h"
 #include "flute_grinder/report/run_file.h"
 
-#include <array>
 #include <memory>
 #include <string>
 

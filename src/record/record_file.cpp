@@ -1,4 +1,4 @@
-#include "flute_grinder/record/record_name.h"
+#include "flute_grinder/record/record_file.h"
 
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"

@@ -161,22 +161,27 @@ void JobRecordTest::expectStroke(const Json& reported, int tooth, int pass) cons
   EXPECT_TRUE(reported["complete"]);
   EXPECT_NEAR(reported["started_s"], since(stroke.front().record), 1e-6);
   EXPECT_NEAR(reported["duration_s"], stroke.back().record.time - stroke.front().record.time, 1e-6);
-  double low = 1e9, high = 0, deviation = 0;
+  double low = 1e9, high = 0, deviation = 0, low_x = 0, deviation_x = 0;
   Axes following = Axes::Zero();
   const double spiral = std::tan(job_.spiral_angles[static_cast<std::size_t>(tooth)]), cone = job_.cutter.cone_angle;
   for (const Cycle& c : stroke) {
     const double x = c.setpoint.position[kX];
     const double normal = std::cos(std::atan(spiral * std::cos(cone)));
     const double radius = job_.cutter.end_diameter / 2 + (x + 15e-3) * std::tan(cone);
-    deviation = std::max(deviation, std::abs(c.setpoint.path_error) * radius * normal);
+    const double off = std::abs(c.setpoint.path_error) * radius * normal;
+    if (off > deviation) deviation_x = x;
+    deviation = std::max(deviation, off);
     following = following.max((c.record.command_in_effect - c.record.position).abs());
     if (c.setpoint.step != StepKind::kEven || x < 0 || x > job_.cutter.flute_length) continue;
+    if (c.setpoint.feed < low) low_x = x;
     low = std::min(low, c.setpoint.feed);
     high = std::max(high, c.setpoint.feed);
   }
   EXPECT_NEAR(reported["feed_min_mm_min"], low * 60e3, 1e-6);
+  EXPECT_NEAR(reported["feed_min_x_mm"], low_x * 1e3, 1e-9);
   EXPECT_NEAR(reported["feed_max_mm_min"], high * 60e3, 1e-6);
   EXPECT_NEAR(reported["deviation_um"], deviation * 1e6, 1e-9);
+  EXPECT_NEAR(reported["deviation_x_mm"], deviation_x * 1e3, 1e-9);
   const Json& error = reported["following_error"];
   EXPECT_NEAR(error["x_um"], following[kX] * 1e6, 1e-9);
   EXPECT_NEAR(error["y_um"], following[kY] * 1e6, 1e-9);

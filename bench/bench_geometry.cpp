@@ -9,7 +9,7 @@
 
 namespace {
 
-using namespace flute_grinder;
+using namespace grinder;
 using units::kDegree;
 using units::kMillimetre;
 

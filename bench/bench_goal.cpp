@@ -35,7 +35,7 @@
 
 namespace {
 
-using namespace flute_grinder;
+using namespace grinder;
 
 const char* const kFloorAction = "empty_action";
 constexpr std::chrono::seconds kPatience(60);
@@ -153,11 +153,11 @@ class MotionWatch {
   const std::vector<double>& deviations() const { return deviations_; }
 
  private:
-  void onBatch(const SetpointBatch& batch) {
+  void onBatch(const flute_grinder::SetpointBatch& batch) {
     shared_.change([&] {
       double at = batch.header.stamp.toSec();
       for (std::size_t i = 0; i < batch.setpoints.size(); ++i) {
-        const WrittenSetpoint& setpoint = batch.setpoints[i];
+        const flute_grinder::WrittenSetpoint& setpoint = batch.setpoints[i];
         if (i > 0) at += setpoint.cycle_period;
         deviations_.push_back(std::abs(setpoint.cycle_period - batch.period));
         const auto& v = setpoint.velocity;
@@ -209,21 +209,21 @@ class Bench {
       : goals_(goals), seconds_(seconds), floor_(kFloorAction), grinder_(node + "/grind"), motion_(node) {
     while (!motion_.connected()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     call(node + "/enable", std_srvs::Trigger());
-    ConfirmSwivel swivel;
+    flute_grinder::ConfirmSwivel swivel;
     swivel.request.swivel = paperGoal().process.setup_swivel;  // that of all jobs here
     call(node + "/confirm_swivel", swivel);
   }
 
   /// A job that the node has not planned before, over and over, and one after a dry run from the same place.
-  void measure(const std::string& name, GrindGoal goal) {
+  void measure(const std::string& name, flute_grinder::GrindGoal goal) {
     out_["values"][name + "/goal_bytes"] = ros::serialization::serializationLength(goal);
-    const GrindGoal repeated = goal;
+    const flute_grinder::GrindGoal repeated = goal;
     const double feed = goal.process.feed;
     repeat(name + "/new", [&](int i) {
       goal.process.feed = feed * (1 - 1e-5 * (i + 1));
       return goal;
     });
-    repeat(name + "/repeated", [&](int) -> const GrindGoal& {
+    repeat(name + "/repeated", [&](int) -> const flute_grinder::GrindGoal& {
       dryRun(repeated);
       return repeated;
     });
@@ -253,17 +253,17 @@ class Bench {
     }
   }
 
-  void dryRun(GrindGoal goal) {
+  void dryRun(flute_grinder::GrindGoal goal) {
     goal.dry_run = true;
     grinder_.send(goal);
     const auto result = grinder_.result();
-    if (!result || result->error_code != GrindResult::SUCCESSFUL) {
+    if (!result || result->error_code != flute_grinder::GrindResult::SUCCESSFUL) {
       throw std::runtime_error("a dry run failed: " + (result ? result->error_string : "no result"));
     }
   }
 
   /// Begins at rest, in the state ready, and ends so.
-  Times sendOnce(const GrindGoal& goal) {
+  Times sendOnce(const flute_grinder::GrindGoal& goal) {
     // At ever other points of the node's own periods.
     std::this_thread::sleep_for(kRest + sent_++ % kStaggers * kStagger);
     Times times{};
@@ -277,7 +277,7 @@ class Bench {
     times.motion = motion_.first() - sent;
     grinder_.cancel();
     const auto result = grinder_.result();
-    if (!result || result->error_code != GrindResult::CANCELED) {
+    if (!result || result->error_code != flute_grinder::GrindResult::CANCELED) {
       throw std::runtime_error("a goal was not canceled: " + (result ? result->error_string : "no result"));
     }
     statistics_ = result->statistics;
@@ -287,10 +287,10 @@ class Bench {
   const int goals_;
   const double seconds_;
   Sender<actionlib::TestAction> floor_;
-  Sender<GrindAction> grinder_;
+  Sender<flute_grinder::GrindAction> grinder_;
   MotionWatch motion_;
   int sent_ = 0;
-  PathStatistics statistics_;  ///< of the last goal
+  flute_grinder::PathStatistics statistics_;  ///< of the last goal
   Json out_;
 };
 

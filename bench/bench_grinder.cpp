@@ -22,7 +22,7 @@
 
 namespace {
 
-using namespace flute_grinder;
+using namespace grinder;
 
 Machine machine() {
   Machine m;

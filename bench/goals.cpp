@@ -3,12 +3,12 @@
 #include "flute_grinder/messages/conversions.h"
 #include "jobs.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
-GrindGoal goalOf(const GrindJob& job) {
-  GrindGoal goal = goalFromJob(job);
+flute_grinder::GrindGoal goalOf(const GrindJob& job) {
+  flute_grinder::GrindGoal goal = goalFromJob(job);
   goal.discard = true;              // whatever the job before has left in the journal
   goal.ignore_offset_check = true;  // nobody has set them
   return goal;
@@ -16,7 +16,7 @@ GrindGoal goalOf(const GrindJob& job) {
 
 }  // namespace
 
-GrindGoal paperGoal() { return goalOf(paperJob(600)); }
-GrindGoal wholeToolGoal() { return goalOf(wholeToolJob()); }
+flute_grinder::GrindGoal paperGoal() { return goalOf(paperJob(600)); }
+flute_grinder::GrindGoal wholeToolGoal() { return goalOf(wholeToolJob()); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

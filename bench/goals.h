@@ -2,10 +2,10 @@
 
 #include "flute_grinder/GrindGoal.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// As the jobs of jobs.h.
-GrindGoal paperGoal();
-GrindGoal wholeToolGoal();
+flute_grinder::GrindGoal paperGoal();
+flute_grinder::GrindGoal wholeToolGoal();
 
-}  // namespace flute_grinder
+}  // namespace grinder

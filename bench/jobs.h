@@ -6,7 +6,7 @@
 
 /// @file
 /// The jobs that the benchmarks measure.
-namespace flute_grinder {
+namespace grinder {
 
 /// The paper's cutter, as in jobs/paper.yaml, at a feed of its own.
 inline GrindJob paperJob(double feed_mm_min, EvenStepRule rule = EvenStepRule::kPublished) {
@@ -27,4 +27,4 @@ inline GrindJob wholeToolJob() {
   return job;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-using namespace flute_grinder;
+using namespace grinder;
 
 int main() {
   CutterGeometry geometry;

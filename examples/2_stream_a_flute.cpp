@@ -7,7 +7,7 @@
 
 #include <cstdio>
 
-using namespace flute_grinder;
+using namespace grinder;
 
 int main() {
   constexpr double kPeriod = 0.001;  // of the control cycle [s]

@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/units.h"
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// Asks for no edge, core and chord in particular.
 inline void askForRakeAlone(CutterGeometry& g) {
@@ -12,4 +12,4 @@ inline void askForRakeAlone(CutterGeometry& g) {
   g.core_tolerance = 0.1;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 inline GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
@@ -17,4 +17,4 @@ inline GrindJob paper() {
   return job;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

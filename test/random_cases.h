@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// How many random cases a search of its own tries, scaled as RapidCheck's are by RC_PARAMS.
 /// @param usual with RapidCheck's 100; as many as take at most 5 s of processor.
@@ -13,4 +13,4 @@ inline int randomCases(int usual) {
   return more ? std::atoi(more + std::strlen("max_success=")) * usual / 100 : usual;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

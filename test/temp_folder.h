@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 inline std::string readFile(const std::filesystem::path& path) {
   const std::ifstream file(path, std::ios::binary);
@@ -37,4 +37,4 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// Parameters as roslaunch would load them.
 inline XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
@@ -23,4 +23,4 @@ inline XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
   return XmlRpc::XmlRpcValue(text);
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 void addJob(CLI::App& command, std::string& job) {
   command.add_option("JOB", job, "job file (YAML, mm, deg, mm/min)")->required()->type_name(kYamlFile);
@@ -59,4 +59,4 @@ void addFlange(CLI::App& command, std::optional<double>& flange_mm) {
       ->check(within(-100, 100, "mm"));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

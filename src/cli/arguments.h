@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 // Arguments that several commands have.
 
@@ -73,4 +73,4 @@ CLI::Option& addLength(CLI::App& command, const char* name, Length& length_mm, c
   });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Asks a service of the grinder, and prints why if it is not answered.
 /// @param patience for the answer. @param give_up ends the wait for it earlier. @return nothing without an answer.
@@ -49,4 +49,4 @@ int call(
   return response->success ? 0 : fail(response->message);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 constexpr int kUsage = 2;  ///< exit status for wrong usage and unreadable files
 
@@ -26,4 +26,4 @@ class CommandLine {
   Commands commands_{app_};
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 CLI::App& Commands::add(const std::string& name, const std::string& description, const std::string& example,
                         Action action) {
@@ -34,4 +34,4 @@ int Commands::carryOut() const {
   return actions_.at(command)();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What a command does once the whole command line has been parsed. @return the exit status.
 using Action = std::function<int()>;
@@ -55,4 +55,4 @@ void addMachineCommands(Commands& commands);
 /// The work offsets and how they are found: `offsets`, `touch-off`, `probe`.
 void addOffsetCommands(Commands& commands);
 
-}  // namespace flute_grinder
+}  // namespace grinder

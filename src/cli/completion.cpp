@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -144,4 +144,4 @@ std::string bashCompletion(const CLI::App& app) {
   return script.str();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

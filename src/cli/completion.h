@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Type names of arguments that select how they are completed; a choice such as "{a|b|c}" completes itself.
 constexpr const char* kAnyFile = "FILE";
@@ -16,4 +16,4 @@ constexpr const char* kFolder = "FOLDER";
 /// `rosrun flute_grinder grind`. All other uses of rosrun keep the existing completion.
 std::string bashCompletion(const CLI::App& app);
 
-}  // namespace flute_grinder
+}  // namespace grinder

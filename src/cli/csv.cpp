@@ -9,7 +9,7 @@
 #include <cstdarg>
 #include <cstring>
 
-namespace flute_grinder {
+namespace grinder {
 
 using units::kMillimetre;
 using units::kMillimetrePerMinute;
@@ -72,4 +72,4 @@ void RunCsv::write(const Setpoint& setpoint, const Axes& actual, double period) 
         actual[kA]);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

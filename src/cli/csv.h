@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
 /// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
@@ -72,4 +72,4 @@ class RunCsv : public SetpointCsv {
   void write(const Setpoint& setpoint, const Axes& actual, double period);
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 int writeGoal(const std::string& job) {
   if (isatty(STDOUT_FILENO) != 0) {
@@ -24,4 +24,4 @@ int writeGoal(const std::string& job) {
   return 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

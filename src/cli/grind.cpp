@@ -17,7 +17,7 @@
 
 namespace {
 
-using namespace flute_grinder;
+using namespace grinder;
 
 int run(int argc, char** argv) {
   const std::vector<char*> arguments =

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -28,7 +28,7 @@ struct Place {
 
   const ToothSection& tooth() const { return section.ground.teeth[number]; }
   CutterGeometry cutter() const { return cutterOf(job, static_cast<int>(number)); }
-  double askedDepth() const { return flute_grinder::askedDepth(job, section.ground.x); }
+  double askedDepth() const { return grinder::askedDepth(job, section.ground.x); }
 };
 
 using Value = std::optional<double>;
@@ -234,11 +234,11 @@ Json gouges(const GroundTool& tool) {
 }
 
 /// The deepest, if it is worth a reason.
-std::optional<core::Reason> reasonOf(const std::vector<Gouge>& gouges) {
+std::optional<Reason> reasonOf(const std::vector<Gouge>& gouges) {
   const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
   const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
   if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
-  return core::otherReason(
+  return otherReason(
       format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
              "%.3f mm; allowed: up to %.3f mm",
              deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
@@ -275,7 +275,7 @@ Json outline(const GroundTool& tool, double x) {
 /// The radial depth of every pass at the small end.
 Json passDepths(const GrindJob& job) {
   Json depths = Json::array();
-  for (const double depth : flute_grinder::passDepths(job.process)) {
+  for (const double depth : grinder::passDepths(job.process)) {
     depths.push_back(depthLaw(job, depth).at_end / kMillimetre);
   }
   return depths;
@@ -348,7 +348,7 @@ void printText(const GroundTool& tool) {
 
 Json toJson(const GroundTool& tool) {
   Json reasons = Json::array();
-  for (const core::Reason& reason : tool.check.reasons) reasons.push_back(core::text(reason, UnitSystem::kShop));
+  for (const Reason& reason : tool.check.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
   Json sections = Json::array();
   for (const MeasuredSection& section : tool.sections) sections.push_back(toJson(tool, section));
   const auto& complete = tool.check.complete;
@@ -396,4 +396,4 @@ void GroundToolCsv::write(const GroundTool& tool) {
   });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A section of a ground cutter with what is measured for a report.
 struct MeasuredSection {
@@ -55,4 +55,4 @@ class GroundToolCsv : public CsvFile {
   void write(const GroundTool& tool);
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -22,7 +22,7 @@
 #include <tuple>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -181,4 +181,4 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
   return status;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

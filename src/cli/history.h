@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind history`.
 struct HistoryOptions {
@@ -26,4 +26,4 @@ std::optional<std::string> newestRecord(const std::string& folder);
 /// @throw FileError if the folder cannot be read, JobFileError if the tolerances cannot.
 int printHistory(const std::string& node, const HistoryOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <atomic>
 #include <csignal>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -27,4 +27,4 @@ void catchHolds() { std::signal(SIGTSTP, onHold); }
 
 int holds() { return hold_count; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flute_grinder {
+namespace grinder {
 
 /// From now on SIGINT (Ctrl-C), SIGTERM and SIGHUP (the terminal is gone) are counted instead of ending the program.
 /// SIGHUP stays ignored if it was, as under nohup.
@@ -15,4 +15,4 @@ void catchHolds();
 /// How many there have been.
 int holds();
 
-}  // namespace flute_grinder
+}  // namespace grinder

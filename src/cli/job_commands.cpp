@@ -11,7 +11,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -154,4 +154,4 @@ void addJobCommands(Commands& commands) {
   addHistory(commands);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,13 +8,13 @@
 
 #include <cstdio>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 using namespace units;
 
-Json moveDurations(const core::PathStatistics& statistics) {
+Json moveDurations(const PathStatistics& statistics) {
   Json json = Json::object();
   for (const MoveRow& move : kMoveKinds) {
     json[std::string(move.name) + "_s"] = statistics.move_duration[static_cast<std::size_t>(move.value)];
@@ -22,9 +22,9 @@ Json moveDurations(const core::PathStatistics& statistics) {
   return json;
 }
 
-Json lastJobObject(const JobProgress& progress) {
+Json lastJobObject(const flute_grinder::JobProgress& progress) {
   if (progress.job_digest.empty()) return nullptr;
-  const Cutter& cutter = progress.cutter;
+  const flute_grinder::Cutter& cutter = progress.cutter;
   return {{"name", progress.job_name},
           {"cutter",
            {{"end_diameter_mm", cutter.end_diameter / kMillimetre},
@@ -42,11 +42,11 @@ Json lastJobObject(const JobProgress& progress) {
 }
 
 /// What each was set for; null if it was never set.
-Json zeroPoints(const WorkOffsets& offsets) {
+Json zeroPoints(const flute_grinder::WorkOffsets& offsets) {
   Json json = Json::object();
   for (std::size_t i = 0; i < offsets.basis.size(); ++i) {
     const bool set = !offsets.set_at[i].isZero();
-    json[std::string(1, "xyza"[i])] = set ? flute_grinder::toJson(fromMessage(offsets.basis[i])) : Json(nullptr);
+    json[std::string(1, "xyza"[i])] = set ? grinder::toJson(fromMessage(offsets.basis[i])) : Json(nullptr);
   }
   return json;
 }
@@ -82,9 +82,9 @@ Json toJson(const GrindJob& job, const CutterFigures& ground) {
 }
 
 Json toJson(const PlannedJob& plan) {
-  const core::PathStatistics& s = plan.statistics;
+  const PathStatistics& s = plan.statistics;
   Json reasons = Json::array();
-  for (const core::Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
+  for (const Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
   return {{"valid", plan.good()},
           {"reasons", reasons},
           {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
@@ -105,7 +105,8 @@ Json toJson(const PlannedJob& plan) {
           {"odd_even_ripple", toJson(s.ripple_acceleration, "_s2")}};
 }
 
-Json toJson(const std::string& node, const GrinderState& state, const WorkOffsets::ConstPtr& offsets) {
+Json toJson(const std::string& node, const flute_grinder::GrinderState& state,
+            const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const bool job = inJob(state);
   return {{"grinder", node},
           {"state", state.state_name},
@@ -135,4 +136,4 @@ Json toJson(const std::string& node, const GrinderState& state, const WorkOffset
 
 void print(const Json& json) { std::printf("%s\n", text(json).c_str()); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,11 +4,11 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/messages/conversions.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 using units::kMillimetre;
 
-std::string lastJob(const JobProgress& p) {
+std::string lastJob(const flute_grinder::JobProgress& p) {
   const std::string came_to =
       p.finished ? "finished"
                  : format("tooth %d, pass %d not finished, X %.3f mm", p.tooth + 1, p.pass + 1, p.x / kMillimetre);
@@ -17,4 +17,4 @@ std::string lastJob(const JobProgress& p) {
          p.job_digest.substr(0, 12) + ")";
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

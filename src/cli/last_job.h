@@ -4,10 +4,10 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The last job in the journal as text for the operator: its file, tool and progress.
 /// @param progress of a job; its digest is not empty.
-std::string lastJob(const JobProgress& progress);
+std::string lastJob(const flute_grinder::JobProgress& progress);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -106,4 +106,4 @@ void addMachineCommands(Commands& commands) {
   addSwitches(commands);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <ros/package.h>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::string packageFile(const std::string& path) {
   return package + "/" + path;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

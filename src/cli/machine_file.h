@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Reads the machine from the files that roslaunch loads, without ROS running.
 /// @param parameters YAML, the node's parameters.
@@ -18,4 +18,4 @@ std::string readUrdfFile(const std::string& path);
 /// A file of this package, as `config/grinder.yaml`. @throw JobFileError if the shell does not know the package.
 std::string packageFile(const std::string& path);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <cstdio>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -75,7 +75,7 @@ int runTable(const TableOptions& options) {
   return 0;
 }
 
-void printStatistics(const core::PathStatistics& s) {
+void printStatistics(const PathStatistics& s) {
   std::printf("setpoints            %llu\n", static_cast<unsigned long long>(s.setpoints));
   std::printf("duration             %.3f s:", s.duration);
   for (const MoveRow& move : kMoveKinds) {
@@ -91,8 +91,8 @@ void printStatistics(const core::PathStatistics& s) {
   } else {
     std::printf("feed constancy       never reached\n");
   }
-  for (const core::FeedLimit& limit : s.feed_limits) {
-    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", core::causeText(limit.cause, UnitSystem::kShop).c_str(),
+  for (const FeedLimit& limit : s.feed_limits) {
+    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", causeText(limit.cause, UnitSystem::kShop).c_str(),
                 limit.from_x / kMillimetre, limit.to_x / kMillimetre);
   }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
@@ -146,10 +146,10 @@ int runPlan(const PlanOptions& options) {
     printStatistics(plan.statistics);
     printChecks(job, plan.figures, plan.complete, plan.closest);
   }
-  for (const core::Reason& reason : plan.reasons) {
+  for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
   }
   return plan.good() ? 0 : 1;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -35,7 +35,7 @@ int runTable(const TableOptions& options);
 int runPlan(const PlanOptions& options);
 
 /// Prints a job's statistics in the operator's units.
-void printStatistics(const core::PathStatistics& statistics);
+void printStatistics(const PathStatistics& statistics);
 
 /// Prints what the tool gets beside what is asked, where along X the flutes are complete, which two bodies come closest
 /// to each other, and what the first pass of a flute cuts out of the shank, in the operator's units; what is not known,
@@ -43,4 +43,4 @@ void printStatistics(const core::PathStatistics& statistics);
 void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
                  const std::optional<ClosestPlace>& closest);
 
-}  // namespace flute_grinder
+}  // namespace grinder

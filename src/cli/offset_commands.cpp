@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -88,4 +88,4 @@ void addOffsetCommands(Commands& commands) {
   addProbe(commands);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -21,7 +21,7 @@
 #include <iostream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -42,9 +42,9 @@ void requireJob(int axis, const std::string& job, const std::string& command) {
 }
 
 /// What an offset is set for. @param job file, or empty for no particular one. @throw JobFileError
-core::OffsetBasis basisFor(const std::string& job, OffsetMethod method) {
+OffsetBasis basisFor(const std::string& job, OffsetMethod method) {
   if (!job.empty()) return basisOf(goalFromFile(job), method);
-  core::OffsetBasis basis;
+  OffsetBasis basis;
   basis.method = method;
   return basis;
 }
@@ -72,7 +72,8 @@ int settle(const std::optional<Response>& response, const Set& set_it_all_the_sa
 }
 
 /// @param node resolved name.
-Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
+Json toJson(const std::string& node, const flute_grinder::WorkOffsets& offsets,
+            const flute_grinder::GrinderState& state) {
   Json axes = Json::object();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
@@ -84,21 +85,22 @@ Json toJson(const std::string& node, const WorkOffsets& offsets, const GrinderSt
         {"work" + unit, toShop(axis, state.work_position[i])},
         {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
         {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)},
-        {"set_for", flute_grinder::toJson(fromMessage(offsets.basis[i]))}};
+        {"set_for", grinder::toJson(fromMessage(offsets.basis[i]))}};
   }
   return {{"grinder", node}, {"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
 }
 
 /// @param node resolved name.
-void printTable(const std::string& node, const WorkOffsets& offsets, const GrinderState& state) {
-  const core::WorkOffsets all = fromMessage(offsets);
+void printTable(const std::string& node, const flute_grinder::WorkOffsets& offsets,
+                const flute_grinder::GrinderState& state) {
+  const WorkOffsets all = fromMessage(offsets);
   std::printf("work offsets of %s\n", node.c_str());
   std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     std::printf("%c     %12.4f  %12.4f  %12.4f %-4s", "XYZA"[i], toShop(axis, offsets.values[i]),
                 toShop(axis, state.position[i]), toShop(axis, state.work_position[i]), axis == kA ? "deg" : "mm");
-    const std::string basis = core::basisText(axis, all.axes[i]);
+    const std::string basis = basisText(axis, all.axes[i]);
     if (offsets.set_at[i].isZero()) {
       std::printf("  %s\n", basis.c_str());
     } else {
@@ -111,7 +113,7 @@ void printTable(const std::string& node, const WorkOffsets& offsets, const Grind
 }
 
 /// Whether a state is not from before the last change of the offsets, which it would contradict.
-bool agree(const GrinderState& state, const WorkOffsets& offsets) {
+bool agree(const flute_grinder::GrinderState& state, const flute_grinder::WorkOffsets& offsets) {
   for (std::size_t i = 0; i < offsets.values.size(); ++i) {
     // As the grinder computes it; an axis may have no position.
     if (std::abs(state.position[i] - offsets.values[i] - state.work_position[i]) > 0) return false;
@@ -135,23 +137,23 @@ int show(ros::NodeHandle& nh, bool json) {
 /// Computes the offsets of Y and Z that do not fit a job, from what they were set for: all of them, or none.
 /// @return the exit status; 1 if an offset must be set anew.
 int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
-  const GrindGoal goal = goalFromFile(job);
-  const std::optional<WorkOffsets> message = workOffsets(nh);
+  const flute_grinder::GrindGoal goal = goalFromFile(job);
+  const std::optional<flute_grinder::WorkOffsets> message = workOffsets(nh);
   if (!message) return noGrinder(nh);
-  const core::WorkOffsets offsets = fromMessage(*message);
-  const auto was = [&](int axis) -> const core::WorkOffset& { return offsets.axes[static_cast<std::size_t>(axis)]; };
+  const WorkOffsets offsets = fromMessage(*message);
+  const auto was = [&](int axis) -> const WorkOffset& { return offsets.axes[static_cast<std::size_t>(axis)]; };
   int status = 0;
   bool all = true;
-  const std::vector<core::OffsetMismatch> found = mismatches(offsets, goal);
-  for (const core::OffsetMismatch& mismatch : found) {
+  const std::vector<OffsetMismatch> found = mismatches(offsets, goal);
+  for (const OffsetMismatch& mismatch : found) {
     if (mismatch.change) continue;
     status = fail(mismatch.reason + "; set it anew");
     all = all && mismatch.axis == kX;
   }
   std::vector<int> set;
-  for (const core::OffsetMismatch& mismatch : found) {
+  for (const OffsetMismatch& mismatch : found) {
     if (!all || !mismatch.change) continue;
-    const core::OffsetBasis basis = basisOf(goal, OffsetMethod::kComputed);
+    const OffsetBasis basis = basisOf(goal, OffsetMethod::kComputed);
     if (const int refused =
             setWorkOffset(nh, mismatch.axis, was(mismatch.axis).value + *mismatch.change, basis, large_change_ok)) {
       for (const int axis : set) setWorkOffset(nh, axis, was(axis).value, was(axis).basis, true);
@@ -164,17 +166,18 @@ int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
 
 }  // namespace
 
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::OffsetBasis& basis, bool large_change_ok) {
-  SetOffset::Request request;
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok) {
+  flute_grinder::SetOffset::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
-  return settle(ask<SetOffset>(nh, "set_offset", request), [&] { return setWorkOffset(nh, axis, value, basis, true); });
+  return settle(ask<flute_grinder::SetOffset>(nh, "set_offset", request),
+                [&] { return setWorkOffset(nh, axis, value, basis, true); });
 }
 
-std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh) {
+std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh) {
   const OffsetWatch watch(nh);
   if (!await(kPatience, [&] { return watch.newest() != nullptr; })) return std::nullopt;
   return *watch.newest();
@@ -190,7 +193,7 @@ std::string offsetRefusal(const std::string& argument) {
 
 int runOffsets(const std::string& node, const OffsetsOptions& options) {
   for (const std::string& argument : options.set) requireJob(axisOf(argument), options.job, "--set " + argument);
-  const core::OffsetBasis basis = basisFor(options.job, OffsetMethod::kByHand);
+  const OffsetBasis basis = basisFor(options.job, OffsetMethod::kByHand);
   ros::NodeHandle nh(node);
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
@@ -208,11 +211,11 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   if (axis == kY && !options.at) {
     throw std::invalid_argument("touch-off y needs --at DIAMETER, of the blank that the wheel touches");
   }
-  TouchOff::Request request;
+  flute_grinder::TouchOff::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
   request.set_by = userAtHost();
-  const core::OffsetBasis basis = basisFor(options.job, OffsetMethod::kTouchOff);
+  const OffsetBasis basis = basisFor(options.job, OffsetMethod::kTouchOff);
   request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(options.yes);
   ros::NodeHandle nh(node);
@@ -224,7 +227,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     if (!refused.empty()) return fail(refused);
     request.position = touchY(job, request.position);
   }
-  const std::optional<TouchOff::Response> response = ask<TouchOff>(nh, "touch_off", request);
+  const std::optional<flute_grinder::TouchOff::Response> response =
+      ask<flute_grinder::TouchOff>(nh, "touch_off", request);
   // The value that was confirmed: the axis may have moved since.
   if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
     return status;
@@ -235,4 +239,4 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   return 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// On the command line.
 constexpr const char* kAxisLetters = "xyza";
@@ -36,10 +36,10 @@ struct TouchOffOptions {
 /// @param nh the grinder's namespace.
 /// @param value [m], A [rad]. @param basis what it is set for.
 /// @param large_change_ok it may change by any amount, and nobody is asked. @return the exit status.
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const core::OffsetBasis& basis, bool large_change_ok);
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok);
 
 /// The work offsets; nothing if the grinder does not publish them in time.
-std::optional<WorkOffsets> workOffsets(ros::NodeHandle& nh);
+std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);
@@ -53,4 +53,4 @@ int runOffsets(const std::string& node, const OffsetsOptions& options);
 /// @throw std::invalid_argument for arguments that do not fit each other. @throw JobError if the job file is refused.
 int runTouchOff(const std::string& node, const TouchOffOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -31,7 +31,7 @@
 #include <mutex>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -41,7 +41,7 @@ const ros::WallDuration kFreshness(1);   ///< longest wait for the present state
 constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
 
 /// Whether there is something to cancel.
-bool takesCancel(const GrinderState& state) {
+bool takesCancel(const flute_grinder::GrinderState& state) {
   return after(static_cast<MachineState>(state.state), MachineEvent::kCancel).has_value();
 }
 
@@ -56,7 +56,7 @@ std::string otherGrinders(const std::string& node) {
   std::string others;
   for (const ros::master::TopicInfo& topic : topics) {
     const std::string other = ros::names::parentNamespace(topic.name);
-    if (topic.datatype != ros::message_traits::datatype<GrinderState>() || other == node) continue;
+    if (topic.datatype != ros::message_traits::datatype<flute_grinder::GrinderState>() || other == node) continue;
     others += (others.empty() ? "" : ", ") + other;
   }
   return others.empty() ? "" : "; the ROS master knows " + others + ": name one with --node";
@@ -90,23 +90,24 @@ void printPosition(const char* name, const boost::array<double, kAxisCount>& axe
               axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
 }
 
-std::string swivelText(const GrinderState& state) {
+std::string swivelText(const flute_grinder::GrinderState& state) {
   if (std::isnan(state.swivel)) return "not confirmed";
   return text({state.swivel, Unit::kRadian}, UnitSystem::kShop) +
          (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
 /// What the work offsets were set for. @param offsets null if they are not known.
-void printZeroPoints(const WorkOffsets::ConstPtr& offsets) {
-  const core::WorkOffsets all = offsets ? fromMessage(*offsets) : core::WorkOffsets();
+void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
+  const WorkOffsets all = offsets ? fromMessage(*offsets) : WorkOffsets();
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const std::string basis = core::basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
+    const std::string basis = basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
     std::printf("zero point %c    %s\n", "XYZA"[axis], offsets ? basis.c_str() : "not known");
   }
 }
 
 /// @param node resolved name. @param offsets null if they are not known.
-void printState(const std::string& node, const GrinderState& state, const WorkOffsets::ConstPtr& offsets) {
+void printState(const std::string& node, const flute_grinder::GrinderState& state,
+                const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   std::printf("grinder         %s\n", node.c_str());
   std::printf("state           %s\n", state.state_name.c_str());
   std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
@@ -229,10 +230,11 @@ int home(const std::string& node) {
   catchInterrupts();
   const int status = awaitMotion(
       call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kHome), {}), watch,
-      [](std::uint8_t state) { return state == GrinderState::HOMING; }, [] { return interrupts() == 0; });
+      [](std::uint8_t state) { return state == flute_grinder::GrinderState::HOMING; },
+      [] { return interrupts() == 0; });
   if (status != 0) return status;
-  const GrinderState state = watch.newest();
-  if (state.state == GrinderState::HOMING) {
+  const flute_grinder::GrinderState state = watch.newest();
+  if (state.state == flute_grinder::GrinderState::HOMING) {
     // Homing ends only by switching the power off.
     const int refused = call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kDisable), {});
     return refused != 0 ? refused : fail("homing was aborted; the power is off");
@@ -252,10 +254,10 @@ int lift(const std::string& node) {
   keys.start([&] { keys.hold(); });
   const int status = awaitMotion(
       call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kLift), {}), watch,
-      [](std::uint8_t state) { return state == GrinderState::LIFTING; }, [] { return true; });
+      [](std::uint8_t state) { return state == flute_grinder::GrinderState::LIFTING; }, [] { return true; });
   if (status != 0) return status;
-  const GrinderState state = watch.newest();
-  if (state.state == GrinderState::FAULT) return fail(state.fault);
+  const flute_grinder::GrinderState state = watch.newest();
+  if (state.state == flute_grinder::GrinderState::FAULT) return fail(state.fault);
   if (!state.wheel_in_work) return 0;
   return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
@@ -266,7 +268,7 @@ int cancelJob(const std::string& node) {
   const StateWatch watch(nh);
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
   if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
-  const GrinderState before = watch.newest();
+  const flute_grinder::GrinderState before = watch.newest();
   // In any state, since a job may be in planning, which the state does not show. An empty id cancels every goal.
   cancel.publish(actionlib_msgs::GoalID());
   if (!takesCancel(before)) {
@@ -275,7 +277,7 @@ int cancelJob(const std::string& node) {
   }
   while (takesCancel(watch.newest()) && !watch.lost()) ros::WallDuration(0.02).sleep();
   if (watch.lost()) return fail(kLinkLost);
-  const GrinderState state = watch.newest();
+  const flute_grinder::GrinderState state = watch.newest();
   return state.fault.empty() ? 0 : fail(state.fault);
 }
 
@@ -334,16 +336,17 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   catchHolds();
   keys.start([&] { keys.hold(); });
   const double end = *position.newest() + distance * unit;
-  JogStep::Request request;
+  flute_grinder::JogStep::Request request;
   request.axis = static_cast<std::uint8_t>(axis);
   request.distance = distance * unit;
   request.speed = feed * unit / 60;
   const auto moves = [](std::uint8_t state) {
-    return state == GrinderState::JOGGING || state == GrinderState::JOGGING_RETRACTED;
+    return state == flute_grinder::GrinderState::JOGGING || state == flute_grinder::GrinderState::JOGGING_RETRACTED;
   };
-  const int status = awaitMotion(call<JogStep>(nh, "jog_step", request), watch, moves, [] { return true; });
+  const int status =
+      awaitMotion(call<flute_grinder::JogStep>(nh, "jog_step", request), watch, moves, [] { return true; });
   if (status != 0) return status;
-  if (watch.newest().state == GrinderState::FAULT) return fail(watch.newest().fault);
+  if (watch.newest().state == flute_grinder::GrinderState::FAULT) return fail(watch.newest().fault);
   await(kSettling, [&] { return position.settled(); });
   const double there = *position.newest();
   std::printf("%c %.4f %s\n", "XYZA"[axis], there / unit, rotary ? "deg" : "mm");
@@ -364,18 +367,18 @@ int request(const std::string& node, MachineEvent event) {
 
 int confirmSwivel(const std::string& node, double degrees) {
   ros::NodeHandle nh(node);
-  ConfirmSwivel::Request request;
+  flute_grinder::ConfirmSwivel::Request request;
   request.swivel = degrees * units::kDegree;
-  const int status = call<ConfirmSwivel>(nh, "confirm_swivel", request);
+  const int status = call<flute_grinder::ConfirmSwivel>(nh, "confirm_swivel", request);
   if (status != 0) return status;
   return succeed("the swivel is confirmed at " + text({request.swivel, Unit::kRadian}, UnitSystem::kShop));
 }
 
 int setFeedOverride(const std::string& node, double percent) {
   ros::NodeHandle nh(node);
-  SetFeedOverride::Request request;
+  flute_grinder::SetFeedOverride::Request request;
   request.fraction = percent / 100;
-  return call<SetFeedOverride>(nh, "set_feed_override", request);
+  return call<flute_grinder::SetFeedOverride>(nh, "set_feed_override", request);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind run`.
 struct RunOptions {
@@ -56,4 +56,4 @@ int jog(const std::string& node, int axis, double distance, double feed);
 /// Sets the feed override. @param percent 0 to 100 * kMaxFeedOverride. @return the exit status.
 int setFeedOverride(const std::string& node, double percent);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -19,12 +19,12 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 // SimpleActionClient loses an answer that comes before its sendGoal() returns.
-using ProbeClient = actionlib::ActionClient<ProbeAction>;
+using ProbeClient = actionlib::ActionClient<flute_grinder::ProbeAction>;
 
 const ros::WallDuration kAgain(0.05);  ///< between messages that this program is alive
 
@@ -35,8 +35,8 @@ std::string shown(double si, bool angle) {
 }
 
 /// @throw std::invalid_argument for arguments that do not fit each other. @throw JobFileError
-ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
-  ProbeGoal goal;
+flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
+  flute_grinder::ProbeGoal goal;
   goal.cycle = static_cast<std::uint8_t>(row.value);
   goal.within = options.within * shopScale(unitOf(row.axis, 0));
   if (!row.always_for_job && options.at_mm.has_value() == options.job.empty()) {
@@ -69,8 +69,8 @@ bool awaitCycle(ProbeClient::GoalHandle& cycle, const StateWatch& watch) {
   return true;
 }
 
-void printFigures(const ProbeResult& result) {
-  for (const ProbedFigure& figure : result.figures) {
+void printFigures(const flute_grinder::ProbeResult& result) {
+  for (const flute_grinder::ProbedFigure& figure : result.figures) {
     const bool angle = figure.angle != 0;
     std::printf("%-15s %s", figure.name.c_str(), shown(figure.value, angle).c_str());
     if (!std::isnan(figure.spread)) std::printf(", spread %s", shown(figure.spread, angle).c_str());
@@ -80,7 +80,8 @@ void printFigures(const ProbeResult& result) {
 
 /// Of the offset, which the grinder has set, or which is set now if a large change is confirmed. @return the exit
 /// status.
-int settleOffset(ros::NodeHandle& nh, int axis, const ProbeGoal& goal, const ProbeResult& result) {
+int settleOffset(ros::NodeHandle& nh, int axis, const flute_grinder::ProbeGoal& goal,
+                 const flute_grinder::ProbeResult& result) {
   const int status = result.large_change
                          ? setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), false)
                      : result.message.empty() ? 0
@@ -94,7 +95,7 @@ int settleOffset(ros::NodeHandle& nh, int axis, const ProbeGoal& goal, const Pro
 
 int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& options) {
   const ProbingCycleRow& row = rowOf(cycle);
-  const ProbeGoal goal = goalOf(row, options);
+  const flute_grinder::ProbeGoal goal = goalOf(row, options);
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);
   ProbeClient client(nh, "probe");
@@ -112,10 +113,10 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
   });
   ProbeClient::GoalHandle running = client.sendGoal(goal);
   if (!awaitCycle(running, watch)) return fail(kLinkLost);
-  const ProbeResultConstPtr result = running.getResult();
+  const flute_grinder::ProbeResultConstPtr result = running.getResult();
   if (!result) return fail("probing: no result from the grinder " + nh.getNamespace());
   printFigures(*result);
   return settleOffset(nh, row.axis, goal, *result);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind probe`.
 struct ProbeOptions {
@@ -21,4 +21,4 @@ struct ProbeOptions {
 /// other. @throw JobError if the job file is refused.
 int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

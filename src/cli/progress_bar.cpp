@@ -13,7 +13,7 @@
 #include <cstring>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -59,14 +59,14 @@ std::size_t length(const std::vector<Part>& parts) {
   return sum;
 }
 
-bool planning(const GrindFeedback& f) { return f.state == "planning"; }
+bool planning(const flute_grinder::GrindFeedback& f) { return f.state == "planning"; }
 
 /// What the bar shows: the fraction ground or, before that, planned.
-double fraction(const GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
+double fraction(const flute_grinder::GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
 
 constexpr int kBarRank = 5;
 
-std::vector<Part> partsOf(const GrindFeedback& f, int teeth, int passes) {
+std::vector<Part> partsOf(const flute_grinder::GrindFeedback& f, int teeth, int passes) {
   const Part room_for_bar{kBarRank, std::string(kMinBar, ' ')};
   if (planning(f)) return {room_for_bar, {0, format("planning %.0f %%", f.planned * 100)}};
   return {room_for_bar,
@@ -79,7 +79,7 @@ std::vector<Part> partsOf(const GrindFeedback& f, int teeth, int passes) {
           {4, timeLeft(f.remaining_time)}};
 }
 
-std::string progressLine(const GrindFeedback& f, int teeth, int passes, std::size_t width) {
+std::string progressLine(const flute_grinder::GrindFeedback& f, int teeth, int passes, std::size_t width) {
   std::vector<Part> parts = partsOf(f, teeth, passes);
   const auto lower = [](const Part& a, const Part& b) { return a.rank < b.rank; };
   while (length(parts) > width && parts.size() > 1) parts.erase(std::max_element(parts.begin(), parts.end(), lower));
@@ -98,7 +98,7 @@ ProgressBar::ProgressBar(int teeth, int passes) : terminal_(isTerminal()), teeth
 
 ProgressBar::~ProgressBar() { end(); }
 
-void ProgressBar::show(const GrindFeedback& feedback) {
+void ProgressBar::show(const flute_grinder::GrindFeedback& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (ended_) return;
   // Of the percentage as it is shown, rounded: no tenth has two lines.
@@ -136,4 +136,4 @@ void ProgressBar::end() {
   ended_ = true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

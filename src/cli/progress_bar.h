@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Shows the progress of a job on stderr. On a terminal it is a single line, redrawn and never wider than the terminal;
 /// in a file, a pipe or on a dumb terminal it is one line per tenth of the job, or of its planning, and per state.
@@ -20,7 +20,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void show(const GrindFeedback& feedback);
+  void show(const flute_grinder::GrindFeedback& feedback);
 
   /// Prints a separate line above the bar.
   void printLine(const std::string& text);
@@ -39,7 +39,7 @@ class ProgressBar {
   std::mutex mutex_;
   bool begun_ = false, ended_ = false;
   int tenths_ = -1;
-  GrindFeedback last_;
+  flute_grinder::GrindFeedback last_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

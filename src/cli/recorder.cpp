@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -22,14 +22,14 @@ Recorder::Recorder(const ros::NodeHandle& nh, const std::string& csv)
   spinner_.start();
 }
 
-void Recorder::onBatch(const SetpointBatch::ConstPtr& batch) {
+void Recorder::onBatch(const flute_grinder::SetpointBatch::ConstPtr& batch) {
   if (batch->goal_id.compare(0, own_goals_.size(), own_goals_) != 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   lost_ += batch->lost;
   if (batch->setpoints.empty()) return;
   if (received_ == 0) begin_ = batch->header.stamp;
   end_ = batch->end_stamp;
-  for (const WrittenSetpoint& setpoint : batch->setpoints) {
+  for (const flute_grinder::WrittenSetpoint& setpoint : batch->setpoints) {
     ++received_;
     end_cycle_ = std::max(end_cycle_, setpoint.cycle + 1);
     if (csv_) csv_->write(fromMessage(setpoint), Axes(setpoint.actual.data()), batch->period);
@@ -74,4 +74,4 @@ void Recorder::close() {
   if (csv_ && received_ > 0) csv_->close();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

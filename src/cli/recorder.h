@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Receives the setpoints of this program's own goals, counts them and writes them to a file. Runs in its own thread,
 /// so that a slow disk delays nothing else. Thread safe.
@@ -39,7 +39,7 @@ class Recorder {
   void close();
 
  private:
-  void onBatch(const SetpointBatch::ConstPtr& batch);
+  void onBatch(const flute_grinder::SetpointBatch::ConstPtr& batch);
   /// Setpoints received, reported lost, or missing in a gap between those received.
   std::uint64_t accountedFor() const;
 
@@ -54,4 +54,4 @@ class Recorder {
   ros::AsyncSpinner spinner_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

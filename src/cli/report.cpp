@@ -25,7 +25,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -70,8 +70,8 @@ std::string reasonWhyNot(const Action& action) {
   try {
     action();
     return "";
-  } catch (const core::ReasonError& error) {
-    return core::text(error.reason(), UnitSystem::kShop);
+  } catch (const ReasonError& error) {
+    return text(error.reason(), UnitSystem::kShop);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -178,4 +178,4 @@ bool drawTool(const std::string& json, const std::string& svg) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

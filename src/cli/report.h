@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind report`.
 struct ReportOptions {
@@ -32,4 +32,4 @@ void writeReport(const std::string& node, const ReportOptions& options);
 /// reason is on stderr. @throw FileError if the program is missing.
 bool drawTool(const std::string& json, const std::string& svg);
 
-}  // namespace flute_grinder
+}  // namespace grinder

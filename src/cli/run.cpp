@@ -22,29 +22,29 @@
 #include <optional>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 // SimpleActionClient knows no answer that comes before its sendGoal() returns, and says so in the progress bar.
-using Client = actionlib::ActionClient<GrindAction>;
+using Client = actionlib::ActionClient<flute_grinder::GrindAction>;
 
 /// State of a goal. Shown by another thread than the one that receives it, so that a blocked terminal cannot stop
 /// reception. Thread safe.
 class GoalWatch {
  public:
-  void onFeedback(const GrindFeedbackConstPtr& feedback) {
+  void onFeedback(const flute_grinder::GrindFeedbackConstPtr& feedback) {
     const std::lock_guard<std::mutex> lock(mutex_);
     newest_ = feedback;
   }
-  void onDone(bool succeeded, const GrindResultConstPtr& result) {
+  void onDone(bool succeeded, const flute_grinder::GrindResultConstPtr& result) {
     const std::lock_guard<std::mutex> lock(mutex_);
     done_ = true;
     succeeded_ = succeeded;
     result_ = result;
   }
   /// Null if there is none since the last call.
-  GrindFeedbackConstPtr takeFeedback() {
+  flute_grinder::GrindFeedbackConstPtr takeFeedback() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(newest_, nullptr);
   }
@@ -57,16 +57,16 @@ class GoalWatch {
     return succeeded_;
   }
   /// Null until there is one, and if the grinder no longer knows the goal.
-  GrindResultConstPtr result() const {
+  flute_grinder::GrindResultConstPtr result() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return result_;
   }
 
  private:
   mutable std::mutex mutex_;
-  GrindFeedbackConstPtr newest_;
+  flute_grinder::GrindFeedbackConstPtr newest_;
   bool done_ = false, succeeded_ = false;
-  GrindResultConstPtr result_;
+  flute_grinder::GrindResultConstPtr result_;
 };
 
 /// Prints a line when a job begins with a feed override, when the operator presses a stop key, and when the grinder
@@ -75,7 +75,7 @@ class RunMessages {
  public:
   explicit RunMessages(ProgressBar& bar) : bar_(bar) {}
 
-  void update(const GrinderState& state) {
+  void update(const flute_grinder::GrinderState& state) {
     if (!std::exchange(begun_, begun_ || inJob(state)) && begun_ && state.override != 1) {
       bar_.printLine(format("the feed override is %.0f %%", state.override * 100));
     }
@@ -134,7 +134,7 @@ void printStream(const Recorder& recorder, std::uint64_t written) {
 
 /// Prints the outcome of a goal. @param connected whether the connection lasted to its end. @return the exit status.
 int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder) {
-  const GrindResultConstPtr result = goal.result();
+  const flute_grinder::GrindResultConstPtr result = goal.result();
   if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   if (result) {
     for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
@@ -148,10 +148,10 @@ int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder
 
 /// Prints what the grinder has found in a dry run beside the path; it has kept the plan.
 /// @return the exit status.
-int printDryChecks(ros::NodeHandle& nh, const GrindGoal& goal, const GrindJob& job) {
-  Plan::Request request;
+int printDryChecks(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, const GrindJob& job) {
+  flute_grinder::Plan::Request request;
   request.goal = goal;
-  const auto plan = ask<Plan>(nh, "plan", request);
+  const auto plan = ask<flute_grinder::Plan>(nh, "plan", request);
   if (!plan) return 1;
   for (const std::string& reason : plan->reasons) fail(reason);
   if (!plan->valid) return 1;
@@ -186,8 +186,8 @@ int closeRecord(Recorder& recorder, const std::string& csv, int status) {
   return status;
 }
 
-GrindGoal goalFor(const RunOptions& options) {
-  GrindGoal goal = goalFromFile(options.job);
+flute_grinder::GrindGoal goalFor(const RunOptions& options) {
+  flute_grinder::GrindGoal goal = goalFromFile(options.job);
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;
   goal.ignore_offset_check = options.ignore_offset_check;
@@ -197,7 +197,7 @@ GrindGoal goalFor(const RunOptions& options) {
 }  // namespace
 
 int runJob(const std::string& node, const RunOptions& options) {
-  GrindGoal goal = goalFor(options);
+  flute_grinder::GrindGoal goal = goalFor(options);
   const GrindJob job = jobFromGoal(goal);
   ros::NodeHandle nh(node);
   Recorder recorder(nh, options.csv);
@@ -223,7 +223,9 @@ int runJob(const std::string& node, const RunOptions& options) {
         if (handle.getCommState() != actionlib::CommState::DONE) return;
         watched.onDone(handle.getTerminalState() == actionlib::TerminalState::SUCCEEDED, handle.getResult());
       },
-      [&](const Client::GoalHandle&, const GrindFeedbackConstPtr& feedback) { watched.onFeedback(feedback); });
+      [&](const Client::GoalHandle&, const flute_grinder::GrindFeedbackConstPtr& feedback) {
+        watched.onFeedback(feedback);
+      });
   keys.start([&] { running.cancel(); });
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
@@ -232,4 +234,4 @@ int runJob(const std::string& node, const RunOptions& options) {
   return closeRecord(recorder, options.csv, status);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 
 #include <cstdio>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -37,7 +37,7 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
             {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
             {"limit", toString(setup.limit)},
             {"margin", setup.margin}};
-  json.update(flute_grinder::toJson(setup.job, setup.check.figures));
+  json.update(grinder::toJson(setup.job, setup.check.figures));
   return json;
 }
 
@@ -69,4 +69,4 @@ int runSetup(const SetupOptions& options) {
   return 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind setup`.
 struct SetupOptions {
@@ -21,4 +21,4 @@ struct SetupOptions {
 /// @throw FileError, JobFileError, ParameterError if a file cannot be read or written.
 int runSetup(const SetupOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

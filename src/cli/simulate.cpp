@@ -19,7 +19,7 @@
 #include <memory>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -112,8 +112,8 @@ int show(const GroundTool& tool, bool json) {
   } else {
     printText(tool);
   }
-  for (const core::Reason& reason : tool.check.reasons) {
-    std::fprintf(stderr, "%s\n", core::text(reason, UnitSystem::kShop).c_str());
+  for (const Reason& reason : tool.check.reasons) {
+    std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
   }
   return tool.check.reasons.empty() ? 0 : 1;
 }
@@ -133,8 +133,8 @@ int runSimulate(const SimulateOptions& options) {
     if (!options.stl.empty()) writeStlFile(tool, options.stl);
     if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
     return status;
-  } catch (const core::ReasonError& error) {
-    std::fprintf(stderr, "%s\n", core::text(error.reason(), UnitSystem::kShop).c_str());
+  } catch (const ReasonError& error) {
+    std::fprintf(stderr, "%s\n", text(error.reason(), UnitSystem::kShop).c_str());
     return 1;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());
@@ -142,4 +142,4 @@ int runSimulate(const SimulateOptions& options) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

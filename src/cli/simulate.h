@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind simulate`.
 struct SimulateOptions {
@@ -24,4 +24,4 @@ constexpr int kMaxSections = 1000;
 ///        cutter.
 int runSimulate(const SimulateOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/machine/machine_state.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -13,16 +13,17 @@ const ros::WallDuration kTimeout(3);
 const char* const kLinkLost =
     "the connection to the grinder is lost: no message for 3 s; the state of the machine is unknown";
 
-bool inJob(const GrinderState& state) { return isInJob(static_cast<MachineState>(state.state)); }
+bool inJob(const flute_grinder::GrinderState& state) { return isInJob(static_cast<MachineState>(state.state)); }
 
 StateWatch::StateWatch(ros::NodeHandle& nh) {
-  const boost::function<void(const GrinderState::ConstPtr&)> on_state = [this](const GrinderState::ConstPtr& state) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    newest_ = *state;
-    time_ = ros::SteadyTime::now();
-    ++heard_;
-  };
-  subscriber_ = nh.subscribe<GrinderState>("state", 10, on_state);
+  const boost::function<void(const flute_grinder::GrinderState::ConstPtr&)> on_state =
+      [this](const flute_grinder::GrinderState::ConstPtr& state) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        newest_ = *state;
+        time_ = ros::SteadyTime::now();
+        ++heard_;
+      };
+  subscriber_ = nh.subscribe<flute_grinder::GrinderState>("state", 10, on_state);
 }
 
 bool StateWatch::awaitNext() const {
@@ -31,7 +32,7 @@ bool StateWatch::awaitNext() const {
   return await(kTimeout, [&] { return heard() >= enough; });
 }
 
-GrinderState StateWatch::newest() const {
+flute_grinder::GrinderState StateWatch::newest() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return newest_;
 }
@@ -46,4 +47,4 @@ bool StateWatch::lost() const {
   return !ros::ok() || ros::SteadyTime::now() - time_ > kTimeout;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,10 +6,10 @@
 
 #include <mutex>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Whether a job controls the machine.
-bool inJob(const GrinderState& state);
+bool inJob(const flute_grinder::GrinderState& state);
 
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
@@ -37,7 +37,7 @@ class StateWatch {
   bool fresh() const { return heard() > 1; }
   /// Waits for a state sent after this call. @return false if the connection is lost.
   bool awaitNext() const;
-  GrinderState newest() const;
+  flute_grinder::GrinderState newest() const;
   /// Whether nothing has been received for too long.
   bool lost() const;
 
@@ -45,7 +45,7 @@ class StateWatch {
   std::uint64_t heard() const;
 
   mutable std::mutex mutex_;
-  GrinderState newest_;
+  flute_grinder::GrinderState newest_;
   ros::SteadyTime time_;  ///< when the newest was received
   std::uint64_t heard_ = 0;
   ros::Subscriber subscriber_;
@@ -54,4 +54,4 @@ class StateWatch {
 /// Error text for a lost connection.
 extern const char* const kLinkLost;
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,10 +5,10 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 StopKeys::StopKeys(ros::NodeHandle& nh, const StateWatch& watch)
-    : watch_(watch), publisher_(nh.advertise<Stop>("stop", 10)) {}
+    : watch_(watch), publisher_(nh.advertise<flute_grinder::Stop>("stop", 10)) {}
 
 StopKeys::~StopKeys() {
   ended_ = true;
@@ -16,8 +16,8 @@ StopKeys::~StopKeys() {
 }
 
 void StopKeys::hold() const {
-  Stop stop;
-  stop.request = Stop::HOLD;
+  flute_grinder::Stop stop;
+  stop.request = flute_grinder::Stop::HOLD;
   publisher_.publish(stop);
 }
 
@@ -45,4 +45,4 @@ void StopKeys::run(const std::function<void()>& on_interrupt) const {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <functional>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The keys that stop a motion: the command defines what Ctrl-C does, Ctrl-Z holds on the path. They are handled in
 /// their own thread, so that a blocked terminal cannot delay a stop, and use a topic, whose connection survives the
@@ -39,4 +39,4 @@ class StopKeys {
   std::thread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <array>
 #include <ctime>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string timeText(double time, bool utc) {
   const auto seconds = static_cast<std::time_t>(time);
@@ -14,4 +14,4 @@ std::string timeText(double time, bool utc) {
   return text.data();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

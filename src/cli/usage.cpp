@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::string unknownWord(const CLI::App& app) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,10 +4,10 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The first word of a parsed command line that is no command, option or argument, with the nearest one that is.
 /// @return empty if there is no such word.
 std::string unknownWord(const CLI::App& app);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -19,7 +19,7 @@
 #include <system_error>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -158,4 +158,4 @@ int dressWheel(const WheelOptions& options) {
   return update(options.file, text, wheel, wheel.diameter() - 2 * radial, wheel.process.wheel_width - face);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind wheel show`, `measure` and `dress`.
 struct WheelOptions {
@@ -25,4 +25,4 @@ int measureWheel(const WheelOptions& options);
 /// Writes into a wheel file what the wheel is after dressing. @return the exit status.
 int dressWheel(const WheelOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -58,4 +58,4 @@ void addWheelCommands(Commands& commands) {
   addZeros(commands);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -66,7 +66,7 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!await(kPatience, [&] { return nh.hasParam("geometry"); })) return noGrinder(nh);
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometryOf(nh));
   if (!zero) return 1;
-  const core::OffsetBasis basis = basisOf(goalFromFile(options.job), OffsetMethod::kComputed);
+  const OffsetBasis basis = basisOf(goalFromFile(options.job), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
     if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.yes)) return status;
   }
@@ -74,4 +74,4 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   return 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

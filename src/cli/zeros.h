@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arguments of `grind zeros`.
 struct ZerosOptions {
@@ -36,4 +36,4 @@ int printZeros(const ZerosOptions& options);
 /// the exit status.
 int setZeros(const std::string& node, const ZerosOptions& options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <array>
 #include <map>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -87,4 +87,4 @@ ClosestSearch::Pieces ClosestSearch::half(const Pieces& pieces, int axis, double
   return part;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The search for the closest place on a path, of one pair of bodies after another: a part of the path is left as soon
 /// as the planes that part the bodies in its middle show that it holds no place closer than the closest so far; if not,
@@ -41,4 +41,4 @@ class ClosestSearch {
   ClosestPlace best_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

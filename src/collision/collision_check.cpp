@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -180,4 +180,4 @@ double runOutEnd(const CollisionJob& job) {
   return to;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

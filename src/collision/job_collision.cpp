@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -63,10 +63,10 @@ double workClearance(const GrindProgram& program) {
   return std::min(program.machine().collision_clearance, kWorkPart * program.job().process.clearance);
 }
 
-core::Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
+Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
   const Move& move = program.moves()[place.leg];
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kCollision;
+  Reason reason;
+  reason.kind = ReasonKind::kCollision;
   reason.detail = place.first + " and " + place.second;
   reason.unit = Unit::kMetre;
   reason.value = place.distance;
@@ -80,8 +80,8 @@ core::Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
 }
 
 /// For a wheel that comes too close to the work outside the cut.
-core::Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
-  core::Reason reason = reasonOf(place, program);
+Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
+  Reason reason = reasonOf(place, program);
   if (isUp(reason.move)) return reason;  // another clearance would not change where it begins
   reason.field = "process.clearance";
   reason.low = program.job().process.clearance;
@@ -143,8 +143,8 @@ CollisionResult checkCollision(const GrindProgram& program, const MachineShapes&
     const ClosestPlace in_work_move = on_move(*in_work);
     return {in_work_move, reasonInWork(in_work_move, program)};
   } catch (const std::invalid_argument& error) {
-    return {std::nullopt, core::otherReason(error.what())};
+    return {std::nullopt, otherReason(error.what())};
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

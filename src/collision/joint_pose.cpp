@@ -1,6 +1,6 @@
 #include "flute_grinder/collision/joint_pose.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -27,4 +27,4 @@ Eigen::Isometry3d childPose(const urdf::Joint& joint, double position) {
   return toEigen(joint.parent_to_joint_origin_transform) * motionOf(joint, position);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -132,4 +132,4 @@ bool MachineShapes::isBelow(const std::string& name, const std::string& other) c
   return false;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

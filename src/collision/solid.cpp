@@ -12,7 +12,7 @@
 #include <limits>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -150,4 +150,4 @@ Gap gap(const Solid& first, const Solid& second, const Eigen::Vector3d& shift) {
   return best;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <cmath>
 
 // The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
-namespace flute_grinder {
+namespace grinder {
 
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   hw_.read(time, period);
@@ -235,7 +235,7 @@ bool ControlLoop::advanceAxisMove() {
 }
 
 Interlock ControlLoop::openInterlock() const {
-  const Interlock open = flute_grinder::openInterlock(record_.drive);
+  const Interlock open = grinder::openInterlock(record_.drive);
   if (open != Interlock::kNone || !stream_) return open;
   if (!record_.swivel.isAt(job_swivel_)) return Interlock::kSwivel;
   const bool entered = in_journal_ || jobInJournal() == next_status_.jobs_started;
@@ -327,4 +327,4 @@ void ControlLoop::apply(MachineEvent event) {
   if (const auto next = after(state_, event)) state_ = *next;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

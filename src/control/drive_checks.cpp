@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -67,4 +67,4 @@ Interlock openInterlock(const DriveStatus& drive) noexcept {
   return Interlock::kNone;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

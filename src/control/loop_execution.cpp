@@ -3,7 +3,7 @@
 #include <algorithm>
 
 // Executes the requests of a cycle; all of it is real-time.
-namespace flute_grinder {
+namespace grinder {
 
 void ControlLoop::executeRequests() {
   // Taken first, executed last: a stop also stops anything requested before it.
@@ -222,4 +222,4 @@ Refusal ControlLoop::setSwivel(double angle) {
 
 double ControlLoop::liftTarget() const { return wheel_.liftTarget(record_.drive.homed, command_[kY]); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <limits>
 
 // Jogs: their requests and their motion; all of it is real-time.
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -150,4 +150,4 @@ void ControlLoop::endJog() {
   ++next_status_.jogs_ended;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -10,17 +10,17 @@ constexpr int kSwivelDigits = 10;  ///< so that a job's angle appears as entered
 
 /// Of an angle, as operators read it. @param angle [rad].
 std::string degrees(double angle, int digits = 6) {
-  return flute_grinder::text({angle, Unit::kRadian}, UnitSystem::kShop, digits);
+  return grinder::text({angle, Unit::kRadian}, UnitSystem::kShop, digits);
 }
 
 }  // namespace
 
 RequestReply Answer::reply() const {
   if (refusal == Refusal::kNone) return {true, "", true};
-  const auto position = [&](double si) { return flute_grinder::text({si, unitOf(axis, 0)}, UnitSystem::kShop); };
+  const auto position = [&](double si) { return grinder::text({si, unitOf(axis, 0)}, UnitSystem::kShop); };
   const auto speed = [&](double si) {
     const Unit unit = axis == kA ? Unit::kRadianPerSecond : Unit::kFeedMetrePerSecond;
-    return flute_grinder::text({si, unit}, UnitSystem::kShop);
+    return grinder::text({si, unit}, UnitSystem::kShop);
   };
   std::ostringstream text;
   const bool confirmation = refusal == Refusal::kSwivelMeasured || refusal == Refusal::kSwivelInUse;
@@ -45,7 +45,7 @@ RequestReply Answer::reply() const {
       text << "it would lead " << axisName(axis, UnitSystem::kShop) << " to " << position(value)
            << (value < limit ? "; allowed: down to " : "; allowed: up to ") << position(limit);
       break;
-    case Refusal::kSwivel: text << core::text(reasonOf(swivel, job_swivel), UnitSystem::kShop); break;
+    case Refusal::kSwivel: text << grinder::text(reasonOf(swivel, job_swivel), UnitSystem::kShop); break;
     case Refusal::kSwivelMeasured:
       text << "the drive measures the swivel, which stands at " << degrees(swivel.angle)
            << "; nothing is to be confirmed";
@@ -79,4 +79,4 @@ RequestReply Answer::reply() const {
   return {false, text.str(), true};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

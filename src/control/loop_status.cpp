@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 Wheel wheelOf(const GrindProgram& program) {
   double deepest = program.clearanceHeight();
@@ -14,4 +14,4 @@ Wheel wheelOf(const GrindProgram& program) {
   return {false, clear_y, program.clearanceHeight() - deepest};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

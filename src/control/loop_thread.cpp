@@ -8,7 +8,7 @@
 #include <string>
 
 // Construction and the thread; the cycle is in control_loop.cpp.
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -80,4 +80,4 @@ bool ControlLoop::setFeedOverride(double fraction) {
   return true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -150,4 +150,4 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   return config;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

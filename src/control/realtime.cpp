@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <system_error>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -60,4 +60,4 @@ bool becomeRealtime() {
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameters) == 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

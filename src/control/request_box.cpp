@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -104,4 +104,4 @@ RequestReply RequestBox::jogInSeries(const JogRequest& jog) {
 
 std::optional<RequestReply> RequestBox::startJobReply() { return toReply(job_starts_.reply()); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

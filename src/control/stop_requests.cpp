@@ -1,6 +1,6 @@
 #include "flute_grinder/control/stop_requests.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 std::uint32_t StopRequests::postWithReply(MachineEvent stop) noexcept {
   const std::uint32_t ticket = ticket_.load(std::memory_order_relaxed) + 1;
@@ -27,4 +27,4 @@ void StopRequests::answer(const Answer& answer) noexcept {
       std::memory_order_release);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

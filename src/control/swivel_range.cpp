@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 Range readSwivelRange(const std::string& urdf) {
   constexpr const char* name = "wheel_swivel";
@@ -30,4 +30,4 @@ Range readSwivelRange(const std::string& urdf) {
   return range;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

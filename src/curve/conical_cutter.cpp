@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -39,4 +39,4 @@ ConicalCutter::ConicalCutter(const CutterGeometry& geometry)
           "a cone that does not close before the flute ends");
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

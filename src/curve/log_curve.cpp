@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 double LogCurve::log1pRatio(double z) noexcept { return z == 0 ? 1 : std::log1p(z) / z; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -122,4 +122,4 @@ double OddEvenInterpolator::maxStepLength(const LogCurve& curve, double rotary_s
   return std::sqrt(2 * a_error / std::abs(curve.k() * curve.b()) * (u * u + k * k));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -177,4 +177,4 @@ void SCurveProfile::append(const SpeedChange& change, double end_speed, State& s
   state.acceleration = 0;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -32,4 +32,4 @@ StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, E
   return table;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

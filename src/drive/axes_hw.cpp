@@ -1,6 +1,6 @@
 #include "flute_grinder/drive/axes_hw.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 AxesHW::AxesHW() { registerHandles(); }
 
@@ -16,4 +16,4 @@ void AxesHW::registerHandles() {
   registerInterface(&drive_);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

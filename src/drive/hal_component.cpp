@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -130,4 +130,4 @@ void HalComponent::ready() const {
   hal_ready(id_);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

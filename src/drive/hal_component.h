@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A user-space component of LinuxCNC's HAL. Each pin `<component>.<pin>` is linked to the signal `<pin>`, which the
 /// HAL file creates. The HAL file is loaded first and stays loaded when this program starts and ends. Not real-time.
@@ -68,4 +68,4 @@ class HalComponent {
 /// @throw ParameterError unless it exists and is readable and writable.
 std::size_t requireHalMemory(int key, const std::string& what, const std::string& remedy);
 
-}  // namespace flute_grinder
+}  // namespace grinder

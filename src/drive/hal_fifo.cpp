@@ -9,7 +9,7 @@
 #include <cstring>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -52,4 +52,4 @@ void HalFifo::drain() {
   while (hal_stream_readable(&stream_)) hal_stream_read(&stream_, sample.data(), nullptr);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

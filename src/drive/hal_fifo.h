@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The FIFO of a HAL `streamer`. Each servo cycle removes one command and outputs its number. A command is four floats
 /// and a u32: `loadrt streamer cfg=ffffu`. Only one writer. Real-time except for the constructor.
@@ -35,4 +35,4 @@ class HalFifo {
   hal_stream_t stream_{};
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <ctime>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -187,6 +187,6 @@ ros::Duration HalHardware::wait(const ros::Duration& period) {
   return sinceLastCycle(period);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder
 
-FLUTE_GRINDER_EXPORT_DRIVE(flute_grinder::HalHardware)
+FLUTE_GRINDER_EXPORT_DRIVE(grinder::HalHardware)

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Hardware behind LinuxCNC's HAL: Mesa cards, step generators, analog and EtherCAT servos. Commands go through the
 /// FIFO of a HAL `streamer`; each servo cycle plays exactly one. The fill level of the FIFO paces the control loop, so
@@ -67,4 +67,4 @@ class HalHardware : public AxesHW {
   bool settling_ = false;      ///< commands relative to the old reference may still be queued
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 HalParameters readHalParameters(const ParameterReader& root, const ParameterReader& parameters) {
   // Half of the loop's history, because a stalled HAL may let a few cycles start while the FIFO is full.
@@ -17,4 +17,4 @@ HalParameters readHalParameters(const ParameterReader& root, const ParameterRead
   return hal;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

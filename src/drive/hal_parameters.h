@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The parameters of HalHardware.
 struct HalParameters {
@@ -19,4 +19,4 @@ struct HalParameters {
 /// @throw ParameterError
 HalParameters readHalParameters(const ParameterReader& root, const ParameterReader& parameters);
 
-}  // namespace flute_grinder
+}  // namespace grinder

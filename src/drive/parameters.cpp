@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::string ParameterReader::text(const std::string& path, const std::string& wh
   return static_cast<std::string>(value);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <ctime>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -52,4 +52,4 @@ ros::Duration RobotHW::sinceLastCycle(const ros::Duration& nominal) {
   return ros::Duration().fromNSec(now_ns - last_ns);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

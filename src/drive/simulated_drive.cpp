@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -215,7 +215,8 @@ void SimulatedDrive::inject(Fault fault, int axis) {
   injected_ = static_cast<std::uint16_t>(static_cast<unsigned>(fault) | static_cast<unsigned>(axis) << 8);
 }
 
-bool SimulatedDrive::onInjectFault(InjectFault::Request& request, InjectFault::Response& response) {
+bool SimulatedDrive::onInjectFault(flute_grinder::InjectFault::Request& request,
+                                   flute_grinder::InjectFault::Response& response) {
   const int fault = indexOf(kFaultNames, request.fault);
   const bool needs_joint = request.fault == "stuck_axis" || request.fault == "nan_feedback";
   const int axis = needs_joint ? indexOf(kJointNames, request.joint) : kX;
@@ -230,6 +231,6 @@ bool SimulatedDrive::onInjectFault(InjectFault::Request& request, InjectFault::R
   return true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder
 
-FLUTE_GRINDER_EXPORT_DRIVE(flute_grinder::SimulatedDrive)
+FLUTE_GRINDER_EXPORT_DRIVE(grinder::SimulatedDrive)

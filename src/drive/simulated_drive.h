@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A simulated tool grinder. Each axis follows its command with a first-order lag and is read through an encoder; an
 /// incremental encoder reads 0 at the start position until the axis is homed. Homing moves the axes one at a time to
@@ -104,7 +104,7 @@ class SimulatedDrive : public AxesHW {
   bool readProbe(const Blank& blank, Fault fault);
   void moveMotors(Fault fault, int failing_axis, double dt);
   void home(double dt);
-  bool onInjectFault(InjectFault::Request& request, InjectFault::Response& response);
+  bool onInjectFault(flute_grinder::InjectFault::Request& request, flute_grinder::InjectFault::Response& response);
 
   Model model_;
   Equipment equipment_;
@@ -123,4 +123,4 @@ class SimulatedDrive : public AxesHW {
   Buffer sent_{};                  ///< commands at the last write()
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -284,4 +284,4 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
   return cut_out ? joiner.takeWithout(*cut_out) : joiner.take();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

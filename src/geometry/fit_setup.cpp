@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -235,4 +235,4 @@ SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, con
   return DampedFit(trial, request).solve(nearest, cubed, 1).value_or(nearest);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
 struct SetupErrors {
@@ -59,4 +59,4 @@ std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupReque
 /// error within its tolerance. As it is where all are, or one is far beyond.
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest);
 
-}  // namespace flute_grinder
+}  // namespace grinder

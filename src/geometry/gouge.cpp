@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -124,4 +124,4 @@ std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes,
   return gouges;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

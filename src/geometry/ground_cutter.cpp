@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -235,4 +235,4 @@ double GroundCutter::volumeRemoved(double from, double to, int sections) const {
   return volume;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

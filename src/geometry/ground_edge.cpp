@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -31,4 +31,4 @@ Place GroundEdge::at(double x) const noexcept { return between(places_, &Place::
 
 Place GroundEdge::formedAt(double wheel_x) const noexcept { return between(places_, &Place::wheel_x, wheel_x); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

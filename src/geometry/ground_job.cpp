@@ -9,11 +9,9 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
-
-using core::ReasonKind;
 
 constexpr int kSections = 8;         ///< of the flute's length, between those that are measured
 constexpr int kRingsToSpoil = 6;     ///< of a section, at which a stroke may spoil it
@@ -133,7 +131,7 @@ class Checker {
       for (const WheelSweep& sweep : flute) {
         const auto spoils = sectionSpoilsFrom(sweep, nearest, cutter.cutter().radius(nearest));
         if (!spoils) continue;
-        core::Reason reason;
+        Reason reason;
         reason.kind = ReasonKind::kNotBelow;
         reason.field = opens ? "process.overtravel_end" : "process.overtravel_shank";
         reason.unit = Unit::kMetre;
@@ -146,7 +144,7 @@ class Checker {
   }
 
   /// Of each kind the first one: a fault of the set-up shows in every section of every tooth.
-  std::vector<core::Reason> take() { return std::move(reasons_); }
+  std::vector<Reason> take() { return std::move(reasons_); }
 
  private:
   void checkRake(double x, int number, const ToothSection& tooth) {
@@ -186,9 +184,9 @@ class Checker {
   }
 
   void add(ReasonKind kind, double x, int tooth, Unit unit, double value, double limit, double low = 0) {
-    const auto same = [&](const core::Reason& r) { return r.kind == kind; };
+    const auto same = [&](const Reason& r) { return r.kind == kind; };
     if (std::any_of(reasons_.begin(), reasons_.end(), same)) return;
-    core::Reason reason;
+    Reason reason;
     reason.kind = kind;
     reason.x = x;
     reason.tooth = tooth;
@@ -200,7 +198,7 @@ class Checker {
   }
 
   const GrindJob& job_;
-  std::vector<core::Reason> reasons_;
+  std::vector<Reason> reasons_;
 };
 
 /// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
@@ -287,8 +285,8 @@ CutterCheck checkGroundCutter(const GrindJob& job) {
   try {
     return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {
-    return {std::nullopt, {core::otherReason(error.what())}, {}, {}};
+    return {std::nullopt, {otherReason(error.what())}, {}, {}};
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -192,7 +192,7 @@ bool hasZLaw(const GrindJob& job) {
   try {
     withZLaw(job);
     return true;
-  } catch (const core::ReasonError&) {
+  } catch (const ReasonError&) {
     return false;
   }
 }
@@ -238,7 +238,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
     setup.job = job;
     take(std::get<SolvedSetup>(result), keep, setup);
     for (int i = 0;; ++i) {
-      const std::vector<core::Reason> reasons = validate(setup.job);
+      const std::vector<Reason> reasons = validate(setup.job);
       if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons, UnitSystem::kShop);
       if (i == 0 && !hasZLaw(setup.job)) {
         giveRoom(setup);
@@ -247,11 +247,11 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
       setup.check = checkGroundCutter(withZLaw(setup.job));
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
-  } catch (const core::ReasonError& error) {
-    return core::text(error.reason(), UnitSystem::kShop);
+  } catch (const ReasonError& error) {
+    return text(error.reason(), UnitSystem::kShop);
   } catch (const std::invalid_argument& error) {
     return std::string(error.what());
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -52,9 +52,9 @@ class Correction {
  private:
   void goOn() const {
     if (!watch_ || watch_(0)) return;
-    core::Reason reason;
-    reason.kind = core::ReasonKind::kGivenUp;
-    throw core::ReasonError(reason);
+    Reason reason;
+    reason.kind = ReasonKind::kGivenUp;
+    throw ReasonError(reason);
   }
 
   double maxError(const RakeCorrection& c) const {
@@ -131,4 +131,4 @@ std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const Whe
   return Correction(cutter, wheel, nominal_radius, setup, stroke, rake, watch).solve();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -196,15 +196,15 @@ double rounded(double length) { return std::nearbyint(length / kRounding) * kRou
 /// Refuses what is asked of a ball.
 /// @param why said after the allowed range.
 [[noreturn]] void refuse(const char* what, double value, const Range& allowed, std::string why) {
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kOutOfRange;
+  Reason reason;
+  reason.kind = ReasonKind::kOutOfRange;
   reason.field = what;
   reason.detail = std::move(why);
   reason.unit = Unit::kMetre;
   reason.value = rounded(value);
   reason.low = rounded(allowed.from);
   reason.limit = rounded(allowed.to);
-  throw core::ReasonError(std::move(reason));
+  throw ReasonError(std::move(reason));
 }
 
 /// The distances from the axis at which a ball comes to the rake face, of some that are tried: the innermost that
@@ -237,13 +237,13 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
     if (fittingDistances(cutter, x, smaller))
       refuse("ball diameter", 2 * radius, {kRounding, 2 * smaller}, else_touches);
   }
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kNotAllowed;
+  Reason reason;
+  reason.kind = ReasonKind::kNotAllowed;
   reason.field = "ball's X";
   reason.unit = Unit::kMetre;
   reason.value = rounded(x);
   reason.detail = "where the first tooth has a rake face";
-  throw core::ReasonError(std::move(reason));
+  throw ReasonError(std::move(reason));
 }
 
 }  // namespace
@@ -264,4 +264,4 @@ double rakeTouchAngle(const GrindJob& job, const Eigen::Vector3d& ball, double b
   return result.angle - std::atan2(ball.z(), ball.y());
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

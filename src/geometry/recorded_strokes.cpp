@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -157,7 +157,7 @@ void RecordedStrokes::endStroke() {
 RecordedStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
     : cutter(cutterOf(job, tooth)),
       curve(cutter, job.process.setup_lead),
-      stroke(flute_grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
+      stroke(grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
       angle(job.tooth_angles[static_cast<std::size_t>(tooth)]) {}
 
 PathDeviation RecordedStrokes::Path::deviation(double x, const Axes& at) const {
@@ -242,7 +242,7 @@ RecordedStroke RecordedStrokes::strokeOf(const Poses& poses, std::size_t from, s
 WheelSweep RecordedStrokes::sweep(const RecordedStroke& recorded) const {
   const int tooth = recorded.place.tooth;
   const double wear = wearOf(recorded.place);
-  GrindStroke stroke = flute_grinder::strokeOf(job_, tooth, job_.process.deepest(), wear);
+  GrindStroke stroke = grinder::strokeOf(job_, tooth, job_.process.deepest(), wear);
   stroke.from = recorded.range.from;
   stroke.to = recorded.range.to;
   stroke.deviations = recorded.deviations;
@@ -271,4 +271,4 @@ GroundCutter RecordedStrokes::cutter() const {
   return GroundCutter(ConicalCutter(job_.cutter), std::move(flutes), std::move(teeth));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -83,4 +83,4 @@ void settleFile(const std::string& path) {
   Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC), folder).sync();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

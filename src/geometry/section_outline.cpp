@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -245,4 +245,4 @@ std::vector<PolarPoint> sectionOutline(const GroundCutter& cutter, double x, dou
   return Outliner(cutter, x, blank_radius, grid).outline();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

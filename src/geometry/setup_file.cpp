@@ -6,7 +6,7 @@
 
 #include <system_error>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -37,4 +37,4 @@ void writeSetup(const std::string& path, const JobSetup& setup) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

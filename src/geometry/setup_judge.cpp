@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -119,4 +119,4 @@ bool isBetter(const Judged& a, const Judged& b) {
   return order(a) < order(b);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The tool that a set-up grinds, and what is wrong with it.
 struct Judged {
@@ -27,4 +27,4 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
 /// cannot be measured do not count.
 bool isBetter(const Judged& a, const Judged& b);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -154,12 +154,12 @@ std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::op
 
 std::string planRefusal(const JobSetup& setup) {
   std::string text;
-  for (const core::Reason& reason : setup.check.reasons) {
-    text += "a plan would refuse this tool: " + core::text(reason, UnitSystem::kShop);
-    const bool is_uneven = reason.kind == core::ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
+  for (const Reason& reason : setup.check.reasons) {
+    text += "a plan would refuse this tool: " + grinder::text(reason, UnitSystem::kShop);
+    const bool is_uneven = reason.kind == ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
     text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
   }
   return text;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -348,4 +348,4 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   return SetupRefusal{SetupProblem::kReach};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

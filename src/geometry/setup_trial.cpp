@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -121,4 +121,4 @@ SetupTrial::Reach SetupTrial::reach(const WheelSweep& sweep, double x) const {
   return reach;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

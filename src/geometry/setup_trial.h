@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The figures of a set-up that make the tool.
 struct SetupPoint {
@@ -79,4 +79,4 @@ class SetupTrial {
   double face_from_;  ///< w on the wheel from which on its profile belongs to the upper face [m]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -51,4 +51,4 @@ void writeStl(std::ostream& out, const CutterSolid& solid) {
   out << head << bytes;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::string heightRefusal(const GrindJob& job, double z) {
          shown(touchReadings(job).z_for_y) + ", and touch again";
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

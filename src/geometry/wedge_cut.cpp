@@ -7,7 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::vector<Polygon> WedgeCut::faces(const std::array<Vector3d, 4>& tetrahedron)
   return result;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

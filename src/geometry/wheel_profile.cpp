@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -136,4 +136,4 @@ std::optional<WheelProfile> WheelProfile::withWidth(double width) const {
   return straight(2 * max_radius_, width, corner_radii_);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -456,4 +456,4 @@ double WheelSweep::deeperFor(double x, double radius) const {
   return minimum(x, radius, deeper).value;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

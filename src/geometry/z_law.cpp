@@ -8,7 +8,7 @@
 #include <map>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -22,15 +22,15 @@ ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch)
   if (found && std::abs(found->min_rake - rake) <= kEvenRake && std::abs(found->max_rake - rake) <= kEvenRake) {
     return found->z;
   }
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kUnevenRake;
+  Reason reason;
+  reason.kind = ReasonKind::kUnevenRake;
   reason.field = "process.z_law";
   reason.unit = Unit::kRadian;
   reason.tooth = tooth;
   reason.low = found ? found->min_rake : 1;
   reason.value = found ? found->max_rake : 0;
   reason.limit = rake;
-  throw core::ReasonError(reason);
+  throw ReasonError(reason);
 }
 
 }  // namespace
@@ -49,4 +49,4 @@ GrindJob withZLaw(GrindJob job, const PlanWatch& watch) {
   return job;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -41,4 +41,4 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
   return "; did you mean '" + *best + "'?";
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string element(const std::string& key, std::size_t i) { return key + "[" + std::to_string(i) + "]"; }
 
@@ -190,4 +190,4 @@ void FlatFile::refuseKey(int line, const std::string& key, const std::string& al
   fail(line, text.append(" is not a key of a ").append(kind_).append("; allowed: ").append(allowed));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string format(const char* pattern, ...) {
   va_list arguments, again;
@@ -31,4 +31,4 @@ std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
                 cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,11 +9,9 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
-
-using core::ReasonKind;
 
 /// Tolerance for the rounding of a unit conversion at the ends of a range.
 constexpr double kRangeRounding = 1e-12;
@@ -42,7 +40,7 @@ class Checker {
 
   void refuse(ReasonKind kind, const char* path, const Quantity& value, const std::string& detail, double limit = 0,
               double low = 0) {
-    core::Reason reason;
+    Reason reason;
     reason.kind = kind;
     reason.field = path;
     reason.detail = detail;
@@ -54,10 +52,10 @@ class Checker {
   }
 
   bool good() const { return reasons_.empty(); }
-  std::vector<core::Reason> take() { return std::move(reasons_); }
+  std::vector<Reason> take() { return std::move(reasons_); }
 
  private:
-  std::vector<core::Reason> reasons_;
+  std::vector<Reason> reasons_;
 };
 
 void checkTeeth(Checker& checker, const std::vector<double>& angles) {
@@ -226,7 +224,7 @@ ZCorrection zCorrectionOf(const GrindJob& job, int tooth) {
   return job.z_corrections[static_cast<std::size_t>(tooth)];
 }
 
-std::vector<core::Reason> validate(const GrindJob& job) {
+std::vector<Reason> validate(const GrindJob& job) {
   Checker checker;
   visitJobFields([&](const JobField& field, auto of) { checker.range(field, of(job)); });
   checkTeeth(checker, job.tooth_angles);
@@ -237,7 +235,7 @@ std::vector<core::Reason> validate(const GrindJob& job) {
   return checker.take();
 }
 
-std::vector<core::Reason> validateWheel(const GrindJob& job) {
+std::vector<Reason> validateWheel(const GrindJob& job) {
   const auto of_wheel = [](std::string_view path) { return path.find("process.wheel_") == 0; };
   Checker checker;
   visitJobFields([&](const JobField& field, auto of) {
@@ -303,4 +301,4 @@ DepthLaw depthLaw(const GrindJob& job, double depth) {
   return {depth * (p.depth / deepest), depth / deepest * taper};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

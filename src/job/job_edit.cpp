@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -246,4 +246,4 @@ std::string editJob(const std::string& text, const std::string& name, const std:
   return result;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,6 +1,6 @@
 #include "flute_grinder/job/job_fields.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -23,4 +23,4 @@ std::string fieldName(const std::string& path, UnitSystem units) {
   return name;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -131,7 +131,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
       if (field.path == std::string_view(kDepth)) of(job) = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
       return file.know(field.file_key);
     }
-    std::string allowed = flute_grinder::text(field.low(), field.high(), UnitSystem::kShop);
+    std::string allowed = grinder::text(field.low(), field.high(), UnitSystem::kShop);
     if (!file.has(field.file_key)) allowed += remedy(field.path);
     file.take(field.file_key, allowed, value);
     of(job) = value * shopScale(field.unit);
@@ -158,8 +158,8 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   file.refuseTheRest();
   file.throwErrors();
 
-  for (const core::Reason& reason : validate(job)) {
-    file.fail(file.line(fieldName(reason.field, UnitSystem::kShop)), core::text(reason, UnitSystem::kShop));
+  for (const Reason& reason : validate(job)) {
+    file.fail(file.line(fieldName(reason.field, UnitSystem::kShop)), grinder::text(reason, UnitSystem::kShop));
   }
   file.throwErrors();
   return job;
@@ -176,4 +176,4 @@ std::string wheelFileOf(const std::string& path) {
   return wheelPath(path, name);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

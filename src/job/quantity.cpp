@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::string axisName(int axis, UnitSystem units) {
   return units == UnitSystem::kSi ? joint : std::string("axis ") + "XYZA"[axis];
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

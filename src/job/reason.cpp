@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder::core {
+namespace grinder {
 
 namespace {
 
@@ -36,38 +36,36 @@ class Writer {
                ", or set interpolation.even_step to exact";
       case ReasonKind::kRake:
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
-               " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
                " of it; change " + name("process.setup_swivel") + " or " + name("process.setup_height");
       case ReasonKind::kChordalRake:
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " has a chordal rake of " +
-               value() + " at X = " + x() + "; allowed: within " +
-               flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of it; change " +
-               name("process.wheel_diameter") + " or " + name("process.wheel_width");
+               value() + " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " of it; change " + name("process.wheel_diameter") + " or " + name("process.wheel_width");
       case ReasonKind::kSpiral:
         return name("cutter.spiral_angle") + " = " + limit() + ": the edge of tooth " + tooth() + " is ground with " +
-               value() + " at X = " + x() + "; allowed: within " +
-               flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of it; change " + name("process.setup_lead");
+               value() + " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
+               " of it; change " + name("process.setup_lead");
       case ReasonKind::kCoreSize:
         return name("cutter.core_diameter") + ", " + name("cutter.core_diameter_end") + ": the core is " + value() +
-               " at X = " + x() + "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
-               " of " + limit() + "; change " + name("process.depth") + " or " + name("process.depth_end");
+               " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " of " +
+               limit() + "; change " + name("process.depth") + " or " + name("process.depth_end");
       case ReasonKind::kLand:
         return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
                ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");
       case ReasonKind::kCore: return name("process.depth") + ": the core is cut through at X = " + x() + "; lower it";
       case ReasonKind::kIncomplete:
         return name("process.overtravel_end") + ", " + name("process.overtravel_shank") + ": the flutes are complete " +
-               (r_.value > r_.low
-                    ? "from X = " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
-                    : std::string("nowhere")) +
+               (r_.value > r_.low ? "from X = " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
+                                  : std::string("nowhere")) +
                "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
       case ReasonKind::kCollision: return collision();
       case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
       case ReasonKind::kUnevenRake:
         return name("process.z_law") + " = constant_rake: tooth " + tooth() +
-               (r_.low <= r_.value ? " is ground with " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) +
-                                         " to " + value() + " at best, asked " + limit() + "; allowed: within " +
-                                         flute_grinder::text(Quantity{kEvenRake, r_.unit}, units_) + " of it"
+               (r_.low <= r_.value ? " is ground with " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " +
+                                         value() + " at best, asked " + limit() + "; allowed: within " +
+                                         grinder::text(Quantity{kEvenRake, r_.unit}, units_) + " of it"
                                    : std::string(" has no rake face over its whole flute")) +
                "; change " + name("process.setup_swivel") + " or " + name("process.setup_height") + ", or raise " +
                name("process.overtravel_end") + " or " + name("process.overtravel_shank");
@@ -126,15 +124,15 @@ class Writer {
     return r_.kind == ReasonKind::kTolerance || (ReasonKind::kPosition <= r_.kind && r_.kind <= ReasonKind::kNotFinite);
   }
 
-  std::string digits(double si) const { return flute_grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
-  std::string value() const { return flute_grinder::text(Quantity{r_.value, r_.unit}, units_); }
-  std::string limit() const { return flute_grinder::text(Quantity{r_.limit, r_.unit}, units_); }
-  std::string low() const { return flute_grinder::text(Quantity{r_.low, r_.unit}, units_); }
-  std::string x() const { return flute_grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
+  std::string digits(double si) const { return grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
+  std::string value() const { return grinder::text(Quantity{r_.value, r_.unit}, units_); }
+  std::string limit() const { return grinder::text(Quantity{r_.limit, r_.unit}, units_); }
+  std::string low() const { return grinder::text(Quantity{r_.low, r_.unit}, units_); }
+  std::string x() const { return grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
   std::string tooth() const { return std::to_string(r_.tooth + 1); }
-  std::string number() const { return flute_grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
+  std::string number() const { return grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
   std::string range() const {
-    return flute_grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
+    return grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
   }
   std::string axis() const { return axisName(r_.axis, units_); }
   std::string name(const std::string& path) const { return fieldName(path, units_); }
@@ -144,7 +142,7 @@ class Writer {
   std::string excess() const {
     const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
     const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
-    return value() + " is " + flute_grinder::text(beyond, units_) + " beyond its limit " + limit();
+    return value() + " is " + grinder::text(beyond, units_) + " beyond its limit " + limit();
   }
 
   std::string collision() const {
@@ -168,13 +166,13 @@ class Writer {
 
   /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.
   std::string swivel() const {
-    const std::string target = flute_grinder::text(Quantity{r_.limit, r_.unit}, UnitSystem::kShop, kFieldDigits);
+    const std::string target = grinder::text(Quantity{r_.limit, r_.unit}, UnitSystem::kShop, kFieldDigits);
     const std::string allowed =
-        "; allowed: within " + flute_grinder::text(Quantity{r_.low, r_.unit}, units_) + " of that; set it to " + target;
+        "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " of that; set it to " + target;
     if (r_.detail == "measured") return "the swivel stands at " + digits(r_.value) + allowed;
     const std::string confirm =
         " and confirm it: grind confirm-swivel " +
-        flute_grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, UnitSystem::kShop, kFieldDigits);
+        grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, UnitSystem::kShop, kFieldDigits);
     if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + target + confirm;
     return "the swivel is confirmed at " + digits(r_.value) + allowed + confirm;
   }
@@ -204,4 +202,4 @@ std::string causeText(const std::string& cause, UnitSystem units) {
   return cause;
 }
 
-}  // namespace flute_grinder::core
+}  // namespace grinder

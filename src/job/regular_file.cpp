@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace flute_grinder {
+namespace grinder {
 
 void requireRegularFile(const std::string& path) {
   std::error_code error;
@@ -19,4 +19,4 @@ void requireRegularFile(const std::string& path) {
   throw JobFileError(path + ": cannot be read: " + why);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -116,7 +116,7 @@ void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
 }
 
 /// The key of a wrong number of the wheel, new or as measured.
-std::string keyOf(const core::Reason& reason, bool measured) {
+std::string keyOf(const Reason& reason, bool measured) {
   if (reason.field == "process.wheel_width" && measured) return kWidth;
   if (reason.field == "process.wheel_points") return "points_mm";
   std::string key;
@@ -128,9 +128,9 @@ std::string keyOf(const core::Reason& reason, bool measured) {
 
 /// @param measured whether the numbers are those of the wheel as measured.
 void check(FlatFile& file, const GrindJob& job, bool measured) {
-  for (core::Reason reason : validateWheel(job)) {
+  for (Reason reason : validateWheel(job)) {
     reason.field = keyOf(reason, measured && file.mentions(kWidth));
-    file.fail(file.line(reason.field), core::text(reason, UnitSystem::kShop));
+    file.fail(file.line(reason.field), text(reason, UnitSystem::kShop));
   }
   file.throwErrors();
 }
@@ -153,7 +153,7 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
     double value = 0;
     if (key.empty()) return;
     if (field.optional && !file.mentionsPart(key)) return file.know(key);
-    file.take(key, flute_grinder::text(field.low(), field.high(), UnitSystem::kShop), value);
+    file.take(key, grinder::text(field.low(), field.high(), UnitSystem::kShop), value);
     of(job) = value * shopScale(field.unit);
   });
   takeWheelShape(file, "", job);
@@ -184,4 +184,4 @@ void mountWheel(const WheelFile& wheel, GrindJob& job) {
   job.wheel_points = wheel.points;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

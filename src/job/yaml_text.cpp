@@ -11,7 +11,7 @@
 #include <sstream>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -87,4 +87,4 @@ YAML::Node parseYaml(const std::string& text, const std::string& name) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,13 +1,13 @@
 #include "flute_grinder/machine/loop_fault.h"
 
-namespace flute_grinder {
+namespace grinder {
 
-std::string LoopFault::text() const { return core::text(reasonOf(*this), UnitSystem::kSi); }
+std::string LoopFault::text() const { return grinder::text(reasonOf(*this), UnitSystem::kSi); }
 
-core::Reason reasonOf(const LoopFault& fault) {
+Reason reasonOf(const LoopFault& fault) {
   if (fault.kind == FaultKind::kLimit) return reasonOf(fault.violation);
   const FaultRow& row = rowOf(fault.kind);
-  core::Reason reason;
+  Reason reason;
   reason.kind = row.reason;
   reason.axis = fault.axis;
   reason.detail = toString(fault.interlock);
@@ -18,4 +18,4 @@ core::Reason reasonOf(const LoopFault& fault) {
   return reason;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 Eigen::Vector3d wheelCentre(const MachineGeometry& machine, const GrindProcess& process, double flange_to_wheel) {
   const Eigen::Vector3d spindle(-std::sin(process.setup_swivel), 0, std::cos(process.setup_swivel));
@@ -20,4 +20,4 @@ Eigen::Vector3d workZero(const MachineGeometry& machine, const GrindJob& job, co
   return wanted - wheelCentre(machine, p, mounting.flange_to_wheel);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,6 +1,6 @@
 #include "flute_grinder/machine/machine_state.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::string allowedIn(MachineState state) {
   return text;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

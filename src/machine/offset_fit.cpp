@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace flute_grinder::core {
+namespace grinder {
 
 namespace {
 
@@ -117,4 +117,4 @@ std::string basisText(int axis, const WorkOffset& offset) {
   return done + (all.empty() ? "" : " for " + all) + ofJob(basis);
 }
 
-}  // namespace flute_grinder::core
+}  // namespace grinder

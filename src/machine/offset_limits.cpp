@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -35,11 +35,11 @@ std::string travelRefusal(const OffsetLimits& limits, int axis, double value) {
          ", the travel of the axis";
 }
 
-std::string changeRefusal(const OffsetLimits& limits, int axis, const core::WorkOffset& from, double to) {
+std::string changeRefusal(const OffsetLimits& limits, int axis, const WorkOffset& from, double to) {
   const double change = std::abs(to - from.value);
   if (!from.wasSet() || std::isnan(from.value) || change <= limits.change[axis]) return "";
   return offsetOf(axis) + " would change by " + shown(axis, change) + ", from " + shown(axis, from.value) + " to " +
          shown(axis, to) + "; allowed without a confirmation: " + shown(axis, limits.change[axis]);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,10 +1,10 @@
 #include "flute_grinder/machine/swivel.h"
 
-namespace flute_grinder {
+namespace grinder {
 
-core::Reason reasonOf(const Swivel& swivel, double asked) {
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kSwivel;
+Reason reasonOf(const Swivel& swivel, double asked) {
+  Reason reason;
+  reason.kind = ReasonKind::kSwivel;
   reason.field = "process.setup_swivel";
   if (!std::isnan(swivel.angle)) reason.detail = swivel.measured ? "measured" : "confirmed";
   reason.unit = Unit::kRadian;
@@ -14,4 +14,4 @@ core::Reason reasonOf(const Swivel& swivel, double asked) {
   return reason;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,9 +3,10 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/plan/job_digest.h"
 
-namespace flute_grinder {
+namespace grinder {
 
-std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal) {
+std::string continueFrom(const flute_grinder::JobProgress& progress, const GrindJob& job,
+                         flute_grinder::GrindGoal& goal) {
   if (progress.job_digest.empty()) return "there is no job to continue: the grinder's journal is empty";
   if (progress.job_digest != jobDigest(job)) {
     return "the grinder's last job was another one, or its file has changed since; run it from the beginning";
@@ -16,8 +17,8 @@ std::string continueFrom(const JobProgress& progress, const GrindJob& job, Grind
   return "";
 }
 
-std::string endText(const JobProgress& progress) {
+std::string endText(const flute_grinder::JobProgress& progress) {
   return progress.end.empty() ? "in the middle, with the grinder's program" : progress.end;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

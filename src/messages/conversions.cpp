@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -59,7 +59,7 @@ To convertedStatistics(const From& from) {
 
 }  // namespace
 
-GrindJob jobFromGoal(const GrindGoal& goal) {
+GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal) {
   GrindJob job;
   copyFields(goal, job);
   job.tooth_angles = goal.cutter.tooth_angles;
@@ -73,8 +73,8 @@ GrindJob jobFromGoal(const GrindGoal& goal) {
   return job;
 }
 
-GrindGoal goalFromJob(const GrindJob& job) {
-  GrindGoal goal;
+flute_grinder::GrindGoal goalFromJob(const GrindJob& job) {
+  flute_grinder::GrindGoal goal;
   copyFields(job, goal);
   goal.cutter.tooth_angles = job.tooth_angles;
   goal.cutter.spiral_angles = job.spiral_angles;
@@ -84,29 +84,29 @@ GrindGoal goalFromJob(const GrindJob& job) {
   return goal;
 }
 
-Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles) {
+flute_grinder::Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles) {
   GrindJob job;
   job.cutter = cutter;
   job.tooth_angles = tooth_angles;
   return goalFromJob(job).cutter;
 }
 
-CutterGeometry fromMessage(const Cutter& message) {
-  GrindGoal goal;
+CutterGeometry fromMessage(const flute_grinder::Cutter& message) {
+  flute_grinder::GrindGoal goal;
   goal.cutter = message;
   return jobFromGoal(goal).cutter;
 }
 
-PathStatistics toMessage(const core::PathStatistics& statistics) {
-  return convertedStatistics<core::PathStatistics, PathStatistics>(statistics);
+flute_grinder::PathStatistics toMessage(const PathStatistics& statistics) {
+  return convertedStatistics<PathStatistics, flute_grinder::PathStatistics>(statistics);
 }
 
-core::PathStatistics fromMessage(const PathStatistics& message) {
-  return convertedStatistics<PathStatistics, core::PathStatistics>(message);
+PathStatistics fromMessage(const flute_grinder::PathStatistics& message) {
+  return convertedStatistics<flute_grinder::PathStatistics, PathStatistics>(message);
 }
 
-WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual, double cycle_period) {
-  WrittenSetpoint m;
+flute_grinder::WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual, double cycle_period) {
+  flute_grinder::WrittenSetpoint m;
   m.cycle = p.cycle;
   copy(p.position, m.position);
   copy(p.velocity, m.velocity);
@@ -121,7 +121,7 @@ WrittenSetpoint toMessage(const Setpoint& p, const Axes& actual, double cycle_pe
   return m;
 }
 
-Setpoint fromMessage(const WrittenSetpoint& m) {
+Setpoint fromMessage(const flute_grinder::WrittenSetpoint& m) {
   Setpoint p;
   p.cycle = m.cycle;
   p.position = axesOf(m.position);
@@ -135,4 +135,4 @@ Setpoint fromMessage(const WrittenSetpoint& m) {
   return p;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -78,12 +78,13 @@ static_assert(has<GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(mess
 static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<ProbingCycle>(message_text::kProbe));
 // Its other constants are units, which reasons.cpp compares.
-static_assert(hasAllOf<core::ReasonKind>(message_text::kReason) &&
-              countConstants(message_text::kReason) == core::kReasonKindCount + kUnitCount);
+static_assert(hasAllOf<ReasonKind>(message_text::kReason) &&
+              countConstants(message_text::kReason) == kReasonKindCount + kUnitCount);
 static_assert(has<MachineState>(message_text::kGrinderState));
 static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
-static_assert(PathStatistics::_move_duration_type::static_size == kMoveKindCount, "PathStatistics.move_duration");
+static_assert(flute_grinder::PathStatistics::_move_duration_type::static_size == kMoveKindCount,
+              "PathStatistics.move_duration");
 
 }  // namespace
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -72,9 +72,9 @@ Json toJson(const Axes& value, const std::string& per_time) {
           {"a_deg" + per_time, value[kA] / kDegree}};
 }
 
-Json toJson(const std::vector<core::FeedLimit>& limits) {
+Json toJson(const std::vector<FeedLimit>& limits) {
   Json json = Json::array();
-  for (const core::FeedLimit& limit : limits) {
+  for (const FeedLimit& limit : limits) {
     json.push_back(
         {{"cause", limit.cause}, {"from_x_mm", limit.from_x / kMillimetre}, {"to_x_mm", limit.to_x / kMillimetre}});
   }
@@ -97,4 +97,4 @@ Json toJson(const GrindJob& job) {
 
 std::string text(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

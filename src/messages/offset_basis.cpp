@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -31,15 +31,15 @@ To convertedBasis(const From& from) {
 
 }  // namespace
 
-GrindGoal goalFromFile(const std::string& path) {
-  GrindGoal goal = goalFromJob(readJobFile(path));
+flute_grinder::GrindGoal goalFromFile(const std::string& path) {
+  flute_grinder::GrindGoal goal = goalFromJob(readJobFile(path));
   goal.job_name = nameOf(path);
   goal.wheel_name = nameOf(wheelFileOf(path));
   return goal;
 }
 
-core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method) {
-  core::OffsetBasis basis;
+OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
+  OffsetBasis basis;
   basis.method = method;
   basis.job_name = goal.job_name;
   basis.wheel_name = goal.wheel_name;
@@ -52,7 +52,7 @@ core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method) {
   return basis;
 }
 
-Json toJson(const core::OffsetBasis& basis) {
+Json toJson(const OffsetBasis& basis) {
   const auto figure = [&](double si, double unit) { return basis.hasJob() ? Json(si / unit) : Json(nullptr); };
   return {{"method", toString(basis.method)},
           {"job", basis.job_name},
@@ -65,50 +65,50 @@ Json toJson(const core::OffsetBasis& basis) {
           {"height_mm", figure(basis.height, units::kMillimetre)}};
 }
 
-OffsetBasis toMessage(const core::OffsetBasis& basis) {
-  auto message = convertedBasis<core::OffsetBasis, OffsetBasis>(basis);
+flute_grinder::OffsetBasis toMessage(const OffsetBasis& basis) {
+  auto message = convertedBasis<OffsetBasis, flute_grinder::OffsetBasis>(basis);
   message.method = static_cast<std::uint8_t>(basis.method);
   return message;
 }
 
-core::OffsetBasis fromMessage(const OffsetBasis& message) {
-  auto basis = convertedBasis<OffsetBasis, core::OffsetBasis>(message);
+OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message) {
+  auto basis = convertedBasis<flute_grinder::OffsetBasis, OffsetBasis>(message);
   if (message.method < countOf<OffsetMethod>()) basis.method = static_cast<OffsetMethod>(message.method);
   return basis;
 }
 
-core::WorkOffsets fromMessage(const WorkOffsets& message) {
-  core::WorkOffsets offsets;
+WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message) {
+  WorkOffsets offsets;
   for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
     offsets.axes[i] = {message.values[i], message.set_by[i], message.set_at[i].toSec(), fromMessage(message.basis[i])};
   }
   return offsets;
 }
 
-std::vector<core::OffsetMismatch> mismatches(const core::WorkOffsets& offsets, const GrindGoal& goal) {
-  return core::mismatches(offsets, basisOf(goal, OffsetMethod::kUnknown));
+std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal) {
+  return mismatches(offsets, basisOf(goal, OffsetMethod::kUnknown));
 }
 
-std::string text(const std::vector<core::OffsetMismatch>& mismatches) {
+std::string text(const std::vector<OffsetMismatch>& mismatches) {
   if (mismatches.empty()) return "";
   std::string all;
-  for (const core::OffsetMismatch& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch.reason;
+  for (const OffsetMismatch& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch.reason;
   const std::string axes = computable(mismatches);
   if (!axes.empty()) all += "; 'grind offsets --fit JOB' computes " + axes;
   return all;
 }
 
-std::vector<std::string> offsetWarnings(const core::WorkOffsets& offsets, const GrindGoal& goal) {
+std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal) {
   std::string warning = text(mismatches(offsets, goal));
   return warning.empty() ? std::vector<std::string>{} : std::vector<std::string>{std::move(warning)};
 }
 
-std::string computable(const std::vector<core::OffsetMismatch>& mismatches) {
+std::string computable(const std::vector<OffsetMismatch>& mismatches) {
   std::string axes;
-  for (const core::OffsetMismatch& mismatch : mismatches) {
+  for (const OffsetMismatch& mismatch : mismatches) {
     if (mismatch.change) axes += (axes.empty() ? "" : " and ") + std::string(1, "XYZA"[mismatch.axis]);
   }
   return axes;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,24 +2,26 @@
 
 #include "flute_grinder/job/axes.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 /// Compares a constant of the message with core's.
 constexpr bool is(std::uint8_t constant, Unit unit) { return constant == static_cast<std::uint8_t>(unit); }
 
-static_assert(is(Reason::UNIT_NONE, Unit::kNone) && is(Reason::METRE, Unit::kMetre));
-static_assert(is(Reason::METRE_PER_SECOND, Unit::kMetrePerSecond));
-static_assert(is(Reason::METRE_PER_SECOND2, Unit::kMetrePerSecond2));
-static_assert(is(Reason::METRE_PER_SECOND3, Unit::kMetrePerSecond3) && is(Reason::RADIAN, Unit::kRadian));
-static_assert(is(Reason::RADIAN_PER_SECOND, Unit::kRadianPerSecond));
-static_assert(is(Reason::RADIAN_PER_SECOND2, Unit::kRadianPerSecond2));
-static_assert(is(Reason::RADIAN_PER_SECOND3, Unit::kRadianPerSecond3) && is(Reason::SECOND, Unit::kSecond));
-static_assert(is(Reason::FEED_METRE_PER_SECOND, Unit::kFeedMetrePerSecond));
-static_assert(is(Reason::DEVIATION_METRE, Unit::kDeviationMetre));
-static_assert(is(Reason::ROTARY_METRE_PER_RADIAN, Unit::kRotaryMetrePerRadian));
-static_assert(Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
+static_assert(is(flute_grinder::Reason::UNIT_NONE, Unit::kNone) && is(flute_grinder::Reason::METRE, Unit::kMetre));
+static_assert(is(flute_grinder::Reason::METRE_PER_SECOND, Unit::kMetrePerSecond));
+static_assert(is(flute_grinder::Reason::METRE_PER_SECOND2, Unit::kMetrePerSecond2));
+static_assert(is(flute_grinder::Reason::METRE_PER_SECOND3, Unit::kMetrePerSecond3) &&
+              is(flute_grinder::Reason::RADIAN, Unit::kRadian));
+static_assert(is(flute_grinder::Reason::RADIAN_PER_SECOND, Unit::kRadianPerSecond));
+static_assert(is(flute_grinder::Reason::RADIAN_PER_SECOND2, Unit::kRadianPerSecond2));
+static_assert(is(flute_grinder::Reason::RADIAN_PER_SECOND3, Unit::kRadianPerSecond3) &&
+              is(flute_grinder::Reason::SECOND, Unit::kSecond));
+static_assert(is(flute_grinder::Reason::FEED_METRE_PER_SECOND, Unit::kFeedMetrePerSecond));
+static_assert(is(flute_grinder::Reason::DEVIATION_METRE, Unit::kDeviationMetre));
+static_assert(is(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN, Unit::kRotaryMetrePerRadian));
+static_assert(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
 
 /// Copies the members that have the same name and type in both.
 template <typename From, typename To>
@@ -45,37 +47,37 @@ To converted(const From& from) {
 
 }  // namespace
 
-Reason toMessage(const core::Reason& reason) { return converted<core::Reason, Reason>(reason); }
+flute_grinder::Reason toMessage(const Reason& reason) { return converted<Reason, flute_grinder::Reason>(reason); }
 
-std::vector<Reason> toMessage(const std::vector<core::Reason>& reasons) {
-  std::vector<Reason> messages;
+std::vector<flute_grinder::Reason> toMessage(const std::vector<Reason>& reasons) {
+  std::vector<flute_grinder::Reason> messages;
   messages.reserve(reasons.size());
-  for (const core::Reason& reason : reasons) messages.push_back(toMessage(reason));
+  for (const Reason& reason : reasons) messages.push_back(toMessage(reason));
   return messages;
 }
 
-core::Reason fromMessage(const Reason& m) {
-  const bool known =
-      m.kind < core::kReasonKindCount && m.axis < kAxisCount && m.unit < kUnitCount && m.move < kMoveKindCount;
-  return known ? converted<Reason, core::Reason>(m) : core::Reason();
+Reason fromMessage(const flute_grinder::Reason& m) {
+  const bool known = m.kind < kReasonKindCount && m.axis < kAxisCount && m.unit < kUnitCount && m.move < kMoveKindCount;
+  return known ? converted<flute_grinder::Reason, Reason>(m) : Reason();
 }
 
-std::string faultText(const GrinderState& state) {
+std::string faultText(const flute_grinder::GrinderState& state) {
   const std::string from_data = text(fromMessage(state.fault_reason), UnitSystem::kShop);
   return from_data.empty() ? state.fault : from_data;
 }
 
-std::string resultText(const GrindResult& result) {
-  std::vector<core::Reason> reasons;
-  for (const Reason& reason : result.reasons) reasons.push_back(fromMessage(reason));
+std::string resultText(const flute_grinder::GrindResult& result) {
+  std::vector<Reason> reasons;
+  for (const flute_grinder::Reason& reason : result.reasons) reasons.push_back(fromMessage(reason));
   return reasons.empty() ? result.error_string : text(reasons, UnitSystem::kShop);
 }
 
-std::vector<std::string> planTexts(const Plan::Response& plan) {
+std::vector<std::string> planTexts(const flute_grinder::Plan::Response& plan) {
   if (plan.violations.empty()) return plan.reasons;
   std::vector<std::string> texts;
-  for (const Reason& reason : plan.violations) texts.push_back(text(fromMessage(reason), UnitSystem::kShop));
+  for (const flute_grinder::Reason& reason : plan.violations)
+    texts.push_back(text(fromMessage(reason), UnitSystem::kShop));
   return texts;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 AxisMove::AxisMove(const Machine& machine) : period_(machine.period) {
   const AxisLimits& l = machine.limits;
@@ -60,4 +60,4 @@ bool AxisMove::beginPair() noexcept {
   return !law_.resting();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

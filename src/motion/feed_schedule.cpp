@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -220,4 +220,4 @@ double FeedSchedule::x(double s) const noexcept {
 
 double FeedSchedule::rate(double s) const noexcept { return slope(q_from_ + q_direction_ * s); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

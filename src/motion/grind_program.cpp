@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -52,40 +52,40 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
   const double slowest = schedule.rate(0) < schedule.rate(schedule.length()) ? 0 : schedule.length();
   const double feed = schedule.feedSpeed() * schedule.rate(slowest) * cutter.edgePerTravel();
   if (feed >= kMinFeed * (1 - 1e-9)) return;
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kFeedTooLow;
+  Reason reason;
+  reason.kind = ReasonKind::kFeedTooLow;
   reason.detail = schedule.feedLimits().empty() ? "it" : schedule.feedLimits().back().cause;
   reason.unit = Unit::kFeedMetrePerSecond;
   reason.value = feed;
   reason.limit = kMinFeed;
   reason.x = schedule.x(slowest);
-  throw core::ReasonError(reason);
+  throw ReasonError(reason);
 }
 
 void requireSwivel(const Machine& machine, const GrindJob& job) {
   const double swivel = job.process.setup_swivel;
   if (swivel >= machine.swivel.from && swivel <= machine.swivel.to) return;
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kOutOfRange;
+  Reason reason;
+  reason.kind = ReasonKind::kOutOfRange;
   reason.field = "process.setup_swivel";
   reason.detail = "to which the machine swivels";
   reason.unit = Unit::kRadian;
   reason.value = swivel;
   reason.low = machine.swivel.from;
   reason.limit = machine.swivel.to;
-  throw core::ReasonError(reason);
+  throw ReasonError(reason);
 }
 
 /// @param park position [m], A [rad]. @param clearance_y [m]; both in work coordinates.
 void requireParkClear(const Machine& machine, const Axes& park, double clearance_y) {
   if (park[kY] >= clearance_y) return;
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kParkInWork;
+  Reason reason;
+  reason.kind = ReasonKind::kParkInWork;
   reason.axis = kY;
   reason.unit = Unit::kMetre;
   reason.value = machine.park[kY];
   reason.limit = clearance_y + machine.work_offset[kY];
-  throw core::ReasonError(reason);
+  throw ReasonError(reason);
 }
 
 std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
@@ -183,4 +183,4 @@ void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, 
   go(MoveKind::kRetract);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

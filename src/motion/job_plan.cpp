@@ -9,19 +9,19 @@
 #include <stdexcept>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
-void refuse(JobPlan& plan, PlanFault fault, core::Reason reason) {
+void refuse(JobPlan& plan, PlanFault fault, Reason reason) {
   plan.fault = fault;
   plan.reasons.push_back(std::move(reason));
 }
 
 /// @param min lower bound of the duration [s]; 0 if it is unknown.
 void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double min) {
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kTooLong;
+  Reason reason;
+  reason.kind = ReasonKind::kTooLong;
   reason.unit = Unit::kSecond;
   reason.value = min;
   reason.limit = machine.max_job_duration;
@@ -67,8 +67,8 @@ class Supervisor {
   bool isWanted(const Setpoint& p) {
     const double done = (p.move_index + p.move_fraction) / static_cast<double>(plan_.program->moves().size());
     if (!watch_ || watch_(done)) return true;
-    core::Reason reason;
-    reason.kind = core::ReasonKind::kGivenUp;
+    Reason reason;
+    reason.kind = ReasonKind::kGivenUp;
     refuse(plan_, PlanFault::kGivenUp, std::move(reason));
     return false;
   }
@@ -216,15 +216,15 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
   }
   try {
     plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     refuse(plan, PlanFault::kInvalidJob, error.reason());
     return plan;
   } catch (const std::invalid_argument& error) {
-    refuse(plan, PlanFault::kInvalidJob, core::otherReason(error.what()));
+    refuse(plan, PlanFault::kInvalidJob, otherReason(error.what()));
     return plan;
   }
   for (const Helix& helix : plan.program->helices()) {
-    const std::vector<core::FeedLimit>& limits = helix.schedule.feedLimits();
+    const std::vector<FeedLimit>& limits = helix.schedule.feedLimits();
     plan.statistics.feed_limits.insert(plan.statistics.feed_limits.end(), limits.begin(), limits.end());
   }
   if (visit) {
@@ -235,4 +235,4 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
   return plan;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

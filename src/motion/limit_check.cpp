@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -118,14 +118,13 @@ void LimitCheck::report(const Setpoint& setpoint, int axis, LimitedQuantity quan
                                      setpoint.move, setpoint.tooth, setpoint.pass};
 }
 
-core::Reason reasonOf(const LimitViolation& violation) {
-  using core::ReasonKind;
+Reason reasonOf(const LimitViolation& violation) {
   static constexpr std::array<ReasonKind, 5> kinds{ReasonKind::kPosition, ReasonKind::kVelocity,
                                                    ReasonKind::kAcceleration, ReasonKind::kJerk,
                                                    ReasonKind::kNotFinite};
   const auto quantity = static_cast<std::size_t>(violation.quantity);
   const bool position = violation.quantity == LimitedQuantity::kNotFinite;
-  core::Reason reason;
+  Reason reason;
   reason.kind = kinds[quantity];
   reason.axis = violation.axis;
   reason.unit = unitOf(violation.axis, position ? 0 : static_cast<int>(quantity));
@@ -140,4 +139,4 @@ core::Reason reasonOf(const LimitViolation& violation) {
   return reason;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -35,7 +35,7 @@ PlanChecks::PlanChecks(JobPlan& plan)
       deviation_factor_(overrideFactor(program_)),
       check_(program_.machine().limits, period_) {
   plan.move_ends.assign(program_.moves().size(), 0);
-  deviation_.kind = core::ReasonKind::kTolerance;
+  deviation_.kind = ReasonKind::kTolerance;
   deviation_.unit = Unit::kDeviationMetre;
   deviation_.limit = program_.job().interpolation.tolerance;
   deviation_.has_place = true;
@@ -136,4 +136,4 @@ void PlanChecks::finish() {
   if (deviation_.count > 0) plan_.reasons.push_back(deviation_);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

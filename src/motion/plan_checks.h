@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Checks the setpoints of a plan, and writes what they come to into the plan: its statistics, the ends of its moves,
 /// its fault and its reasons.
@@ -43,7 +43,7 @@ class PlanChecks {
 
   JobPlan& plan_;
   const GrindProgram& program_;
-  core::PathStatistics& statistics_;
+  PathStatistics& statistics_;
   const double period_;
   const double deviation_factor_;
   LimitCheck check_;
@@ -52,7 +52,7 @@ class PlanChecks {
   Axes max_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
   double end_x_ = 0;                ///< of the last pair
   std::vector<Excess> excesses_;
-  core::Reason deviation_;  ///< the largest above the tolerance, if there is one
+  Reason deviation_;  ///< the largest above the tolerance, if there is one
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

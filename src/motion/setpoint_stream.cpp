@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -306,4 +306,4 @@ void SetpointStream::strokePoint(const CurvePoint& point, StepKind step) noexcep
   current_.step = step;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

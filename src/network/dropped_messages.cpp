@@ -4,7 +4,7 @@
 #include <mutex>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -32,4 +32,4 @@ void reportDropped(const std::string& topic, std::uint32_t length, std::vector<s
   if (found != handlers().of_topics.end() && found->second) found->second(length, std::move(head));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

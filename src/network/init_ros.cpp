@@ -2,7 +2,7 @@
 
 #include <ros/init.h>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options) {
   // With a log file named, none is looked for; it is never opened. First, so that one on the command line counts.
@@ -16,4 +16,4 @@ std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::
   return arguments;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -19,7 +19,7 @@ namespace {
 bool loopbackOnly() {
   const char* host = std::getenv("ROS_HOSTNAME");
   if (!host) host = std::getenv("ROS_IP");
-  return host && flute_grinder::isLoopbackName(host);
+  return host && grinder::isLoopbackName(host);
 }
 
 /// An address with loopback instead of all interfaces.

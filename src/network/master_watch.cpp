@@ -12,7 +12,7 @@
 #include <chrono>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -164,4 +164,4 @@ std::optional<XmlRpcValue> MasterWatch::callSelf(const char* method, const std::
                     stopping_);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

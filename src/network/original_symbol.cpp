@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace flute_grinder {
+namespace grinder {
 
 void* originalSymbol(const char* symbol) {
   void* definition = dlsym(RTLD_NEXT, symbol);
@@ -16,4 +16,4 @@ void* originalSymbol(const char* symbol) {
   return definition;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::string ownAddressRefusal() {
   return std::string(variable) + " = " + name + " is loopback in words that ROS does not know" + allowed;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,8 +8,8 @@
 /// descriptor is returned all the same, since roscpp stops listening for a while after an error.
 extern "C" int accept(int fd, sockaddr* address, socklen_t* length) {
   using Accept = int (*)(int, sockaddr*, socklen_t*);
-  static const auto next = reinterpret_cast<Accept>(flute_grinder::originalSymbol("accept"));
+  static const auto next = reinterpret_cast<Accept>(grinder::originalSymbol("accept"));
   const int connection = next(fd, address, length);
-  if (connection >= flute_grinder::kMaxPeerDescriptor) shutdown(connection, SHUT_RDWR);
+  if (connection >= grinder::kMaxPeerDescriptor) shutdown(connection, SHUT_RDWR);
   return connection;
 }

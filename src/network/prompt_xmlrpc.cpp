@@ -14,7 +14,7 @@ namespace XmlRpc {
 /// Serves requests for a time. @param duration [s]
 void XmlRpcServer::work(double duration) {
   using Work = void (*)(XmlRpcServer*, double);
-  static const auto next = reinterpret_cast<Work>(flute_grinder::originalSymbol("_ZN6XmlRpc12XmlRpcServer4workEd"));
+  static const auto next = reinterpret_cast<Work>(grinder::originalSymbol("_ZN6XmlRpc12XmlRpcServer4workEd"));
   constexpr double longest = 0.01;
   next(this, std::min(duration, longest));
 }

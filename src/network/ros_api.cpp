@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -41,4 +41,4 @@ std::optional<XmlRpcValue> callRosApi(const std::string& host, unsigned port, co
   return std::nullopt;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 ServiceCall::ServiceCall(std::string name, std::string md5sum, ros::SerializedMessage request,
                          ros::WallDuration timeout, Done done)
@@ -51,4 +51,4 @@ void ServiceCall::run() {
   finished_ = true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

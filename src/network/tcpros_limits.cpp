@@ -20,9 +20,9 @@
 #include <string>
 #include <vector>
 
-using flute_grinder::kDroppedHead;
-using flute_grinder::kMaxPeerMessage;
-using flute_grinder::originalSymbol;
+using grinder::kDroppedHead;
+using grinder::kMaxPeerMessage;
+using grinder::originalSymbol;
 
 namespace {
 
@@ -65,7 +65,7 @@ void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
   connection->read(kDroppedHead, [=](const ConnectionPtr& from, const boost::shared_array<std::uint8_t>& head,
                                      std::uint32_t read, bool good) {
     if (!good) return;
-    flute_grinder::reportDropped(topic, length, std::vector<std::uint8_t>(head.get(), head.get() + read));
+    grinder::reportDropped(topic, length, std::vector<std::uint8_t>(head.get(), head.get() + read));
     skip(from, length - read, read_next);
   });
 }

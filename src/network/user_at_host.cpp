@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string userAtHost() {
   const passwd* user = getpwuid(geteuid());
@@ -14,4 +14,4 @@ std::string userAtHost() {
   return std::string(user ? user->pw_name : std::to_string(geteuid())) + "@" + host.data();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -150,4 +150,4 @@ void AtomicFile::settle() const {
   });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// An atomic file that cannot be read or written; what() names it and the reason.
 class AtomicFileError : public std::runtime_error {
@@ -84,4 +84,4 @@ void requireAllowed(bool good, const std::string& key, const Value& value, const
   throw std::runtime_error(text.str());
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <csignal>
 #include <ctime>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -39,4 +39,4 @@ void stopAxesOnCrash(ControlLoop& loop) {
 
 void endCrashGuard() { guarded = nullptr; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/control/control_loop.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// If any thread but the control loop's crashes (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT), it waits until the loop has
 /// stopped the axes on the path, lifted the wheel and switched the power off, and 0.2 s more for the telemetry to
@@ -14,4 +14,4 @@ void stopAxesOnCrash(ControlLoop& loop);
 /// From now on a crash ends the process at once; to be called once the loop has stopped.
 void endCrashGuard();
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -272,4 +272,4 @@ void Diagnostics::reportJournal(Status& status) { reportKept(status, journal_err
 
 void Diagnostics::reportHistory(Status& status) { reportKept(status, history_error_, DiagnosticStatus::WARN); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

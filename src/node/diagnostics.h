@@ -11,7 +11,7 @@
 #include <functional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Thresholds of a quantity for a warning and for an error.
 struct DiagnosticLevels {
@@ -121,4 +121,4 @@ class Diagnostics {
   Buffer buffer_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -61,4 +61,4 @@ void DiskThread::post(std::function<void()> task) {
   work_->changed.notify_all();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <memory>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A thread for tasks that block on the disk, which it does one after the other. Thread safe; no call waits for a task.
 class DiskThread {
@@ -27,4 +27,4 @@ class DiskThread {
   std::thread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

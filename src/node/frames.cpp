@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -109,4 +109,4 @@ void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   moving_frames_.sendTransform(transformMessage(kWork, kContact, pose, stamp));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

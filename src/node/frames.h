@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Publishes to tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again
 /// with every change:
@@ -73,4 +73,4 @@ class Frames {
   ros::Time contact_stamp_;  ///< of the latest
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

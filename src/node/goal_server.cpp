@@ -11,7 +11,7 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -23,16 +23,16 @@ const ros::WallDuration kLoopTimeout(1);          ///< after which the control l
 /// How long the result waits for the last setpoints to be published and the journal to be written.
 const ros::WallDuration kEndTimeout(0.5);
 
-GrindResult result(int code, const std::string& text, const core::PathStatistics& statistics = {}) {
-  GrindResult r;
+flute_grinder::GrindResult result(int code, const std::string& text, const PathStatistics& statistics = {}) {
+  flute_grinder::GrindResult r;
   r.error_code = code;
   r.error_string = text;
   r.statistics = toMessage(statistics);
   return r;
 }
 
-GrindResult result(int code, const std::vector<core::Reason>& reasons, const core::PathStatistics& statistics = {}) {
-  GrindResult r = result(code, text(reasons, UnitSystem::kSi), statistics);
+flute_grinder::GrindResult result(int code, const std::vector<Reason>& reasons, const PathStatistics& statistics = {}) {
+  flute_grinder::GrindResult r = result(code, text(reasons, UnitSystem::kSi), statistics);
   r.reasons = toMessage(reasons);
   return r;
 }
@@ -49,9 +49,9 @@ const char* outcomeOf(JobEnd end) {
 }
 
 /// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
-core::Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
-  core::Reason reason;
-  reason.kind = core::ReasonKind::kCanceled;
+Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
+  Reason reason;
+  reason.kind = ReasonKind::kCanceled;
   if (status.end == JobEnd::kFault) reason = reasonOf(status.fault);
   if (reason.has_place) return reason;
   reason.has_place = true;
@@ -75,12 +75,12 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
       thread_(kIdlePollPeriod, [this] { poll(); }) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
-  job_ = nh.advertise<GrindActionGoal>("job", 1, true);
+  job_ = nh.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
   server_ = std::make_unique<Server>(
       nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
       [this](const GoalHandle& handle) { onCancel(handle); }, false);
   server_->start();
-  rejected_ = nh.advertise<GrindActionResult>("grind/result", 50);
+  rejected_ = nh.advertise<flute_grinder::GrindActionResult>("grind/result", 50);
   dropped_topic_ = nh.resolveName("grind/goal");
   setOnDropped(dropped_topic_, [this](std::uint32_t length, std::vector<std::uint8_t> head) {
     rejectDropped(length, std::move(head));
@@ -94,7 +94,7 @@ GoalServer::~GoalServer() {
 }
 
 void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const {
-  GrindActionResult answer;
+  flute_grinder::GrindActionResult answer;
   ros::serialization::IStream stream(head.data(), static_cast<std::uint32_t>(head.size()));
   try {
     std_msgs::Header header;
@@ -107,38 +107,40 @@ void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> h
   answer.status.status = actionlib_msgs::GoalStatus::REJECTED;
   answer.status.text = "a goal of " + std::to_string(length) + " bytes; allowed: " + std::to_string(kMaxPeerMessage) +
                        "; give fewer teeth";
-  answer.result = result(GrindResult::INVALID_GOAL, answer.status.text);
+  answer.result = result(flute_grinder::GrindResult::INVALID_GOAL, answer.status.text);
   rejected_.publish(answer);
 }
 
 void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }
 
-void GoalServer::reject(GoalHandle& handle, const GrindResult& result) {
+void GoalServer::reject(GoalHandle& handle, const flute_grinder::GrindResult& result) {
   ROS_WARN_STREAM("goal rejected: " << result.error_string);
   handle.setRejected(result, result.error_string);
 }
 
 void GoalServer::onGoal(GoalHandle handle) {
   if (goal_) {
-    return reject(handle, GrindResult::BUSY, "a goal is running; allowed: wait for its end, or cancel it");
+    return reject(handle, flute_grinder::GrindResult::BUSY,
+                  "a goal is running; allowed: wait for its end, or cancel it");
   }
   const auto goal = handle.getGoal();
   if (!isPlainName(goal->job_name)) {
-    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
+    return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
   }
   if (!isPlainName(goal->wheel_name)) {
-    return reject(handle, GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
+    return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
   }
   const JobWithDigest job(jobFromGoal(*goal));
   if (!goal->dry_run) {
     const std::string text = refusal(*goal, job.digest());
-    if (!text.empty()) return reject(handle, GrindResult::NOT_READY, text);
-    if (const auto reason = swivelRefusal(job.job())) return reject(handle, result(GrindResult::NOT_READY, {*reason}));
+    if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
+    if (const auto reason = swivelRefusal(job.job()))
+      return reject(handle, result(flute_grinder::GrindResult::NOT_READY, {*reason}));
   }
   startPlanning(handle, job);
 }
 
-std::string GoalServer::refusal(const GrindGoal& goal, const std::string& digest) const {
+std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const {
   if (ros::SteadyTime::now() - last_cycle_ > kLoopTimeout) return "the control loop does not answer";
   const LoopStatus status = loop_.status();
   if (status.state != MachineState::kReady) {
@@ -149,15 +151,15 @@ std::string GoalServer::refusal(const GrindGoal& goal, const std::string& digest
 }
 
 /// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
-std::optional<core::Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
+std::optional<Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
   const Swivel swivel = loop_.status().swivel;
   // What is wrong with a job that cannot be ground at any swivel, the planner reports.
   if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
   return reasonOf(swivel, job.process.setup_swivel);
 }
 
-std::string GoalServer::offsetRefusal(const GrindGoal& goal, const std::string& digest,
-                                      const core::WorkOffsets& offsets) const {
+std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
+                                      const WorkOffsets& offsets) const {
   std::string unknown = offsets_.unknown();
   if (!unknown.empty() || goal.dry_run) return unknown;
   if (!goal.discard) {
@@ -174,19 +176,19 @@ void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& jo
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
-    return reject(goal, GrindResult::NOT_READY,
+    return reject(goal, flute_grinder::GrindResult::NOT_READY,
                   gate_.isShut()
                       ? "the grinder is being shut down"
                       : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
   }
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request{job};
-  const core::WorkOffsets offsets = offsets_.offsets();
+  const WorkOffsets offsets = offsets_.offsets();
   request.offset = offsets.values();
   const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
   if (!refused.empty()) {
     gate_.close();
-    return reject(goal, GrindResult::NOT_READY, refused);
+    return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);
   }
   request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
@@ -197,7 +199,8 @@ void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& jo
   };
   if (!planner_.submit(std::move(request))) {
     gate_.close();
-    return reject(goal, GrindResult::BUSY, "another job is being planned; allowed: wait for the end of that");
+    return reject(goal, flute_grinder::GrindResult::BUSY,
+                  "another job is being planned; allowed: wait for the end of that");
   }
   goal_ = Goal{handle, offsets, control};
   busy_ = true;
@@ -224,7 +227,8 @@ void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
     handle.setAccepted();
     release();
     telemetry_.show(preview);
-    GrindResult checked = result(GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
+    flute_grinder::GrindResult checked =
+        result(flute_grinder::GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
     checked.warnings = warnings;
     return handle.setSucceeded(checked);
   }
@@ -252,7 +256,8 @@ void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
   if (!started) return cancelBeforeStart();
   if (!posted) {
     rollBack();
-    return reject(handle, GrindResult::NOT_READY, "the control loop has not answered the start of the job before");
+    return reject(handle, flute_grinder::GrindResult::NOT_READY,
+                  "the control loop has not answered the start of the job before");
   }
   handle.setAccepted();
   publishJob();
@@ -282,14 +287,14 @@ void GoalServer::publishPlanningFeedback() {
   const ros::SteadyTime now = ros::SteadyTime::now();
   if (now - goal_->last_feedback < kPlanningInterval) return;
   goal_->last_feedback = now;
-  GrindFeedback feedback;
+  flute_grinder::GrindFeedback feedback;
   feedback.state = "planning";
   feedback.planned = goal_->control->done;
   goal_->handle.publishFeedback(feedback);
 }
 
 void GoalServer::publishJob() {
-  GrindActionGoal job;
+  flute_grinder::GrindActionGoal job;
   job.header.stamp = ros::Time::now();
   job.goal_id = goal_->handle.getGoalID();
   job.goal = *goal_->handle.getGoal();
@@ -321,14 +326,14 @@ void GoalServer::cancelBeforeStart() {
   GoalHandle handle = goal_->handle;
   rollBack();
   const char* text = "canceled before it moved";
-  handle.setCanceled(result(GrindResult::CANCELED, text), text);
+  handle.setCanceled(result(flute_grinder::GrindResult::CANCELED, text), text);
 }
 
 void GoalServer::abortGoal(const std::string& text) {
   GoalHandle handle = goal_->handle;
   rollBack();
   ROS_WARN_STREAM("goal aborted: " << text);
-  handle.setAborted(result(GrindResult::NOT_READY, text), text);
+  handle.setAborted(result(flute_grinder::GrindResult::NOT_READY, text), text);
 }
 
 void GoalServer::rollBack() {
@@ -361,7 +366,7 @@ void GoalServer::endJob() {
   GoalHandle handle = goal_->handle;
   const std::uint64_t number = goal_->number;
   const bool aborted = status.end == JobEnd::kFault || !goal_->journal_error.empty();
-  const GrindResult r = resultOfJob(status);
+  const flute_grinder::GrindResult r = resultOfJob(status);
   publishFeedback();
   release();
   telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
@@ -373,7 +378,7 @@ void GoalServer::endJob() {
   handle.setSucceeded(r);
 }
 
-GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
+flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
   const PlannedJob& plan = *goal_->preview->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
@@ -381,13 +386,13 @@ GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
     at.pass = static_cast<std::uint16_t>(plan.first.pass);
     at.x = plan.program->start()[kX];
   }
-  GrindResult r = result(GrindResult::SUCCESSFUL, "", plan.statistics);
+  flute_grinder::GrindResult r = result(flute_grinder::GrindResult::SUCCESSFUL, "", plan.statistics);
   if (!goal_->journal_error.empty()) {
-    r = result(GrindResult::NOT_READY, goal_->journal_error, plan.statistics);
+    r = result(flute_grinder::GrindResult::NOT_READY, goal_->journal_error, plan.statistics);
   } else if (status.end == JobEnd::kFault) {
     r = result(errorCode(status.fault.kind), {endReason(status, at, *plan.program)}, plan.statistics);
   } else if (status.end == JobEnd::kCanceled) {
-    r = result(GrindResult::CANCELED, {endReason(status, at, *plan.program)}, plan.statistics);
+    r = result(flute_grinder::GrindResult::CANCELED, {endReason(status, at, *plan.program)}, plan.statistics);
   }
   r.setpoints_written = status.setpoints_written;
   return r;
@@ -400,4 +405,4 @@ void GoalServer::release() {
   thread_.setPeriod(kIdlePollPeriod);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

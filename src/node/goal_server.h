@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, publishes it on `~job`, and
 /// reports its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are
@@ -34,7 +34,7 @@ class GoalServer {
   bool busy() const { return busy_; }
 
  private:
-  using Server = actionlib::ActionServer<GrindAction>;
+  using Server = actionlib::ActionServer<flute_grinder::GrindAction>;
   using GoalHandle = Server::GoalHandle;
 
   enum class Phase { kPlanning, kStarting, kJournaling, kRunning };
@@ -42,7 +42,7 @@ class GoalServer {
   /// The goal being processed.
   struct Goal {
     GoalHandle handle;
-    core::WorkOffsets offsets;
+    WorkOffsets offsets;
     std::shared_ptr<PlanControl> control;
     Phase phase = Phase::kPlanning;
     std::shared_ptr<const Preview> preview{};
@@ -56,9 +56,10 @@ class GoalServer {
   void rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const;
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
-  std::string refusal(const GrindGoal& goal, const std::string& digest) const;
-  std::optional<core::Reason> swivelRefusal(const GrindJob& job) const;
-  std::string offsetRefusal(const GrindGoal& goal, const std::string& digest, const core::WorkOffsets& offsets) const;
+  std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
+  std::optional<Reason> swivelRefusal(const GrindJob& job) const;
+  std::string offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
+                            const WorkOffsets& offsets) const;
   void startPlanning(const GoalHandle& handle, const JobWithDigest& job);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
@@ -70,12 +71,12 @@ class GoalServer {
   void releaseWhenJournaled();
   void endWhenPublished();
   void endJob();
-  GrindResult resultOfJob(const LoopStatus& status) const;
+  flute_grinder::GrindResult resultOfJob(const LoopStatus& status) const;
   void cancelBeforeStart();
   void abortGoal(const std::string& text);
   void rollBack();
   void reject(GoalHandle& handle, int code, const std::string& text);
-  void reject(GoalHandle& handle, const GrindResult& result);
+  void reject(GoalHandle& handle, const flute_grinder::GrindResult& result);
   void release();
 
   ControlLoop& loop_;
@@ -96,4 +97,4 @@ class GoalServer {
   std::unique_ptr<Server> server_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,15 +1,16 @@
 #include "node/grinder_node.h"
 
+#include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/drive/export_drive.h"
 #include "node/crash_guard.h"
-#include "node/machine_topic.h"
 #include "node/node_parameters.h"
 #include "node/plugin_abi.h"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -43,6 +44,21 @@ void checkAbi(const std::string& parameter, const std::string& library) {
                        "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 
+flute_grinder::MachineInfo toMessage(const MachineInfo& info) {
+  const auto copy = [](const Axes& axes, auto& array) {
+    std::copy(axes.data(), axes.data() + kAxisCount, array.begin());
+  };
+  flute_grinder::MachineInfo message;
+  message.name = info.name;
+  message.version = info.version;
+  message.drive = info.drive;
+  message.period = info.period;
+  copy(info.max_velocity, message.max_velocity);
+  copy(info.max_acceleration, message.max_acceleration);
+  copy(info.max_following_error, message.max_following_error);
+  return message;
+}
+
 const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
 
 }  // namespace
@@ -56,7 +72,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const ParameterReader parameters(private_nh_);
   const LoopConfig config = readMachineConfig(urdf, parameters);
   const std::string name = private_nh_.getNamespace();
-  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "flute_grinder::RobotHW");
+  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "grinder::RobotHW");
   const NodeParameters own = readNodeParameters(parameters, name, join(loader_->getDeclaredClasses()));
   journal_ = std::make_unique<JournalWriter>(own.journal, name);
   offsets_ = std::make_unique<OffsetStore>(own.offsets, name);
@@ -66,8 +82,9 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   history_ = std::make_unique<History>(own.history, own.history_limit);
   loadDrive(own.drive, parameters);
-  const core::MachineInfo machine = machineInfo(config, own.drive);
-  machine_ = publishMachine(private_nh_, machine);
+  const MachineInfo machine = machineInfo(config, own.drive);
+  machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
+  machine_.publish(toMessage(machine));
   loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
@@ -125,4 +142,4 @@ void GrinderNode::shutDown() {
   loop_->stopThread();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

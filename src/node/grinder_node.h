@@ -21,7 +21,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The grinder as a ROS node: loads the drive, runs the control loop, and connects it to the action, services and
 /// topics through parts that each run in their own thread (see docs/architecture.md). The drive's own callbacks are in
@@ -62,4 +62,4 @@ class GrinderNode {
   std::unique_ptr<GoalServer> goals_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -115,4 +115,4 @@ std::string History::error() const {
   return folder_->error;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

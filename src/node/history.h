@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Keeps the records of the last jobs in a folder, one file for each, written in one step. A thread of its own waits
 /// for the disk. Thread safe; not for the control thread.
@@ -35,4 +35,4 @@ class History {
   DiskThread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

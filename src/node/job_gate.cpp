@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -93,4 +93,4 @@ void JobGate::giveUp() {
   canceled_ = true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <functional>
 #include <mutex>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Arbitrates between stops and the start of a job. Before the start, a cancel prevents it and a hold makes the job
 /// begin held; later stops go to the control loop. Also between a job and a change of what it was planned with. Thread
@@ -61,4 +61,4 @@ class JobGate {
   int shut_outs_ = 0;  ///< lockOutJobs() less letJobsIn()
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

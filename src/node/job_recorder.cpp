@@ -4,9 +4,9 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
-JobRecorder::JobRecorder(std::string grinder, core::MachineInfo machine, History& history)
+JobRecorder::JobRecorder(std::string grinder, MachineInfo machine, History& history)
     : grinder_(std::move(grinder)), machine_(std::move(machine)), history_(history) {}
 
 JobRecorder::~JobRecorder() {
@@ -46,4 +46,4 @@ void JobRecorder::keep(const std::shared_ptr<const JobRecord>& record) {
   });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

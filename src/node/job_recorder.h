@@ -9,14 +9,14 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Gathers the records of the jobs that were announced, and gives each to the history once the job has ended and its
 /// result is known, in either order. Not thread safe.
 class JobRecorder {
  public:
   /// @param grinder the node's name. @param history must outlive this object.
-  JobRecorder(std::string grinder, core::MachineInfo machine, History& history);
+  JobRecorder(std::string grinder, MachineInfo machine, History& history);
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
   /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
@@ -42,9 +42,9 @@ class JobRecorder {
   void keep(const std::shared_ptr<const JobRecord>& record);
 
   const std::string grinder_;
-  const core::MachineInfo machine_;
+  const MachineInfo machine_;
   History& history_;
   std::map<std::uint64_t, Job> jobs_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

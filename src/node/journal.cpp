@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -87,4 +87,4 @@ void Journal::write(const Progress& progress) const {
   file_.named([&] { file_.write(toText(progress)); });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A journal that cannot be read or written; what() names the file and the reason.
 using JournalError = AtomicFileError;
@@ -55,4 +55,4 @@ class Journal {
   AtomicFile file_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -96,4 +96,4 @@ JournalWriter::Status JournalWriter::status() const {
   return work_->status;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Writes the latest progress to the journal in its own thread, so that nothing else waits for the disk. Thread safe;
 /// not for the control thread.
@@ -45,4 +45,4 @@ class JournalWriter {
   DiskThread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -28,8 +28,8 @@ bool isEnded(const sigset_t& signals) {
 /// @return false if a signal has ended the wait.
 bool waitForMaster(const sigset_t& signals) {
   const std::atomic<bool> never{false};
-  for (bool warned = false;
-       !flute_grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never); warned = true) {
+  for (bool warned = false; !grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never);
+       warned = true) {
     if (!warned) ROS_WARN_STREAM("no ROS master answers at " << ros::master::getURI() << "; waiting for one");
     if (isEnded(signals)) return false;
   }
@@ -46,7 +46,7 @@ void waitForEnd(const sigset_t& signals) {
 std::vector<std::string> services() {
   std::vector<std::string> names{"~set_feed_override", "~confirm_swivel",       "~jog_step", "~plan", "~set_offset",
                                  "~touch_off",         "~hardware/inject_fault"};
-  for (const flute_grinder::EventRow& request : flute_grinder::kMachineEvents) {
+  for (const grinder::EventRow& request : grinder::kMachineEvents) {
     if (request.service) names.push_back(std::string("~") + request.service);
   }
   for (std::string& name : names) name = ros::names::resolve(name);
@@ -61,11 +61,11 @@ int main(int argc, char** argv) {
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  flute_grinder::dropBlockedOutput();
-  flute_grinder::boundThreadStacks();
+  grinder::dropBlockedOutput();
+  grinder::boundThreadStacks();
 
-  flute_grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
-  const std::string refusal = flute_grinder::ownAddressRefusal();
+  grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  const std::string refusal = grinder::ownAddressRefusal();
   if (!refusal.empty()) {
     ROS_FATAL_STREAM(refusal);
     return 1;
@@ -74,8 +74,8 @@ int main(int argc, char** argv) {
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
   try {
-    flute_grinder::GrinderNode node(nh, ros::NodeHandle("~"));
-    const flute_grinder::MasterWatch master_watch(services());
+    grinder::GrinderNode node(nh, ros::NodeHandle("~"));
+    const grinder::MasterWatch master_watch(services());
     ros::AsyncSpinner spinner(1);  // for the drive's callbacks; all others have their own threads
     spinner.start();
     waitForEnd(signals);

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/motion/work_offsets.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -41,4 +41,4 @@ NodeParameters readNodeParameters(const ParameterReader& parameters, const std::
   return own;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

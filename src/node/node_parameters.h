@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The node's own parameters.
 struct NodeParameters {
@@ -29,4 +29,4 @@ struct NodeParameters {
 NodeParameters readNodeParameters(const ParameterReader& parameters, const std::string& node,
                                   const std::string& drives);
 
-}  // namespace flute_grinder
+}  // namespace grinder

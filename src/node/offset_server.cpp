@@ -11,7 +11,7 @@
 #include <memory>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -26,7 +26,7 @@ bool isDigest(const std::string& text) {
 }
 
 /// Why this cannot be the basis of an offset; empty if it can.
-std::string basisRefusal(const OffsetBasis& basis) {
+std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
   if (basis.method >= countOf<OffsetMethod>()) {
     return "basis.method = " + std::to_string(basis.method) + "; allowed: 0 to " +
            std::to_string(countOf<OffsetMethod>() - 1);
@@ -71,20 +71,20 @@ OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop&
     : loop_(loop), gate_(gate), store_(store), limits_(limits) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
-  offsets_ = nh.advertise<WorkOffsets>("offsets", 10, true);
+  offsets_ = nh.advertise<flute_grinder::WorkOffsets>("offsets", 10, true);
   publish();
   services_.push_back(nh.advertiseService("set_offset", &OffsetServer::onSet, this));
   services_.push_back(nh.advertiseService("touch_off", &OffsetServer::onTouchOff, this));
   thread_.start();
 }
 
-bool OffsetServer::onSet(SetOffset::Request& request, SetOffset::Response& response) {
+bool OffsetServer::onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response) {
   const auto offset_at = [&](double) { return request.value; };
   set(request, fromMessage(request.basis).method, offset_at, response);
   return true;
 }
 
-bool OffsetServer::onTouchOff(TouchOff::Request& request, TouchOff::Response& response) {
+bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response) {
   const auto offset_at = [&](double position) { return response.value = position - request.position; };
   set(request, OffsetMethod::kTouchOff, offset_at, response);
   return true;
@@ -99,7 +99,7 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
     const LoopStatus status = loop_.status();
     refused = isInJob(status.state) ? refusal(status) : "a job is being planned, or ends; allowed: after its end";
   } else if (refused.empty()) {
-    core::WorkOffset offset;
+    WorkOffset offset;
     offset.set_by = request.set_by;
     offset.basis = fromMessage(request.basis);
     offset.basis.method = method;
@@ -112,8 +112,8 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   response.large_change = static_cast<std::uint8_t>(large_change);
 }
 
-std::string OffsetServer::setProbed(int axis, double value, const ProbeGoal& goal, bool& large_change) {
-  core::WorkOffset offset;
+std::string OffsetServer::setProbed(int axis, double value, const flute_grinder::ProbeGoal& goal, bool& large_change) {
+  WorkOffset offset;
   offset.set_by = goal.set_by;
   offset.basis = basisOf(goal.job, OffsetMethod::kProbe);
   const auto answer = std::make_shared<std::promise<std::string>>();
@@ -128,8 +128,8 @@ std::string OffsetServer::setProbed(int axis, double value, const ProbeGoal& goa
 /// @param offset all but its value and its time. @param large_change whether it is refused because it would change by
 /// too much.
 /// @return why the offset was not set; empty if it was.
-std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at,
-                                        bool large_change_ok, bool& large_change) {
+std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
+                                        bool& large_change) {
   const LoopStatus status = loop_.status();
   std::string refused = refusal(status);
   if (!refused.empty()) return refused;
@@ -148,14 +148,14 @@ std::string OffsetServer::setWithoutJob(int axis, core::WorkOffset offset, const
   }
   ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = "
                                     << text(Quantity{offset.value, unitOf(axis, 0)}, UnitSystem::kSi, 9) << ", "
-                                    << core::basisText(axis, offset) << ", by " << offset.set_by);
+                                    << basisText(axis, offset) << ", by " << offset.set_by);
   publish();
   return "";
 }
 
 void OffsetServer::publish() {
-  WorkOffsets message;
-  const core::WorkOffsets offsets = store_.offsets();
+  flute_grinder::WorkOffsets message;
+  const WorkOffsets offsets = store_.offsets();
   message.header.stamp = ros::Time::now();
   for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
     message.values[i] = offsets.axes[i].value;
@@ -167,4 +167,4 @@ void OffsetServer::publish() {
   offsets_.publish(message);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

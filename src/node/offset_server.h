@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves `~set_offset` and `~touch_off`, and publishes the work offsets on `~offsets`. Runs in its own thread, which
 /// waits for the disk.
@@ -27,23 +27,23 @@ class OffsetServer {
                const OffsetLimits& limits);
 
   /// The work offsets. Thread safe; never waits for the disk.
-  core::WorkOffsets offsets() const { return store_.offsets(); }
+  WorkOffsets offsets() const { return store_.offsets(); }
 
   /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
   /// which it waits. @param value [m], A [rad]. @param goal by whom and for what it is set.
   /// @param large_change whether it was not set only because it would change by too much.
   /// @return why it was not set; empty if it was.
-  std::string setProbed(int axis, double value, const ProbeGoal& goal, bool& large_change);
+  std::string setProbed(int axis, double value, const flute_grinder::ProbeGoal& goal, bool& large_change);
 
  private:
   /// The offset of an axis whose position is as given [m or rad].
   using OffsetAt = std::function<double(double position)>;
 
-  bool onSet(SetOffset::Request& request, SetOffset::Response& response);
-  bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response);
+  bool onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response);
+  bool onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response);
   template <typename Request, typename Response>
   void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
-  std::string setWithoutJob(int axis, core::WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
+  std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
                             bool& large_change);
   void publish();
 
@@ -56,4 +56,4 @@ class OffsetServer {
   std::vector<ros::ServiceServer> services_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

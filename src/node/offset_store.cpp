@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -49,11 +49,11 @@ void visitOffsets(AnyOffsets& offsets, bool with_basis, const Visit& visit) {
   }
 }
 
-bool isKnown(const core::WorkOffset& offset) { return !std::isnan(offset.value); }
+bool isKnown(const WorkOffset& offset) { return !std::isnan(offset.value); }
 
-void requireSound(const core::WorkOffsets& offsets) {
+void requireSound(const WorkOffsets& offsets) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const core::WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
+    const WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
     requireAllowed(!isKnown(offset) || std::abs(offset.value) <= kMaxOffset, joint + "_" + axisUnit(axis), offset.value,
                    "-1000 to 1000");
@@ -66,14 +66,14 @@ void requireSound(const core::WorkOffsets& offsets) {
   }
 }
 
-std::string offsetsText(const core::WorkOffsets& offsets) {
+std::string offsetsText(const WorkOffsets& offsets) {
   requireSound(offsets);
   return toYaml("The grinder's work offsets: machine position - work position; .nan is unknown.",
                 [&](const auto& visit) { visitOffsets(offsets, true, visit); });
 }
 
-core::WorkOffsets offsetsFromText(const std::string& text) {
-  core::WorkOffsets offsets;
+WorkOffsets offsetsFromText(const std::string& text) {
+  WorkOffsets offsets;
   const bool with_basis = text.find("\naxis_x_method: ") != std::string::npos;
   fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, with_basis, visit); });
   requireSound(offsets);
@@ -91,11 +91,11 @@ OffsetStore::OffsetStore(std::string path, std::string owner)
     throw;
   } catch (const AtomicFileError& error) {
     error_ = error.what();
-    for (core::WorkOffset& offset : offsets_.axes) offset.value = std::numeric_limits<double>::quiet_NaN();
+    for (WorkOffset& offset : offsets_.axes) offset.value = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
-core::WorkOffsets OffsetStore::offsets() const {
+WorkOffsets OffsetStore::offsets() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return offsets_;
 }
@@ -112,8 +112,8 @@ std::string OffsetStore::unknown() const {
          "; set each of them, or touch off";
 }
 
-void OffsetStore::set(int axis, const core::WorkOffset& offset) {
-  core::WorkOffsets changed = offsets();
+void OffsetStore::set(int axis, const WorkOffset& offset) {
+  WorkOffsets changed = offsets();
   changed.axes[static_cast<std::size_t>(axis)] = offset;
   file_.named([&] { file_.write(offsetsText(changed)); });
   file_.settle();
@@ -121,4 +121,4 @@ void OffsetStore::set(int axis, const core::WorkOffset& offset) {
   offsets_ = changed;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The work offsets, kept on disk as by AtomicFile. Without a file they were never set and are 0. If the file cannot be
 /// read they are unknown, and each remains so until it is set. Of offsets in a file that does not have it, it is
@@ -19,7 +19,7 @@ class OffsetStore {
   OffsetStore(std::string path, std::string owner);
 
   /// Thread safe; never waits for the disk.
-  core::WorkOffsets offsets() const;
+  WorkOffsets offsets() const;
 
   /// Why the offsets of some axes are unknown, naming them; empty if all are known. Thread safe; never waits for the
   /// disk.
@@ -28,13 +28,13 @@ class OffsetStore {
   /// Sets the offset of an axis. Returns once it is on the disk; if it throws, nothing has changed. For one thread.
   /// @param axis Axis. @param offset its value is at most kMaxOffset in size.
   /// @throw AtomicFileError
-  void set(int axis, const core::WorkOffset& offset);
+  void set(int axis, const WorkOffset& offset);
 
  private:
   const AtomicFile file_;     ///< used by the constructor and set() only
   mutable std::mutex mutex_;  ///< guards the next two; held only to copy
-  core::WorkOffsets offsets_;
+  WorkOffsets offsets_;
   std::string error_;  ///< why the file could not be read; empty if it could
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

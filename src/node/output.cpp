@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -29,4 +29,4 @@ void dropBlockedOutput() {
   reopenWithoutWaiting(STDERR_FILENO);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 constexpr std::size_t kMaxName = 255;  ///< of a job, or of who sets an offset
 
@@ -22,4 +22,4 @@ inline std::string nameRefusal(const std::string& field, const std::string& name
          ", and none that controls a terminal";
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

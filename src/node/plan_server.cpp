@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -36,7 +36,7 @@ PlanServer::~PlanServer() {
   spinner_.stop();
 }
 
-bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
+bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response) {
   response.valid = 0;
   const std::string unknown = offsets_.unknown();
   if (!unknown.empty()) {
@@ -46,7 +46,7 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   std::promise<std::unique_ptr<Preview>> promise;
   auto answer = promise.get_future();
   Planner::Request plan_request{JobWithDigest(jobFromGoal(request.goal))};
-  const core::WorkOffsets offsets = offsets_.offsets();
+  const WorkOffsets offsets = offsets_.offsets();
   plan_request.offset = offsets.values();
   plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
   plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
@@ -79,9 +79,9 @@ bool PlanServer::onPlan(Plan::Request& request, Plan::Response& response) {
   }
   response.warnings = offsetWarnings(offsets, request.goal);
   response.violations = toMessage(plan.reasons);
-  for (const core::Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
+  for (const Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
   if (plan.good()) telemetry_.show(preview);
   return true;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves `~plan`. One call waits for the planner; any other is answered "busy" meanwhile.
 class PlanServer {
@@ -23,7 +23,7 @@ class PlanServer {
   ~PlanServer();
 
  private:
-  bool onPlan(Plan::Request& request, Plan::Response& response);
+  bool onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response);
 
   const ControlLoop& loop_;
   Planner& planner_;
@@ -35,4 +35,4 @@ class PlanServer {
   ros::AsyncSpinner spinner_;  ///< last member, so that no call is running when the others are destroyed
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

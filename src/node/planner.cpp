@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 Planner::Planner(const Machine& machine, const MachineShapes& shapes)
     : machine_(machine), shapes_(shapes), thread_([this] { run(); }) {}
@@ -79,4 +79,4 @@ PlannedJob Planner::makePlan(const Request& request) const {
   return plan;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

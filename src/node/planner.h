@@ -11,13 +11,13 @@
 #include <optional>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A plan with what is needed to run its job and to show it.
 struct Preview {
   std::shared_ptr<const PlannedJob> plan;
   std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is good
-  core::WorkOffsets offsets;               ///< of a goal's job, whose values are the program's
+  WorkOffsets offsets;                     ///< of a goal's job, whose values are the program's
   bool ignore_offset_check = false;        ///< the goal says so
 };
 
@@ -73,4 +73,4 @@ class Planner {
   std::thread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::optional<std::uint32_t> driveAbiOf(const std::string& library) {
   const std::unique_ptr<void, int (*)(void*)> handle(dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD), dlclose);
@@ -19,4 +19,4 @@ std::optional<std::uint32_t> driveAbiOf(const std::string& library) {
   return *static_cast<const std::uint32_t*>(abi);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The version of the drive interface that a plugin was built against (flute_grinder/drive/export_drive.h). Runs none
 /// of its code.
@@ -12,4 +12,4 @@ namespace flute_grinder {
 /// @return nothing if the library itself states none, whatever those that it is linked with state.
 std::optional<std::uint32_t> driveAbiOf(const std::string& library);
 
-}  // namespace flute_grinder
+}  // namespace grinder

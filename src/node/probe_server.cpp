@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 ProbeServer::ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets)
     : loop_(loop), gate_(gate), offsets_(offsets) {
@@ -27,7 +27,7 @@ ProbeServer::~ProbeServer() {
 
 void ProbeServer::onGoal(GoalHandle handle) {
   const LoopStatus status = loop_.status();
-  ProbeResult result;
+  flute_grinder::ProbeResult result;
   result.message = refusal(*handle.getGoal(), status);
   if (result.message.empty() && !gate_.lockOutJobs()) {
     result.message = "a job is planned or in progress; allowed: after its end";
@@ -46,7 +46,7 @@ void ProbeServer::onGoal(GoalHandle handle) {
   motion_.post([this, handle, stops = status.stops] { run(handle, stops); });
 }
 
-std::string ProbeServer::refusal(const ProbeGoal& goal, const LoopStatus& status) const {
+std::string ProbeServer::refusal(const flute_grinder::ProbeGoal& goal, const LoopStatus& status) const {
   if (isBusy()) return "another probing cycle is in progress; allowed: wait for its end, or cancel it";
   std::string wrong = goalRefusal(goal);
   if (!wrong.empty()) return wrong;
@@ -74,11 +74,11 @@ void ProbeServer::onAlive(const std_msgs::Header::ConstPtr& message) {
 }
 
 void ProbeServer::run(GoalHandle handle, std::uint64_t stops) {
-  ProbeResult result;
+  flute_grinder::ProbeResult result;
   try {
     runUnguarded(handle, stops, result);
-  } catch (const core::ReasonError& error) {
-    result.message = "probing ended: " + core::text(error.reason(), UnitSystem::kShop);
+  } catch (const ReasonError& error) {
+    result.message = "probing ended: " + text(error.reason(), UnitSystem::kShop);
   } catch (const std::exception& error) {
     result.message = std::string("probing ended: ") + error.what();
   }
@@ -94,10 +94,10 @@ void ProbeServer::run(GoalHandle handle, std::uint64_t stops) {
   handle.setAborted(result, result.message);
 }
 
-void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, ProbeResult& result) {
-  const ProbeGoal& goal = *handle.getGoal();
+void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, flute_grinder::ProbeResult& result) {
+  const flute_grinder::ProbeGoal& goal = *handle.getGoal();
   Prober prober(loop_, stops, [&](int place, int touch) {
-    ProbeFeedback feedback;
+    flute_grinder::ProbeFeedback feedback;
     feedback.place = static_cast<std::uint16_t>(place);
     feedback.touch = static_cast<std::uint16_t>(touch);
     handle.publishFeedback(feedback);
@@ -114,4 +114,4 @@ void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, ProbeRes
   result.offset_set = 1;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves the action `~probe`: probing cycles, each for as long as its client repeats `~probe_alive`. One goal at a
 /// time; any other is rejected at once, and jobs are shut out meanwhile. Two threads: one waits for the motion, the
@@ -28,16 +28,16 @@ class ProbeServer {
   ~ProbeServer();
 
  private:
-  using Server = actionlib::ActionServer<ProbeAction>;
+  using Server = actionlib::ActionServer<flute_grinder::ProbeAction>;
   using GoalHandle = Server::GoalHandle;
 
   void onGoal(GoalHandle handle);
   bool isBusy() const;
   void onCancel(const GoalHandle& handle);
   void onAlive(const std_msgs::Header::ConstPtr& message);
-  std::string refusal(const ProbeGoal& goal, const LoopStatus& status) const;
+  std::string refusal(const flute_grinder::ProbeGoal& goal, const LoopStatus& status) const;
   void run(GoalHandle handle, std::uint64_t stops);
-  void runUnguarded(GoalHandle& handle, std::uint64_t stops, ProbeResult& result);
+  void runUnguarded(GoalHandle& handle, std::uint64_t stops, flute_grinder::ProbeResult& result);
 
   ControlLoop& loop_;
   JobGate& gate_;
@@ -49,4 +49,4 @@ class ProbeServer {
   std::unique_ptr<Server> server_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <thread>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -128,4 +128,4 @@ LoopStatus Prober::awaitEnd(std::uint64_t jog) {
   return status;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Why a probing cycle has no result.
 class ProbingError : public std::runtime_error {
@@ -67,4 +67,4 @@ class Prober {
 /// A length, or of A an angle, as the operator reads it.
 std::string shownOf(int axis, double si);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -24,10 +24,10 @@ constexpr double kMostOff = 1 * units::kMillimetre;
 /// What a cycle works with.
 struct Cycle {
   Prober& prober;
-  const ProbeGoal& goal;
-  const core::WorkOffsets& offsets;
+  const flute_grinder::ProbeGoal& goal;
+  const WorkOffsets& offsets;
   const MachineGeometry& geometry;
-  ProbeResult& result;
+  flute_grinder::ProbeResult& result;
 
   double ballRadius() const { return geometry.probe->diameter / 2; }
 
@@ -41,7 +41,7 @@ struct Cycle {
   }
 
   void add(const char* name, double value, double spread = kNone, bool angle = false) const {
-    ProbedFigure figure;
+    flute_grinder::ProbedFigure figure;
     figure.name = name;
     figure.angle = static_cast<std::uint8_t>(angle);
     figure.value = value;
@@ -108,7 +108,7 @@ double tooth(const Cycle& cycle) {
 
 }  // namespace
 
-std::string goalRefusal(const ProbeGoal& goal) {
+std::string goalRefusal(const flute_grinder::ProbeGoal& goal) {
   if (!(goal.cycle < countOf<ProbingCycle>())) {
     return "cycle = " + std::to_string(goal.cycle) + "; allowed: 0 to " + std::to_string(countOf<ProbingCycle>() - 1);
   }
@@ -116,19 +116,20 @@ std::string goalRefusal(const ProbeGoal& goal) {
     return "within = " + std::to_string(goal.within) + "; allowed: finite, and above 0";
   }
   if (!goal.set_offset) {
-    return goal.cycle == ProbeGoal::TOOTH ? "set_offset = false; allowed: true, for TOOTH" : "";
+    return goal.cycle == flute_grinder::ProbeGoal::TOOTH ? "set_offset = false; allowed: true, for TOOTH" : "";
   }
   if (!std::isfinite(goal.flange)) return "flange = " + std::to_string(goal.flange) + "; allowed: finite";
-  if (goal.cycle == ProbeGoal::DIAMETER && !(goal.diameter > 0 && std::isfinite(goal.diameter))) {
+  if (goal.cycle == flute_grinder::ProbeGoal::DIAMETER && !(goal.diameter > 0 && std::isfinite(goal.diameter))) {
     return "diameter = " + std::to_string(goal.diameter) + "; allowed: finite, and above 0";
   }
   if (!isPlainName(goal.set_by)) return nameRefusal("set_by", goal.set_by);
   if (!isPlainName(goal.job.job_name)) return nameRefusal("job_name", goal.job.job_name);
   if (!isPlainName(goal.job.wheel_name)) return nameRefusal("wheel_name", goal.job.wheel_name);
-  return core::text(validate(jobFromGoal(goal.job)), UnitSystem::kShop);
+  return text(validate(jobFromGoal(goal.job)), UnitSystem::kShop);
 }
 
-double runCycle(Prober& prober, const ProbeGoal& goal, const core::WorkOffsets& offsets, ProbeResult& result) {
+double runCycle(Prober& prober, const flute_grinder::ProbeGoal& goal, const WorkOffsets& offsets,
+                flute_grinder::ProbeResult& result) {
   const Cycle cycle{prober, goal, offsets, prober.config().geometry, result};
   switch (static_cast<ProbingCycle>(goal.cycle)) {
     case ProbingCycle::kEndFace: return endFace(cycle);
@@ -138,4 +139,4 @@ double runCycle(Prober& prober, const ProbeGoal& goal, const core::WorkOffsets& 
   return tooth(cycle);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,15 +8,16 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Why a goal is wrong at any time; empty if it is not.
-std::string goalRefusal(const ProbeGoal& goal);
+std::string goalRefusal(const flute_grinder::ProbeGoal& goal);
 
 /// Runs a cycle. @param goal that goalRefusal() accepts. @param offsets the work offsets.
 /// @param result gets the figures, as they are measured.
 /// @return the work offset of the cycle's axis; NaN unless goal.set_offset [m], A [rad]
-/// @throw ProbingError; core::ReasonError
-double runCycle(Prober& prober, const ProbeGoal& goal, const core::WorkOffsets& offsets, ProbeResult& result);
+/// @throw ProbingError; ReasonError
+double runCycle(Prober& prober, const flute_grinder::ProbeGoal& goal, const WorkOffsets& offsets,
+                flute_grinder::ProbeResult& result);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -140,4 +140,4 @@ void ProgressTracker::write() {
   last_entry_ = ros::SteadyTime::now();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Turns the control loop's status into journal entries: at once when a pass ends or the wheel enters or leaves the
 /// work, and at most once a second within a stroke or with the feed override. Not thread safe; never waits for the
@@ -65,4 +65,4 @@ class ProgressTracker {
   ros::SteadyTime last_entry_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

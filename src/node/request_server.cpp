@@ -7,14 +7,14 @@
 #include <cmath>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jog [s]
 
 /// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
-std::string staleness(const Jog& message, double timeout) {
+std::string staleness(const flute_grinder::Jog& message, double timeout) {
   const double age = ageOf(message.header.stamp);
   if (std::abs(age) <= timeout) return "";
   std::ostringstream text;
@@ -58,7 +58,8 @@ RequestReply RequestServer::execute(MachineEvent event) {
   return loop_.request(event);
 }
 
-bool RequestServer::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response) {
+bool RequestServer::onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,
+                                    flute_grinder::ConfirmSwivel::Response& response) {
   const RequestReply reply = loop_.confirmSwivel(request.swivel);
   response.success = static_cast<std::uint8_t>(reply.accepted);
   response.message = reply.text;
@@ -66,7 +67,7 @@ bool RequestServer::onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwiv
   return true;
 }
 
-bool RequestServer::onJogStep(JogStep::Request& request, JogStep::Response& response) {
+bool RequestServer::onJogStep(flute_grinder::JogStep::Request& request, flute_grinder::JogStep::Response& response) {
   JogRequest jog{request.axis, false, request.distance, request.speed};
   const bool named = request.speed != 0 || request.axis >= kAxisCount;
   if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
@@ -77,7 +78,7 @@ bool RequestServer::onJogStep(JogStep::Request& request, JogStep::Response& resp
   return true;
 }
 
-void RequestServer::onJog(const Jog::ConstPtr& message) {
+void RequestServer::onJog(const flute_grinder::Jog::ConstPtr& message) {
   std::string refusal;
   // An axis is stopped however late the message comes.
   if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
@@ -100,4 +101,4 @@ void RequestServer::reportJogRefusal(const std::string& refusal) {
   jog_refusals_.publish(why);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

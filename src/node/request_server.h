@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves the operator's requests other than stops and jobs: a service for each trigger of kMachineEvents, the services
 /// `~confirm_swivel` and `~jog_step`, and the topics `~jog` and `~jog_refusal`. Runs in its own thread, which waits for
@@ -26,9 +26,10 @@ class RequestServer {
  private:
   void serve(ros::NodeHandle& nh, MachineEvent event);
   RequestReply execute(MachineEvent event);
-  bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response);
-  bool onJogStep(JogStep::Request& request, JogStep::Response& response);
-  void onJog(const Jog::ConstPtr& message);
+  bool onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,
+                       flute_grinder::ConfirmSwivel::Response& response);
+  bool onJogStep(flute_grinder::JogStep::Request& request, flute_grinder::JogStep::Response& response);
+  void onJog(const flute_grinder::Jog::ConstPtr& message);
   void reportJogRefusal(const std::string& refusal);
 
   ControlLoop& loop_;
@@ -41,4 +42,4 @@ class RequestServer {
   bool jog_refused_ = false;  ///< that message
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

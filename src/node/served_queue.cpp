@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -70,4 +70,4 @@ void ServedQueue::run() {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <functional>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A callback queue and the one thread that serves it. Data used only by its callbacks and by `poll` needs no lock.
 class ServedQueue {
@@ -47,4 +47,4 @@ class ServedQueue {
   std::thread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 
 StopServer::StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate) : loop_(loop), gate_(gate) {
   ros::NodeHandle nh(private_nh);
@@ -38,7 +38,8 @@ bool StopServer::onDisable(std_srvs::Trigger::Request&, std_srvs::Trigger::Respo
   return true;
 }
 
-bool StopServer::onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
+bool StopServer::onFeedOverride(flute_grinder::SetFeedOverride::Request& request,
+                                flute_grinder::SetFeedOverride::Response& response) {
   response.success = loop_.setFeedOverride(request.fraction);
   if (!response.success) {
     std::ostringstream text;
@@ -52,19 +53,19 @@ void StopServer::onCancel(const actionlib_msgs::GoalID::ConstPtr& what) {
   if (gate_.cancel(*what)) loop_.postStop(MachineEvent::kCancel);
 }
 
-void StopServer::onStop(const Stop::ConstPtr& stop) {
+void StopServer::onStop(const flute_grinder::Stop::ConstPtr& stop) {
   switch (stop->request) {
-    case Stop::HOLD:
+    case flute_grinder::Stop::HOLD:
       static_cast<void>(gate_.hold());
       loop_.postStop(MachineEvent::kHold);  // an axis may be jogged while a job is planned
       break;
-    case Stop::CANCEL:
-    case Stop::DISABLE:
+    case flute_grinder::Stop::CANCEL:
+    case flute_grinder::Stop::DISABLE:
       gate_.cancel(actionlib_msgs::GoalID());
-      loop_.postStop(stop->request == Stop::CANCEL ? MachineEvent::kCancel : MachineEvent::kDisable);
+      loop_.postStop(stop->request == flute_grinder::Stop::CANCEL ? MachineEvent::kCancel : MachineEvent::kDisable);
       break;
     default: break;  // from a newer sender; its meaning is unknown
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

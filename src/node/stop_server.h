@@ -11,7 +11,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Serves every stop: `~hold`, `~disable`, the action's cancel and the topic `~stop`; and `~set_feed_override`. Its own
 /// thread does no I/O, logging, publishing or planning, and takes no lock that another thread holds while it does.
@@ -24,9 +24,10 @@ class StopServer {
  private:
   bool onHold(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onDisable(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onFeedOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response);
+  bool onFeedOverride(flute_grinder::SetFeedOverride::Request& request,
+                      flute_grinder::SetFeedOverride::Response& response);
   void onCancel(const actionlib_msgs::GoalID::ConstPtr& what);
-  void onStop(const Stop::ConstPtr& stop);
+  void onStop(const flute_grinder::Stop::ConstPtr& stop);
 
   ControlLoop& loop_;
   JobGate& gate_;
@@ -35,4 +36,4 @@ class StopServer {
   std::vector<ros::Subscriber> subscribers_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

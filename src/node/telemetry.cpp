@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -41,11 +41,11 @@ double strokeFraction(const Setpoint& p, const GrindProgram& program) {
   return fraction(strokeX(p, program) - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
 }
 
-JobProgress toMessage(const Progress& progress) {
-  JobProgress m;
+flute_grinder::JobProgress toMessage(const Progress& progress) {
+  flute_grinder::JobProgress m;
   m.job_digest = progress.job_digest;
   m.job_name = progress.job_name;
-  m.cutter = flute_grinder::toMessage(progress.cutter, progress.tooth_angles);
+  m.cutter = grinder::toMessage(progress.cutter, progress.tooth_angles);
   m.finished = static_cast<std::uint8_t>(progress.finished);
   m.tooth = static_cast<std::uint16_t>(progress.next.tooth);
   m.pass = static_cast<std::uint16_t>(progress.next.pass);
@@ -58,7 +58,7 @@ JobProgress toMessage(const Progress& progress) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const core::MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
                      const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
@@ -75,8 +75,8 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
-  state_ = own.advertise<GrinderState>("state", 10, true);
-  setpoints_ = own.advertise<SetpointBatch>("setpoints", 1000);
+  state_ = own.advertise<flute_grinder::GrinderState>("state", 10, true);
+  setpoints_ = own.advertise<flute_grinder::SetpointBatch>("setpoints", 1000);
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
   diagnostics_period_ = ros::WallDuration(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0));
@@ -269,14 +269,14 @@ void Telemetry::publishBatch() {
 }
 
 void Telemetry::publishState() {
-  GrinderState message = stateMessage();
+  flute_grinder::GrinderState message = stateMessage();
   message.header.stamp = ros::Time(record_.time);
   state_.publish(message);
 }
 
 /// Without a stamp.
-GrinderState Telemetry::stateMessage() const {
-  GrinderState message;
+flute_grinder::GrinderState Telemetry::stateMessage() const {
+  flute_grinder::GrinderState message;
   message.state = static_cast<std::uint8_t>(record_.state);
   message.state_name = toString(record_.state);
   message.enabled = record_.drive.enabled;
@@ -303,9 +303,9 @@ GrinderState Telemetry::stateMessage() const {
     message.tooth = last.tooth;
     message.pass = last.pass;
   }
-  const core::Reason fault = reasonOf(record_.fault);
+  const Reason fault = reasonOf(record_.fault);
   message.fault = text(fault, UnitSystem::kSi);
-  message.fault_reason = flute_grinder::toMessage(fault);
+  message.fault_reason = grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
   const JournalWriter::Status journal = journal_.status();
   message.progress = toMessage(journal.on_disk);
@@ -321,7 +321,7 @@ void Telemetry::makeFeedback() {
   const PlannedJob& plan = *job->preview->plan;
   const double done = plannedCycles(p, plan.move_ends);
   const auto all = static_cast<double>(plan.move_ends.back());
-  GrindFeedback feedback;
+  flute_grinder::GrindFeedback feedback;
   feedback.state = toString(record_.state);
   feedback.planned = 1;
   feedback.tooth = p.tooth;
@@ -341,10 +341,10 @@ void Telemetry::makeFeedback() {
   feedback_ = std::move(feedback);
 }
 
-std::optional<GrindFeedback> Telemetry::takeFeedback(std::uint64_t number) {
+std::optional<flute_grinder::GrindFeedback> Telemetry::takeFeedback(std::uint64_t number) {
   const std::lock_guard<std::mutex> lock(feedback_mutex_);
   if (feedback_number_ != number) return std::nullopt;
   return std::exchange(feedback_, std::nullopt);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

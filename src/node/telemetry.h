@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the frames and markers for rviz, and
 /// diagnostics; computes a goal's feedback, which GoalServer publishes; and gathers the records of jobs for the
@@ -37,9 +37,8 @@ class Telemetry {
   /// @param loop,journal,offsets,history must outlive this object.
   /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, History& history,
-            const core::MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
-            const FirstView& first_view);
+            const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
+            const DiagnosticThresholds& thresholds, const std::string& urdf, const FirstView& first_view);
 
   /// Starts publishing.
   void start() { thread_.start(); }
@@ -52,7 +51,7 @@ class Telemetry {
   void announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const Preview> preview,
                    const std::string& name);
   /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
-  std::optional<GrindFeedback> takeFeedback(std::uint64_t number);
+  std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number);
   /// The job announced last will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
   /// Hands over the result of a job, for its record. Thread safe; never blocks.
@@ -85,7 +84,7 @@ class Telemetry {
   void showJob(const Preview& preview);
   void tick();
   bool setPace();
-  GrinderState stateMessage() const;
+  flute_grinder::GrinderState stateMessage() const;
   void readRecords();
   void processRecord();
   void logFault();
@@ -118,9 +117,9 @@ class Telemetry {
   JobRecorder recorder_;
   std::mutex feedback_mutex_;  ///< guards the next two
   std::uint64_t feedback_number_ = 0;
-  std::optional<GrindFeedback> feedback_;  ///< of the job with this number, not taken yet
+  std::optional<flute_grinder::GrindFeedback> feedback_;  ///< of the job with this number, not taken yet
   bool scene_cleared_ = false;
-  SetpointBatch batch_;
+  flute_grinder::SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
   ros::SerializedMessage last_state_;  ///< without its stamp
   ros::SteadyTime last_change_;        ///< of anything that is published
@@ -132,4 +131,4 @@ class Telemetry {
   ServedQueue thread_;  ///< last member, so that it stops before the others are destroyed
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

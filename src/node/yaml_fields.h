@@ -10,7 +10,7 @@
 /// @file
 /// Writes and reads the fields of an atomic file as a map in YAML. `fields` is called with a visitor, and calls that
 /// with key and value of every field.
-namespace flute_grinder {
+namespace grinder {
 
 template <typename Fields>
 std::string toYaml(const char* comment, const Fields& fields) {
@@ -40,4 +40,4 @@ void fromYaml(const std::string& text, const Fields& fields) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

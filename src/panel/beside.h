@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Moves a window beside a part of the panel that is as wide as the panel, to where there is more room, and makes it so
 /// narrow that it has room there: the buttons that stop the grinder are never below it.
@@ -22,4 +22,4 @@ inline void moveBeside(QWidget& window, const QWidget& part) {
   window.move(right > left ? here.right() + apart : here.left() - apart - window.width(), std::min(here.top(), lowest));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <QApplication>
 #include <QMouseEvent>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -50,4 +50,4 @@ void guardFromDoubleClicks(QWidget& parent, const std::set<QWidget*>& always) {
   QApplication::instance()->installEventFilter(new ClickGuard(parent, always));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -140,4 +140,4 @@ QString figuresText(const CutterSection& section) {
   return lines.join("<br>");
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -38,4 +38,4 @@ CutterSection cutterSection(const GrindJob& job, double x);
 /// The figures of all teeth against those asked, in mm and deg: rich text, with what is wrong in red.
 QString figuresText(const CutterSection& section);
 
-}  // namespace flute_grinder
+}  // namespace grinder

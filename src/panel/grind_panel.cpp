@@ -23,7 +23,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -52,7 +52,7 @@ bool isDone(MachineState state, MachineEvent event) {
 }
 
 /// Whether two cutters fill a view alike.
-bool isSameSize(const Cutter& a, const Cutter& b) {
+bool isSameSize(const flute_grinder::Cutter& a, const flute_grinder::Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
 }
 
@@ -286,7 +286,7 @@ void GrindPanel::connectLink() {
   // Without a master it would wait for one.
   if (name_.empty() || master_watch_->master() == Master::kMissing) return;
   link_ = std::make_unique<GrinderLink>(
-      name_, [this](const std::string& id, const GrindResult& result) { onResult(id, result); },
+      name_, [this](const std::string& id, const flute_grinder::GrindResult& result) { onResult(id, result); },
       [this](const std::string& refusal) { showMessage(refusal); });
 }
 
@@ -349,7 +349,7 @@ void GrindPanel::nameWindows() {
   titled_ = name;
 }
 
-void GrindPanel::showLegend(const std::optional<Legend>& legend) {
+void GrindPanel::showLegend(const std::optional<flute_grinder::Legend>& legend) {
   legend_->show(legend);
   position_->setTolerance(legend ? std::optional<double>(legend->tolerance) : std::nullopt);
   look_->setEnabled(rviz_ && looked_at_);
@@ -405,22 +405,22 @@ void GrindPanel::dropPassedReply(std::optional<MachineState> state) {
   passing_.reset();
 }
 
-void GrindPanel::plan(const GrindGoal& goal) {
+void GrindPanel::plan(const flute_grinder::GrindGoal& goal) {
   planning_ = true;
-  link_->plan(goal, [this, goal](const Plan::Response& plan) {
+  link_->plan(goal, [this, goal](const flute_grinder::Plan::Response& plan) {
     planning_ = false;
     job_->setPlan(goal, plan);
   });
 }
 
-void GrindPanel::dryRun(const GrindGoal& goal) {
-  GrindGoal dry = goal;
+void GrindPanel::dryRun(const flute_grinder::GrindGoal& goal) {
+  flute_grinder::GrindGoal dry = goal;
   dry.dry_run = true;
   send(dry);
   if (!sent_) job_->discardPlan();
 }
 
-void GrindPanel::send(const GrindGoal& goal) {
+void GrindPanel::send(const flute_grinder::GrindGoal& goal) {
   const auto id = link_->send(goal);
   if (id) {
     sent_ = Sent{*id, goal};
@@ -437,10 +437,10 @@ void GrindPanel::confirmSwivel(double angle) {
   });
 }
 
-void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
-  const bool good = result.error_code == GrindResult::SUCCESSFUL;
+void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResult& result) {
+  const bool good = result.error_code == flute_grinder::GrindResult::SUCCESSFUL;
   if (sent_ && id == sent_->id) {
-    GrindGoal goal = sent_->goal;
+    flute_grinder::GrindGoal goal = sent_->goal;
     sent_.reset();
     if (goal.dry_run) {
       goal.dry_run = false;
@@ -448,7 +448,7 @@ void GrindPanel::onResult(const std::string& id, const GrindResult& result) {
         showMessage(result.error_string);
         return plan(goal);  // which the grinder has kept, and which knows more
       }
-      Plan::Response refused;
+      flute_grinder::Plan::Response refused;
       refused.reasons = {result.error_string};
       refused.violations = result.reasons;
       job_->setPlan(goal, refused);
@@ -475,7 +475,7 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
 
 void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
   try {
-    const core::OffsetBasis basis = touchedFor(axis);
+    const OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
     const auto answered = reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set");
     link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
@@ -488,8 +488,8 @@ void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
 }
 
 /// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be said.
-core::OffsetBasis GrindPanel::touchedFor(int axis) const {
-  core::OffsetBasis basis;
+OffsetBasis GrindPanel::touchedFor(int axis) const {
+  OffsetBasis basis;
   basis.method = OffsetMethod::kTouchOff;
   if (!job_->file().isEmpty()) return basisOf(goalFromFile(job_->file().toStdString()), basis.method);
   if (axis == kY) {
@@ -499,16 +499,16 @@ core::OffsetBasis GrindPanel::touchedFor(int axis) const {
   return basis;
 }
 
-void GrindPanel::fitOffsets(const GrindGoal& goal) {
+void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
   const auto message = link_->view().offsets;
   if (!message) return;
-  const core::WorkOffsets offsets = fromMessage(*message);
+  const WorkOffsets offsets = fromMessage(*message);
   struct Replies {
     int missing = 0;
     std::map<int, std::string> lines;  ///< of the axes
   };
   auto replies = std::make_shared<Replies>();
-  for (const core::OffsetMismatch& mismatch : mismatches(offsets, goal)) {
+  for (const OffsetMismatch& mismatch : mismatches(offsets, goal)) {
     if (!mismatch.change) continue;
     const double was = offsets.axes[static_cast<std::size_t>(mismatch.axis)].value, is = was + *mismatch.change;
     const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
@@ -551,6 +551,6 @@ void GrindPanel::showMessage(const std::string& text) {
   messages_->setPlainText(QTime::currentTime().toString("HH:mm:ss ") + capitalized(text));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder
 
-PLUGINLIB_EXPORT_CLASS(flute_grinder::GrindPanel, rviz::Panel)
+PLUGINLIB_EXPORT_CLASS(grinder::GrindPanel, rviz::Panel)

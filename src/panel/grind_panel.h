@@ -23,7 +23,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
 /// if the state table allows its request and it would change something; Hold wherever it is allowed, since it keeps the
@@ -51,7 +51,7 @@ class GrindPanel : public rviz::Panel {
   /// A goal sent by this panel that has not ended.
   struct Sent {
     std::string id;
-    GrindGoal goal;
+    flute_grinder::GrindGoal goal;
   };
 
   /// The state to which a request leads.
@@ -70,20 +70,20 @@ class GrindPanel : public rviz::Panel {
   void refresh();
   void connectLink();
   void nameWindows();
-  void showLegend(const std::optional<Legend>& legend);
+  void showLegend(const std::optional<flute_grinder::Legend>& legend);
   bool allowed(MachineEvent event, const GrinderView& view) const;
   void request(MachineEvent event);
   void dropPassedReply(std::optional<MachineState> state);
-  void plan(const GrindGoal& goal);
-  void dryRun(const GrindGoal& goal);
-  void send(const GrindGoal& goal);
+  void plan(const flute_grinder::GrindGoal& goal);
+  void dryRun(const flute_grinder::GrindGoal& goal);
+  void send(const flute_grinder::GrindGoal& goal);
   void confirmSwivel(double angle);
-  void onResult(const std::string& id, const GrindResult& result);
+  void onResult(const std::string& id, const flute_grinder::GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
   void touchOff(int axis, double at, bool large_change_ok);
-  core::OffsetBasis touchedFor(int axis) const;
-  void fitOffsets(const GrindGoal& goal);
+  OffsetBasis touchedFor(int axis) const;
+  void fitOffsets(const flute_grinder::GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
   double touchedY(double diameter) const;
   void showOtherJob(const GrinderView& view, bool job_runs);
@@ -112,7 +112,7 @@ class GrindPanel : public rviz::Panel {
   QPushButton* look_;         ///< at the tool
   QTabWidget* tabs_;          ///< of job, section, jog and view
   RvizView* rviz_ = nullptr;  ///< null without rviz
-  std::optional<Cutter> looked_at_;
+  std::optional<flute_grinder::Cutter> looked_at_;
   std::map<MachineEvent, QPushButton*> buttons_;
   OverrideBox* override_;
   ProgressBox* progress_;
@@ -122,4 +122,4 @@ class GrindPanel : public rviz::Panel {
   QTimer refresh_timer_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -30,11 +30,11 @@ constexpr double kPlanTimeout = 60;
 /// How long a stop waits for a connection: longer than reconnecting takes once grinder or master are back.
 const ros::WallDuration kStopTimeout(2);
 
-Stop stopFor(MachineEvent event) {
-  Stop stop;
-  stop.request = event == MachineEvent::kHold     ? Stop::HOLD
-                 : event == MachineEvent::kCancel ? Stop::CANCEL
-                                                  : Stop::DISABLE;
+flute_grinder::Stop stopFor(MachineEvent event) {
+  flute_grinder::Stop stop;
+  stop.request = event == MachineEvent::kHold     ? flute_grinder::Stop::HOLD
+                 : event == MachineEvent::kCancel ? flute_grinder::Stop::CANCEL
+                                                  : flute_grinder::Stop::DISABLE;
   return stop;
 }
 
@@ -59,9 +59,9 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefus
   subscribers_.push_back(nh_.subscribe("offsets", 10, &GrinderLink::onOffsets, this, hints));
   subscribers_.push_back(nh_.subscribe("legend", 10, &GrinderLink::onLegend, this, hints));
   subscribers_.push_back(around.subscribe("joint_states", 10, &GrinderLink::onJointState, this, hints));
-  goals_ = nh_.advertise<GrindActionGoal>("grind/goal", 10);
-  stops_ = nh_.advertise<Stop>("stop", 10);
-  jogs_ = nh_.advertise<Jog>("jog", 1);
+  goals_ = nh_.advertise<flute_grinder::GrindActionGoal>("grind/goal", 10);
+  stops_ = nh_.advertise<flute_grinder::Stop>("stop", 10);
+  jogs_ = nh_.advertise<flute_grinder::Jog>("jog", 1);
   spinner_.start();
 }
 
@@ -87,24 +87,24 @@ GrinderView GrinderLink::view() const {
   return view;
 }
 
-void GrinderLink::onState(const GrinderState::ConstPtr& state) {
+void GrinderLink::onState(const flute_grinder::GrinderState::ConstPtr& state) {
   const std::lock_guard<std::mutex> lock(mutex_);
   // After a silence it may be another process, which knows nothing of the job before.
   if (!isFresh(state_)) feedback_.reset();
-  state_ = Received<GrinderState>{*state, ros::SteadyTime::now()};
+  state_ = Received<flute_grinder::GrinderState>{*state, ros::SteadyTime::now()};
 }
 
-void GrinderLink::onFeedback(const GrindActionFeedback::ConstPtr& feedback) {
+void GrinderLink::onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  feedback_ = Received<GrindActionFeedback>{*feedback, ros::SteadyTime::now()};
+  feedback_ = Received<flute_grinder::GrindActionFeedback>{*feedback, ros::SteadyTime::now()};
 }
 
-void GrinderLink::onJob(const GrindActionGoal::ConstPtr& job) {
+void GrinderLink::onJob(const flute_grinder::GrindActionGoal::ConstPtr& job) {
   const std::lock_guard<std::mutex> lock(mutex_);
   job_ = job;
 }
 
-void GrinderLink::onResult(const GrindActionResult::ConstPtr& result) {
+void GrinderLink::onResult(const flute_grinder::GrindActionResult::ConstPtr& result) {
   const std::string& id = result->status.goal_id.id;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -119,12 +119,12 @@ void GrinderLink::onJogRefusal(const std_msgs::String::ConstPtr& refusal) {
   post([this, refusal] { on_jog_refusal_(refusal->data); });
 }
 
-void GrinderLink::onOffsets(const WorkOffsets::ConstPtr& offsets) {
+void GrinderLink::onOffsets(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const std::lock_guard<std::mutex> lock(mutex_);
   offsets_ = *offsets;
 }
 
-void GrinderLink::onLegend(const Legend::ConstPtr& legend) {
+void GrinderLink::onLegend(const flute_grinder::Legend::ConstPtr& legend) {
   const std::lock_guard<std::mutex> lock(mutex_);
   legend_.reset();
   if (legend->cutter.end_diameter > 0) legend_ = *legend;
@@ -180,65 +180,68 @@ void GrinderLink::request(MachineEvent event, const OnAnswer& on_answer) {
 }
 
 void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
-  SetFeedOverride::Request request;
+  flute_grinder::SetFeedOverride::Request request;
   request.fraction = fraction;
-  call<SetFeedOverride>("set_feed_override", request, kRequestTimeout,
-                        [on_answer, silence = noAnswer()](const auto& response) {
-                          if (!response) return on_answer("feed override: " + silence);
-                          on_answer(response->success ? "" : response->message);
-                        });
+  call<flute_grinder::SetFeedOverride>("set_feed_override", request, kRequestTimeout,
+                                       [on_answer, silence = noAnswer()](const auto& response) {
+                                         if (!response) return on_answer("feed override: " + silence);
+                                         on_answer(response->success ? "" : response->message);
+                                       });
 }
 
 void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
-  ConfirmSwivel::Request request;
+  flute_grinder::ConfirmSwivel::Request request;
   request.swivel = angle;
-  call<ConfirmSwivel>("confirm_swivel", request, kRequestTimeout,
-                      [on_answer, silence = noAnswer()](const auto& response) {
-                        if (!response) return on_answer("confirm-swivel: " + silence);
-                        on_answer(response->success ? "" : response->message);
-                      });
+  call<flute_grinder::ConfirmSwivel>("confirm_swivel", request, kRequestTimeout,
+                                     [on_answer, silence = noAnswer()](const auto& response) {
+                                       if (!response) return on_answer("confirm-swivel: " + silence);
+                                       on_answer(response->success ? "" : response->message);
+                                     });
 }
 
-void GrinderLink::touchOff(int axis, double position, const core::OffsetBasis& basis, bool large_change_ok,
+void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
                            const std::function<void(const std::string& refusal, bool large_change)>& on_answer) {
-  TouchOff::Request request;
+  flute_grinder::TouchOff::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.position = position;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
-  call<TouchOff>("touch_off", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
-    if (!response) return on_answer("touch-off: " + silence, false);
-    on_answer(response->success ? "" : "touch-off: " + response->message, response->large_change != 0);
-  });
+  call<flute_grinder::TouchOff>(
+      "touch_off", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
+        if (!response) return on_answer("touch-off: " + silence, false);
+        on_answer(response->success ? "" : "touch-off: " + response->message, response->large_change != 0);
+      });
 }
 
-void GrinderLink::setOffset(int axis, double value, const core::OffsetBasis& basis, const OnAnswer& on_answer) {
-  SetOffset::Request request;
+void GrinderLink::setOffset(int axis, double value, const OffsetBasis& basis, const OnAnswer& on_answer) {
+  flute_grinder::SetOffset::Request request;
   request.axis = kJointNames[static_cast<std::size_t>(axis)];
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
   request.large_change_ok = 1;
-  call<SetOffset>("set_offset", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
-    if (!response) return on_answer("set-offset: " + silence);
-    on_answer(response->success ? "" : "set-offset: " + response->message);
-  });
+  call<flute_grinder::SetOffset>("set_offset", request, kRequestTimeout,
+                                 [on_answer, silence = noAnswer()](const auto& response) {
+                                   if (!response) return on_answer("set-offset: " + silence);
+                                   on_answer(response->success ? "" : "set-offset: " + response->message);
+                                 });
 }
 
 void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswer& on_answer) {
-  JogStep::Request request;
+  flute_grinder::JogStep::Request request;
   request.axis = static_cast<std::uint8_t>(axis);
   request.distance = distance;
   request.speed = speed;
-  call<JogStep>("jog_step", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
-    if (!response) return on_answer("jog: " + silence);
-    on_answer(response->success ? "" : response->message);
-  });
+  call<flute_grinder::JogStep>("jog_step", request, kRequestTimeout,
+                               [on_answer, silence = noAnswer()](const auto& response) {
+                                 if (!response) return on_answer("jog: " + silence);
+                                 on_answer(response->success ? "" : response->message);
+                               });
 }
 
 void GrinderLink::jog(int axis, double velocity) {
-  Jog message;
+  flute_grinder::Jog message;
   const ros::WallTime now = ros::WallTime::now();  // rviz may take its time from a simulation
   message.header.stamp = ros::Time(now.sec, now.nsec);
   message.axis = static_cast<std::uint8_t>(axis);
@@ -246,21 +249,21 @@ void GrinderLink::jog(int axis, double velocity) {
   jogs_.publish(message);
 }
 
-void GrinderLink::plan(const GrindGoal& goal, const OnPlan& on_plan) {
-  Plan::Request request;
+void GrinderLink::plan(const flute_grinder::GrindGoal& goal, const OnPlan& on_plan) {
+  flute_grinder::Plan::Request request;
   request.goal = goal;
-  call<Plan>("plan", request, kPlanTimeout, [on_plan, silence = noAnswer()](const auto& response) {
+  call<flute_grinder::Plan>("plan", request, kPlanTimeout, [on_plan, silence = noAnswer()](const auto& response) {
     if (response) return on_plan(*response);
-    Plan::Response unknown;
+    flute_grinder::Plan::Response unknown;
     unknown.valid = 0;
     unknown.reasons.push_back(silence);
     on_plan(unknown);
   });
 }
 
-std::optional<std::string> GrinderLink::send(const GrindGoal& goal) {
+std::optional<std::string> GrinderLink::send(const flute_grinder::GrindGoal& goal) {
   if (goals_.getNumSubscribers() == 0) return std::nullopt;
-  GrindActionGoal message;
+  flute_grinder::GrindActionGoal message;
   message.header.stamp = ros::Time::now();
   message.goal_id = ids_.generateID();
   message.goal = goal;
@@ -292,4 +295,4 @@ void GrinderLink::sendStops() {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

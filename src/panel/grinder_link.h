@@ -25,21 +25,22 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The known state of a grinder.
 struct GrinderView {
-  std::optional<GrinderState> state;  ///< nothing if none was received for a second
+  std::optional<flute_grinder::GrinderState> state;  ///< nothing if none was received for a second
   /// Of the running job, whoever sent it, or of the last one; nothing without the state, and after it was missing.
-  std::optional<GrindFeedback> feedback;
-  GrindActionGoal::ConstPtr job;  ///< of that feedback, once it has started; may be null
+  std::optional<flute_grinder::GrindFeedback> feedback;
+  flute_grinder::GrindActionGoal::ConstPtr job;  ///< of that feedback, once it has started; may be null
   std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing if none is in planning
   /// Of the machine, as read by the drive [m], A [rad]; nothing if none was received for a second.
   std::optional<Axes> position;
   /// The same in work coordinates; NaN of an axis whose work offset is unknown. Nothing without the state.
   std::optional<Axes> work_position;
-  std::optional<WorkOffsets> offsets;  ///< nothing without the state
-  std::optional<Legend> legend;        ///< of the job that rviz shows; nothing without one, and without the state
+  std::optional<flute_grinder::WorkOffsets> offsets;  ///< nothing without the state
+  std::optional<flute_grinder::Legend>
+      legend;  ///< of the job that rviz shows; nothing without one, and without the state
 };
 
 /// Client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. It uses the
@@ -48,9 +49,9 @@ class GrinderLink {
  public:
   /// @param refusal why not; empty if it was done.
   using OnAnswer = std::function<void(const std::string& refusal)>;
-  using OnPlan = std::function<void(const Plan::Response& plan)>;
+  using OnPlan = std::function<void(const flute_grinder::Plan::Response& plan)>;
   /// @param id of the goal, as returned by send().
-  using OnResult = std::function<void(const std::string& id, const GrindResult& result)>;
+  using OnResult = std::function<void(const std::string& id, const flute_grinder::GrindResult& result)>;
 
   /// @param text why a continuous jog, from here or elsewhere, moves nothing.
   using OnJogRefusal = std::function<void(const std::string& text)>;
@@ -78,20 +79,20 @@ class GrinderLink {
   /// Sets an axis' work offset from where it stands. @param position in work coordinates [m], A [rad].
   /// @param basis what it is set for. @param large_change_ok it may change by any amount.
   /// @param on_answer as OnAnswer, and whether it was refused because it would change by much.
-  void touchOff(int axis, double position, const core::OffsetBasis& basis, bool large_change_ok,
+  void touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
                 const std::function<void(const std::string& refusal, bool large_change)>& on_answer);
   /// Sets an axis' work offset, however much it changes. @param value [m], A [rad].
-  void setOffset(int axis, double value, const core::OffsetBasis& basis, const OnAnswer& on_answer);
+  void setOffset(int axis, double value, const OffsetBasis& basis, const OnAnswer& on_answer);
   /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
   void jogStep(int axis, double distance, double speed, const OnAnswer& on_answer);
   /// Moves an axis for as long as this is called again and again, by a connection that survives the ROS master.
   /// @param velocity signed [m/s], A [rad/s]; 0 stops.
   void jog(int axis, double velocity);
   /// Generates and checks every setpoint. If the grinder does not answer, that is the plan's reason.
-  void plan(const GrindGoal& goal, const OnPlan& on_plan);
+  void plan(const flute_grinder::GrindGoal& goal, const OnPlan& on_plan);
 
   /// Sends a job. @return the goal's id; nothing if no grinder is connected.
-  std::optional<std::string> send(const GrindGoal& goal);
+  std::optional<std::string> send(const flute_grinder::GrindGoal& goal);
   /// Holds or cancels the running or planned job, whoever sent it, or switches the power off. Uses a connection that
   /// survives the ROS master, and has no answer: the state shows the effect.
   /// @param event kHold, kCancel or kDisable.
@@ -116,13 +117,13 @@ class GrinderLink {
   };
 
   void sendStops();
-  void onState(const GrinderState::ConstPtr& state);
-  void onFeedback(const GrindActionFeedback::ConstPtr& feedback);
-  void onJob(const GrindActionGoal::ConstPtr& job);
-  void onResult(const GrindActionResult::ConstPtr& result);
+  void onState(const flute_grinder::GrinderState::ConstPtr& state);
+  void onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback);
+  void onJob(const flute_grinder::GrindActionGoal::ConstPtr& job);
+  void onResult(const flute_grinder::GrindActionResult::ConstPtr& result);
   void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
-  void onOffsets(const WorkOffsets::ConstPtr& offsets);
-  void onLegend(const Legend::ConstPtr& legend);
+  void onOffsets(const flute_grinder::WorkOffsets::ConstPtr& offsets);
+  void onLegend(const flute_grinder::Legend::ConstPtr& legend);
   void onJointState(const sensor_msgs::JointState::ConstPtr& joints);
   void post(std::function<void()> answer);
   template <typename Service, typename OnResponse>
@@ -137,13 +138,13 @@ class GrinderLink {
   actionlib::GoalIDGenerator ids_;
 
   mutable std::mutex mutex_;  ///< guards what the callbacks write
-  std::optional<Received<GrinderState>> state_;
+  std::optional<Received<flute_grinder::GrinderState>> state_;
   std::optional<Received<Axes>> position_;
-  std::optional<WorkOffsets> offsets_;
-  std::optional<Legend> legend_;
-  std::optional<Received<GrindActionFeedback>> feedback_;
-  GrindActionGoal::ConstPtr job_;  ///< that was started last
-  std::string sent_;               ///< id of the last goal from here
+  std::optional<flute_grinder::WorkOffsets> offsets_;
+  std::optional<flute_grinder::Legend> legend_;
+  std::optional<Received<flute_grinder::GrindActionFeedback>> feedback_;
+  flute_grinder::GrindActionGoal::ConstPtr job_;  ///< that was started last
+  std::string sent_;                              ///< id of the last goal from here
   std::deque<std::function<void()>> answers_;
 
   ros::Publisher goals_, stops_, jogs_;
@@ -154,4 +155,4 @@ class GrinderLink {
   std::list<ServiceCall> calls_;  ///< last member, so that no call answers when the others are destroyed
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -24,7 +24,7 @@
 #include <exception>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -35,13 +35,15 @@ constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes th
 constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
 constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
 
-bool isUnfinished(const JobProgress& progress) { return !progress.job_digest.empty() && !progress.finished; }
+bool isUnfinished(const flute_grinder::JobProgress& progress) {
+  return !progress.job_digest.empty() && !progress.finished;
+}
 
 QString packageJobs() { return QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"; }
 
 /// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
 /// same one.
-bool discardsUnfinished(const GrindGoal& goal, const JobProgress& progress) {
+bool discardsUnfinished(const flute_grinder::GrindGoal& goal, const flute_grinder::JobProgress& progress) {
   if (!isUnfinished(progress)) return false;
   const bool goes_on = goal.first_tooth == progress.tooth && goal.first_pass == progress.pass;
   return !(goes_on && progress.job_digest == jobDigest(jobFromGoal(goal)));
@@ -49,7 +51,7 @@ bool discardsUnfinished(const GrindGoal& goal, const JobProgress& progress) {
 
 /// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: if it does
 /// not stand where it should, the grinder refuses the goal.
-bool needsConfirmation(const GrindGoal& goal, const Swivel& swivel) {
+bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swivel) {
   return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
 }
 
@@ -239,20 +241,20 @@ void JobBox::clickContinue(bool checked) {
   Q_EMIT fileChosen();
 }
 
-GrindGoal JobBox::goal() const {
-  GrindGoal goal = goalFromJob(*job_);
+flute_grinder::GrindGoal JobBox::goal() const {
+  flute_grinder::GrindGoal goal = goalFromJob(*job_);
   goal.job_name = QFileInfo(file_).fileName().toStdString();
   goal.wheel_name = wheel_;
   return goal;
 }
 
-std::optional<GrindGoal> JobBox::goalNow() {
+std::optional<flute_grinder::GrindGoal> JobBox::goalNow() {
   if (!job_) return std::nullopt;
   if (continue_->isChecked()) return where_left_;
   return goal();
 }
 
-std::optional<GrindGoal> JobBox::beginPlan() {
+std::optional<flute_grinder::GrindGoal> JobBox::beginPlan() {
   discardPlan();
   read();
   auto goal = goalNow();
@@ -260,7 +262,7 @@ std::optional<GrindGoal> JobBox::beginPlan() {
   return goal;
 }
 
-void JobBox::setPlan(const GrindGoal& goal, const Plan::Response& plan) {
+void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::Plan::Response& plan) {
   if (goalNow() != goal) return;
   planned_.reset();
   if (plan.valid) planned_ = goal;
@@ -295,7 +297,7 @@ void JobBox::askForOffsets(bool discard) {
   const auto mismatches = offsetsToAskFor();
   if (mismatches.empty()) return askForSwivel();
   QStringList reasons;
-  for (const core::OffsetMismatch& mismatch : mismatches) reasons << QString::fromStdString(mismatch.reason) + ".";
+  for (const OffsetMismatch& mismatch : mismatches) reasons << QString::fromStdString(mismatch.reason) + ".";
   // So that each axis' is seen, however long they are.
   const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
   QString text = "Start with these zero points?";
@@ -308,14 +310,14 @@ void JobBox::askForOffsets(bool discard) {
 }
 
 /// Those that do not fit the chosen job.
-std::vector<core::OffsetMismatch> JobBox::offsetMismatches() const {
+std::vector<OffsetMismatch> JobBox::offsetMismatches() const {
   if (!job_ || !offsets_) return {};
   return mismatches(*offsets_, goal());
 }
 
 /// A job that is continued needs those with which it began, which the grinder knows.
-std::vector<core::OffsetMismatch> JobBox::offsetsToAskFor() const {
-  return continue_->isChecked() ? std::vector<core::OffsetMismatch>{} : offsetMismatches();
+std::vector<OffsetMismatch> JobBox::offsetsToAskFor() const {
+  return continue_->isChecked() ? std::vector<OffsetMismatch>{} : offsetMismatches();
 }
 
 void JobBox::askForSwivel() {
@@ -349,7 +351,7 @@ void JobBox::planAnew() {
 }
 
 /// The planned goal. Reads the file again; nothing, and a reason is shown, if it has changed since planning.
-std::optional<GrindGoal> JobBox::takePlanned() {
+std::optional<flute_grinder::GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
   if (goal && goal == goalNow()) return goal;
@@ -362,7 +364,8 @@ void JobBox::showOtherJob(const QString& text) {
   answer_->setCurrentWidget(text.isEmpty() ? verdict_ : other_job_);
 }
 
-void JobBox::refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle) {
+void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
+                     const std::optional<flute_grinder::WorkOffsets>& offsets, bool idle) {
   offsets_.reset();
   if (offsets) offsets_ = fromMessage(*offsets);
   showFile();
@@ -390,13 +393,13 @@ void JobBox::showZeroPoints() {
   QString hint;
   if (offsets_) {
     QStringList axes, said;
-    for (const core::OffsetMismatch& mismatch : offsetMismatches()) axes << QString("XYZA"[mismatch.axis]);
+    for (const OffsetMismatch& mismatch : offsetMismatches()) axes << QString("XYZA"[mismatch.axis]);
     if (continue_->isChecked()) said << "as when the job began";
     if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
     if (said.isEmpty()) said << "set for this job";
     text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
-      const std::string basis = core::basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
+      const std::string basis = basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
       hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);
     }
   }
@@ -405,7 +408,7 @@ void JobBox::showZeroPoints() {
   zeros_->setToolTip(hint);
 }
 
-void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
+void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& state) {
   if (!state) return;
   const bool has_no_plan = verdict_->toPlainText() == withoutPlan();
   job_runs_ = isInJob(static_cast<MachineState>(state->state));
@@ -415,7 +418,7 @@ void JobBox::refreshContinue(const std::optional<GrinderState>& state) {
   if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {
-    GrindGoal left = goal();
+    flute_grinder::GrindGoal left = goal();
     if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
   if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();
@@ -457,4 +460,4 @@ void JobBox::showVerdict(const QString& text, bool good) {
   closeQuestion();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -41,7 +41,8 @@ class JobBox : public QWidget {
   /// @param state nothing if the grinder does not answer.
   /// @param offsets nothing if they are not known.
   /// @param idle whether the grinder can plan now.
-  void refresh(const std::optional<GrinderState>& state, const std::optional<WorkOffsets>& offsets, bool idle);
+  void refresh(const std::optional<flute_grinder::GrinderState>& state,
+               const std::optional<flute_grinder::WorkOffsets>& offsets, bool idle);
 
   /// Names the job that runs in the grinder where that is not the one from here. @param text empty for none.
   void showOtherJob(const QString& text);
@@ -50,7 +51,7 @@ class JobBox : public QWidget {
   void setGrinder(const std::string& name) { grinder_ = name; }
 
   /// Shows the result of a plan, if it is for the goal that would be started now.
-  void setPlan(const GrindGoal& goal, const Plan::Response& plan);
+  void setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::Plan::Response& plan);
 
   /// Plans the job once more, as it would be started now.
   void planAnew();
@@ -85,23 +86,23 @@ class JobBox : public QWidget {
   void openSetup();
   void showFile();
   void read();
-  std::optional<GrindGoal> takePlanned();
+  std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();
   void makeQuestions();
   void ask(Question* question, const QString& text);
   void closeQuestion() { pages_->setCurrentWidget(form_); }
   void askForOffsets(bool discard);
   void askForSwivel();
-  std::vector<core::OffsetMismatch> offsetMismatches() const;
-  std::vector<core::OffsetMismatch> offsetsToAskFor() const;
+  std::vector<OffsetMismatch> offsetMismatches() const;
+  std::vector<OffsetMismatch> offsetsToAskFor() const;
   void showZeroPoints();
   bool asksWithReason() const;
   bool discardsSomething() const;
   void continueUnfinished();
-  GrindGoal goal() const;
-  std::optional<GrindGoal> goalNow();
-  std::optional<GrindGoal> beginPlan();
-  void refreshContinue(const std::optional<GrinderState>& state);
+  flute_grinder::GrindGoal goal() const;
+  std::optional<flute_grinder::GrindGoal> goalNow();
+  std::optional<flute_grinder::GrindGoal> beginPlan();
+  void refreshContinue(const std::optional<flute_grinder::GrinderState>& state);
   void findUnfinished();
   void clickContinue(bool checked);
   QString withoutPlan() const;
@@ -110,19 +111,19 @@ class JobBox : public QWidget {
   QString file_;
   std::string grinder_;  ///< name of its node
   std::shared_ptr<const GrindJob> job_;
-  std::optional<GrindGoal> planned_;          ///< without violations
-  std::optional<GrindGoal> where_left_;       ///< the job as it would be continued, if it can be
-  JobProgress progress_;                      ///< as last received from the grinder
-  std::string journal_error_;                 ///< the same; empty if the journal is good
-  bool journal_damaged_ = false;              ///< the same; the journal may then be discarded
-  bool job_runs_ = false;                     ///< whose progress that is
-  QString unfinished_file_;                   ///< of another job that can be continued; empty if none is known
-  std::string sought_;                        ///< the job and the chosen file for which that was sought
-  Swivel swivel_;                             ///< as last received from the grinder
-  std::optional<core::WorkOffsets> offsets_;  ///< as last received from the grinder
-  std::string wheel_;                         ///< name of the file's wheel file; empty if it has none
-  bool discard_ = false;                      ///< the unfinished job, by the start that waits for an answer
-  bool ignore_offset_check_ = false;          ///< said for that start
+  std::optional<flute_grinder::GrindGoal> planned_;     ///< without violations
+  std::optional<flute_grinder::GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
+  flute_grinder::JobProgress progress_;                 ///< as last received from the grinder
+  std::string journal_error_;                           ///< the same; empty if the journal is good
+  bool journal_damaged_ = false;                        ///< the same; the journal may then be discarded
+  bool job_runs_ = false;                               ///< whose progress that is
+  QString unfinished_file_;             ///< of another job that can be continued; empty if none is known
+  std::string sought_;                  ///< the job and the chosen file for which that was sought
+  Swivel swivel_;                       ///< as last received from the grinder
+  std::optional<WorkOffsets> offsets_;  ///< as last received from the grinder
+  std::string wheel_;                   ///< name of the file's wheel file; empty if it has none
+  bool discard_ = false;                ///< the unfinished job, by the start that waits for an answer
+  bool ignore_offset_check_ = false;    ///< said for that start
   QLabel* name_;
   QPushButton* choose_;
   QPushButton* setup_;
@@ -143,4 +144,4 @@ class JobBox : public QWidget {
   QPointer<QFileDialog> file_dialog_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

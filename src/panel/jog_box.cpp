@@ -8,7 +8,7 @@
 #include <QHBoxLayout>
 #include <QLabel>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -115,7 +115,7 @@ void JogBox::repeat() {
   Q_EMIT continuousWanted(axis, velocity);
 }
 
-void JogBox::refresh(const std::optional<GrinderState>& state, bool has_services) {
+void JogBox::refresh(const std::optional<flute_grinder::GrinderState>& state, bool has_services) {
   const bool allowed = state && after(static_cast<MachineState>(state->state), MachineEvent::kJog) && state->homed != 0;
   const bool reached = has_services || isContinuous();
   for (const Button& button : buttons_) {
@@ -125,4 +125,4 @@ void JogBox::refresh(const std::optional<GrinderState>& state, bool has_services
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <array>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Buttons that jog the axes: by a step with each click, or for as long as a button is pressed. The latter ends when
 /// the button is released, hidden or disabled, or loses the focus.
@@ -23,7 +23,7 @@ class JogBox : public QWidget {
   explicit JogBox(QWidget* parent = nullptr);
 
   /// @param has_services whether requests with an answer can be sent; a continuous jog does without.
-  void refresh(const std::optional<GrinderState>& state, bool has_services);
+  void refresh(const std::optional<flute_grinder::GrinderState>& state, bool has_services);
 
  Q_SIGNALS:
   void stepWanted(int axis, double distance, double speed);  ///< [m], [m/s], of A [rad], [rad/s]
@@ -52,4 +52,4 @@ class JogBox : public QWidget {
   QTimer repeat_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <QPainter>
 #include <QRegularExpression>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -83,7 +83,7 @@ LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cu
   show(std::nullopt);
 }
 
-void LegendBox::show(const std::optional<Legend>& legend) {
+void LegendBox::show(const std::optional<flute_grinder::Legend>& legend) {
   setEnabled(legend.has_value());
   const auto set = [&](std::size_t i, const QString& title, const QString& end) {
     scales_[i].title->setText(title);
@@ -97,7 +97,7 @@ void LegendBox::show(const std::optional<Legend>& legend) {
     max_->clear();
     return;
   }
-  const Cutter& cutter = legend->cutter;
+  const flute_grinder::Cutter& cutter = legend->cutter;
   cutter_->setText(QString::fromStdString(toolText(fromMessage(cutter), cutter.tooth_angles.size())));
   set(0, "Measured error", micrometres(legend->tolerance));
   set(1, "Rake error, off " + degrees(cutter.rake_angle), degrees(cutter.rake_tolerance));
@@ -105,4 +105,4 @@ void LegendBox::show(const std::optional<Legend>& legend) {
   max_->setText("Maximum error measured: " + micrometres(legend->max_error));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <array>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What the colours in rviz mean: where each scale ends, and the maximum error measured.
 class LegendBox : public QWidget {
@@ -17,7 +17,7 @@ class LegendBox : public QWidget {
  public:
   explicit LegendBox(QWidget* parent = nullptr);
   /// @param legend nothing if no job is shown, or if the grinder does not answer.
-  void show(const std::optional<Legend>& legend);
+  void show(const std::optional<flute_grinder::Legend>& legend);
 
  private:
   struct Scale {
@@ -30,4 +30,4 @@ class LegendBox : public QWidget {
   QLabel* max_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <QRegularExpression>
 #include <QToolTip>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -104,4 +104,4 @@ void NumberBox::paintEvent(QPaintEvent* event) {
   setPalette(colours);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

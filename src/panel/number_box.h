@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A box for a number with its unit. Point and comma are both the decimal sign, whatever the system's language, and
 /// there is no group separator: 6,203 is 6.203, never 6203. What is no number in range stays as it was typed, in red,
@@ -43,4 +43,4 @@ class NumberBox : public QDoubleSpinBox {
   bool red_ = false;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

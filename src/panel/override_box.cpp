@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -60,7 +60,7 @@ void OverrideBox::answered() {
 
 void OverrideBox::reset() { unanswered_ = 0; }
 
-void OverrideBox::refresh(const std::optional<GrinderState>& state) {
+void OverrideBox::refresh(const std::optional<flute_grinder::GrinderState>& state) {
   slider_->setEnabled(state.has_value());
   const bool asking = slider_->isSliderDown() || rest_.isActive() || unanswered_ > 0 || settle_.isActive();
   if (!state) value_->clear();
@@ -71,4 +71,4 @@ void OverrideBox::refresh(const std::optional<GrinderState>& state) {
   value_->setText(QString("%1 %").arg(percent));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The feed override: shows the grinder's, and requests a new one when the slider is released or comes to rest.
 class OverrideBox : public QWidget {
@@ -18,7 +18,7 @@ class OverrideBox : public QWidget {
  public:
   explicit OverrideBox(QWidget* parent = nullptr);
 
-  void refresh(const std::optional<GrinderState>& state);
+  void refresh(const std::optional<flute_grinder::GrinderState>& state);
   /// To be called after every wanted(): the grinder has accepted or refused it.
   void answered();
   /// No more answers will come.
@@ -37,4 +37,4 @@ class OverrideBox : public QWidget {
   QTimer settle_;  ///< until a state newer than the answer has arrived
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

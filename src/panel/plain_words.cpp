@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -25,7 +25,7 @@ const char* wheelInWork(MachineState state) {
   }
 }
 
-std::string feedText(const PathStatistics& s) {
+std::string feedText(const flute_grinder::PathStatistics& s) {
   if (!(s.max_feed > 0)) return "The feed is never reached.";
   const double slowest = s.min_feed / kMillimetrePerMinute;
   const double fastest = s.max_feed / kMillimetrePerMinute;
@@ -35,7 +35,7 @@ std::string feedText(const PathStatistics& s) {
 }
 
 /// A job by its file and tool.
-std::string named(const std::string& name, const Cutter& cutter) {
+std::string named(const std::string& name, const flute_grinder::Cutter& cutter) {
   return (name.empty() ? "a job without a name" : name) + " (" +
          toolText(fromMessage(cutter), cutter.tooth_angles.size()) + ")";
 }
@@ -49,7 +49,7 @@ std::string duration(double seconds) {
   return format("%ld:%02ld:%02ld h", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-std::string describe(const GrinderState& state) {
+std::string describe(const flute_grinder::GrinderState& state) {
   const auto machine = static_cast<MachineState>(state.state);
   std::string text;
   // In states other than a fault it says why the last job did not begin.
@@ -67,7 +67,7 @@ std::string describe(const GrinderState& state) {
   return text + (sentence.empty() ? "This panel does not know the grinder's state." : sentence);
 }
 
-std::string swivelText(const GrinderState& state) {
+std::string swivelText(const flute_grinder::GrinderState& state) {
   if (!std::isfinite(state.swivel)) return state.swivel_measured ? "Swivel not known" : "Swivel not confirmed";
   return (state.swivel_measured ? "Swivel at " : "Swivel set to ") +
          text(Quantity{state.swivel, Unit::kRadian}, UnitSystem::kShop);
@@ -89,14 +89,14 @@ std::string done(MachineEvent event) {
   }
 }
 
-std::string describe(const GrindGoal& goal) { return named(goal.job_name, goal.cutter); }
+std::string describe(const flute_grinder::GrindGoal& goal) { return named(goal.job_name, goal.cutter); }
 
-std::string describe(const JobProgress& progress) {
+std::string describe(const flute_grinder::JobProgress& progress) {
   return named(progress.job_name, progress.cutter) +
          format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
 }
 
-std::string describe(const Plan::Response& plan) {
+std::string describe(const flute_grinder::Plan::Response& plan) {
   std::string text;
   if (!plan.valid) {
     text = "Cannot be ground:";
@@ -110,11 +110,11 @@ std::string describe(const Plan::Response& plan) {
   }
   for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
   text += feedText(plan.statistics);
-  for (const FeedLimit& limit : plan.statistics.feed_limits) {
-    text += "\n" + core::causeText(limit.cause, UnitSystem::kShop) +
+  for (const flute_grinder::FeedLimit& limit : plan.statistics.feed_limits) {
+    text += "\n" + causeText(limit.cause, UnitSystem::kShop) +
             format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
   }
   return text;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

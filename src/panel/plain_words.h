@@ -7,28 +7,28 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A time, e.g. "7.0 s", "12:05 min" or "1:02:05 h". @param seconds not negative.
 std::string duration(double seconds);
 
 /// What the grinder is doing, why, and what to do about it.
-std::string describe(const GrinderState& state);
+std::string describe(const flute_grinder::GrinderState& state);
 
 /// Where the swivel stands, as the drive measures it or somebody has confirmed it.
-std::string swivelText(const GrinderState& state);
+std::string swivelText(const flute_grinder::GrinderState& state);
 
 /// The success of a request, in a line. @param event a request.
 std::string done(MachineEvent event);
 
 /// A job that runs, by its file and tool.
-std::string describe(const GrindGoal& goal);
+std::string describe(const flute_grinder::GrindGoal& goal);
 
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
-std::string describe(const JobProgress& progress);
+std::string describe(const flute_grinder::JobProgress& progress);
 
 /// What came of a plan: how long the job takes, what comes closest, why zero points do not fit, what cuts its feed; or
 /// its violations. A line for each.
-std::string describe(const Plan::Response& plan);
+std::string describe(const flute_grinder::Plan::Response& plan);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <QGridLayout>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -61,4 +61,4 @@ void Question::enableAnswers(bool enabled) {
   for (auto* answer : findChildren<QPushButton*>()) answer->setEnabled(enabled);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 
 class QGridLayout;
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Asks before something is done that the operator may not want: a text, and the answers below it in two columns, with
 /// *Not yet*, which does nothing, in the same place in each. For a second after it has appeared it takes no answer,
@@ -40,4 +40,4 @@ class Question : public QWidget {
   QTimer appearing_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

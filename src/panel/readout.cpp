@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -24,7 +24,7 @@ constexpr const char* kBlue = "#1a5fb4";
 constexpr const char* kAmber = "#9a5b00";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
-const char* colourOf(const GrinderState& grinder) {
+const char* colourOf(const flute_grinder::GrinderState& grinder) {
   switch (rowOf(static_cast<MachineState>(grinder.state)).group) {
     case StateGroup::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case StateGroup::kActive: return kBlue;
@@ -162,7 +162,7 @@ void ProgressBox::set(const Bar& bar, const QString& format, double fraction, bo
 
 void ProgressBox::show(const GrinderView& view, bool job_runs) {
   if (view.planned) return showPlanning(*view.planned);
-  const GrindFeedback f = view.feedback.value_or(GrindFeedback());
+  const flute_grinder::GrindFeedback f = view.feedback.value_or(flute_grinder::GrindFeedback());
   set(stroke_, kStrokeDone, f.stroke_fraction, job_runs);
   if (!view.feedback || !job_runs) {
     place_->setText(view.state ? "No job runs" : "");
@@ -177,7 +177,7 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
   set(job_, QString(kJobDone) + ", " + left, f.job_fraction, true);
 }
 
-void ProgressBox::showPlace(const GrinderView& view, const GrindFeedback& feedback) {
+void ProgressBox::showPlace(const GrinderView& view, const flute_grinder::GrindFeedback& feedback) {
   const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
   const QString first = name.isEmpty() ? "T" : ", t";
   showName(*place_, name, first + QString("ooth %1, pass %2").arg(feedback.tooth + 1).arg(feedback.pass + 1));
@@ -254,4 +254,4 @@ void PositionBox::show(const GrinderView& view) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

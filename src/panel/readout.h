@@ -10,7 +10,7 @@
 #include <array>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The panel's head: the grinder's name, where its swivel stands, its state on a coloured field, and a sentence that
 /// explains it, or that says whether the grinder or the ROS master is missing.
@@ -42,7 +42,7 @@ class ProgressBox : public QWidget {
   void show(const GrinderView& view, bool job_runs);
 
  private:
-  void showPlace(const GrinderView& view, const GrindFeedback& feedback);
+  void showPlace(const GrinderView& view, const flute_grinder::GrindFeedback& feedback);
   void showPlanning(double planned);
 
   /// A bar with its text above it, where it is legible whatever the bar's colours.
@@ -77,4 +77,4 @@ class PositionBox : public QWidget {
   int decimals_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -31,7 +31,7 @@ RvizView::RvizView(rviz::VisualizationManager& manager, QObject* parent) : QObje
   manager.getRenderPanel()->installEventFilter(this);
 }
 
-void RvizView::lookAt(const Cutter& cutter) {
+void RvizView::lookAt(const flute_grinder::Cutter& cutter) {
   rviz::ViewController* view = manager_.getViewManager()->getCurrent();
   const bool orbits = view && view->getClassId() == "rviz/Orbit";
   if (!orbits || view->subProp("Target Frame")->getValue().toString() != kFrame) return;
@@ -70,4 +70,4 @@ void RvizView::resume() {
   manager_.startUpdate();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 
 #include <chrono>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Where rviz's view looks, and how often it is drawn.
 class RvizView : public QObject {
@@ -24,7 +24,7 @@ class RvizView : public QObject {
 
   /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. A view in
   /// another frame does not look at the work, and stays.
-  void lookAt(const Cutter& cutter);
+  void lookAt(const flute_grinder::Cutter& cutter);
 
   /// Has rviz draw at its own frame rate while something moves or the mouse turns the view, and ten times a second
   /// otherwise: without a graphics card each frame costs. To be called often.
@@ -44,4 +44,4 @@ class RvizView : public QObject {
   QTimer pause_;  ///< between two frames
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

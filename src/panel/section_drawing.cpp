@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -168,4 +168,4 @@ void SectionDrawing::paintEvent(QPaintEvent* /*event*/) {
   if (section_) Painting(painter, *section_, QRectF(rect()).adjusted(3, 2, -3, -2)).paint();
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Draws a section of the ground cutter, seen from the shank and turned until the first tooth's edge is at the top. The
 /// first tooth's rake and land, the core and the cutter's diameter are dimensioned; what is asked is dashed.
@@ -25,4 +25,4 @@ class SectionDrawing : public QWidget {
   std::shared_ptr<const CutterSection> section_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

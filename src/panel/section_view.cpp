@@ -14,7 +14,7 @@
 #include <cmath>
 #include <exception>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -94,7 +94,7 @@ SectionView::Computed SectionView::computed(const Wanted& wanted) {
     const double x = std::min(wanted.x * kMillimetre, job->cutter.flute_length);
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));
     return {wanted.job, section, figuresText(*section), Clock::now() - begin, job};
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     return failed(text(error.reason(), UnitSystem::kShop));
   } catch (const std::exception& error) {
     return failed(error.what());
@@ -118,7 +118,7 @@ QString SectionView::whyNothing(const GrinderView& view) const {
   if (!follow_->isChecked()) return x_->isGood() ? "" : "Allowed X: " + x_->allowed() + ".";
   if (!view.work_position || !std::isfinite((*view.work_position)[kX])) return "No position comes from the grinder.";
   if (!view.state || !isInJob(static_cast<MachineState>(view.state->state))) return "";
-  const JobProgress& running = view.state->progress;
+  const flute_grinder::JobProgress& running = view.state->progress;
   if (running.job_digest == digest_) return "";
   return "The grinder runs " + QString::fromStdString(describe(running)).toHtmlEscaped() +
          ". This is not the chosen job, and only the chosen job's section can be shown, at an X of your choice.";
@@ -136,4 +136,4 @@ void SectionView::show(const std::shared_ptr<const CutterSection>& section, cons
   if (figures_->text() != text) figures_->setText(text);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The part of the panel that shows a section of the cutter that the chosen job grinds, at a chosen X or where the
 /// wheel stands. Sections are computed in a thread of their own, one at a time and for a tenth of the time at most;
@@ -64,4 +64,4 @@ class SectionView : public QWidget {
   std::future<Computed> computing_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

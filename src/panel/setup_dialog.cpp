@@ -21,7 +21,7 @@
 #include <exception>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -143,4 +143,4 @@ void SetupDialog::take(const Done& done) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

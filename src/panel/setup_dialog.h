@@ -14,7 +14,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 struct JobSetup;
@@ -61,4 +61,4 @@ class SetupDialog : public QDialog {
   std::future<Done> working_;  ///< last member: its thread uses the others
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 #include <QPlainTextEdit>
 #include <QString>
 
-namespace flute_grinder {
+namespace grinder {
 
 constexpr const char* kWrong = "#b00020";  ///< colour of what is not as it should be
 
@@ -32,4 +32,4 @@ inline void showName(QLabel& label, const QString& name, const QString& rest = "
   label.setText(metrics.elidedText(name, Qt::ElideMiddle, label.width() - metrics.horizontalAdvance(rest)) + rest);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -20,8 +20,9 @@ double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
 const char* unitName(int axis) { return axis == kA ? "deg" : "mm"; }
 
 /// Whether the grinder sets offsets in its state.
-bool mayTouchOff(const GrinderState& state) {
-  return (state.state == GrinderState::READY || state.state == GrinderState::DISABLED) && state.homed != 0;
+bool mayTouchOff(const flute_grinder::GrinderState& state) {
+  return (state.state == flute_grinder::GrinderState::READY || state.state == flute_grinder::GrinderState::DISABLED) &&
+         state.homed != 0;
 }
 
 }  // namespace
@@ -113,4 +114,4 @@ QString TouchOffBox::offsetText(const GrinderView& view) const {
   return text + QString("set by %1, %2").arg(QString::fromStdString(view.offsets->set_by[i]), time);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

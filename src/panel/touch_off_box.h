@@ -12,7 +12,7 @@
 
 #include <functional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Sets the work offset of an axis from where it stands, and shows the offset with who set it and when.
 class TouchOffBox : public QWidget {
@@ -47,4 +47,4 @@ class TouchOffBox : public QWidget {
   std::function<void()> all_the_same_;  ///< the answer to the question
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

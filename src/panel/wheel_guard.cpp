@@ -6,7 +6,7 @@
 #include <QEvent>
 #include <QScrollBar>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -37,4 +37,4 @@ void guardFromWheel(QWidget& parent) {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

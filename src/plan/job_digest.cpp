@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::string jobDigest(const GrindJob& job) {
 
 std::string wheelDigest(const GrindJob& job) { return digestOf(figuresOf(job, isOfWheel)); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

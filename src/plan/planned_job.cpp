@@ -7,14 +7,14 @@
 #include <stdexcept>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
 /// A plan without a program, because there is no law of Z.
-JobPlan refused(core::Reason reason) {
+JobPlan refused(Reason reason) {
   JobPlan plan;
-  plan.fault = reason.kind == core::ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+  plan.fault = reason.kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
   plan.reasons.push_back(std::move(reason));
   return plan;
 }
@@ -26,15 +26,15 @@ JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& sta
   GrindJob with_law;
   try {
     with_law = withZLaw(job, watch);
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     return refused(error.reason());
   } catch (const std::invalid_argument& error) {
-    return refused(core::otherReason(error.what()));
+    return refused(otherReason(error.what()));
   }
   return planJob(with_law, machine, start, first, visit, watch);
 }
 
-void refuse(JobPlan& plan, PlanFault fault, const std::vector<core::Reason>& reasons) {
+void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) {
   if (plan.good() && !reasons.empty()) plan.fault = fault;
   plan.reasons.insert(plan.reasons.end(), reasons.begin(), reasons.end());
 }
@@ -60,4 +60,4 @@ PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const 
   return planned;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string sha256Hex(const void* bytes, std::size_t count) {
   std::array<std::uint8_t, 32> digest{};
@@ -21,4 +21,4 @@ std::string sha256Hex(const void* bytes, std::size_t count) {
   return text;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,6 +1,6 @@
 #include "flute_grinder/record/job_events.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -51,4 +51,4 @@ Json JobEvents::overrides() const {
   return list;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

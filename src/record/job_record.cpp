@@ -11,7 +11,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -21,7 +21,7 @@ constexpr const char* kNoEnd = "the grinder's program ended before the job did";
 
 }  // namespace
 
-Json plannedJson(const core::PathStatistics& planned) {
+Json plannedJson(const PathStatistics& planned) {
   return {{"setpoints", planned.setpoints},
           {"duration_s", planned.duration},
           {"max_deviation_um", planned.max_deviation / kMicrometre},
@@ -61,10 +61,10 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleRecord& record)
 
 Json JobRecord::jobJson() const {
   const GrindJob& job = program_->job();
-  return {{"name", name_}, {"digest", digest_}, {"file", flute_grinder::toJson(job)}};
+  return {{"name", name_}, {"digest", digest_}, {"file", grinder::toJson(job)}};
 }
 
-void JobRecord::setZeroPoints(const core::WorkOffsets& offsets, bool said_right) {
+void JobRecord::setZeroPoints(const WorkOffsets& offsets, bool said_right) {
   offsets_ = offsets;
   offsets_said_right_ = said_right;
 }
@@ -72,10 +72,10 @@ void JobRecord::setZeroPoints(const core::WorkOffsets& offsets, bool said_right)
 Json JobRecord::zeroPointsJson() const {
   Json json = Json::object();
   for (std::size_t i = 0; i < offsets_.axes.size(); ++i) {
-    const core::WorkOffset& offset = offsets_.axes[i];
+    const WorkOffset& offset = offsets_.axes[i];
     json[std::string(1, "xyza"[i])] = {{"set_by", offset.wasSet() ? Json(offset.set_by) : Json(nullptr)},
                                        {"set_at", offset.wasSet() ? Json(utcText(offset.set_at)) : Json(nullptr)},
-                                       {"set_for", flute_grinder::toJson(offset.basis)}};
+                                       {"set_for", grinder::toJson(offset.basis)}};
   }
   json["said_right"] = offsets_said_right_;
   return json;
@@ -87,7 +87,7 @@ Json JobRecord::strokesJson() const {
   return list;
 }
 
-Json JobRecord::json(const std::string& grinder, const core::MachineInfo& machine) const {
+Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) const {
   const std::uint64_t written = std::max(conclusion_.setpoints_written, setpoints_ + lost_);
   Json record{{"record", 1},
               {"grinder", grinder},
@@ -98,7 +98,7 @@ Json JobRecord::json(const std::string& grinder, const core::MachineInfo& machin
               {"outcome", conclusion_.outcome},
               {"reason", conclusion_.reason},
               {"first", {{"tooth", first_.tooth + 1}, {"pass", first_.pass + 1}}},
-              {"work_offsets", flute_grinder::toJson(program_->machine().work_offset, "")},
+              {"work_offsets", grinder::toJson(program_->machine().work_offset, "")},
               {"zero_points", zeroPointsJson()},
               {"planned", plannedJson(planned_)},
               {"setpoints", {{"written", written}, {"lost", lost_}}},
@@ -110,4 +110,4 @@ Json JobRecord::json(const std::string& grinder, const core::MachineInfo& machin
   return record;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,16 +2,16 @@
 
 #include "flute_grinder/control/loop_config.h"
 
-namespace flute_grinder {
+namespace grinder {
 
-core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive) {
+MachineInfo machineInfo(const LoopConfig& config, const std::string& drive) {
   const AxisLimits& limits = config.machine.limits;
   return {config.name,           FLUTE_GRINDER_VERSION, drive,
           config.machine.period, limits.max_velocity,   limits.max_acceleration,
           config.following_error};
 }
 
-Json toJson(const core::MachineInfo& machine) {
+Json toJson(const MachineInfo& machine) {
   return {{"name", machine.name},
           {"software", machine.version},
           {"drive", machine.drive},
@@ -21,4 +21,4 @@ Json toJson(const core::MachineInfo& machine) {
           {"max_following_error", toJson(machine.max_following_error, "")}};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

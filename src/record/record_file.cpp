@@ -10,7 +10,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -91,4 +91,4 @@ Json readRecord(const std::string& path) {
   return record;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -84,4 +84,4 @@ Json StrokeLog::json(bool following_error) const {
   return list;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

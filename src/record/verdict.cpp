@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -361,4 +361,4 @@ void judgeRecord(Json& record, const Tolerances& tolerances) {
   addVerdict(record, tolerances);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

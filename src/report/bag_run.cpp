@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -38,7 +38,7 @@ const char* outcomeOf(std::uint8_t status) {
   }
 }
 
-core::MachineInfo fromMessage(const MachineInfo& m) {
+MachineInfo fromMessage(const flute_grinder::MachineInfo& m) {
   return {m.name,
           m.version,
           m.drive,
@@ -98,10 +98,12 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
 }
 
 void BagRun::findTopics(const rosbag::Bag& bag) {
-  static const auto digests = digestsOf<SetpointBatch, GrinderState, GrindActionGoal, GrindActionResult, MachineInfo,
-                                        WorkOffsets, diagnostic_msgs::DiagnosticArray>();
+  static const auto digests =
+      digestsOf<flute_grinder::SetpointBatch, flute_grinder::GrinderState, flute_grinder::GrindActionGoal,
+                flute_grinder::GrindActionResult, flute_grinder::MachineInfo, flute_grinder::WorkOffsets,
+                diagnostic_msgs::DiagnosticArray>();
   rosbag::View view(bag);
-  const std::string batch = ros::message_traits::datatype<SetpointBatch>();
+  const std::string batch = ros::message_traits::datatype<flute_grinder::SetpointBatch>();
   std::string found;
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
     const auto known = std::find(topics_.begin(), topics_.end(), connection->topic);
@@ -128,9 +130,9 @@ void BagRun::findTopics(const rosbag::Bag& bag) {
 }
 
 void BagRun::take(const rosbag::MessageInstance& message) {
-  if (const auto batch = message.instantiate<SetpointBatch>()) {
+  if (const auto batch = message.instantiate<flute_grinder::SetpointBatch>()) {
     takeBatch(*batch);
-  } else if (message.isType<GrinderState>()) {
+  } else if (message.isType<flute_grinder::GrinderState>()) {
     takeState(message);
   } else if (message.isType<diagnostic_msgs::DiagnosticArray>()) {
     takeDiagnostics(message);
@@ -139,7 +141,7 @@ void BagRun::take(const rosbag::MessageInstance& message) {
   }
 }
 
-void BagRun::takeBatch(const SetpointBatch& batch) {
+void BagRun::takeBatch(const flute_grinder::SetpointBatch& batch) {
   if (goals_.empty() || batch.goal_id != goals_.back()) {
     goals_.push_back(batch.goal_id);
     if (isAsked()) {
@@ -155,15 +157,15 @@ void BagRun::takeBatch(const SetpointBatch& batch) {
   visitBatch(batch, [this](const RunRow& row) { summarise(row); });
 }
 
-void BagRun::visitBatch(const SetpointBatch& batch, const RowVisitor& visitor) const {
+void BagRun::visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const {
   const std::size_t count = batch.setpoints.size();
   const double begin = batch.header.stamp.toSec();
   // A batch is a few hundredths of a second: between its ends the cycles are evenly spaced.
   const double step = (batch.end_stamp.toSec() - begin) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);
   RunRow row;
   for (std::size_t i = 0; i < count; ++i) {
-    const WrittenSetpoint& s = batch.setpoints[i];
-    row.setpoint = flute_grinder::fromMessage(s);
+    const flute_grinder::WrittenSetpoint& s = batch.setpoints[i];
+    row.setpoint = grinder::fromMessage(s);
     row.actual = Axes(s.actual.data());
     row.time = begin - start_ + static_cast<double>(i) * step;
     row.cycle_period = s.cycle_period;
@@ -172,23 +174,23 @@ void BagRun::visitBatch(const SetpointBatch& batch, const RowVisitor& visitor) c
 }
 
 void BagRun::takeHead(const rosbag::MessageInstance& message) {
-  if (const auto goal = message.instantiate<GrindActionGoal>()) {
+  if (const auto goal = message.instantiate<flute_grinder::GrindActionGoal>()) {
     heads_[goal->goal_id.id]["job_name"] = goal->goal.job_name;
     jobs_[goal->goal_id.id] = std::make_shared<const GrindJob>(jobFromGoal(goal->goal));
-  } else if (const auto result = message.instantiate<GrindActionResult>()) {
+  } else if (const auto result = message.instantiate<flute_grinder::GrindActionResult>()) {
     Json& head = heads_[result->status.goal_id.id];
     head["outcome"] = outcomeOf(result->status.status);
     head["reason"] = result->result.error_string;
-    head["planned"] = plannedJson(flute_grinder::fromMessage(result->result.statistics));
-  } else if (const auto machine = message.instantiate<MachineInfo>()) {
+    head["planned"] = plannedJson(grinder::fromMessage(result->result.statistics));
+  } else if (const auto machine = message.instantiate<flute_grinder::MachineInfo>()) {
     head_["machine"] = toJson(fromMessage(*machine));
-  } else if (const auto offsets = message.instantiate<WorkOffsets>()) {
+  } else if (const auto offsets = message.instantiate<flute_grinder::WorkOffsets>()) {
     offsets_.emplace_back(offsets->header.stamp.toSec(), toJson(Axes(offsets->values.data()), ""));
   }
 }
 
 void BagRun::takeState(const rosbag::MessageInstance& message) {
-  const auto state = message.instantiate<GrinderState>();
+  const auto state = message.instantiate<flute_grinder::GrinderState>();
   const auto known = valueOf<MachineState>(state->state_name);
   StateChange change{state->header.stamp.toSec(),
                      state->state_name,
@@ -228,10 +230,10 @@ void BagRun::visit(const RowVisitor& visitor) const {
   readBag(path_, [&](const rosbag::Bag& bag) {
     rosbag::View view(bag, rosbag::TopicQuery(topics_.front()));
     for (const rosbag::MessageInstance& message : view) {
-      const auto batch = message.instantiate<SetpointBatch>();
+      const auto batch = message.instantiate<flute_grinder::SetpointBatch>();
       if (batch && batch->goal_id == goal_) visitBatch(*batch, visitor);
     }
   });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

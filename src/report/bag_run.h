@@ -15,7 +15,7 @@ class Bag;
 class MessageInstance;
 }  // namespace rosbag
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A job in a bag that `roslaunch flute_grinder grinder.launch record:=true` wrote.
 class BagRun : public RunFile {
@@ -26,13 +26,13 @@ class BagRun : public RunFile {
  private:
   void findTopics(const rosbag::Bag& bag);
   void take(const rosbag::MessageInstance& message);
-  void takeBatch(const SetpointBatch& batch);
+  void takeBatch(const flute_grinder::SetpointBatch& batch);
   void takeHead(const rosbag::MessageInstance& message);
   void takeState(const rosbag::MessageInstance& message);
   void takeDiagnostics(const rosbag::MessageInstance& message);
   void selectStates();
   bool isAsked() const { return asked_ == 0 || static_cast<std::size_t>(asked_) == goals_.size(); }
-  void visitBatch(const SetpointBatch& batch, const RowVisitor& visitor) const;
+  void visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const;
 
   const int asked_;                    ///< which of the jobs
   std::string node_;                   ///< the grinder's name, as in the topics, with a slash at its end
@@ -47,4 +47,4 @@ class BagRun : public RunFile {
   std::vector<StateChange> changes_;              ///< of the whole bag, since the epoch
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

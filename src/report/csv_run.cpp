@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -142,4 +142,4 @@ void CsvRun::visit(const RowVisitor& visitor) const {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

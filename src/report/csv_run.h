@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The kind of a CSV file by its first line; kOther for any other.
 FileKind kindOfCsv(const std::string& first_line);
@@ -16,4 +16,4 @@ class CsvRun : public RunFile {
   void visit(const RowVisitor& visitor) const override;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -49,4 +49,4 @@ Json Envelope::json() const {
   return {{"exact", is_exact_}, {"width", width_}, {"x", x}, {"y", y}};
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Reduces millions of points to what can be seen in a picture: the minimum and the maximum of each curve in each
 /// column of x. If there are few points, they are kept themselves.
@@ -32,4 +32,4 @@ class Envelope {
   std::vector<Column> columns_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -199,4 +199,4 @@ Json findingsOfRecord(const Json& record, const ReportContext& context) {
   return data;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

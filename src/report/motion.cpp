@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -35,4 +35,4 @@ AxisMotion MotionOfRows::add(const RunRow& row) {
   return motion;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What the axes do at a row; nothing where it is not known. Commanded [m, A rad; per s and per s^2].
 struct AxisMotion {
@@ -33,4 +33,4 @@ class MotionOfRows {
   std::array<Point, 4> before_;  ///< the newest first
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -109,4 +109,4 @@ Json Plots::json() const {
   return json;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

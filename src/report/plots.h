@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The points of a report's pictures.
 class Plots {
@@ -56,4 +56,4 @@ class Plots {
   std::optional<Timing> timing_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -86,4 +86,4 @@ void RunFile::finish() const {
        "; allowed: 3 or more");
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -55,4 +55,4 @@ MarkerArray firstViewMarkers(const FirstView& view) {
   return array;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

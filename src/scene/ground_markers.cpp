@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -270,4 +270,4 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const
   return array;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <ctime>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -80,4 +80,4 @@ void GroundView::run() {
   }
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

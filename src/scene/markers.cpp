@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
@@ -82,4 +82,4 @@ Marker& appendSolid(MarkerArray& array, const char* ns, const char* frame, const
   return m;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

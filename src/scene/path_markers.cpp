@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -242,4 +242,4 @@ MarkerArray PathErrorMarkers::markers() const {
   return array;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

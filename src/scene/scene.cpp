@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -43,7 +43,7 @@ Scene::Scene(ros::NodeHandle private_nh, const FirstView& first_view)
       tool_path_(private_nh.advertise<MarkerArray>("tool_path", 1, true)),
       executed_path_(private_nh.advertise<MarkerArray>("executed_path", 1, true)),
       path_error_(private_nh.advertise<MarkerArray>("path_error", 1, true)),
-      legend_(private_nh.advertise<Legend>("legend", 1, true)),
+      legend_(private_nh.advertise<flute_grinder::Legend>("legend", 1, true)),
       first_view_(first_view),
       ground_(private_nh) {
   publishCleared();
@@ -54,7 +54,7 @@ void Scene::publishCleared() {
   for (const ros::Publisher* publisher : {&scene_, &tool_path_, &executed_path_, &path_error_}) {
     publisher->publish(clearedArray());
   }
-  legend_.publish(Legend());
+  legend_.publish(flute_grinder::Legend());
 }
 
 void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::vector<GroundEdge>& edges,
@@ -63,7 +63,7 @@ void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
   ToolPath path = continued ? shown_->tool_path : ToolPath(*program, edges);
   shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(*program, edges),
-                       errorsOfFirstStroke(program, edges), Legend()});
+                       errorsOfFirstStroke(program, edges), flute_grinder::Legend()});
   shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
   shown_->legend.tolerance = job.interpolation.tolerance;
   publishAll();
@@ -153,4 +153,4 @@ void Scene::publishPathError() {
   legend_.publish(shown_->legend);
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <fstream>
 
 // What commands print and write, without a machine.
-namespace flute_grinder {
+namespace grinder {
 namespace test_texts {
 
 TEST(TimeText, IsToTheSecond) {
@@ -26,8 +26,8 @@ TEST(TimeText, IsToTheSecond) {
   EXPECT_EQ(timeText(time, false), "2026-11-23 18:04:13");
 }
 
-JobProgress progress() {
-  JobProgress progress;
+flute_grinder::JobProgress progress() {
+  flute_grinder::JobProgress progress;
   progress.job_name = "mill";
   progress.job_digest = "0123456789abcdef";
   progress.cutter.end_diameter = 0.012;
@@ -39,7 +39,7 @@ JobProgress progress() {
 }
 
 TEST(LastJob, SaysHowFarItGot) {
-  JobProgress job = progress();
+  flute_grinder::JobProgress job = progress();
   EXPECT_EQ(lastJob(job),
             "mill: D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth; tooth 2, pass 5 not finished, X 12.346 mm "
             "(0123456789ab)");
@@ -50,9 +50,9 @@ TEST(LastJob, SaysHowFarItGot) {
 }
 
 TEST(StatusJson, CountsFromOneAndInShopUnits) {
-  GrinderState state;
+  flute_grinder::GrinderState state;
   state.state_name = "running";
-  state.state = GrinderState::RUNNING;
+  state.state = flute_grinder::GrinderState::RUNNING;
   state.swivel = 0.5;
   state.feed = 0.01;
   state.override = 0.75;
@@ -68,7 +68,7 @@ TEST(StatusJson, CountsFromOneAndInShopUnits) {
   EXPECT_TRUE(json["zero_points"].is_null());
   EXPECT_EQ(json["last_job"]["pass"], 5);
   EXPECT_EQ(json["last_job"]["cutter"]["teeth"], 3);
-  state.state = GrinderState::READY;
+  state.state = flute_grinder::GrinderState::READY;
   state.progress.job_digest.clear();
   EXPECT_TRUE(toJson("/left", state, nullptr)["tooth"].is_null());
   EXPECT_TRUE(toJson("/left", state, nullptr)["last_job"].is_null());
@@ -135,4 +135,4 @@ TEST_F(Csv, ThatCannotBeWrittenIsNamed) {
 }
 
 }  // namespace test_texts
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <vector>
 
 // What the command line says of its arguments; nothing is carried out.
-namespace flute_grinder {
+namespace grinder {
 namespace test_usage {
 
 using Words = std::vector<std::string>;
@@ -212,4 +212,4 @@ TEST(Version, IsPrinted) {
 }
 
 }  // namespace test_usage
-}  // namespace flute_grinder
+}  // namespace grinder

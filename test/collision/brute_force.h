@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The minimum value of a convex function between two ends, by golden section.
 /// @param within of the place where it is least.
@@ -61,4 +61,4 @@ struct Shape {
   }
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

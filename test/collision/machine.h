@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 inline std::string shippedUrdf() {
   std::ifstream file("urdf/grinder.urdf");
@@ -58,4 +58,4 @@ struct SmallMachine {
   }
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

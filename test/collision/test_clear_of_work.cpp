@@ -20,7 +20,7 @@
 #include <vector>
 
 // Outside the cut the wheel keeps off the blank and off the shank.
-namespace flute_grinder {
+namespace grinder {
 namespace test_clear_of_work {
 
 using Eigen::Vector3d;
@@ -78,8 +78,8 @@ TEST(ClearOfWork, AWheelThatIndexesInAShankIsRefused) {
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
     const Checked plan = checked(thickShankJob(direction));
     ASSERT_TRUE(plan.reason);
-    const core::Reason& reason = *plan.reason;
-    EXPECT_EQ(reason.kind, core::ReasonKind::kCollision);
+    const Reason& reason = *plan.reason;
+    EXPECT_EQ(reason.kind, ReasonKind::kCollision);
     EXPECT_EQ(reason.field, "process.clearance");
     EXPECT_EQ(reason.detail, "wheel and shank");
     EXPECT_EQ(reason.value, 0);
@@ -289,4 +289,4 @@ RC_GTEST_PROP(ClearOfWorkProperty, NoSetpointOfAGoodPlanIsTooCloseAndEveryRefusa
 }
 
 }  // namespace test_clear_of_work
-}  // namespace flute_grinder
+}  // namespace grinder

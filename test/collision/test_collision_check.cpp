@@ -11,7 +11,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_collision_check {
 
 using Eigen::AngleAxisd;
@@ -196,4 +196,4 @@ TEST(CollisionCheck, RefusesAMachineThatDoesNotHoldTheCutter) {
 }
 
 }  // namespace test_collision_check
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <sstream>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_collision {
 
 using test_support::plainMachine;
@@ -60,7 +60,7 @@ TEST(JobCollision, AWheelOf500MmOnAFluteOf160MmIsRefused) {
   job.cutter.flute_length = 0.16;
   const CollisionResult result = checked(job);
   ASSERT_TRUE(result.reason);
-  EXPECT_EQ(result.reason->kind, core::ReasonKind::kCollision);
+  EXPECT_EQ(result.reason->kind, ReasonKind::kCollision);
   EXPECT_EQ(result.reason->value, 0);
   EXPECT_EQ(result.reason->limit, 1e-3);
 }
@@ -85,7 +85,7 @@ TEST(JobCollision, ATenthOfAMillimetreDecides) {
     EXPECT_EQ(!result.reason, wanted > 1e-3) << wanted;
     EXPECT_NEAR(result.closest->distance, std::max(0.0, wanted), 3e-6);
     if (!result.reason) continue;
-    const core::Reason& reason = *result.reason;
+    const Reason& reason = *result.reason;
     EXPECT_EQ(reason.detail, "wheel and collet");
     EXPECT_TRUE(reason.has_place);
     EXPECT_EQ(reason.value, result.closest->distance);
@@ -227,4 +227,4 @@ TEST(JobCollision, TheWorkOffsetOfXSaysHowFarTheCutterStandsOut) {
 }
 
 }  // namespace test_job_collision
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_machine_shapes {
 
 using Eigen::Vector3d;
@@ -110,4 +110,4 @@ TEST(MachineShapes, RefusesWhatItCannotCheckByName) {
 }
 
 }  // namespace test_machine_shapes
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_solid {
 
 using Eigen::AngleAxisd;
@@ -176,4 +176,4 @@ TEST(Solid, ACylinderOnTheAxisSweepsItself) {
 }
 
 }  // namespace test_solid
-}  // namespace flute_grinder
+}  // namespace grinder

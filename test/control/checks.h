@@ -9,7 +9,7 @@
 #include <vector>
 
 // Checks of setpoints and logs.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// All setpoints of a stream until it rests; held before the setpoint of a cycle, if one is given.
 inline std::vector<Setpoint> allSetpoints(SetpointStream stream, std::optional<std::uint64_t> hold_at = {}) {
@@ -100,4 +100,4 @@ inline testing::AssertionResult atRestFrom(const std::vector<CycleRecord>& log, 
   return testing::AssertionSuccess();
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -14,7 +14,7 @@
 #include <string>
 
 // A machine and two drives for the tests of the control loop.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 using S = MachineState;
 using E = MachineEvent;
@@ -122,4 +122,4 @@ inline bool sameBits(const Axes& a, const Axes& b) {
 inline void setUp(FakeDrive& drive, const LoopConfig& config) { drive.place(config.machine.park); }
 inline void setUp(SimulatedDrive& drive, const LoopConfig& config) { drive.init(driveModel(config), equipment()); }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

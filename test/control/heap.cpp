@@ -16,8 +16,8 @@ void __libc_free(void* memory);
 
 namespace {
 
-using flute_grinder::test_support::heap_counted;
-using flute_grinder::test_support::heap_use;
+using grinder::test_support::heap_counted;
+using grinder::test_support::heap_use;
 
 void countAllocation() {
   if (heap_counted) ++heap_use.allocations;

@@ -4,7 +4,7 @@
 
 // Counts what a piece of code asks of the heap, in the programs that are linked with heap.cpp; in others it is always
 // nothing.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 struct HeapUse {
   int allocations = 0;
@@ -38,4 +38,4 @@ class HeapNotCounted {
   const bool was_ = heap_counted;
 };
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

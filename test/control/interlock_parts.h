@@ -8,7 +8,7 @@
 #include <vector>
 
 // What a job needs to grind, and how a drive loses it.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// A part of the machine that grinding needs and that can be lost.
 struct Part {
@@ -40,4 +40,4 @@ inline void restoreParts(FakeDrive& drive) {
 
 inline std::string partName(const testing::TestParamInfo<Part>& info) { return info.param.name; }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -9,7 +9,7 @@
 #include <vector>
 
 // The paper's job: its dimensions, its planned setpoints, and checks of the path.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 // D1 = 10 mm, C = 5 degrees, S = 30 degrees, rake 8 degrees, 30 mm with 1 and 7 mm of overtravel, 1.6 mm deep,
 // 5 mm of clearance, 600 mm/min. The helix is A = (k/b) ln(1 + bX), with b = 2 tan C / D1 and k = 2 tan S / D1.
@@ -123,4 +123,4 @@ inline void expectCompleted(const Rig<Drive>& rig) {
   EXPECT_TRUE(ground) << "the stroke's end was not ground";
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -3,11 +3,11 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 SetpointStream paperStream(const Machine& machine, const Axes& start) {
   static const GrindJob job = readJobFile("test/jobs/paper.yaml");
   return SetpointStream(GrindProgram(job, machine, start));
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

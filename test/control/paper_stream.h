@@ -2,9 +2,9 @@
 
 #include "flute_grinder/motion/setpoint_stream.h"
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// The paper's job. @param start in work coordinates [m], A [rad].
 SetpointStream paperStream(const Machine& machine, const Axes& start);
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

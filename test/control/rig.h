@@ -11,7 +11,7 @@
 #include <vector>
 
 // Runs the control loop cycle by cycle, without its thread and without ROS.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// A drive and its loop; every cycle's record is popped into the log. The swivel is confirmed for the paper's job.
 /// Neither a cycle nor a request may use the heap.
@@ -281,4 +281,4 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
   ASSERT_EQ(rig.last().state, state) << toString(rig.last().state);
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -6,7 +6,7 @@
 #include <tuple>
 
 // Cancel.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_cancel {
 
 class Cancel : public testing::TestWithParam<std::tuple<MoveKind, int>> {
@@ -119,4 +119,4 @@ INSTANTIATE_TEST_SUITE_P(, CancelIn,
                          stateName);
 
 }  // namespace test_cancel
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

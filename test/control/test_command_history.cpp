@@ -4,7 +4,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_command_history {
 
 CommandHistory::Entry entry(int number) {
@@ -68,4 +68,4 @@ TEST_F(CommandHistoryTest, DoesNotReachBackBeyondAClear) {
 }
 
 }  // namespace test_command_history
-}  // namespace flute_grinder
+}  // namespace grinder

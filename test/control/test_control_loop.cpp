@@ -5,7 +5,7 @@
 #include <limits>
 
 // Construction, the loop without power, a whole job, and the records.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_control_loop {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -208,4 +208,4 @@ TEST(ControlLoopRecords, TheEndOfAJobIsReportedEvenIfItsOwnRecordWasLost) {
 }
 
 }  // namespace test_control_loop
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

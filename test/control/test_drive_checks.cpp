@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_drive_checks {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -98,4 +98,4 @@ TEST(OpenInterlock, IsTheFirstThatIsOpen) {
 }
 
 }  // namespace test_drive_checks
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

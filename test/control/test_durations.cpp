@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_durations {
 
 TEST(Durations, OfNothingAreZero) {
@@ -49,4 +49,4 @@ TEST(Durations, LongerThanTheLastClassIsStillTheLongest) {
 }
 
 }  // namespace test_durations
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <limits>
 
 // Faults, and how the machine recovers from them.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_faults {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -342,4 +342,4 @@ TEST(FaultAtRest, AxisThatIsPushedWhileHeldOrRetractedIsAFollowingError) {
 }
 
 }  // namespace test_faults
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

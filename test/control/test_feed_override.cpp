@@ -5,7 +5,7 @@
 #include <limits>
 
 // The feed override of a running job.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_feed_override {
 
 TEST(FeedOverride, IsOneAtFirst) {
@@ -136,4 +136,4 @@ TEST_F(FeedOverrideOfZero, CanBeCanceled) {
 }
 
 }  // namespace test_feed_override
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -4,7 +4,7 @@
 #include <cmath>
 
 // A setpoint that a limit forbids: the stream is planned for a stronger machine than the loop's.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_forbidden_setpoint {
 
 struct LimitCase {
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(, ForbiddenSetpoint, testing::ValuesIn(limitCases()),
                          [](const testing::TestParamInfo<LimitCase>& info) { return std::string(info.param.name); });
 
 }  // namespace test_forbidden_setpoint
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 // That the heap is counted, of which every rig makes use, and what no rig runs.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_heap {
 
 /// Keeps the compiler from optimising an allocation away.
@@ -122,4 +122,4 @@ INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
                          });
 
 }  // namespace test_heap
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

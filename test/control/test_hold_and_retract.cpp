@@ -5,7 +5,7 @@
 #include <algorithm>
 
 // What an operator does to a running job: hold, resume and retract.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_hold_and_retract {
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -252,4 +252,4 @@ TEST(Retract, SeveralTimesInOneStrokeCompletesTheJob) {
 }
 
 }  // namespace test_hold_and_retract
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

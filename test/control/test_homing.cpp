@@ -7,7 +7,7 @@
 #include <cmath>
 
 // Homing: the drive finds the machine's reference by itself while the loop only monitors it.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_homing {
 
 using S = MachineState;
@@ -304,4 +304,4 @@ TEST_F(HomingFake, AFollowingErrorCountsAgainAfterwards) {
 }
 
 }  // namespace test_homing
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

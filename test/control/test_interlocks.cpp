@@ -8,7 +8,7 @@
 #include <thread>
 
 // What a job waits for before it begins, and what the loop commands to spindle and coolant.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_interlocks {
 
 TEST(InterlockText, SaysWhatIsWrong) {
@@ -240,4 +240,4 @@ TEST(SpindleAndCoolant, AreOffAfterTheLoopWasStopped) {
 }
 
 }  // namespace test_interlocks
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -10,7 +10,7 @@
 #include <vector>
 
 // Jogs: steps and continuous ones, what is refused, and how they end.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_jog {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -484,4 +484,4 @@ TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
 }
 
 }  // namespace test_jog
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -4,7 +4,7 @@
 #include <random>
 
 // Late cycles.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_late_cycle {
 
 /// Allows stale positions for long, so that only the lateness itself is a fault.
@@ -162,4 +162,4 @@ INSTANTIATE_TEST_SUITE_P(, LateWithoutTheJob, testing::Values(S::kLifting, S::kJ
                          [](const testing::TestParamInfo<S>& info) { return std::string(toString(info.param)); });
 
 }  // namespace test_late_cycle
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

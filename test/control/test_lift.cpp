@@ -6,7 +6,7 @@
 #include <limits>
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_lift {
 
 /// Ready, with the wheel in the work after a fault.
@@ -181,4 +181,4 @@ TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
 }
 
 }  // namespace test_lift
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

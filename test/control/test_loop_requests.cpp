@@ -3,7 +3,7 @@
 #include <limits>
 
 // Requests: enable, job starts, and what each state refuses.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_loop_requests {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -302,4 +302,4 @@ INSTANTIATE_TEST_SUITE_P(Axis, StartAfterMoving, testing::Values(kX, kY, kZ, kA)
                          [](const testing::TestParamInfo<int>& info) { return std::string(1, "XYZA"[info.param]); });
 
 }  // namespace test_loop_requests
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

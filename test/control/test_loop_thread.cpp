@@ -11,7 +11,7 @@
 #include <thread>
 
 // The thread. Whatever a test waits for comes at once; the deadline only ends a test that has failed.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_loop_thread {
 
 class ControlLoopThread : public testing::Test {
@@ -186,4 +186,4 @@ TEST_F(ControlLoopThread, StopWithoutAStartIsHarmless) {
 }
 
 }  // namespace test_loop_thread
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

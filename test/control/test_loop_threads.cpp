@@ -10,7 +10,7 @@
 
 // Everything that other threads may do to the loop, concurrently and at random times, with drives that fail: no data
 // race, no request without an answer, no job that does not end. Made for ThreadSanitizer.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_loop_threads {
 
 using E = MachineEvent;
@@ -158,4 +158,4 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
 }
 
 }  // namespace test_loop_threads
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -7,7 +7,7 @@
 #include <tuple>
 
 // A reference, spindle, coolant or probe that is lost in the middle of a job.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_lost_interlocks {
 
 /// When a part is lost, and the state in the cycle that detects it.
@@ -300,4 +300,4 @@ INSTANTIATE_TEST_SUITE_P(, LostOnTheSimulatedDrive,
                          });
 
 }  // namespace test_lost_interlocks
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_machine_config {
 
 using ::testing::TestParamInfo;
@@ -419,4 +419,4 @@ TEST(ParameterReader, RefusesAnEmptyText) {
 }
 
 }  // namespace test_machine_config
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -16,7 +16,7 @@
 /// @file
 /// The zeros of a job, against figures by hand and against the URDF's chain of joints.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_machine_geometry {
 
 const double kDegree = std::acos(-1.0) / 180;
@@ -161,4 +161,4 @@ TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
 }
 
 }  // namespace test_machine_geometry
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <cmath>
 
 // Jogs that end where the measuring probe touches.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_probe_contact {
 
 /// A wall that the probe touches while X stands at or beyond it.
@@ -218,4 +218,4 @@ INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted),
 INSTANTIATE_TEST_SUITE_P(, ProbeForClient, testing::Values(S::kReady), stateName);
 
 }  // namespace test_probe_contact
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_seq_lock {
 
 /// Every word the same, so that a torn copy shows.
@@ -76,4 +76,4 @@ TEST(SeqLock, ReadersSeeWholeValuesInTheirOrder) {
 }
 
 }  // namespace test_seq_lock
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <deque>
 
 // Stops in every state, and the job in the loop's status.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_stops {
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -434,4 +434,4 @@ TEST(Status, OfADriveThatBuffersReportsWhereTheAxesAre) {
 }
 
 }  // namespace test_stops
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -1,7 +1,7 @@
 #include "control/rig.h"
 
 // Spindle and coolant by hand: only on request, with the power on and without a job, and never for longer.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_switches {
 
 class Switches : public testing::Test {
@@ -222,4 +222,4 @@ TEST(DistanceToGo, OfAJobEndsWithEachMove) {
 }
 
 }  // namespace test_switches
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

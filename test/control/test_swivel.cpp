@@ -7,7 +7,7 @@
 #include <limits>
 
 // Where the swivel stands: confirmed by an operator or measured by the drive, and what a job makes of it.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_swivel {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -237,4 +237,4 @@ TEST(MeasuredSwivel, ThatDriftsAmidAJobHoldsItOnceAtTheToleranceAndLiftsTheWheel
 }
 
 }  // namespace test_swivel
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

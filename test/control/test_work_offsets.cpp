@@ -12,7 +12,7 @@
 #include <limits>
 
 // Jobs with work offsets: setpoints are the work's, commands, limits and heights the machine's.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_work_offsets {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -118,8 +118,8 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
   const Machine machine = machineAt(offset);
   const JobPlan plan = planJob(paper(), machine, machine.park - offset);
   RC_ASSERT(plan.fault == PlanFault::kLimit);
-  const core::Reason& reason = plan.reasons.at(0);
-  RC_ASSERT(reason.kind == core::ReasonKind::kPosition);
+  const Reason& reason = plan.reasons.at(0);
+  RC_ASSERT(reason.kind == ReasonKind::kPosition);
   RC_ASSERT(reason.axis == kX);
   RC_ASSERT(std::abs(reason.value - (0.3 + beyond)) < 1e-12);
   RC_ASSERT(reason.limit == 0.3);
@@ -150,7 +150,7 @@ TEST(WorkOffsets, TheParkPositionIsTheMachines) {
   const Machine machine = machineAt(offset);
   const JobPlan plan = planJob(paper(), machine, machine.park - offset);
   ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_EQ(plan.reasons[0].kind, core::ReasonKind::kParkInWork);
+  EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kParkInWork);
   EXPECT_EQ(plan.reasons[0].value, 0.05);
   EXPECT_NEAR(plan.reasons[0].limit, kClearanceHeight + 0.045, 1e-12);
 }
@@ -355,4 +355,4 @@ TEST(WorkOffsets, TheStatusHasThePositionsAsRead) {
 }
 
 }  // namespace test_work_offsets
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -14,7 +14,7 @@
 #include <ostream>
 
 // What the property tests draw from: numbers, and cutters of both hands.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// Even over [low, high], whatever rapidcheck's size.
 inline rc::Gen<double> uniform(double low, double high) {
@@ -86,9 +86,9 @@ inline CutterGeometry paperCutter() {
   return g;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support
 
-namespace flute_grinder {
+namespace grinder {
 
 inline std::ostream& operator<<(std::ostream& out, const CutterGeometry& g) {
   return out << "D1 " << g.end_diameter / units::kMillimetre << " mm, C " << g.cone_angle / units::kDegree << " deg, S "
@@ -98,4 +98,4 @@ inline std::ostream& operator<<(std::ostream& out, const CutterGeometry& g) {
 
 inline std::ostream& operator<<(std::ostream& out, EvenStepRule rule) { return out << toString(rule); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <cmath>
 
 // The paper's formulas once more, in long double and by other ways than the code's, for tests to compare with.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 using Real = long double;
 
@@ -120,4 +120,4 @@ inline ReferencePair referencePair(EvenStepRule rule, const ReferenceCurve& curv
   return {};
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_conical_cutter {
 
 using namespace test_support;
@@ -149,4 +149,4 @@ TEST(ConicalCutter, TakesACylinderAStraightFluteAndALeftHand) {
 }
 
 }  // namespace test_conical_cutter
-}  // namespace flute_grinder
+}  // namespace grinder

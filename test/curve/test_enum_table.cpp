@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_enum_table {
 
 enum class Wheel { kPlain, kCup, kDish };
@@ -52,4 +52,4 @@ TEST(EnumTable, IsInOrderWithARowForEachValueAtItsPlace) {
 }
 
 }  // namespace test_enum_table
-}  // namespace flute_grinder
+}  // namespace grinder

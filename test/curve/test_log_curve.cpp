@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_log_curve {
 
 using namespace test_support;
@@ -160,4 +160,4 @@ RC_GTEST_PROP(LogCurveProperty, SlopeIsTheDerivative, ()) {
 RC_GTEST_PROP(LogCurveProperty, BeginsAtZero, ()) { RC_ASSERT(Curves::draw().curve.a(0) == 0); }
 
 }  // namespace test_log_curve
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_odd_even_interpolator {
 
 using namespace test_support;
@@ -300,4 +300,4 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, NegativeStepsGoAsPositiveOnesDoOnTheM
 }
 
 }  // namespace test_odd_even_interpolator
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_s_curve_profile {
 
 using namespace test_support;
@@ -592,4 +592,4 @@ RC_GTEST_PROP(SCurveProfileProperty, TheTimeLeftIsWhatItThenTakes, ()) {
 }
 
 }  // namespace test_s_curve_profile
-}  // namespace flute_grinder
+}  // namespace grinder

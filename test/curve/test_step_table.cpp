@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_step_table {
 
 using namespace test_support;
@@ -105,4 +105,4 @@ TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
 }
 
 }  // namespace test_step_table
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 using Fault = SimulatedDrive::Fault;
 
@@ -64,4 +64,4 @@ class MovingBench : public Bench {
   }
 };
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 // The base class of a drive, as a third-party package uses it: by its header alone.
-namespace flute_grinder {
+namespace grinder {
 namespace test_axes_hw {
 
 class MinimalDrive : public AxesHW {
@@ -69,4 +69,4 @@ TEST(DriveAbi, LayoutOfTheVersion) {
 }
 
 }  // namespace test_axes_hw
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <deque>
 
 // The control loop with a drive that buffers commands and plays them by a clock of its own.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_buffered_drive {
 
 constexpr std::size_t kDepth = 50;
@@ -96,4 +96,4 @@ TEST_F(BufferedDrive, FollowsPositionsAnewAfterAFault) {
 }
 
 }  // namespace test_buffered_drive
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

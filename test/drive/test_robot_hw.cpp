@@ -50,7 +50,7 @@ int clock_nanosleep(clockid_t id, int flags, const timespec* until, timespec* le
 
 }  // extern "C"
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace {
 
 template <typename Work>
@@ -275,4 +275,4 @@ TEST(RobotHW, WaitsOnTheMonotonicClock) {
 }
 
 }  // namespace
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -4,7 +4,7 @@
 #include <cmath>
 
 // Set-up, motion and encoders of the simulated drive.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_simulated_drive {
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -158,4 +158,4 @@ TEST(SimulatedDriveFeedback, CountGoesUpWithEveryRead) {
 }
 
 }  // namespace test_simulated_drive
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

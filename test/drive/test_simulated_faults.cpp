@@ -4,7 +4,7 @@
 #include <cmath>
 
 // Faults that the simulated drive injects.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_simulated_faults {
 
 TEST(SimulatedDriveFault, EmergencyStopTakesPowerAndMotionAway) {
@@ -141,4 +141,4 @@ TEST(SimulatedDriveFault, OneTakesThePlaceOfAnother) {
 }
 
 }  // namespace test_simulated_faults
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

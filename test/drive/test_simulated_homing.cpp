@@ -5,7 +5,7 @@
 #include <vector>
 
 // Spindle, coolant, swivel, reference and homing of the simulated drive.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_simulated_homing {
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -327,4 +327,4 @@ TEST(SimulatedDriveFault, ALostReferenceStaysLostUntilHomed) {
 }
 
 }  // namespace test_simulated_homing
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

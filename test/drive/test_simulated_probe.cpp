@@ -4,7 +4,7 @@
 #include <functional>
 
 // What the simulated drive's probe touches.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 namespace test_simulated_probe {
 
 constexpr double kBall = 0.001;
@@ -103,4 +103,4 @@ TEST(SimulatedProbe, ThatFlickersTouchesBeforeTheSurfaceToo) {
 }
 
 }  // namespace test_simulated_probe
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -10,7 +10,7 @@
 /// @file
 /// The walls of a groove by trying: the wheel is tried at many places of the stroke and of its profile. Shares no code
 /// with the sweep but the wheel's profile and the path.
-namespace flute_grinder::brute {
+namespace grinder::brute {
 
 /// A set-up of a wheel that grinds a request's cutter.
 struct Bench {
@@ -189,4 +189,4 @@ struct Bench {
   }
 };
 
-}  // namespace flute_grinder::brute
+}  // namespace grinder::brute

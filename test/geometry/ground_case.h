@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -42,4 +42,4 @@ struct Case {
 /// The face is to pass the outer circle at R sin r.
 inline double faceFor(double diameter, double rake) { return diameter / 2 * std::sin(rake * kDegree); }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// A ground cutter with the part of it that is shown.
 struct SolidCase {
@@ -83,4 +83,4 @@ inline std::vector<SolidCase> solidCases() {
   return all;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -17,10 +17,9 @@
 #include <cstring>
 #include <random>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_constant_rake {
 
-using core::ReasonKind;
 using units::kDegree;
 using units::kMillimetre;
 
@@ -88,10 +87,10 @@ double publishedRakeError(GrindJob job) {
   return rakeError(groundCutterOf(job), job);
 }
 
-core::Reason refusalOf(const GrindJob& job) {
+Reason refusalOf(const GrindJob& job) {
   try {
     withZLaw(job);
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     return error.reason();
   }
   ADD_FAILURE() << "not refused";
@@ -114,8 +113,8 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     GrindJob with_law;
     try {
       with_law = withZLaw(*job);
-    } catch (const core::ReasonError& error) {
-      ADD_FAILURE() << core::text(error.reason(), UnitSystem::kShop);
+    } catch (const ReasonError& error) {
+      ADD_FAILURE() << text(error.reason(), UnitSystem::kShop);
       continue;
     }
     ++solved;
@@ -206,7 +205,7 @@ TEST(ConstantRake, EitherWayOfTheStrokeTheCorrectionIsTheSame) {
 TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
   GrindJob job = steepJob();
   job.process.setup_swivel += 25 * kDegree;
-  const core::Reason reason = refusalOf(job);
+  const Reason reason = refusalOf(job);
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_DOUBLE_EQ(reason.limit, 14 * kDegree);
   EXPECT_GT(std::max(reason.value - reason.limit, reason.limit - reason.low), 0.005 * kDegree);
@@ -215,7 +214,7 @@ TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
 TEST(ConstantRake, AWheelThatDoesNotReachTheFluteIsRefused) {
   GrindJob job = steepJob();
   job.process.setup_height = 90 * kMillimetre;
-  const core::Reason reason = refusalOf(job);
+  const Reason reason = refusalOf(job);
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_GT(reason.low, reason.value);
 }
@@ -227,7 +226,7 @@ TEST(ConstantRake, ItGivesUpWhenToldTo) {
   try {
     withZLaw(job, never_again);
     FAIL();
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     EXPECT_EQ(error.reason().kind, ReasonKind::kGivenUp);
   }
   EXPECT_EQ(looks, 5);
@@ -249,7 +248,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
                                  actual = p.position;
                                });
   strokes.finish();
-  ASSERT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
   const GrindJob& with_law = plan.program->job();
   const ConicalCutter cutter(job.cutter);
   SetpointStream stream(plan.program);
@@ -270,4 +269,4 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
 }
 
 }  // namespace test_constant_rake
-}  // namespace flute_grinder
+}  // namespace grinder

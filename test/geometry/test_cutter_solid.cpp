@@ -11,7 +11,7 @@
 #include <cmath>
 #include <map>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_cutter_solid {
 
 using test_support::Case;
@@ -179,4 +179,4 @@ TEST(CutterSolid, RefusesWhatCannotBeShown) {
 }
 
 }  // namespace test_cutter_solid
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <random>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_ground_cutter {
 
 using test_support::Case;
@@ -439,4 +439,4 @@ TEST(GroundCutter, FluteAndLandShareThePitch) {
 }
 
 }  // namespace test_ground_cutter
-}  // namespace flute_grinder
+}  // namespace grinder

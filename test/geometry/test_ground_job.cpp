@@ -16,10 +16,9 @@
 #include <filesystem>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_ground_job {
 
-using core::ReasonKind;
 using test_support::jobOf;
 using test_support::paper;
 using test_support::roomyMachine;
@@ -28,18 +27,18 @@ using units::kMillimetre;
 
 CutterCheck checked(const GrindJob& job) {
   const JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
-  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
   return checkGroundCutter(job);
 }
 
 /// The one reason of a kind.
-core::Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
-  core::Reason found;
+Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
+  Reason found;
   int count = 0;
-  for (const core::Reason& reason : check.reasons) {
+  for (const Reason& reason : check.reasons) {
     if (reason.kind == kind) found = reason, ++count;
   }
-  EXPECT_EQ(count, 1) << core::text(check.reasons, UnitSystem::kShop);
+  EXPECT_EQ(count, 1) << text(check.reasons, UnitSystem::kShop);
   return found;
 }
 
@@ -61,7 +60,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     SCOPED_TRACE(entry.path());
     const GrindJob job = readJobFile(entry.path());
     const CutterCheck check = checked(job);
-    EXPECT_TRUE(check.reasons.empty()) << core::text(check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
@@ -135,7 +134,7 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
 }
 
 TEST(GroundJob, AWheelSwivelledToTheSpiralAngleIsRefusedForItsRake) {
-  const core::Reason reason = reasonOf(checked(cylinder(30)), ReasonKind::kRake);
+  const Reason reason = reasonOf(checked(cylinder(30)), ReasonKind::kRake);
   EXPECT_NEAR(reason.value / kDegree, 25.420, 0.002);
   EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
   EXPECT_EQ(reason.x, 0);
@@ -156,7 +155,7 @@ TEST(GroundJob, AChordOffByMoreThanItsToleranceIsRefused) {
   job.cutter.chordal_rake_tolerance = 1.001 * off;
   EXPECT_TRUE(checked(job).reasons.empty());
   job.cutter.chordal_rake_tolerance = 0.999 * off;
-  const core::Reason reason = reasonOf(checked(job), ReasonKind::kChordalRake);
+  const Reason reason = reasonOf(checked(job), ReasonKind::kChordalRake);
   EXPECT_NEAR(std::abs(reason.value - 8 * kDegree), off, 1e-9);
   EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
 }
@@ -165,7 +164,7 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   GrindJob job = paper();
   job.process.overtravel_shank = 1 * kMillimetre;
   CutterCheck check = checked(job);
-  const core::Reason reason = reasonOf(check, ReasonKind::kIncomplete);
+  const Reason reason = reasonOf(check, ReasonKind::kIncomplete);
   EXPECT_EQ(reason.low, 0);
   EXPECT_EQ(reason.limit, job.cutter.flute_length);
   ASSERT_TRUE(check.complete.has_value());
@@ -181,7 +180,7 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
 
   job.process.incomplete_ok = true;
   check = checked(job);
-  EXPECT_TRUE(check.reasons.empty()) << core::text(check.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
   EXPECT_LT(check.complete->to, job.cutter.flute_length);
 }
 
@@ -190,7 +189,7 @@ TEST(GroundJob, AToothWithoutALandIsRefused) {
   job.process.wheel_width = 10 * kMillimetre;
   job.process.setup_height -= 3.5 * kMillimetre / std::cos(job.process.setup_swivel);  // the same upper face
   job.process.overtravel_end = job.process.overtravel_shank = 12 * kMillimetre;
-  const core::Reason reason = reasonOf(checked(job), ReasonKind::kLand);
+  const Reason reason = reasonOf(checked(job), ReasonKind::kLand);
   EXPECT_GT(reason.value, reason.limit);
   EXPECT_NEAR(reason.limit, 90 * kDegree, 1e-12);
 }
@@ -199,7 +198,7 @@ TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
   GrindJob job = jobOf("unequal_d12_t4");
   for (const double narrow : {20.0, 340.0}) {
     job.tooth_angles = {0, narrow * kDegree};
-    const core::Reason reason = reasonOf(checked(job), ReasonKind::kLand);
+    const Reason reason = reasonOf(checked(job), ReasonKind::kLand);
     EXPECT_NEAR(reason.limit, 20 * kDegree, 1e-12);
   }
 }
@@ -210,7 +209,7 @@ TEST(GroundJob, CornersThatDoNotFitAreRefused) {
   job.wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
   job.process.wheel_corner_radius_lower = 1 * kMillimetre;
   const CutterCheck check = checked(job);
-  EXPECT_NE(core::text(check.reasons, UnitSystem::kShop).find("corner_radius"), std::string::npos);
+  EXPECT_NE(text(check.reasons, UnitSystem::kShop).find("corner_radius"), std::string::npos);
 }
 
 TEST(GroundJob, EveryProfileIsTheWheelsOfItsFigures) {
@@ -337,7 +336,7 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   p.setup_swivel = 0;
   p.setup_height = -p.wheel_width / 2;  // the upper face at the axis
   const CutterCheck check = checked(job);
-  EXPECT_TRUE(check.reasons.empty()) << core::text(check.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
   const GroundSection end = groundCutterOf(job).section(c.flute_length);
   EXPECT_NEAR(end.core_radius, 0.005 * kMillimetre, 1e-9);
   EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
@@ -379,7 +378,7 @@ TEST(GroundJob, TheCoreIsJudgedBetweenTheEnds) {
     job.cutter.core_tolerance = more * off;
     const CutterCheck check = checkGroundCutter(job);
     const bool refused = std::any_of(check.reasons.begin(), check.reasons.end(),
-                                     [](const core::Reason& r) { return r.kind == ReasonKind::kCoreSize; });
+                                     [](const Reason& r) { return r.kind == ReasonKind::kCoreSize; });
     EXPECT_EQ(refused, more < 1);
   }
   EXPECT_NEAR(reasonOf(checkGroundCutter(job), ReasonKind::kCoreSize).x, job.cutter.flute_length / 2, 1e-9);
@@ -431,11 +430,11 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
   EXPECT_LT(expected, 10 * kMillimetre);
   for (const double overtravel : {9.2, 9.5, 9.8}) {
     const GrindJob job = nearApex(overtravel);
-    ASSERT_TRUE(validate(job).empty()) << core::text(validate(job), UnitSystem::kShop);
+    ASSERT_TRUE(validate(job).empty()) << text(validate(job), UnitSystem::kShop);
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_TRUE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);
-    EXPECT_TRUE(check.reasons.empty()) << core::text(check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
   }
   for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
     const GrindJob job = nearApex(overtravel);
@@ -443,8 +442,8 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
     EXPECT_FALSE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);
     const auto named = std::find_if(check.reasons.begin(), check.reasons.end(),
-                                    [](const core::Reason& r) { return r.kind == ReasonKind::kNotBelow; });
-    ASSERT_NE(named, check.reasons.end()) << core::text(check.reasons, UnitSystem::kShop);
+                                    [](const Reason& r) { return r.kind == ReasonKind::kNotBelow; });
+    ASSERT_NE(named, check.reasons.end()) << text(check.reasons, UnitSystem::kShop);
     EXPECT_EQ(named->field, "process.overtravel_end");
     EXPECT_EQ(named->value, job.process.overtravel_end);
     EXPECT_NEAR(named->limit, expected, 0.02 * kMillimetre);
@@ -454,4 +453,4 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
 }
 
 }  // namespace test_ground_job
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_setup {
 
 using units::kDegree;
@@ -163,7 +163,7 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
   EXPECT_EQ(planRefusal(solved(paper())), "");
 }
 
-bool hasReason(const GrindJob& job, core::ReasonKind kind) {
+bool hasReason(const GrindJob& job, ReasonKind kind) {
   const CutterCheck check = checkGroundCutter(job, groundCutterOf(job));
   return std::any_of(check.reasons.begin(), check.reasons.end(), [&](const auto& r) { return r.kind == kind; });
 }
@@ -176,16 +176,16 @@ TEST(JobSetup, EdgeAndCoresBeyondTheirTolerancesAreRefusedAndFound) {
   job.cutter.chordal_rake_tolerance = 7 * kDegree;
   job.cutter.spiral_tolerance = 3.5 * kDegree;
   job.cutter.core_tolerance = 0.4 * kMillimetre;
-  EXPECT_FALSE(hasReason(job, core::ReasonKind::kSpiral));
-  EXPECT_FALSE(hasReason(job, core::ReasonKind::kCoreSize));
+  EXPECT_FALSE(hasReason(job, ReasonKind::kSpiral));
+  EXPECT_FALSE(hasReason(job, ReasonKind::kCoreSize));
   job.cutter.spiral_tolerance = 0.1 * kDegree;
   job.cutter.core_tolerance = 0.01 * kMillimetre;
-  EXPECT_TRUE(hasReason(job, core::ReasonKind::kSpiral));
-  EXPECT_TRUE(hasReason(job, core::ReasonKind::kCoreSize));
+  EXPECT_TRUE(hasReason(job, ReasonKind::kSpiral));
+  EXPECT_TRUE(hasReason(job, ReasonKind::kCoreSize));
   const JobSetup setup = solved(job);
   EXPECT_EQ(planRefusal(setup), "");
-  EXPECT_FALSE(hasReason(setup.job, core::ReasonKind::kSpiral));
-  EXPECT_FALSE(hasReason(setup.job, core::ReasonKind::kCoreSize));
+  EXPECT_FALSE(hasReason(setup.job, ReasonKind::kSpiral));
+  EXPECT_FALSE(hasReason(setup.job, ReasonKind::kCoreSize));
   EXPECT_NEAR(setup.job.process.setup_lead / kMillimetre, 11.847, 0.015);
   const auto wrote = [&](const char* key) {
     return std::any_of(setup.edits.begin(), setup.edits.end(), [&](const JobEdit& e) { return e.key == key; });
@@ -351,4 +351,4 @@ TEST(SetupSheet, ReportsHowHighTheWheelStands) {
 }
 
 }  // namespace test_job_setup
-}  // namespace flute_grinder
+}  // namespace grinder

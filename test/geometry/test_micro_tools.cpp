@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_micro_tools {
 
 using units::kDegree;
@@ -188,4 +188,4 @@ TEST(MicroTools, RandomOnesAreMeasuredAsByTryingEveryPose) {
 }
 
 }  // namespace test_micro_tools
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_mirror {
 
 using test_support::jobOf;
@@ -165,7 +165,7 @@ TEST(Mirror, ALeftHandJobIsARightHandOneInTheMirror) {
   for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
     const GrindJob right = random.job(), left = mirrored(right);
-    ASSERT_TRUE(validate(right).empty()) << core::text(validate(right), UnitSystem::kShop);
+    ASSERT_TRUE(validate(right).empty()) << text(validate(right), UnitSystem::kShop);
     ASSERT_TRUE(validate(left).empty());
     expectMirrored(groundCutterOf(right), groundCutterOf(left));
     expectMirroredPlans(right, left);
@@ -227,4 +227,4 @@ TEST(Mirror, AProbeTouchesTheMirroredFace) {
 }
 
 }  // namespace test_mirror
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_rake_correction {
 
 using units::kDegree;
@@ -106,4 +106,4 @@ TEST(RakeCorrection, WhereThereIsNoFluteThereIsNoCorrection) {
 }
 
 }  // namespace test_rake_correction
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_rake_touch {
 
 using test_support::jobOf;
@@ -38,11 +38,11 @@ struct Ball {
 double touch(const GrindJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
 
 /// Why a ball is refused.
-std::optional<core::Reason> refusal(const GrindJob& job, const Ball& ball) {
+std::optional<Reason> refusal(const GrindJob& job, const Ball& ball) {
   try {
     touch(job, ball);
     return std::nullopt;
-  } catch (const core::ReasonError& error) {
+  } catch (const ReasonError& error) {
     return error.reason();
   }
 }
@@ -218,7 +218,7 @@ TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
     try {
       expectTouch(job, ball, touch(job, ball));
       ++touched, ++of_hand[job.cutter.cut == CutDirection::kRightHand];
-    } catch (const core::ReasonError&) {
+    } catch (const ReasonError&) {
       continue;  // the ball lies badly
     }
   }
@@ -235,7 +235,7 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
     const double x = job.cutter.flute_length / 3;
     const double depth = ConicalCutter(job.cutter).radius(x) - groundCutterOf(job).section(x).core_radius;
     const Ball ball{x, Groove(job).radius(x) - 0.15 * depth, 0.3, 0.2 * depth};
-    ASSERT_FALSE(refusal(job, ball)) << core::text(*refusal(job, ball), UnitSystem::kShop);
+    ASSERT_FALSE(refusal(job, ball)) << text(*refusal(job, ball), UnitSystem::kShop);
     expectTouch(job, ball, touch(job, ball));
   }
 }
@@ -281,7 +281,7 @@ TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWo
     Ball ball{10 * kMillimetre, wrong.from_axis_mm * kMillimetre, 0, 0.5 * kMillimetre};
     const auto reason = refusal(job, ball);
     ASSERT_TRUE(reason);
-    EXPECT_EQ(reason->kind, core::ReasonKind::kOutOfRange);
+    EXPECT_EQ(reason->kind, ReasonKind::kOutOfRange);
     EXPECT_EQ(reason->field, "ball's distance from the axis");
     EXPECT_EQ(reason->detail, wrong.what);
     EXPECT_NEAR(reason->value, ball.from_axis, 1e-6);
@@ -302,7 +302,7 @@ TEST(RakeTouch, ABallThatIsTooLargeForTheFluteIsRefusedWithOneThatIsNot) {
     EXPECT_EQ(reason->field, "ball diameter");
     EXPECT_DOUBLE_EQ(reason->value, ball.diameter);
     EXPECT_LT(reason->limit, ball.diameter);
-    EXPECT_EQ(refusal(job, {ball.x, ball.from_axis, 0, reason->limit}).value_or(core::Reason{}).field,
+    EXPECT_EQ(refusal(job, {ball.x, ball.from_axis, 0, reason->limit}).value_or(Reason{}).field,
               "ball's distance from the axis");
   }
 }
@@ -343,14 +343,12 @@ TEST(RakeTouch, NoBallAndNoPlaceAreRefused) {
   const GrindJob job = straight(CutDirection::kRightHand);
   const double nan = std::numeric_limits<double>::quiet_NaN(), x = 10 * kMillimetre;
   for (const double diameter : {0.0, -kMillimetre, 1.0, nan}) {
-    EXPECT_EQ(refusal(job, {x, 4.5 * kMillimetre, 0, diameter}).value_or(core::Reason{}).field, "ball diameter");
+    EXPECT_EQ(refusal(job, {x, 4.5 * kMillimetre, 0, diameter}).value_or(Reason{}).field, "ball diameter");
   }
   for (const double from_axis : {nan, std::numeric_limits<double>::infinity()}) {
-    EXPECT_EQ(refusal(job, {x, from_axis, 0, kMillimetre}).value_or(core::Reason{}).field,
-              "ball's distance from the axis");
+    EXPECT_EQ(refusal(job, {x, from_axis, 0, kMillimetre}).value_or(Reason{}).field, "ball's distance from the axis");
   }
-  EXPECT_EQ(refusal(job, {x, 0, 0, kMillimetre}).value_or(core::Reason{}).detail,
-            "else it touches the flute's floor first");
+  EXPECT_EQ(refusal(job, {x, 0, 0, kMillimetre}).value_or(Reason{}).detail, "else it touches the flute's floor first");
 }
 
 TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
@@ -359,8 +357,8 @@ TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
   const auto reason = refusal(job, {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "ball's X");
-  EXPECT_EQ(core::text(*reason, UnitSystem::kShop), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
+  EXPECT_EQ(text(*reason, UnitSystem::kShop), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
 }
 
 }  // namespace test_rake_touch
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -19,7 +19,7 @@
 #include <random>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_recorded_strokes {
 
 using units::kDegree;
@@ -292,4 +292,4 @@ TEST(RecordedStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
 }
 
 }  // namespace test_recorded_strokes
-}  // namespace flute_grinder
+}  // namespace grinder

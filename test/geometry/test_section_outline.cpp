@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_section_outline {
 
 using test_support::Case;
@@ -142,4 +142,4 @@ TEST(SectionOutline, RefusesACoreThatIsCutThrough) {
 }
 
 }  // namespace test_section_outline
-}  // namespace flute_grinder
+}  // namespace grinder

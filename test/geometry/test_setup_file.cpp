@@ -13,7 +13,7 @@
 #include <regex>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_setup_file {
 
 namespace fs = std::filesystem;
@@ -104,4 +104,4 @@ TEST_F(SetupFile, AFileThatIsGoneIsNotMade) {
 }
 
 }  // namespace test_setup_file
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_setup_solver {
 
 using units::kDegree;
@@ -681,4 +681,4 @@ TEST(SetupSolver, RandomToolsAreSetOrRefusedAsBruteForceConfirms) {
 }
 
 }  // namespace test_setup_solver
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 #include <memory>
 #include <regex>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_stl {
 
 using test_support::cylinder;
@@ -83,4 +83,4 @@ TEST(Stl, OfACutterWithAShankIsSound) {
 }
 
 }  // namespace test_stl
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <functional>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_touch_off {
 
 using units::kDegree;
@@ -225,4 +225,4 @@ TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
 }
 
 }  // namespace test_touch_off
-}  // namespace flute_grinder
+}  // namespace grinder

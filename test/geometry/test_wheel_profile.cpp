@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_wheel_profile {
 
 using units::kDegree;
@@ -110,4 +110,4 @@ TEST(WheelProfile, WhatIsNoWheelIsRefusedByName) {
 }
 
 }  // namespace test_wheel_profile
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 // The drive on the real HAL, written to as the control loop does, and the counts of commands at which HAL's FIFO of
 // LinuxCNC 2.9 keeps the last one back: multiples of its depth. Alone on a fresh HAL, so that all that the FIFO ever
 // got is counted.
-namespace flute_grinder {
+namespace grinder {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -155,7 +155,7 @@ TEST_F(Totals, LastSetpointIsPlayedAndNothingIsLeftBehind) {
 }
 
 }  // namespace
-}  // namespace flute_grinder
+}  // namespace grinder
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);

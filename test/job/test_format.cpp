@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_format {
 
 TEST(Format, IsAsByPrintf) {
@@ -18,4 +18,4 @@ TEST(Format, CutsNothingOff) {
 }
 
 }  // namespace test_format
-}  // namespace flute_grinder
+}  // namespace grinder

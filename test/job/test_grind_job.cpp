@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_grind_job {
 
 using test_support::paperJob;
@@ -31,8 +31,8 @@ struct Refusal {
 
 std::vector<Refusal> refusals(const GrindJob& job, UnitSystem units = UnitSystem::kSi) {
   std::vector<Refusal> all;
-  for (const core::Reason& reason : validate(job)) {
-    const std::string text = core::text(reason, units);
+  for (const Reason& reason : validate(job)) {
+    const std::string text = grinder::text(reason, units);
     const std::string is = " = ", allowed = "; allowed: ";
     const std::size_t value = text.find(is) + is.size();
     const std::size_t semicolon = text.find(allowed);
@@ -360,4 +360,4 @@ RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
 }
 
 }  // namespace test_grind_job
-}  // namespace flute_grinder
+}  // namespace grinder

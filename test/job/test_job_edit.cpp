@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_edit {
 
 using Edits = std::vector<JobEdit>;
@@ -231,4 +231,4 @@ TEST(JobEdit, RefusesWhatItCannotEditWithoutRisk) {
 }
 
 }  // namespace test_job_edit
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_file {
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
@@ -584,4 +584,4 @@ TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
 }
 
 }  // namespace test_job_file
-}  // namespace flute_grinder
+}  // namespace grinder

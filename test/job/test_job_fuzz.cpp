@@ -16,7 +16,7 @@
 /// @file
 /// Whatever a job holds, the answer is a plan that keeps all limits, or a refusal with its reasons.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_fuzz {
 
 using test_support::paperJob;
@@ -247,7 +247,7 @@ bool planAndJudge(const Case& c) {
   EXPECT_TRUE(finite);
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(in_range || !plan.good());
-  for (const core::Reason& reason : plan.reasons) {
+  for (const Reason& reason : plan.reasons) {
     for (const UnitSystem units : {UnitSystem::kSi, UnitSystem::kShop}) {
       EXPECT_TRUE(sane(text(reason, units))) << text(reason, units);
     }
@@ -361,4 +361,4 @@ TEST(JobFuzz, StreamsOfGoodJobsStayWithinLimitsWhateverIsDoneToThem) {
 }
 
 }  // namespace test_job_fuzz
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,11 +12,10 @@
 #include <set>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_reason {
 
-using core::Reason;
-using Kind = core::ReasonKind;
+using Kind = ReasonKind;
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
@@ -346,7 +345,7 @@ INSTANTIATE_TEST_SUITE_P(ByHand, ReasonText, ::testing::ValuesIn(kRows),
 TEST(Reason, EveryKindHasARow) {
   std::set<Kind> kinds;
   for (const Row& row : kRows) kinds.insert(row.kind);
-  EXPECT_EQ(kinds.size(), static_cast<std::size_t>(core::kReasonKindCount));
+  EXPECT_EQ(kinds.size(), static_cast<std::size_t>(kReasonKindCount));
 }
 
 TEST(Reason, OfEveryFaultHasText) {
@@ -376,10 +375,10 @@ TEST(Reason, ManyStandSideBySide) {
 }
 
 TEST(Reason, CausesOfFeedLimitsNameTheOperatorsAxes) {
-  EXPECT_EQ(core::causeText("axis_a velocity", UnitSystem::kShop), "axis A velocity");
-  EXPECT_EQ(core::causeText("axis_z jerk", UnitSystem::kShop), "axis Z jerk");
-  EXPECT_EQ(core::causeText("axis_a velocity", UnitSystem::kSi), "axis_a velocity");
-  EXPECT_EQ(core::causeText("interpolation tolerance", UnitSystem::kShop), "interpolation tolerance");
+  EXPECT_EQ(causeText("axis_a velocity", UnitSystem::kShop), "axis A velocity");
+  EXPECT_EQ(causeText("axis_z jerk", UnitSystem::kShop), "axis Z jerk");
+  EXPECT_EQ(causeText("axis_a velocity", UnitSystem::kSi), "axis_a velocity");
+  EXPECT_EQ(causeText("interpolation tolerance", UnitSystem::kShop), "interpolation tolerance");
 }
 
 TEST(JobFields, HaveTheirNamesInTheJobFile) {
@@ -389,4 +388,4 @@ TEST(JobFields, HaveTheirNamesInTheJobFile) {
 }
 
 }  // namespace test_reason
-}  // namespace flute_grinder
+}  // namespace grinder

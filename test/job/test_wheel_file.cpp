@@ -20,7 +20,7 @@
 /// A job gets the wheel of a wheel file as it would get it from keys of its own, and a wheel file's mistakes are
 /// reported with its own name and lines.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_wheel_file {
 
 // Line numbers in the rows below are those of this text.
@@ -314,4 +314,4 @@ TEST(WheelFile, OfPointsKeepsTheirWidth) {
 }
 
 }  // namespace test_wheel_file
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_machine_state {
 
 // What holds whatever the table says; where each event leads, test/control sees in the loop.
@@ -68,4 +68,4 @@ TEST(MachineState, WhatIsNoStateOrEventIsRefused) {
 }
 
 }  // namespace test_machine_state
-}  // namespace flute_grinder
+}  // namespace grinder

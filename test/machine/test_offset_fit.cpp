@@ -12,12 +12,8 @@
 /// @file
 /// Which work offsets fit which job. Where the wheel's centre must be is computed from the machine's geometry.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_offset_fit {
-
-using core::OffsetBasis;
-using core::WorkOffset;
-using core::WorkOffsets;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegree = 0.017453292519943295;
@@ -36,29 +32,29 @@ WorkOffsets offsetsFor(const OffsetBasis& basis) {
   return offsets;
 }
 
-std::string axesOf(const std::vector<core::OffsetMismatch>& mismatches) {
+std::string axesOf(const std::vector<OffsetMismatch>& mismatches) {
   std::string axes;
-  for (const core::OffsetMismatch& mismatch : mismatches) axes += "XYZA"[mismatch.axis];
+  for (const OffsetMismatch& mismatch : mismatches) axes += "XYZA"[mismatch.axis];
   return axes;
 }
 
 TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsAlways) {
   const OffsetBasis job = basisOf();
-  EXPECT_TRUE(core::mismatches(offsetsFor(job), job).empty());
+  EXPECT_TRUE(mismatches(offsetsFor(job), job).empty());
   WorkOffsets offsets = offsetsFor(job);
   offsets.axes[kA] = offsetFor(OffsetBasis{});
-  EXPECT_TRUE(core::mismatches(offsets, job).empty());
+  EXPECT_TRUE(mismatches(offsets, job).empty());
 }
 
 TEST(OffsetFit, WhatWasNeverSetDoesNotFit) {
-  const auto found = core::mismatches(WorkOffsets{}, basisOf());
+  const auto found = mismatches(WorkOffsets{}, basisOf());
   ASSERT_EQ(axesOf(found), "XYZ");
   EXPECT_EQ(found[1].reason, "Y was never set");
   for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
 }
 
 TEST(OffsetFit, WhatWasSetBeforeThisWasKeptIsUnknown) {
-  const auto found = core::mismatches(offsetsFor(OffsetBasis{}), basisOf());
+  const auto found = mismatches(offsetsFor(OffsetBasis{}), basisOf());
   ASSERT_EQ(axesOf(found), "XYZ");
   EXPECT_EQ(found[1].reason, "Y was set, not known for which job");
   for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
@@ -67,7 +63,7 @@ TEST(OffsetFit, WhatWasSetBeforeThisWasKeptIsUnknown) {
 TEST(OffsetFit, WithoutAJobOnlyXFits) {
   OffsetBasis none;
   none.method = OffsetMethod::kTouchOff;
-  const auto found = core::mismatches(offsetsFor(none), basisOf());
+  const auto found = mismatches(offsetsFor(none), basisOf());
   ASSERT_EQ(axesOf(found), "YZ");
   EXPECT_EQ(found[0].reason, "Y was touched off, not known for which job");
 }
@@ -76,7 +72,7 @@ TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
   OffsetBasis job = basisOf();
   job.job_name = "d10.yaml";
   job.end_diameter = 0.01;
-  const auto found = core::mismatches(offsetsFor(basisOf()), job);
+  const auto found = mismatches(offsetsFor(basisOf()), job);
   ASSERT_EQ(axesOf(found), "Y");
   EXPECT_EQ(found[0].reason, "Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); this job has D 10 mm");
   ASSERT_TRUE(found[0].change);
@@ -107,7 +103,7 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
   for (const Row& row : rows) {
     OffsetBasis job = basisOf();
     row.change(job);
-    const auto found = core::mismatches(offsetsFor(basisOf()), job);
+    const auto found = mismatches(offsetsFor(basisOf()), job);
     EXPECT_EQ(axesOf(found), row.axes) << row.has;
     for (const auto& mismatch : found) {
       EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
@@ -122,7 +118,7 @@ TEST(OffsetFit, OfAnotherWheelSwivelOrWidthNothingIsComputed) {
     OffsetBasis job = basisOf();
     job.height += 0.001;
     change(job);
-    for (const auto& mismatch : core::mismatches(offsetsFor(basisOf()), job))
+    for (const auto& mismatch : mismatches(offsetsFor(basisOf()), job))
       EXPECT_FALSE(mismatch.change) << mismatch.reason;
   }
 }
@@ -164,7 +160,7 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
     WorkOffsets offsets = offsetsFor(basis(was));
     const Eigen::Vector3d before = workZero(machine, was, mounting), after = workZero(machine, is, mounting);
     for (int axis = kX; axis <= kZ; ++axis) offsets.axes[static_cast<std::size_t>(axis)].value = before[axis];
-    const auto found = core::mismatches(offsets, basis(is));
+    const auto found = mismatches(offsets, basis(is));
     ASSERT_EQ(axesOf(found), "YZ");
     for (const auto& mismatch : found) {
       ASSERT_TRUE(mismatch.change);
@@ -177,25 +173,25 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
 TEST(OffsetFit, OneThatCannotBeReadIsNotOneThatWasNeverSet) {
   WorkOffsets offsets;
   offsets.axes[kX].value = kNan;
-  const auto found = core::mismatches(offsets, basisOf());
+  const auto found = mismatches(offsets, basisOf());
   ASSERT_EQ(axesOf(found), "XYZ");
   EXPECT_EQ(found[0].reason, "X cannot be read");
   EXPECT_EQ(found[1].reason, "Y was never set");
 }
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
-  EXPECT_EQ(core::basisText(kY, WorkOffset{}), "never set");
+  EXPECT_EQ(basisText(kY, WorkOffset{}), "never set");
   WorkOffset unknown;
   unknown.value = std::nan("");
-  EXPECT_EQ(core::basisText(kY, unknown), "cannot be read");
-  EXPECT_EQ(core::basisText(kX, offsetFor(basisOf(OffsetMethod::kProbe))),
+  EXPECT_EQ(basisText(kY, unknown), "cannot be read");
+  EXPECT_EQ(basisText(kX, offsetFor(basisOf(OffsetMethod::kProbe))),
             "probed for swivel 30 deg, wheel a.yaml, D 100 mm, width of the wheel 3 mm (d6.yaml)");
-  EXPECT_EQ(core::basisText(kA, offsetFor(basisOf())), "touched off (d6.yaml)");
+  EXPECT_EQ(basisText(kA, offsetFor(basisOf())), "touched off (d6.yaml)");
   OffsetBasis none;
   none.method = OffsetMethod::kByHand;
-  EXPECT_EQ(core::basisText(kX, offsetFor(none)), "set by hand");
-  EXPECT_EQ(core::basisText(kZ, offsetFor(none)), "set by hand, not known for which job");
+  EXPECT_EQ(basisText(kX, offsetFor(none)), "set by hand");
+  EXPECT_EQ(basisText(kZ, offsetFor(none)), "set by hand, not known for which job");
 }
 
 }  // namespace test_offset_fit
-}  // namespace flute_grinder
+}  // namespace grinder

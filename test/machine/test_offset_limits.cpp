@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_offset_limits {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -39,7 +39,7 @@ TEST(OffsetLimits, OfAnAxisThatTurnsForEverAreThoseOfAnyOffset) {
 
 TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {
   const OffsetLimits limits = limitsOf(100);
-  const core::WorkOffset was{0.0015, "anna@grinder", 1.7e9};
+  const WorkOffset was{0.0015, "anna@grinder", 1.7e9};
   EXPECT_EQ(changeRefusal(limits, kY, was, 0.006), "");
   EXPECT_EQ(
       changeRefusal(limits, kY, was, -0.0105),
@@ -47,9 +47,9 @@ TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {
   EXPECT_NE(changeRefusal(limits, kY, was, kNan), "");
   EXPECT_EQ(changeRefusal(limits, kA, was, 6), "");
   EXPECT_NE(changeRefusal(limits, kA, was, 7), "");
-  EXPECT_EQ(changeRefusal(limits, kY, core::WorkOffset{}, 0.1), "") << "never set";
+  EXPECT_EQ(changeRefusal(limits, kY, WorkOffset{}, 0.1), "") << "never set";
   EXPECT_EQ(changeRefusal(limits, kY, {kNan, "anna@grinder", 1.7e9}, 0.1), "") << "unknown";
 }
 
 }  // namespace test_offset_limits
-}  // namespace flute_grinder
+}  // namespace grinder

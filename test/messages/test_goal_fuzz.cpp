@@ -16,7 +16,7 @@
 /// @file
 /// Whatever numbers a goal is made of, the answer is a plan or a refusal with its reasons.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_goal_fuzz {
 
 Machine machine() {
@@ -26,7 +26,7 @@ Machine machine() {
   return m;
 }
 
-GrindGoal goodGoal() {
+flute_grinder::GrindGoal goodGoal() {
   GrindJob j;
   j.cutter = {10e-3, 0.09, 0.5, 0.1, 2e-3, CutDirection::kRightHand, 0.01, 10e-3};
   test_support::askForRakeAlone(j.cutter);
@@ -39,12 +39,12 @@ GrindGoal goodGoal() {
   j.process.wheel_diameter = 100e-3;
   j.process.wheel_width = 8e-3;
   j.interpolation = {EvenStepRule::kPublished, 1e-6, 1e-3};
-  GrindGoal goal = goalFromJob(j);
+  flute_grinder::GrindGoal goal = goalFromJob(j);
   goal.job_name = "paper.yaml";
   return goal;
 }
 
-std::vector<std::uint8_t> bytesOf(const GrindGoal& goal) {
+std::vector<std::uint8_t> bytesOf(const flute_grinder::GrindGoal& goal) {
   std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(goal));
   ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   ros::serialization::serialize(stream, goal);
@@ -52,7 +52,7 @@ std::vector<std::uint8_t> bytesOf(const GrindGoal& goal) {
 }
 
 /// @return whether the bytes are a goal's.
-bool goalOf(std::vector<std::uint8_t> bytes, GrindGoal& goal) {
+bool goalOf(std::vector<std::uint8_t> bytes, flute_grinder::GrindGoal& goal) {
   ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
   try {
     ros::serialization::deserialize(stream, goal);
@@ -81,7 +81,7 @@ void expectSame(const GrindJob& a, const GrindJob& b) {
 
 /// Does with a goal what the node does.
 /// @return whether its job is good.
-bool answer(const GrindGoal& goal) {
+bool answer(const flute_grinder::GrindGoal& goal) {
   const GrindJob job = jobFromGoal(goal);
   expectSame(job, jobFromGoal(goalFromJob(job)));
   EXPECT_EQ(jobDigest(job), jobDigest(jobFromGoal(goalFromJob(job))));
@@ -89,18 +89,18 @@ bool answer(const GrindGoal& goal) {
   JobPlan plan = planJob(job, m, m.park, {goal.first_tooth, goal.first_pass});
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(validate(job).empty() || plan.fault == PlanFault::kInvalidJob);
-  const PathStatistics message = toMessage(plan.statistics);
+  const flute_grinder::PathStatistics message = toMessage(plan.statistics);
   EXPECT_EQ(fromMessage(message).setpoints, plan.statistics.setpoints);
-  for (const core::Reason& reason : plan.reasons) EXPECT_GT(text(reason, UnitSystem::kSi).size(), 10u);
+  for (const Reason& reason : plan.reasons) EXPECT_GT(text(reason, UnitSystem::kSi).size(), 10u);
   return plan.good();
 }
 
 TEST(GoalFuzz, TheGoodGoalIsGood) { EXPECT_TRUE(answer(goodGoal())); }
 
 TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
-  GrindGoal goal = goodGoal();
+  flute_grinder::GrindGoal goal = goodGoal();
   const std::string published = jobDigest(jobFromGoal(goal));
-  goal.process.z_law = Process::CONSTANT_RAKE;
+  goal.process.z_law = flute_grinder::Process::CONSTANT_RAKE;
   GrindJob job = jobFromGoal(goal);
   EXPECT_EQ(job.process.z_law, ZLaw::kConstantRake);
   const std::string digest = jobDigest(job);
@@ -116,7 +116,7 @@ TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
 /// Where a goal's bytes say how many numbers an array has; no client writes a wrong count.
 template <typename Array>
 std::size_t countAt(Array array) {
-  GrindGoal longer = goodGoal();
+  flute_grinder::GrindGoal longer = goodGoal();
   array(longer).push_back(0);
   const std::vector<std::uint8_t> good = bytesOf(goodGoal());
   const std::vector<std::uint8_t> more = bytesOf(longer);
@@ -125,7 +125,7 @@ std::size_t countAt(Array array) {
 
 /// Bytes of a goal, three of them spoiled or all up to its name, but for the counts of its arrays.
 std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
-  const GrindGoal good = goodGoal();
+  const flute_grinder::GrindGoal good = goodGoal();
   std::vector<std::uint8_t> bytes = bytesOf(good);
   const std::size_t before_name = bytes.size() - good.job_name.size() - 5;
   const bool all = dice() % 8 == 0;
@@ -133,9 +133,9 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
     bytes[all ? n : dice() % bytes.size()] = static_cast<std::uint8_t>(dice());
   }
   static const std::size_t counts[] = {
-      countAt([](GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
-      countAt([](GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
-      countAt([](GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; })};
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; })};
   const std::vector<std::uint8_t> whole = bytesOf(good);
   for (const std::size_t at : counts) std::copy_n(whole.begin() + at, 4, bytes.begin() + at);
   if (dice() % 16 == 0) bytes.resize(dice() % (bytes.size() + 1));
@@ -147,7 +147,7 @@ TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
   int goals = 0;
   int good_jobs = 0;
   for (int i = 0; i < 20000 && !HasFailure(); ++i) {
-    GrindGoal goal;
+    flute_grinder::GrindGoal goal;
     if (!goalOf(spoiledBytes(dice), goal)) continue;
     ++goals;
     if (answer(goal)) ++good_jobs;
@@ -157,4 +157,4 @@ TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
 }
 
 }  // namespace test_goal_fuzz
-}  // namespace flute_grinder
+}  // namespace grinder

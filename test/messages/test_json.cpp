@@ -17,7 +17,7 @@
 /// @file
 /// A job reported in JSON is a job file, which reads back as the same job; no other job has its digest.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_json {
 
 using units::kDegree;
@@ -131,4 +131,4 @@ RC_GTEST_PROP(JobJson, OfAnyJobIsTheSameWithinRounding, ()) {
 }
 
 }  // namespace test_json
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,13 +11,13 @@
 /// @file
 /// What a goal's zero points depend on.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_offset_basis {
 
 const std::string kJob = "jobs/unequal_d12_t4.yaml";
 
 TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
-  const core::OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kProbe);
+  const OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kProbe);
   EXPECT_EQ(basis.method, OffsetMethod::kProbe);
   EXPECT_EQ(basis.job_name, "unequal_d12_t4.yaml");
   EXPECT_EQ(basis.wheel_name, "straight_d100_w3.yaml");
@@ -55,8 +55,8 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
 }
 
 TEST(OffsetBasis, SurvivesItsMessageAndAnUnknownMethodIsUnknown) {
-  const core::OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kByHand);
-  OffsetBasis message = toMessage(basis);
+  const OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kByHand);
+  flute_grinder::OffsetBasis message = toMessage(basis);
   EXPECT_TRUE(toMessage(fromMessage(message)) == message);
   message.method = 200;
   EXPECT_EQ(fromMessage(message).method, OffsetMethod::kUnknown);
@@ -64,16 +64,16 @@ TEST(OffsetBasis, SurvivesItsMessageAndAnUnknownMethodIsUnknown) {
 
 /// Y touched off for D 6, then a D 10 and a D 20 job: the wheel would stand 2 and 7 mm too deep.
 TEST(OffsetBasis, ADeeperCutThanAskedIsAMisfit) {
-  GrindGoal small = goalFromFile(kJob);
+  flute_grinder::GrindGoal small = goalFromFile(kJob);
   small.cutter.end_diameter = 0.006;
-  core::WorkOffsets offsets;
-  for (core::WorkOffset& offset : offsets.axes) {
+  WorkOffsets offsets;
+  for (WorkOffset& offset : offsets.axes) {
     offset = {0.001, "anna@grinder", 1.7e9, basisOf(small, OffsetMethod::kTouchOff)};
   }
   EXPECT_TRUE(mismatches(offsets, small).empty());
   EXPECT_TRUE(offsetWarnings(offsets, small).empty());
   for (const double diameter : {0.01, 0.02}) {
-    GrindGoal large = small;
+    flute_grinder::GrindGoal large = small;
     large.cutter.end_diameter = diameter;
     const auto found = mismatches(offsets, large);
     ASSERT_EQ(found.size(), 1U);
@@ -85,7 +85,7 @@ TEST(OffsetBasis, ADeeperCutThanAskedIsAMisfit) {
 }
 
 TEST(OffsetBasis, DoesNotEnterTheDigestOfAJob) {
-  GrindGoal goal = goalFromFile(kJob);
+  flute_grinder::GrindGoal goal = goalFromFile(kJob);
   const std::string digest = jobDigest(jobFromGoal(goal));
   goal.wheel_name = "other.yaml";
   goal.ignore_offset_check = 1;
@@ -93,4 +93,4 @@ TEST(OffsetBasis, DoesNotEnterTheDigestOfAJob) {
 }
 
 }  // namespace test_offset_basis
-}  // namespace flute_grinder
+}  // namespace grinder

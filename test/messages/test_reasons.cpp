@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_reasons {
 
 bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-core::Reason anyReason() {
+Reason anyReason() {
   const auto number = [] { return *rc::gen::arbitrary<double>(); };
-  core::Reason r;
-  r.kind = static_cast<core::ReasonKind>(*rc::gen::inRange(0, core::kReasonKindCount));
+  Reason r;
+  r.kind = static_cast<ReasonKind>(*rc::gen::inRange(0, kReasonKindCount));
   r.axis = *rc::gen::inRange(0, 4);
   r.field = *rc::gen::arbitrary<std::string>();
   r.detail = *rc::gen::arbitrary<std::string>();
@@ -34,8 +34,8 @@ core::Reason anyReason() {
 }
 
 RC_GTEST_PROP(ReasonMessage, GoesThereAndBack, ()) {
-  const core::Reason r = anyReason();
-  const core::Reason back = fromMessage(toMessage(r));
+  const Reason r = anyReason();
+  const Reason back = fromMessage(toMessage(r));
   RC_ASSERT(back.kind == r.kind);
   RC_ASSERT(back.axis == r.axis);
   RC_ASSERT(back.field == r.field);
@@ -55,21 +55,22 @@ RC_GTEST_PROP(ReasonMessage, GoesThereAndBack, ()) {
 }
 
 TEST(ReasonMessage, ThatIsNoReasonSaysNothing) {
-  Reason good;
-  good.kind = Reason::FOLLOWING_ERROR;
+  flute_grinder::Reason good;
+  good.kind = flute_grinder::Reason::FOLLOWING_ERROR;
   EXPECT_NE(text(fromMessage(good), UnitSystem::kShop), "");
-  for (std::uint8_t Reason::*member : {&Reason::kind, &Reason::axis, &Reason::unit, &Reason::move}) {
-    Reason message = good;
+  for (std::uint8_t flute_grinder::Reason::*member : {&flute_grinder::Reason::kind, &flute_grinder::Reason::axis,
+                                                      &flute_grinder::Reason::unit, &flute_grinder::Reason::move}) {
+    flute_grinder::Reason message = good;
     message.*member = 200;
     EXPECT_EQ(text(fromMessage(message), UnitSystem::kShop), "");
   }
 }
 
-Reason followingError() {
-  Reason reason;
-  reason.kind = Reason::FOLLOWING_ERROR;
+flute_grinder::Reason followingError() {
+  flute_grinder::Reason reason;
+  reason.kind = flute_grinder::Reason::FOLLOWING_ERROR;
   reason.axis = 1;
-  reason.unit = Reason::METRE;
+  reason.unit = flute_grinder::Reason::METRE;
   reason.value = 0.0012;
   reason.limit = 0.001;
   return reason;
@@ -78,7 +79,7 @@ Reason followingError() {
 constexpr const char* kFollowingError = "axis Y following error 1.2 mm is beyond its limit 1 mm";
 
 TEST(ReasonMessage, OfAFaultIsReadInShopUnits) {
-  GrinderState state;
+  flute_grinder::GrinderState state;
   EXPECT_EQ(faultText(state), "");
   state.fault = "in its own words";
   EXPECT_EQ(faultText(state), "in its own words");
@@ -87,7 +88,7 @@ TEST(ReasonMessage, OfAFaultIsReadInShopUnits) {
 }
 
 TEST(ReasonMessage, OfAResultIsReadInShopUnits) {
-  GrindResult result;
+  flute_grinder::GrindResult result;
   result.error_string = "in its own words";
   EXPECT_EQ(resultText(result), "in its own words");
   result.reasons = {followingError(), followingError()};
@@ -95,7 +96,7 @@ TEST(ReasonMessage, OfAResultIsReadInShopUnits) {
 }
 
 TEST(ReasonMessage, OfAPlanIsReadInShopUnits) {
-  Plan::Response plan;
+  flute_grinder::Plan::Response plan;
   plan.reasons = {"busy: another job is being planned"};
   EXPECT_EQ(planTexts(plan), plan.reasons);
   plan.violations = {followingError()};
@@ -103,4 +104,4 @@ TEST(ReasonMessage, OfAPlanIsReadInShopUnits) {
 }
 
 }  // namespace test_reasons
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 // What the property tests draw from: machines and jobs.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// Limits as of machines from slow and stiff to fast; wide in position. Period of 500 to 4000 Hz.
 inline rc::Gen<Machine> machine() {
@@ -194,9 +194,9 @@ inline Machine roomyMachine() {
   return machine;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support
 
-namespace flute_grinder {
+namespace grinder {
 
 inline std::ostream& operator<<(std::ostream& out, StrokeDirection direction) { return out << toString(direction); }
 
@@ -229,4 +229,4 @@ inline std::ostream& operator<<(std::ostream& out, const Work& w) {
 
 }  // namespace test_support
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 
 /// @file
 /// Plans of jobs, for the tests of planJob().
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 inline JobPlan planOf(const GrindJob& job, const Machine& machine = plainMachine()) {
   return planJob(job, machine, machine.park);
@@ -19,7 +19,7 @@ inline JobPlan planOf(const GrindJob& job, const Machine& machine = plainMachine
 
 inline std::string textOf(const JobPlan& plan) {
   std::string text;
-  for (const core::Reason& reason : plan.reasons) text += core::text(reason, UnitSystem::kSi) + "\n";
+  for (const Reason& reason : plan.reasons) text += grinder::text(reason, UnitSystem::kSi) + "\n";
   return text;
 }
 
@@ -28,15 +28,15 @@ inline bool contains(const std::string& text, const std::string& part) { return 
 /// The causes of all feed limits.
 inline std::string causesOf(const JobPlan& plan) {
   std::string causes;
-  for (const core::FeedLimit& cut : plan.statistics.feed_limits) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  for (const FeedLimit& cut : plan.statistics.feed_limits) causes += (causes.empty() ? "" : ", ") + cut.cause;
   return causes;
 }
 
 /// The reasons that have a part.
 inline std::vector<std::string> reasonsWith(const JobPlan& plan, const std::string& part) {
   std::vector<std::string> reasons;
-  for (const core::Reason& reason : plan.reasons) {
-    const std::string text = core::text(reason, UnitSystem::kSi);
+  for (const Reason& reason : plan.reasons) {
+    const std::string text = grinder::text(reason, UnitSystem::kSi);
     if (contains(text, part)) reasons.push_back(text);
   }
   return reasons;
@@ -64,4 +64,4 @@ inline Machine strongMachine() {
   return m;
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -16,7 +16,7 @@
 #include <vector>
 
 // What setpoints of a stream must keep to: the axes' limits, the paper's construction, the tolerance and the program.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kCycles = 1500;  ///< of a stroke: long enough for all phases, short enough for a hundred jobs
@@ -245,4 +245,4 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
   }
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -9,7 +9,7 @@
 #include <vector>
 
 // Streams gone through while they are held, retracted and given other feeds.
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// What somebody got from a stream of whom things were asked on the way.
 struct Ride {
@@ -236,4 +236,4 @@ class PaperStroke {
   Setpoint p_;
 };
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

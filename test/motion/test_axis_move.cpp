@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_axis_move {
 
 using namespace test_support;
@@ -176,4 +176,4 @@ RC_GTEST_PROP(AxisMoveProperty, EndsExactlyAtItsEndAndIsNeverBeyond, ()) {
 }
 
 }  // namespace test_axis_move
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_feed_schedule {
 
 using namespace test_support;
@@ -101,7 +101,7 @@ Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
 /// The one cause for which a feed is cut; empty where it is not, and all where there are several.
 std::string causeOf(const FeedSchedule& schedule) {
   std::string causes;
-  for (const core::FeedLimit& cut : schedule.feedLimits()) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  for (const FeedLimit& cut : schedule.feedLimits()) causes += (causes.empty() ? "" : ", ") + cut.cause;
   return causes;
 }
 
@@ -201,7 +201,7 @@ RC_GTEST_PROP(FeedScheduleProperty, ReportsWhereAHoldsTheFeedBack, ()) {
   const FeedSchedule schedule = c.schedule();
   const bool forward = c.stroke.to > c.stroke.from;
   const auto ahead = [&](double x, double of) { return forward ? x > of : x < of; };
-  for (const core::FeedLimit& cut : schedule.feedLimits()) {
+  for (const FeedLimit& cut : schedule.feedLimits()) {
     RC_ASSERT(ahead(cut.to_x, cut.from_x));
     RC_ASSERT(!ahead(c.stroke.from, cut.from_x));
     RC_ASSERT(!ahead(cut.to_x, c.stroke.to));
@@ -209,7 +209,7 @@ RC_GTEST_PROP(FeedScheduleProperty, ReportsWhereAHoldsTheFeedBack, ()) {
   bool slower = false;
   for (int i = 0; i <= 1000; ++i) slower = slower || schedule.rate(schedule.length() * i / 1000) < 1 - 1e-6;
   RC_PRE(slower);  // and not next to a cylinder, which is as thin everywhere
-  const core::FeedLimit& cut = schedule.feedLimits().back();
+  const FeedLimit& cut = schedule.feedLimits().back();
   RC_ASSERT(cut.from_x == c.stroke.from || cut.to_x == c.stroke.to);
   const double range = cut.to_x - cut.from_x;
   // The feed nears the full one evenly where the cut ends, and is all but there in the last part of the range.
@@ -352,8 +352,8 @@ TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
     if (backward) std::swap(stroke.from, stroke.to);
     const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
     ASSERT_EQ(causeOf(schedule), "axis_x velocity, axis_a velocity");
-    const core::FeedLimit& along = schedule.feedLimits()[0];
-    const core::FeedLimit& tip = schedule.feedLimits()[1];
+    const FeedLimit& along = schedule.feedLimits()[0];
+    const FeedLimit& tip = schedule.feedLimits()[1];
     EXPECT_EQ(along.from_x, stroke.from);
     EXPECT_EQ(along.to_x, stroke.to);
     const double end = (asked / 2 / 5 - 0.5e-3) / std::tan(12 * units::kDegree);
@@ -434,4 +434,4 @@ TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {
 }
 
 }  // namespace test_feed_schedule
-}  // namespace flute_grinder
+}  // namespace grinder

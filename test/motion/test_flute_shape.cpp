@@ -11,7 +11,7 @@
 #include <cmath>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_flute_shape {
 
 using namespace test_support;
@@ -64,7 +64,7 @@ RC_GTEST_PROP(FluteShape, EveryStrokeIsOnItsToothsHelixAtItsDepth, ()) {
   });
   RC_PRE(plan.program != nullptr);
   // Whatever the taper adds to Y, the axes keep their limits.
-  for (const core::Reason& reason : plan.reasons) RC_ASSERT(reason.kind == core::ReasonKind::kTolerance);
+  for (const Reason& reason : plan.reasons) RC_ASSERT(reason.kind == ReasonKind::kTolerance);
   RC_ASSERT(y_off < 1e-12);
   if (plan.good()) RC_ASSERT(deviation < 2 * job.interpolation.tolerance + 1e-12);
   if (plan.good()) RC_ASSERT(std::abs(last_x - plan.program->strokeTo()) < 1e-12);
@@ -97,4 +97,4 @@ TEST(FluteShape, ADepthBeyondTheRadiusAtTheFlutesEndIsRefused) {
 }
 
 }  // namespace test_flute_shape
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_grind_program {
 
 using namespace test_support;
@@ -378,4 +378,4 @@ RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {
 }
 
 }  // namespace test_grind_program
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_plan {
 
 using namespace test_support;
@@ -290,4 +290,4 @@ RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
 }
 
 }  // namespace test_job_plan
-}  // namespace flute_grinder
+}  // namespace grinder

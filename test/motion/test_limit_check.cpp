@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_limit_check {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -413,4 +413,4 @@ RC_GTEST_PROP(LimitCheckProperty, LetsPassASmoothMotionAtItsLimits, ()) {
 }
 
 }  // namespace test_limit_check
-}  // namespace flute_grinder
+}  // namespace grinder

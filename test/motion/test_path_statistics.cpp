@@ -10,17 +10,17 @@
 #include <cstdint>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_path_statistics {
 
 using namespace test_support;
 
 /// Every statistic once more, from the setpoints that the visitor saw.
-core::PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
+PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
   const ReferenceCurve curve(job.cutter, job.process.setup_lead);
   const CutterGeometry& g = job.cutter;
   const Real normal = std::cos(std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle))));
-  core::PathStatistics s;
+  PathStatistics s;
   s.setpoints = setpoints.size();
   s.duration = static_cast<double>(setpoints.size() - 1) * period;
   const auto end = [&](std::size_t i, std::size_t back) {
@@ -65,8 +65,8 @@ void expectSame(const GrindJob& job, const Machine& machine) {
   std::vector<Setpoint> setpoints;
   const JobPlan plan = planJob(job, machine, machine.park, {}, [&](const Setpoint& p) { setpoints.push_back(p); });
   ASSERT_TRUE(plan.good()) << textOf(plan);
-  const core::PathStatistics& s = plan.statistics;
-  const core::PathStatistics expected = accumulate(setpoints, job, machine.period);
+  const PathStatistics& s = plan.statistics;
+  const PathStatistics expected = accumulate(setpoints, job, machine.period);
   EXPECT_EQ(s.setpoints, expected.setpoints);
   EXPECT_NEAR(s.duration, expected.duration, 1e-9);
   for (std::size_t i = 0; i < kMoveKindCount; ++i)
@@ -142,4 +142,4 @@ RC_GTEST_PROP(JobPlanProperty, ReportsWhereEveryMoveEnds, ()) {
 }
 
 }  // namespace test_path_statistics
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_plan_limits {
 
 using namespace test_support;
@@ -164,4 +164,4 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
 }
 
 }  // namespace test_plan_limits
-}  // namespace flute_grinder
+}  // namespace grinder

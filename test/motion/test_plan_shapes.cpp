@@ -13,7 +13,7 @@
 /// @file
 /// A plan generates only what its moves have not in common. It is held against one of every setpoint, which a visitor
 /// makes planJob() generate.
-namespace flute_grinder {
+namespace grinder {
 namespace test_plan_shapes {
 
 using namespace test_support;
@@ -65,7 +65,7 @@ void requireSame(const JobPlan& plan, const JobPlan& all) {
   RC_ASSERT(plan.fault == all.fault);
   RC_ASSERT(textOf(plan) == textOf(all));
   RC_ASSERT(plan.move_ends == all.move_ends);
-  const core::PathStatistics &s = plan.statistics, &t = all.statistics;
+  const PathStatistics &s = plan.statistics, &t = all.statistics;
   RC_ASSERT(s.setpoints == t.setpoints);
   RC_ASSERT(s.duration == t.duration);
   RC_ASSERT(s.move_duration == t.move_duration);
@@ -162,4 +162,4 @@ TEST_P(PlanShapesGivenUp, Are) {
 INSTANTIATE_TEST_SUITE_P(FromAnywhere, PlanShapesGivenUp, ::testing::Values(-1, -1e9));
 
 }  // namespace test_plan_shapes
-}  // namespace flute_grinder
+}  // namespace grinder

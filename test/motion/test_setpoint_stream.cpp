@@ -13,7 +13,7 @@
 #include <limits>
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_setpoint_stream {
 
 using namespace test_support;
@@ -255,4 +255,4 @@ TEST(SetpointStream, SharesItsProgram) {
 }
 
 }  // namespace test_setpoint_stream
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_stream_feed {
 
 using namespace test_support;
@@ -330,4 +330,4 @@ TEST(SetpointStream, GoesAsFarTowardTheOverrideAsAnAxisAllows) {
 }
 
 }  // namespace test_stream_feed
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 #include <random>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_stream_hold {
 
 using namespace test_support;
@@ -192,4 +192,4 @@ TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
 }
 
 }  // namespace test_stream_hold
-}  // namespace flute_grinder
+}  // namespace grinder

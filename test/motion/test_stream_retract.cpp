@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_stream_retract {
 
 using namespace test_support;
@@ -435,4 +435,4 @@ TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
 }
 
 }  // namespace test_stream_retract
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_z_law {
 
 using namespace test_support;
@@ -160,7 +160,7 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
   Machine machine = plainMachine();
   machine.limits.max_jerk[kZ] = 2e-3;
   const JobPlan plan = planJob(bentJob(500e-6), machine, machine.park);
-  EXPECT_TRUE(plan.good()) << core::text(plan.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
   ASSERT_EQ(plan.statistics.feed_limits.size(), 1u);
   EXPECT_EQ(plan.statistics.feed_limits[0].cause, "axis_z jerk");
   EXPECT_LT(plan.statistics.max_feed, 0.0099);
@@ -168,4 +168,4 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
 }
 
 }  // namespace test_z_law
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_own_address {
 
 const std::string kAllowed =
@@ -73,4 +73,4 @@ TEST_F(OwnAddress, TheHostsNameComesFirst) {
 }
 
 }  // namespace test_own_address
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <thread>
 
 // callRosApi against a master that answers, hangs, closes, or sends something else.
-namespace flute_grinder {
+namespace grinder {
 namespace test_ros_api {
 
 using XmlRpc::XmlRpcValue;
@@ -146,4 +146,4 @@ TEST(RosApi, GivesNothingOnceItIsStopped) {
 }
 
 }  // namespace test_ros_api
-}  // namespace flute_grinder
+}  // namespace grinder

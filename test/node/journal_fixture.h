@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-namespace flute_grinder::test_support {
+namespace grinder::test_support {
 
 /// A folder of its own, with a journal that is not there yet.
 class JournalTest : public ::testing::Test {
@@ -66,4 +66,4 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_TRUE((a.offset == b.offset).all()) << a.offset.transpose() << " and " << b.offset.transpose();
 }
 
-}  // namespace flute_grinder::test_support
+}  // namespace grinder::test_support

@@ -7,7 +7,7 @@
 
 namespace {
 
-class RefusedDrive : public flute_grinder::AxesHW {
+class RefusedDrive : public grinder::AxesHW {
  public:
   // Nothing may be called of a drive that sees the interface otherwise.
   RefusedDrive() { std::abort(); }
@@ -21,7 +21,7 @@ class RefusedDrive : public flute_grinder::AxesHW {
 #ifdef OTHER_VERSION
 extern "C" {
 extern const std::uint32_t flute_grinder_drive_abi;
-const std::uint32_t flute_grinder_drive_abi = flute_grinder::kDriveAbi + 41;
+const std::uint32_t flute_grinder_drive_abi = grinder::kDriveAbi + 41;
 }
 #endif
-PLUGINLIB_EXPORT_CLASS(RefusedDrive, flute_grinder::RobotHW)
+PLUGINLIB_EXPORT_CLASS(RefusedDrive, grinder::RobotHW)

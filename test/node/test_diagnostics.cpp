@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_diagnostics {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -445,4 +445,4 @@ TEST_F(DiagnosticsTest, HistoryWarnsOfWhatIsAmiss) {
 }
 
 }  // namespace test_diagnostics
-}  // namespace flute_grinder
+}  // namespace grinder

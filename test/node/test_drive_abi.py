@@ -25,7 +25,7 @@ PACKAGE = """<package format="2">
 </package>
 """
 PLUGINS = """<library path="lib/libflute_grinder_drive_of_%s_version">
-  <class name="refused/Drive" type="RefusedDrive" base_class_type="flute_grinder::RobotHW">
+  <class name="refused/Drive" type="RefusedDrive" base_class_type="grinder::RobotHW">
     <description>A drive.</description>
   </class>
 </library>

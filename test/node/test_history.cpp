@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_history {
 
 namespace fs = std::filesystem;
@@ -176,4 +176,4 @@ TEST_F(HistoryTest, ARecordThatCannotBeMadeIsReported) {
 }
 
 }  // namespace test_history
-}  // namespace flute_grinder
+}  // namespace grinder

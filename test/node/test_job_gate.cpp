@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_gate {
 
 actionlib_msgs::GoalID id(const std::string& name, double stamp = 0) {
@@ -167,4 +167,4 @@ TEST_F(JobGateTest, NoCancelFallsBetweenPlanAndLoop) {
 }
 
 }  // namespace test_job_gate
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -17,7 +17,7 @@
 // Goals that are planned and started while stops, requests and faults come at random moments from other threads,
 // through the very parts of the node that they go through: no data race, and no job that a stop has missed. Made for
 // ThreadSanitizer.
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_threads {
 
 using test_support::FakeDrive;
@@ -174,4 +174,4 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
 }
 
 }  // namespace test_job_threads
-}  // namespace flute_grinder
+}  // namespace grinder

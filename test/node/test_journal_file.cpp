@@ -12,7 +12,7 @@
 #include <functional>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_journal_file {
 
 using namespace test_support;
@@ -322,4 +322,4 @@ TEST_F(JournalFileTest, AWriteThatFailsLeavesTheOldFile) {
 }
 
 }  // namespace test_journal_file
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <optional>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_journal_writer {
 
 using test_support::expectSame;
@@ -246,4 +246,4 @@ TEST_F(JournalWriterTest, WritesAndQueriesMayComeFromManyThreads) {
 }
 
 }  // namespace test_journal_writer
-}  // namespace flute_grinder
+}  // namespace grinder

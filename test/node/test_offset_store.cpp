@@ -12,15 +12,15 @@
 #include <vector>
 
 // The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal_file.cpp.
-namespace flute_grinder {
+namespace grinder {
 namespace test_offset_store {
 
 using namespace test_support;
 
-const core::OffsetBasis kBasis{
+const OffsetBasis kBasis{
     OffsetMethod::kProbe, "my \"job\".yaml", "a: b.yaml", std::string(64, 'f'), 0.006, 0.1, 0.003, 1.0 / 3, -0.0015};
-const core::WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
-const core::WorkOffset kOther{-1000, "", 0};
+const WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
+const WorkOffset kOther{-1000, "", 0};
 
 class OffsetStoreTest : public JournalTest {
  protected:
@@ -56,7 +56,7 @@ class OffsetStoreTest : public JournalTest {
 TEST_F(OffsetStoreTest, WithoutAFileTheyWereNeverSet) {
   const OffsetStore store(path_, "/grinder");
   EXPECT_EQ(store.unknown(), "");
-  for (const core::WorkOffset& offset : store.offsets().axes) {
+  for (const WorkOffset& offset : store.offsets().axes) {
     EXPECT_EQ(offset.value, 0);
     EXPECT_EQ(offset.set_by, "");
     EXPECT_EQ(offset.set_at, 0);
@@ -68,11 +68,11 @@ TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
   written();
   const OffsetStore next(path_, "/grinder");
   EXPECT_EQ(next.unknown(), "");
-  const core::WorkOffsets offsets = next.offsets();
+  const WorkOffsets offsets = next.offsets();
   EXPECT_EQ(offsets.axes[kY].value, kSome.value);
   EXPECT_EQ(offsets.axes[kY].set_by, kSome.set_by);
   EXPECT_EQ(offsets.axes[kY].set_at, kSome.set_at);
-  const core::OffsetBasis& basis = offsets.axes[kY].basis;
+  const OffsetBasis& basis = offsets.axes[kY].basis;
   EXPECT_EQ(basis.method, OffsetMethod::kProbe);
   EXPECT_EQ(basis.job_name, kBasis.job_name);
   EXPECT_EQ(basis.wheel_name, kBasis.wheel_name);
@@ -99,7 +99,7 @@ TEST_F(OffsetStoreTest, OfAFileWithoutItIsUnknownForWhatTheyWereSet) {
   }
   EXPECT_EQ(unknownWith(sealed(old)), "");
   OffsetStore store(path_, "/grinder");
-  for (const core::WorkOffset& offset : store.offsets().axes) {
+  for (const WorkOffset& offset : store.offsets().axes) {
     EXPECT_EQ(offset.value, 0.0015);
     EXPECT_TRUE(offset.wasSet());
     EXPECT_EQ(offset.basis.method, OffsetMethod::kUnknown);
@@ -228,4 +228,4 @@ TEST_F(OffsetStoreTest, BelongsToOneNode) {
 }
 
 }  // namespace test_offset_store
-}  // namespace flute_grinder
+}  // namespace grinder

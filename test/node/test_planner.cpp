@@ -12,7 +12,7 @@
 #include <future>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_planner {
 
 constexpr std::chrono::seconds kPatience(60);
@@ -205,4 +205,4 @@ TEST(Planner, ItsEndGivesUpAndAnswers) {
 }
 
 }  // namespace test_planner
-}  // namespace flute_grinder
+}  // namespace grinder

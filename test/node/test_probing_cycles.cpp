@@ -13,7 +13,7 @@
 
 // The probing cycles on a control loop that runs as fast as it can, with a drive whose probe touches what a test puts
 // there.
-namespace flute_grinder {
+namespace grinder {
 namespace test_probing_cycles {
 
 using test_support::FakeDrive;
@@ -60,7 +60,7 @@ class ProbingCycles : public ::testing::Test {
     loop_->keepAlive();
   }
 
-  double run(const ProbeGoal& goal) {
+  double run(const flute_grinder::ProbeGoal& goal) {
     Prober prober(*loop_, loop_->status().stops, [this](int place, int touch) {
       touches_.emplace_back(place, touch);
       if (touches_.size() == stop_at_) loop_->stop(MachineEvent::kHold);
@@ -68,7 +68,7 @@ class ProbingCycles : public ::testing::Test {
     return runCycle(prober, goal, offsets_, result_);
   }
 
-  std::string refusal(const ProbeGoal& goal) {
+  std::string refusal(const flute_grinder::ProbeGoal& goal) {
     try {
       run(goal);
     } catch (const ProbingError& error) {
@@ -77,8 +77,8 @@ class ProbingCycles : public ::testing::Test {
     return "";
   }
 
-  static ProbeGoal goal(std::uint8_t cycle, double within) {
-    ProbeGoal goal;
+  static flute_grinder::ProbeGoal goal(std::uint8_t cycle, double within) {
+    flute_grinder::ProbeGoal goal;
     goal.cycle = cycle;
     goal.within = within;
     return goal;
@@ -86,8 +86,8 @@ class ProbingCycles : public ::testing::Test {
 
   FastDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
-  core::WorkOffsets offsets_;
-  ProbeResult result_;
+  WorkOffsets offsets_;
+  flute_grinder::ProbeResult result_;
   std::vector<std::pair<int, int>> touches_;
   std::size_t stop_at_ = 0;  ///< before this touch, from 1; 0: never
 };
@@ -97,7 +97,7 @@ bool beyond(const FakeDrive& drive, double face) { return drive.position[kX] + 0
 
 TEST_F(ProbingCycles, EndFaceGivesTheStickOutAndXOfTheJob) {
   start(config(), [](const FakeDrive& drive) { return beyond(drive, 0.013); });
-  ProbeGoal probe = goal(ProbeGoal::END_FACE, 0.005);
+  flute_grinder::ProbeGoal probe = goal(flute_grinder::ProbeGoal::END_FACE, 0.005);
   probe.set_offset = 1;
   probe.flange = 0.002;
   probe.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
@@ -118,7 +118,7 @@ TEST_F(ProbingCycles, DiameterIsTheMeanOfFourSidesAndTheRunOutTheirWay) {
     const double y = drive.position[kY] - 0.01 - centre * std::cos(drive.position[kA] + 0.4);
     return std::hypot(y, centre * std::sin(drive.position[kA] + 0.4)) <= radius + kBall;
   });
-  run(goal(ProbeGoal::DIAMETER, 0.035));
+  run(goal(flute_grinder::ProbeGoal::DIAMETER, 0.035));
   ASSERT_EQ(result_.figures.size(), 2U);
   EXPECT_NEAR(result_.figures[0].value, 2 * radius, 2 * kTouch + centre * centre / radius);
   EXPECT_NEAR(result_.figures[1].value, 2 * centre, 4 * kTouch + centre * centre / radius);
@@ -129,7 +129,7 @@ TEST_F(ProbingCycles, DiameterIsTheMeanOfFourSidesAndTheRunOutTheirWay) {
 
 TEST_F(ProbingCycles, ADiameterFarFromTheKnownOneSetsNothing) {
   start(config(), [](const FakeDrive& drive) { return std::abs(drive.position[kY] - 0.01) <= 0.006 + kBall; });
-  ProbeGoal probe = goal(ProbeGoal::DIAMETER, 0.035);
+  flute_grinder::ProbeGoal probe = goal(flute_grinder::ProbeGoal::DIAMETER, 0.035);
   probe.set_offset = 1;
   probe.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
   for (const double known : {0.0109, 0.0131, 0.006, 0.022}) {
@@ -144,7 +144,7 @@ TEST_F(ProbingCycles, ADiameterFarFromTheKnownOneSetsNothing) {
 TEST_F(ProbingCycles, NothingThereGoesBack) {
   start(config(), [](const FakeDrive&) { return false; });
   const double before = loop_->status().command[kX];
-  EXPECT_EQ(refusal(goal(ProbeGoal::END_FACE, 0.005)), "nothing was touched over 5 mm");
+  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "nothing was touched over 5 mm");
   EXPECT_EQ(loop_->status().command[kX], before);
   EXPECT_TRUE(result_.figures.empty());
 }
@@ -157,7 +157,7 @@ TEST_F(ProbingCycles, TouchesThatDoNotAgreeAreRefused) {
     touched = touches;
     return touches;
   });
-  EXPECT_CONTAINS(refusal(goal(ProbeGoal::END_FACE, 0.005)), "the touches spread over 0.00");
+  EXPECT_CONTAINS(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "the touches spread over 0.00");
   EXPECT_TRUE(result_.figures.empty());
 }
 
@@ -167,12 +167,13 @@ TEST_F(ProbingCycles, AContactThatIsLostAgainIsNoTouch) {
     touched = begins || touched;
     return begins;
   });
-  EXPECT_EQ(refusal(goal(ProbeGoal::END_FACE, 0.005)), "the contact was lost again before the axis came to rest");
+  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)),
+            "the contact was lost again before the axis came to rest");
 }
 
 TEST_F(ProbingCycles, AProbeThatTouchesAlreadyIsRefused) {
   start(config(), [](const FakeDrive&) { return true; });
-  EXPECT_CONTAINS(refusal(goal(ProbeGoal::END_FACE, 0.005)), "jog refused: the probe touches already");
+  EXPECT_CONTAINS(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "jog refused: the probe touches already");
 }
 
 TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
@@ -180,7 +181,7 @@ TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
     touches_.clear();
     stop_at_ = touch;
     if (!loop_) start(config(), [](const FakeDrive& drive) { return beyond(drive, 0.013); });
-    EXPECT_EQ(refusal(goal(ProbeGoal::END_FACE, 0.005)), "stopped") << touch;
+    EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "stopped") << touch;
     EXPECT_EQ(touches_.size(), touch);
     EXPECT_EQ(loop_->status().state, MachineState::kReady);
   }
@@ -188,18 +189,19 @@ TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
 
 TEST_F(ProbingCycles, ToothNeedsTheOffsetOfX) {
   start(config(), [](const FakeDrive&) { return false; });
-  EXPECT_EQ(refusal(goal(ProbeGoal::TOOTH, 0.1)), "the work offset of X was never set; probe the end face first");
+  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::TOOTH, 0.1)),
+            "the work offset of X was never set; probe the end face first");
   EXPECT_TRUE(touches_.empty());
 }
 
 TEST_F(ProbingCycles, GoalsThatAreWrongAreRefused) {
-  ProbeGoal good = goal(ProbeGoal::DIAMETER, 0.005);
+  flute_grinder::ProbeGoal good = goal(flute_grinder::ProbeGoal::DIAMETER, 0.005);
   EXPECT_EQ(goalRefusal(good), "");
   EXPECT_EQ(goalRefusal(goal(3, 0.005)), "cycle = 3; allowed: 0 to 2");
   for (const double wrong : {0.0, -0.1, std::nan(""), HUGE_VAL}) {
-    EXPECT_CONTAINS(goalRefusal(goal(ProbeGoal::END_FACE, wrong)), "; allowed: finite, and above 0");
+    EXPECT_CONTAINS(goalRefusal(goal(flute_grinder::ProbeGoal::END_FACE, wrong)), "; allowed: finite, and above 0");
   }
-  EXPECT_EQ(goalRefusal(goal(ProbeGoal::TOOTH, 0.1)), "set_offset = false; allowed: true, for TOOTH");
+  EXPECT_EQ(goalRefusal(goal(flute_grinder::ProbeGoal::TOOTH, 0.1)), "set_offset = false; allowed: true, for TOOTH");
   good.set_offset = 1;
   EXPECT_CONTAINS(goalRefusal(good), "diameter = 0");
   good.diameter = 0.01;
@@ -214,4 +216,4 @@ TEST_F(ProbingCycles, GoalsThatAreWrongAreRefused) {
 }
 
 }  // namespace test_probing_cycles
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_progress_tracker {
 
 const ToothPass kFirst{0, 0};
@@ -193,4 +193,4 @@ TEST_F(ProgressTrackerTest, TheWheelIsEnteredWithoutAJobToo) {
 }
 
 }  // namespace test_progress_tracker
-}  // namespace flute_grinder
+}  // namespace grinder

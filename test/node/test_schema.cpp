@@ -22,7 +22,7 @@
 /// missing, of the wrong type or beyond its range, in the very words that the schema's figures make; each end of a
 /// range is taken; and there is no key that the schema does not know.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_schema {
 
 using Names = std::set<std::string>;
@@ -424,4 +424,4 @@ TEST(Schema, KnowsEveryParameterOfTheShippedFilesWhichLackNone) {
 }
 
 }  // namespace test_schema
-}  // namespace flute_grinder
+}  // namespace grinder

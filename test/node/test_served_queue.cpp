@@ -6,7 +6,7 @@
 #include <functional>
 #include <future>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_served_queue {
 
 constexpr double kShort = 0.001;  ///< [s]
@@ -48,4 +48,4 @@ TEST_F(ServedQueueTest, ALongerPeriodSetByPollCountsForTheNextPoll) {
 }
 
 }  // namespace test_served_queue
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,8 +4,8 @@
 #include "flute_grinder/messages/conversions.h"
 #include "panel_fixture.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 std::string digestOf(const QString& job) { return jobDigest(readJobFile(job.toStdString())); }
 
-}  // namespace flute_grinder
+}  // namespace grinder

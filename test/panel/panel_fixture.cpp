@@ -13,7 +13,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 namespace {
 
@@ -160,4 +160,4 @@ void Panel::picture(const std::string& name) {
   EXPECT_TRUE(panel_->grab().save(folder + "/panel_" + QString::fromStdString(name) + ".png"));
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Much longer than anything takes, even on a host that stalls [ms].
 constexpr int kPatience = 60000;
@@ -79,4 +79,4 @@ class Panel {
 /// Waits for a condition, and lets the panel live meanwhile.
 #define WAIT_FOR(condition) ASSERT_TRUE(QTest::qWaitFor([&] { return bool(condition); }, kPatience)) << #condition
 
-}  // namespace flute_grinder
+}  // namespace grinder

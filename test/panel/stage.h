@@ -25,18 +25,18 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A grinder that is and does what a test wants.
 class Stage {
  public:
   Stage() : nh_("cell/stage") {
-    state_topic_ = nh_.advertise<GrinderState>("state", 10, true);
-    feedback_ = nh_.advertise<GrindActionFeedback>("grind/feedback", 10);
+    state_topic_ = nh_.advertise<flute_grinder::GrinderState>("state", 10, true);
+    feedback_ = nh_.advertise<flute_grinder::GrindActionFeedback>("grind/feedback", 10);
     openResults();
-    offsets_ = nh_.advertise<WorkOffsets>("offsets", 10, true);
-    legend_ = nh_.advertise<Legend>("legend", 10, true);
-    job_ = nh_.advertise<GrindActionGoal>("job", 1, true);
+    offsets_ = nh_.advertise<flute_grinder::WorkOffsets>("offsets", 10, true);
+    legend_ = nh_.advertise<flute_grinder::Legend>("legend", 10, true);
+    job_ = nh_.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
     jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
     services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
@@ -81,21 +81,21 @@ class Stage {
     change([&] { resume_hangs = plan_hangs = false; });
   }
   void shutResults() { results_.shutdown(); }
-  void openResults() { results_ = nh_.advertise<GrindActionResult>("grind/result", 10); }
+  void openResults() { results_ = nh_.advertise<flute_grinder::GrindActionResult>("grind/result", 10); }
   /// Reports the end of a goal.
-  void end(const std::string& goal_id, const GrindResult& result) {
-    GrindActionResult message;
+  void end(const std::string& goal_id, const flute_grinder::GrindResult& result) {
+    flute_grinder::GrindActionResult message;
     message.status.goal_id.id = goal_id;
     message.result = result;
     results_.publish(message);
   }
-  void publishOffsets(const WorkOffsets& offsets) { offsets_.publish(offsets); }
+  void publishOffsets(const flute_grinder::WorkOffsets& offsets) { offsets_.publish(offsets); }
   /// Reports which goal starts, and that the progress is its.
-  void publishJob(const GrindActionGoal& goal) {
+  void publishJob(const flute_grinder::GrindActionGoal& goal) {
     change([&] { goal_id = goal.goal_id.id; });
     job_.publish(goal);
   }
-  void publishLegend(const Legend& legend) { legend_.publish(legend); }
+  void publishLegend(const flute_grinder::Legend& legend) { legend_.publish(legend); }
   void refuseJog(const std::string& why) {
     std_msgs::String message;
     message.data = why;
@@ -104,8 +104,8 @@ class Stage {
   /// Listens to no stop any more.
   void stopListening() { stops_.shutdown(); }
 
-  GrinderState state;
-  GrindFeedback progress;
+  flute_grinder::GrinderState state;
+  flute_grinder::GrindFeedback progress;
   sensor_msgs::JointState joints;
   bool silent = false;
   bool without_feedback = false;
@@ -117,30 +117,30 @@ class Stage {
   std::string swivel_refusal;   ///< of a confirmation; empty to accept it
   std::vector<double> swivels;
   std::vector<double> overrides;
-  std::vector<GrindActionGoal> goals;
+  std::vector<flute_grinder::GrindActionGoal> goals;
   std::vector<int> stops;
-  std::vector<JogStep::Request> steps;
+  std::vector<flute_grinder::JogStep::Request> steps;
   std::string step_refusal;
-  std::vector<Jog> jogs;
-  std::vector<TouchOff::Request> touches;
+  std::vector<flute_grinder::Jog> jogs;
+  std::vector<flute_grinder::TouchOff::Request> touches;
   std::string touch_refusal;
   bool large_change = false;  ///< the reason of that
-  std::vector<SetOffset::Request> offsets_set;
+  std::vector<flute_grinder::SetOffset::Request> offsets_set;
   std::string goal_id;  ///< of the progress
-  Plan::Response plan;
+  flute_grinder::Plan::Response plan;
 
  private:
   void publish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (silent) return;
     state_topic_.publish(state);
-    GrindActionFeedback feedback;
+    flute_grinder::GrindActionFeedback feedback;
     feedback.feedback = progress;
     feedback.status.goal_id.id = goal_id;
     if (!without_feedback) feedback_.publish(feedback);
     joint_states_.publish(joints);
   }
-  bool onPlan(Plan::Request&, Plan::Response& response) {
+  bool onPlan(flute_grinder::Plan::Request&, flute_grinder::Plan::Response& response) {
     while (get([&] { return plan_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
     change([&] { response = plan; });
     return true;
@@ -170,7 +170,7 @@ class Stage {
     });
     return true;
   }
-  bool onJogStep(JogStep::Request& request, JogStep::Response& response) {
+  bool onJogStep(flute_grinder::JogStep::Request& request, flute_grinder::JogStep::Response& response) {
     change([&] {
       steps.push_back(request);
       response.success = static_cast<std::uint8_t>(step_refusal.empty());
@@ -178,7 +178,7 @@ class Stage {
     });
     return true;
   }
-  bool onTouchOff(TouchOff::Request& request, TouchOff::Response& response) {
+  bool onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response) {
     change([&] {
       touches.push_back(request);
       response.success = static_cast<std::uint8_t>(touch_refusal.empty());
@@ -187,20 +187,22 @@ class Stage {
     });
     return true;
   }
-  bool onSetOffset(SetOffset::Request& request, SetOffset::Response& response) {
+  bool onSetOffset(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response) {
     change([&] { offsets_set.push_back(request); });
     response.success = 1;
     return true;
   }
-  void onJog(const Jog::ConstPtr& jog) {
+  void onJog(const flute_grinder::Jog::ConstPtr& jog) {
     change([&] { jogs.push_back(*jog); });
   }
-  bool onOverride(SetFeedOverride::Request& request, SetFeedOverride::Response& response) {
+  bool onOverride(flute_grinder::SetFeedOverride::Request& request,
+                  flute_grinder::SetFeedOverride::Response& response) {
     change([&] { overrides.push_back(request.fraction), state.override = request.fraction; });
     response.success = 1;
     return true;
   }
-  bool onConfirmSwivel(ConfirmSwivel::Request& request, ConfirmSwivel::Response& response) {
+  bool onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,
+                       flute_grinder::ConfirmSwivel::Response& response) {
     change([&] {
       swivels.push_back(request.swivel);
       response.success = static_cast<std::uint8_t>(swivel_refusal.empty());
@@ -209,10 +211,10 @@ class Stage {
     });
     return true;
   }
-  void onGoal(const GrindActionGoal::ConstPtr& goal) {
+  void onGoal(const flute_grinder::GrindActionGoal::ConstPtr& goal) {
     change([&] { goals.push_back(*goal); });
   }
-  void onStop(const Stop::ConstPtr& stop) {
+  void onStop(const flute_grinder::Stop::ConstPtr& stop) {
     change([&] { stops.push_back(stop->request); });
   }
 
@@ -224,4 +226,4 @@ class Stage {
   ros::SteadyTimer timer_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

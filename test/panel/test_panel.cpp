@@ -23,7 +23,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
@@ -33,33 +33,33 @@ class OnStage : public ::testing::Test {
   Stage stage;
 };
 
-Reason followingError() {
-  Reason reason;
-  reason.kind = Reason::FOLLOWING_ERROR;
-  reason.unit = Reason::METRE;
+flute_grinder::Reason followingError() {
+  flute_grinder::Reason reason;
+  reason.kind = flute_grinder::Reason::FOLLOWING_ERROR;
+  reason.unit = flute_grinder::Reason::METRE;
   reason.value = 0.0012;
   reason.limit = 0.001;
   return reason;
 }
 
-Reason positionBeyondItsLimit() {
-  Reason reason;
-  reason.kind = Reason::POSITION;
-  reason.unit = Reason::METRE;
+flute_grinder::Reason positionBeyondItsLimit() {
+  flute_grinder::Reason reason;
+  reason.kind = flute_grinder::Reason::POSITION;
+  reason.unit = flute_grinder::Reason::METRE;
   reason.value = reason.x = 0.301;
   reason.limit = 0.3;
   reason.has_place = 1;
-  reason.move = WrittenSetpoint::STROKE;
+  reason.move = flute_grinder::WrittenSetpoint::STROKE;
   reason.pass = 1;
   reason.cycle = 1204;
   return reason;
 }
 
-Reason feedOutOfRange() {
-  Reason reason;
-  reason.kind = Reason::OUT_OF_RANGE;
+flute_grinder::Reason feedOutOfRange() {
+  flute_grinder::Reason reason;
+  reason.kind = flute_grinder::Reason::OUT_OF_RANGE;
   reason.field = "process.feed";
-  reason.unit = Reason::FEED_METRE_PER_SECOND;
+  reason.unit = flute_grinder::Reason::FEED_METRE_PER_SECOND;
   reason.value = 1;
   reason.low = 1e-4 / 60;
   reason.limit = 10.0 / 60;
@@ -74,26 +74,29 @@ struct Row {
   const char* meaning;
 };
 const std::vector<Row> kStates{
-    {GrinderState::DISABLED, "disabled", {"enable", "reset"}, "power is off"},
-    {GrinderState::READY, "ready", {"disable", "home", "start"}, "power is on"},
-    {GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
-    {GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
-    {GrinderState::RUNNING, "running", {"disable", "hold", "cancel"}, "moves the axes"},
-    {GrinderState::HOLDING, "holding", {"disable", "hold", "resume", "cancel"}, "stopping on the path"},
-    {GrinderState::HELD, "held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held"},
-    {GrinderState::RETRACTING, "retracting", {"disable", "hold", "cancel"}, "being lifted"},
-    {GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
-    {GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
-    {GrinderState::CANCELING, "canceling", {"disable", "hold"}, "the job ends"},
-    {GrinderState::FAULT, "fault", {"reset"}, "following error 1.2 mm"},
-    {GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
-    {GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
-    {GrinderState::JOGGING_RETRACTED, "jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
+    {flute_grinder::GrinderState::DISABLED, "disabled", {"enable", "reset"}, "power is off"},
+    {flute_grinder::GrinderState::READY, "ready", {"disable", "home", "start"}, "power is on"},
+    {flute_grinder::GrinderState::HOMING, "homing", {"disable", "hold", "cancel"}, "homing the axes"},
+    {flute_grinder::GrinderState::STARTING, "starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
+    {flute_grinder::GrinderState::RUNNING, "running", {"disable", "hold", "cancel"}, "moves the axes"},
+    {flute_grinder::GrinderState::HOLDING, "holding", {"disable", "hold", "resume", "cancel"}, "stopping on the path"},
+    {flute_grinder::GrinderState::HELD, "held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held"},
+    {flute_grinder::GrinderState::RETRACTING, "retracting", {"disable", "hold", "cancel"}, "being lifted"},
+    {flute_grinder::GrinderState::RETRACTED, "retracted", {"disable", "resume", "cancel"}, "off the work"},
+    {flute_grinder::GrinderState::RESUMING, "resuming", {"disable", "hold", "cancel"}, "returning to where"},
+    {flute_grinder::GrinderState::CANCELING, "canceling", {"disable", "hold"}, "the job ends"},
+    {flute_grinder::GrinderState::FAULT, "fault", {"reset"}, "following error 1.2 mm"},
+    {flute_grinder::GrinderState::LIFTING, "lifting", {"disable", "hold", "cancel"}, "without a job"},
+    {flute_grinder::GrinderState::JOGGING, "jogging", {"disable", "hold", "cancel"}, "being jogged"},
+    {flute_grinder::GrinderState::JOGGING_RETRACTED,
+     "jogging_retracted",
+     {"disable", "hold", "cancel"},
+     "the job waits"},
 };
 
 TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.plan.valid = 1, stage.plan.duration = 7.03; });
   WAIT_FOR(panel.state() == "Ready" && panel.enabled("plan"));
   EXPECT_FALSE(panel.enabled("start")) << "nothing is planned";
@@ -106,9 +109,9 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
   for (const Row& row : kStates) {
     SCOPED_TRACE(row.name);
     stage.change([&] {
-      const bool fault = row.state == GrinderState::FAULT;
+      const bool fault = row.state == flute_grinder::GrinderState::FAULT;
       stage.state.fault = fault ? "axis_x following error 0.0012 m is beyond its limit 0.001 m" : "";
-      stage.state.fault_reason = fault ? followingError() : Reason();
+      stage.state.fault_reason = fault ? followingError() : flute_grinder::Reason();
     });
     stage.be(row.state, row.name);
     std::string name = row.name;
@@ -118,8 +121,9 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     EXPECT_EQ(panel.enabledRequests(), row.allowed);
     EXPECT_EQ(panel.label("grinder"), "/cell/stage");
     EXPECT_NE(panel.label("meaning").find(row.meaning), std::string::npos) << panel.label("meaning");
-    const bool in_job = (GrinderState::STARTING <= row.state && row.state <= GrinderState::CANCELING) ||
-                        row.state == GrinderState::JOGGING_RETRACTED;
+    const bool in_job =
+        (flute_grinder::GrinderState::STARTING <= row.state && row.state <= flute_grinder::GrinderState::CANCELING) ||
+        row.state == flute_grinder::GrinderState::JOGGING_RETRACTED;
     for (const char* of_a_new_job : {"choose", "plan", "dry_run"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
     EXPECT_EQ(panel.enabled("stroke"), in_job);
     EXPECT_EQ(panel.label("place"), in_job ? "Tooth 4, pass 20" : "No job runs");
@@ -149,7 +153,7 @@ TEST_F(OnStage, EveryTextHasRoomBeforeAStateHasCome) {
 
 TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.state() == "Running");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.state() == "No answer");
@@ -159,7 +163,7 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;
   panel.picture("no_answer");
   panel.click("hold");
-  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::HOLD});
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{flute_grinder::Stop::HOLD});
   stage.change([&] { stage.silent = false; });
   WAIT_FOR(panel.state() == "Running");
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
@@ -167,7 +171,7 @@ TEST_F(OnStage, SilenceDisablesEveryButtonButTheStops) {
 
 TEST_F(OnStage, AGrinderAnswersOnceAResultWouldBeHeard) {
   Panel panel("cell/stage");
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   stage.shutResults();
   WAIT_FOR(panel.state() == "No answer");
@@ -178,7 +182,7 @@ TEST_F(OnStage, AGrinderAnswersOnceAResultWouldBeHeard) {
 TEST_F(OnStage, AGrinderThatComesBackKnowsNoProgressOfBefore) {
   Panel panel("cell/stage");
   stage.change([&] { stage.progress.stroke_fraction = 0.43, stage.progress.job_fraction = 0.12; });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("job_text").find("Job 12 %") == 0);
   EXPECT_EQ(panel.label("stroke_text"), "Stroke 43 %");
   stage.change([&] { stage.silent = true; });
@@ -186,7 +190,7 @@ TEST_F(OnStage, AGrinderThatComesBackKnowsNoProgressOfBefore) {
   EXPECT_EQ(panel.label("stroke_text"), "Stroke 0 %");
   EXPECT_EQ(panel.label("job_text"), "Job 0 %");
   stage.change([&] { stage.silent = false, stage.without_feedback = true; });
-  stage.be(GrinderState::DISABLED, "disabled");
+  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(panel.label("stroke_text"), "Stroke 0 %");
   EXPECT_EQ(panel.label("job_text"), "Job 0 %");
@@ -221,8 +225,8 @@ TEST_F(OnStage, TheWindowIsNamedAfterTheGrinder) {
   WAIT_FOR(title() == "/other - my.rviz[*] - RViz");
 }
 
-Legend legendOf(const QString& job) {
-  Legend legend;
+flute_grinder::Legend legendOf(const QString& job) {
+  flute_grinder::Legend legend;
   legend.cutter = goalFromFile(job.toStdString()).cutter;
   legend.tolerance = 0.5e-6;
   legend.max_error = 0.0698e-6;
@@ -233,7 +237,7 @@ Legend legendOf(const QString& job) {
 TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   Panel panel("cell/stage");
   panel.openTab("View");
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   EXPECT_EQ(panel.label("shown_cutter"), "No job is shown.");
   EXPECT_EQ(panel.label("max_error"), "");
@@ -244,12 +248,12 @@ TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   EXPECT_EQ(panel.label("arrows") + ", " + panel.label("arrows_end"), "Path error x 2e5, 0.5 um");
   EXPECT_EQ(panel.label("max_error"), "Maximum error measured: 0.0698 um");
   panel.picture("view");
-  Legend other = legendOf(kPaper);
+  flute_grinder::Legend other = legendOf(kPaper);
   other.arrow_scale = 0;
   stage.publishLegend(other);
   WAIT_FOR(panel.label("arrows") == "Path error");
   // A process that has just begun shows nothing.
-  stage.publishLegend(Legend());
+  stage.publishLegend(flute_grinder::Legend());
   WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
   stage.publishLegend(legendOf(kPaper));
   WAIT_FOR(panel.label("shown_cutter") != "No job is shown.");
@@ -264,7 +268,7 @@ TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
     stage.joints.position = {-0.1000004, 0.0123456, 0, -21 * M_PI};
   });
   WAIT_FOR(panel.label("position_x") == "X  -100.000 mm");
-  Legend legend = legendOf(kPaper);
+  flute_grinder::Legend legend = legendOf(kPaper);
   for (const auto& [tolerance, x] : {std::pair{0.1e-6, "X  -100.0004 mm"},
                                      {1e-6, "X  -100.000 mm"},
                                      {0.5e-6, "X  -100.0004 mm"},
@@ -277,7 +281,7 @@ TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
   EXPECT_EQ(panel.label("position_a"), "A -3780.0000 deg");
   panel.picture("fine_readout");
   stage.change([&] { stage.progress.feed = 0.6e-3 / 60; });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("feed") == "0.60 mm/min");
   stage.change([&] { stage.progress.feed = 0; });
   WAIT_FOR(panel.label("feed") == "0 mm/min");
@@ -286,11 +290,11 @@ TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
 TEST_F(OnStage, ARequestThatHangsBlocksNothingAndIsReported) {
   Panel panel("cell/stage");
   stage.change([&] { stage.resume_hangs = true; });
-  stage.be(GrinderState::HELD, "held");
+  stage.be(flute_grinder::GrinderState::HELD, "held");
   WAIT_FOR(panel.enabled("resume"));
   panel.click("resume");
   WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
-  stage.be(GrinderState::RESUMING, "resuming");
+  stage.be(flute_grinder::GrinderState::RESUMING, "resuming");
   WAIT_FOR(panel.state() == "Resuming");
   panel.click("hold");
   panel.click("cancel");
@@ -303,7 +307,7 @@ TEST_F(OnStage, APanelMayBeClosedWhileARequestHangs) {
   {
     Panel panel("cell/stage");
     stage.change([&] { stage.resume_hangs = true; });
-    stage.be(GrinderState::HELD, "held");
+    stage.be(flute_grinder::GrinderState::HELD, "held");
     WAIT_FOR(panel.enabled("resume"));
     panel.click("resume");
     WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
@@ -324,10 +328,11 @@ TEST_F(OnStage, ARequestThatIsDoneSaysSoInALine) {
     const char *name, *button, *done;
   };
   for (const Request& r :
-       {Request{GrinderState::DISABLED, "disabled", "enable", "Enable: the power is on"},
-        Request{GrinderState::READY, "ready", "home", "Home: the drive is homing the axes"},
-        Request{GrinderState::FAULT, "fault", "reset", "Reset: the fault is cleared; the power is commanded off"},
-        Request{GrinderState::HELD, "held", "retract", "Retract: the wheel is being lifted"}}) {
+       {Request{flute_grinder::GrinderState::DISABLED, "disabled", "enable", "Enable: the power is on"},
+        Request{flute_grinder::GrinderState::READY, "ready", "home", "Home: the drive is homing the axes"},
+        Request{flute_grinder::GrinderState::FAULT, "fault", "reset",
+                "Reset: the fault is cleared; the power is commanded off"},
+        Request{flute_grinder::GrinderState::HELD, "held", "retract", "Retract: the wheel is being lifted"}}) {
     stage.be(r.state, r.name);
     WAIT_FOR(panel.enabled(r.button));
     panel.click(r.button);
@@ -339,30 +344,30 @@ TEST_F(OnStage, AReplyGoesWithTheStateThatItIsAbout) {
   Panel panel("cell/stage");
   const auto lift = [&] {
     stage.change([&] { stage.state.wheel_in_work = 1; });
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     WAIT_FOR(panel.enabled("lift"));
     panel.click("lift");
     WAIT_FOR(said(panel) == "Lift: the wheel is being lifted");
-    stage.be(GrinderState::LIFTING, "lifting");
+    stage.be(flute_grinder::GrinderState::LIFTING, "lifting");
     WAIT_FOR(panel.state() == "Lifting");
     EXPECT_EQ(said(panel), "Lift: the wheel is being lifted");
   };
   ASSERT_NO_FATAL_FAILURE(lift());
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   EXPECT_EQ(panel.text("messages"), "");
   // Not what was said since then.
   ASSERT_NO_FATAL_FAILURE(lift());
   panel.click("hold");
   WAIT_FOR(said(panel) == "Hold was sent");
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   EXPECT_EQ(said(panel), "Hold was sent");
 }
 
 TEST_F(OnStage, AReplyReplacesTheOneBeforeAndBeginsWithItsFirstLine) {
   Panel panel("cell/stage");
-  stage.be(GrinderState::DISABLED, "disabled");
+  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
   stage.change([&] { stage.trigger_refusal = "enable refused: one\ntwo\nthree\nfour\nfive\nsix\nseven"; });
   WAIT_FOR(panel.enabled("enable"));
   panel.click("enable");
@@ -377,19 +382,19 @@ TEST_F(OnStage, AReplyReplacesTheOneBeforeAndBeginsWithItsFirstLine) {
 
 TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.plan.valid = 1, stage.plan.duration = 7.03; });
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
   WAIT_FOR(panel.text("verdict").find("Takes 7.0 s") == 0);
-  GrindActionGoal other;
+  flute_grinder::GrindActionGoal other;
   other.goal_id.id = "from a terminal";
   other.goal = goalFromFile(kPaper.toStdString());
   other.goal.job_name = "four_teeth_of_the_night_shift.yaml";
   other.goal.cutter.end_diameter = 0.012;
   stage.publishJob(other);
   stage.change([&] { stage.progress.tooth = 3, stage.progress.pass = 19, stage.progress.feed = 0.01; });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.the<QWidget>("other_job").isVisible());
   EXPECT_EQ(panel.text("other_job"),
             "Running: four_teeth_of_the_night_shift.yaml (D 12 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth). "
@@ -398,7 +403,7 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   EXPECT_NE(panel.label("place").find(".yaml, tooth 4, pass 20"), std::string::npos) << panel.label("place");
   EXPECT_EQ(panel.the<QLabel>("place").toolTip().toStdString(), other.goal.job_name);
   panel.picture("job_of_somebody_else");
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.the<QWidget>("verdict").isVisible());
   EXPECT_EQ(panel.label("place"), "No job runs");
 }
@@ -406,7 +411,7 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
 TEST_F(OnStage, NothingMovesAtAStart) {
   Panel panel("cell/stage", kPaper);
   panel.widget().resize(1, panel.widget().height());
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] {
     stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, stage.joints.position = {0, 0, 0, 0};
   });
@@ -421,12 +426,12 @@ TEST_F(OnStage, NothingMovesAtAStart) {
     before[&button] = button.geometry();
   }
   const int width = panel.widget().minimumSizeHint().width();
-  GrindActionGoal job;
+  flute_grinder::GrindActionGoal job;
   job.goal_id.id = "of the night shift";
   job.goal = goalFromFile(kPaper.toStdString());
   job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
   stage.publishJob(job);
-  Legend legend = legendOf(kPaper);
+  flute_grinder::Legend legend = legendOf(kPaper);
   legend.tolerance = 0.1e-6;
   stage.publishLegend(legend);
   stage.change([&] {
@@ -437,7 +442,7 @@ TEST_F(OnStage, NothingMovesAtAStart) {
     stage.progress.remaining_time = 360000, stage.progress.tooth = 63, stage.progress.pass = 9999;
     stage.progress.feed = 10.0 / 60;
   });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("feed") == "10000 mm/min" && panel.label("position_a") == "A -3780.0000 deg");
   WAIT_FOR(panel.label("to_go") == "To go" && panel.label("override_value") == "36 %");
   lay_out();
@@ -461,7 +466,7 @@ TEST_F(OnStage, ALongNameIsShortenedToItsRoom) {
 
 TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.plan.valid = 1; });
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
@@ -469,7 +474,7 @@ TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
   panel.click("start");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
   stage.publishJob(stage.get([&] { return stage.goals[0]; }));
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.label("place").find("paper.yaml, tooth 1") == 0);
   EXPECT_FALSE(panel.the<QWidget>("other_job").isVisible());
 }
@@ -477,7 +482,7 @@ TEST_F(OnStage, AJobFromHereIsNotSomebodyElses) {
 TEST_F(OnStage, AStopThatNobodyHearsIsReported) {
   Panel panel("cell/stage");
   stage.stopListening();
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.state() == "Running");
   panel.click("hold");
   WAIT_FOR(panel.text("messages") != "");
@@ -488,7 +493,7 @@ TEST_F(OnStage, AStopThatNobodyHearsIsReported) {
 
 TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.plan.valid = 1; });
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
@@ -502,17 +507,18 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   panel.click("lift");
   WAIT_FOR(stage.get([&] { return stage.lifts; }) == 1);
   stage.change([&] { stage.state.fault = "emergency stop"; });
-  stage.be(GrinderState::FAULT, "fault");
+  stage.be(flute_grinder::GrinderState::FAULT, "fault");
   WAIT_FOR(panel.label("meaning") == "Fault: emergency stop. The wheel is in the work: reset, enable, then lift it.");
   stage.change([&] { stage.state.fault = ""; });
-  stage.be(GrinderState::DISABLED, "disabled");
+  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.label("meaning") == "The wheel is in the work: enable, then lift it.");
   const std::vector<std::pair<Row, const char*>> meanings{
-      {{GrinderState::HELD, "held", {}, ""},
+      {{flute_grinder::GrinderState::HELD, "held", {}, ""},
        "The job is held with the wheel in the work. Resume continues; Retract lifts it."},
-      {{GrinderState::LIFTING, "lifting", {}, ""}, "The wheel is in the work: it is being lifted; no job runs."},
-      {{GrinderState::JOGGING, "jogging", {}, ""}, "The wheel is in the work: it is being jogged up."},
-      {{GrinderState::RUNNING, "running", {}, ""}, "The job moves the axes."}};
+      {{flute_grinder::GrinderState::LIFTING, "lifting", {}, ""},
+       "The wheel is in the work: it is being lifted; no job runs."},
+      {{flute_grinder::GrinderState::JOGGING, "jogging", {}, ""}, "The wheel is in the work: it is being jogged up."},
+      {{flute_grinder::GrinderState::RUNNING, "running", {}, ""}, "The job moves the axes."}};
   for (const auto& [row, meaning] : meanings) {
     stage.be(row.state, row.name);
     WAIT_FOR(panel.label("meaning") == meaning);
@@ -529,7 +535,7 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
 
 TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.enabled("plan"));
   EXPECT_FALSE(panel.enabled("cancel"));
   stage.change([&] {
@@ -544,7 +550,7 @@ TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
   EXPECT_FALSE(panel.enabled("plan")) << "the grinder would be busy";
   panel.picture("planning");
   panel.click("cancel");
-  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{Stop::CANCEL});
+  WAIT_FOR(stage.get([&] { return stage.stops; }) == std::vector<int>{flute_grinder::Stop::CANCEL});
   stage.change([&] { stage.progress.state = "ready"; });
   WAIT_FOR(!panel.enabled("cancel"));
   EXPECT_EQ(panel.label("place"), "No job runs");
@@ -552,14 +558,14 @@ TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
 
 TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.enabled("dry_run"));
   panel.click("dry_run");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
   EXPECT_EQ(stage.get([&] { return stage.goals[0].goal.job_name; }), "paper.yaml");
   WAIT_FOR(panel.enabled("cancel"));
-  GrindResult canceled;
-  canceled.error_code = GrindResult::CANCELED;
+  flute_grinder::GrindResult canceled;
+  canceled.error_code = flute_grinder::GrindResult::CANCELED;
   canceled.error_string = "canceled";
   stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), canceled);
   WAIT_FOR(!panel.enabled("cancel"));
@@ -567,7 +573,7 @@ TEST_F(OnStage, AGoalFromHereCanBeCanceledUntilItEnds) {
 
 TEST_F(OnStage, PlanAndDryRunSayTheSame) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] {
     stage.plan.valid = 1;
     stage.plan.duration = 7.03;
@@ -586,7 +592,7 @@ TEST_F(OnStage, PlanAndDryRunSayTheSame) {
   WAIT_FOR(panel.enabled("dry_run"));
   panel.click("dry_run");
   WAIT_FOR(panel.text("verdict") == "Planning ..." && stage.get([&] { return stage.goals.size(); }) == 1);
-  GrindResult good;
+  flute_grinder::GrindResult good;
   good.error_string = "planned and checked; nothing moved";
   stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), good);
   WAIT_FOR(panel.text("verdict") == verdict && panel.enabled("start"));
@@ -596,12 +602,12 @@ TEST_F(OnStage, PlanAndDryRunSayTheSame) {
 
 TEST_F(OnStage, ADryRunThatIsRefusedSaysWhy) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.enabled("dry_run"));
   panel.click("dry_run");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
-  GrindResult refused;
-  refused.error_code = GrindResult::LIMIT_VIOLATED;
+  flute_grinder::GrindResult refused;
+  refused.error_code = flute_grinder::GrindResult::LIMIT_VIOLATED;
   refused.reasons = {feedOutOfRange()};
   stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), refused);
   WAIT_FOR(panel.text("verdict") ==
@@ -613,7 +619,7 @@ TEST_F(OnStage, ADryRunThatIsRefusedSaysWhy) {
 class BeforeTheSwivelIsSet : public OnStage {
  protected:
   void SetUp() override {
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     stage.change([&] {
       stage.plan.valid = 1;
       stage.state.swivel = std::numeric_limits<double>::quiet_NaN();
@@ -630,9 +636,9 @@ class BeforeTheSwivelIsSet : public OnStage {
   void publish(double angle, bool measured) {
     stage.change(
         [&] { stage.state.swivel = angle, stage.state.swivel_measured = static_cast<std::uint8_t>(measured); });
-    stage.be(GrinderState::LIFTING, "lifting");
+    stage.be(flute_grinder::GrinderState::LIFTING, "lifting");
     WAIT_FOR(panel.state() == "Lifting");
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     WAIT_FOR(panel.state() == "Ready");
   }
   bool asks() { return panel.the<QPushButton>("confirm_swivel").isVisible(); }
@@ -715,10 +721,10 @@ TEST_F(BeforeTheSwivelIsSet, ADriveThatMeasuresItIsNotAsked) {
 class AfterAJobWasLeft : public OnStage {
  protected:
   void SetUp() override {
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     stage.change([&] {
       stage.plan.valid = 1;
-      JobProgress& left = stage.state.progress;
+      flute_grinder::JobProgress& left = stage.state.progress;
       left.job_digest = std::string(64, 'a');
       left.job_name = "published.yaml";
       left.cutter = goalFromFile(kPaper.toStdString()).cutter;
@@ -735,7 +741,7 @@ class AfterAJobWasLeft : public OnStage {
   std::size_t goals() {
     return stage.get([&] { return stage.goals.size(); });
   }
-  GrindGoal goal() {
+  flute_grinder::GrindGoal goal() {
     return stage.get([&] { return stage.goals.at(0).goal; });
   }
   void leavePaper(const QString& file = kPaper) {
@@ -818,7 +824,7 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
 
 TEST_F(AfterAJobWasLeft, ADamagedJournalIsDiscardedIfTheOperatorSaysSo) {
   stage.change([&] {
-    stage.state.progress = JobProgress();
+    stage.state.progress = flute_grinder::JobProgress();
     stage.state.journal_error = "journal /j: its checksum is wrong";
     stage.state.journal_damaged = 1;
   });
@@ -863,7 +869,7 @@ TEST_F(AfterAJobWasLeft, NothingIsAskedOnceItIsFinished) {
 
 TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
   Panel panel("cell/stage");
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   stage.change([&] { stage.state.override = 0.8; });
   WAIT_FOR(panel.label("override_value") == "80 %");
   auto& slider = panel.the<QAbstractSlider>("override");
@@ -895,7 +901,7 @@ TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
 
 TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] {
     stage.plan.reasons = {"axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)",
                           "process.feed = 1 m/s; allowed: 1.666666667e-06 to 0.1666666667 m/s"};
@@ -914,8 +920,8 @@ TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
 
 TEST_F(OnStage, WhatLimitsTheFeedIsShown) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
-  FeedLimit limit;
+  stage.be(flute_grinder::GrinderState::READY, "ready");
+  flute_grinder::FeedLimit limit;
   limit.cause = "axis_a velocity";
   limit.from_x = 0.003;
   limit.to_x = 0.0052;
@@ -939,7 +945,7 @@ TEST_F(OnStage, AJobFileThatChangedSinceThePlanIsNotStarted) {
   const QString path = folder.filePath("job.yaml");
   ASSERT_TRUE(QFile::copy(kPaper, path));
   Panel panel("cell/stage", path);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.plan.valid = 1; });
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
@@ -974,7 +980,7 @@ TEST_F(OnStage, ConfigurationIsSavedAndLoaded) {
 
 TEST_F(OnStage, TheNodeCanBeChosen) {
   Panel panel("nobody");
-  stage.be(GrinderState::DISABLED, "disabled");
+  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_NE(panel.label("meaning").find("/nobody"), std::string::npos);
   panel.openTab("View");
@@ -996,7 +1002,7 @@ TEST_F(OnStage, TheNodeCanBeChosen) {
 TEST_F(OnStage, WhatHeldTheJobIsReportedInPlainWords) {
   Panel panel("cell/stage");
   stage.change([&] { stage.state.hold_reason = "the spindle is not at speed"; });
-  stage.be(GrinderState::RETRACTED, "retracted");
+  stage.be(flute_grinder::GrinderState::RETRACTED, "retracted");
   WAIT_FOR(panel.label("meaning").find("Held because the spindle is not at speed") == 0);
   panel.picture("held_by_itself");
 }
@@ -1035,12 +1041,12 @@ TEST_F(OnStage, PositionsAreThoseOfTheWork) {
 TEST_F(OnStage, AxesThatAreNotHomedAreReported) {
   Panel panel("cell/stage");
   stage.change([&] { stage.state.homed = 0; });
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.label("meaning").find("not homed") != std::string::npos);
 }
 
 }  // namespace test_panel
-}  // namespace flute_grinder
+}  // namespace grinder
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);

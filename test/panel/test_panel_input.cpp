@@ -28,14 +28,14 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_input {
 
 const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/";
 
 class Input : public ::testing::Test {
  protected:
-  Input() { be(GrinderState::READY, "ready"); }
+  Input() { be(flute_grinder::GrinderState::READY, "ready"); }
   ~Input() override { QLocale::setDefault(QLocale::c()); }
 
   void be(std::uint8_t state, const char* name) { stage.be(state, name); }
@@ -189,9 +189,9 @@ class BesideADialog : public Input {
   template <typename Change>
   void publish(Change how) {
     stage.change(how);
-    be(GrinderState::LIFTING, "lifting");
+    be(flute_grinder::GrinderState::LIFTING, "lifting");
     WAIT_FOR(panel.state() == "Lifting");
-    be(GrinderState::READY, "ready");
+    be(flute_grinder::GrinderState::READY, "ready");
     WAIT_FOR(panel.state() == "Ready" && panel.enabled("plan"));
   }
   void plan() {
@@ -207,10 +207,10 @@ class BesideADialog : public Input {
       EXPECT_FALSE(dialog->frameGeometry().intersects(place));
       EXPECT_TRUE(QGuiApplication::primaryScreen()->geometry().contains(dialog->geometry()));
     }
-    be(GrinderState::RUNNING, "running");
+    be(flute_grinder::GrinderState::RUNNING, "running");
     WAIT_FOR(panel.state() == "Running" && panel.enabled("hold"));
     clickInWindow(panel, "hold");
-    WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+    WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
   }
   QFileDialog* fileDialog() {
     panel.click("choose");
@@ -397,10 +397,10 @@ TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
   WAIT_FOR(goals() == 1);
   // From the goal on: a job that is still planned begins held.
   WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
-  be(GrinderState::RUNNING, "running");
+  be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.state() == "Running");
   QTest::keyClick(QApplication::focusWidget(), Qt::Key_Space);
-  WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
+  WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
 }
 
 TEST_F(Input, SpaceHoldsAJobOfSomebodyElse) {
@@ -410,7 +410,7 @@ TEST_F(Input, SpaceHoldsAJobOfSomebodyElse) {
   panel.openTab("Jog");
   panel.the<QWidget>("jog_speed").setFocus();
   WAIT_FOR(panel.state() == "Ready");
-  be(GrinderState::STARTING, "starting");
+  be(flute_grinder::GrinderState::STARTING, "starting");
   WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
 }
 
@@ -434,11 +434,11 @@ class Clicks {
 TEST_F(Input, ADoubleClickPressesAButtonOnce) {
   Panel panel("cell/stage", kJobs + "paper.yaml");
   std::set<std::string> clicked;
-  for (const auto& [state, name] : {std::pair{GrinderState::DISABLED, "disabled"},
-                                    {GrinderState::READY, "ready"},
-                                    {GrinderState::HELD, "held"},
-                                    {GrinderState::RETRACTED, "retracted"},
-                                    {GrinderState::FAULT, "fault"}}) {
+  for (const auto& [state, name] : {std::pair{flute_grinder::GrinderState::DISABLED, "disabled"},
+                                    {flute_grinder::GrinderState::READY, "ready"},
+                                    {flute_grinder::GrinderState::HELD, "held"},
+                                    {flute_grinder::GrinderState::RETRACTED, "retracted"},
+                                    {flute_grinder::GrinderState::FAULT, "fault"}}) {
     be(state, name);
     WAIT_FOR(QString::fromStdString(panel.state()).toLower() == name);
     for (const char* tab : {"Job", "Section", "Jog", "View"}) {
@@ -515,7 +515,7 @@ void turnWheel(QWidget& over, int notches) {
 }
 
 TEST_F(Input, TheMouseWheelChangesWhatHasTheFocusAlone) {
-  be(GrinderState::RUNNING, "running");
+  be(flute_grinder::GrinderState::RUNNING, "running");
   stage.change([&] { stage.plan.valid = 1; });
   Panel panel("cell/stage", kJobs + "paper.yaml");
   WAIT_FOR(panel.label("override_value") == "100 %");
@@ -567,11 +567,11 @@ class Focus : public Input {
 };
 
 TEST_F(Focus, StaysOnHoldAndNoKeyCancelsOrResumes) {
-  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  ASSERT_NO_FATAL_FAILURE(beSeen(flute_grinder::GrinderState::RUNNING, "running", "Running"));
   clickInWindow(panel, "hold");
-  WAIT_FOR(stops() == std::vector<int>{Stop::HOLD});
-  for (const auto& [state, name, shown] :
-       {std::tuple{GrinderState::HOLDING, "holding", "Holding"}, std::tuple{GrinderState::HELD, "held", "Held"}}) {
+  WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
+  for (const auto& [state, name, shown] : {std::tuple{flute_grinder::GrinderState::HOLDING, "holding", "Holding"},
+                                           std::tuple{flute_grinder::GrinderState::HELD, "held", "Held"}}) {
     ASSERT_NO_FATAL_FAILURE(beSeen(state, name, shown));
     EXPECT_EQ(focused(), "hold");
     pressKeys();
@@ -579,18 +579,18 @@ TEST_F(Focus, StaysOnHoldAndNoKeyCancelsOrResumes) {
   // Hold again holds what is held.
   clickInWindow(panel, "resume");
   WAIT_FOR(stage.get([&] { return stage.resumes; }) == 1);
-  for (const auto& [state, name, shown] : {std::tuple{GrinderState::RESUMING, "resuming", "Resuming"},
-                                           std::tuple{GrinderState::RUNNING, "running", "Running"}}) {
+  for (const auto& [state, name, shown] : {std::tuple{flute_grinder::GrinderState::RESUMING, "resuming", "Resuming"},
+                                           std::tuple{flute_grinder::GrinderState::RUNNING, "running", "Running"}}) {
     ASSERT_NO_FATAL_FAILURE(beSeen(state, name, shown));
     EXPECT_EQ(focused(), "hold");
     pressKeys();
   }
-  for (const int stop : stops()) EXPECT_EQ(stop, Stop::HOLD);
+  for (const int stop : stops()) EXPECT_EQ(stop, flute_grinder::Stop::HOLD);
   EXPECT_EQ(stage.get([&] { return stage.resumes; }), 1);
 }
 
 TEST_F(Focus, NoKeyReachesCancelOrDisable) {
-  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  ASSERT_NO_FATAL_FAILURE(beSeen(flute_grinder::GrinderState::RUNNING, "running", "Running"));
   panel.the<QPushButton>("hold").setFocus();
   std::set<std::string> passed;
   for (int i = 0; i < 60; ++i) {
@@ -617,12 +617,12 @@ TEST_F(Focus, DoesNotMoveToAButtonByItself) {
   EXPECT_TRUE(stops().empty());
   clickInWindow(panel, "start");
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
-  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::RUNNING, "running", "Running"));
+  ASSERT_NO_FATAL_FAILURE(beSeen(flute_grinder::GrinderState::RUNNING, "running", "Running"));
   EXPECT_EQ(focused(), "hold") << "Space stops what Start has begun";
-  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), GrindResult());
-  ASSERT_NO_FATAL_FAILURE(beSeen(GrinderState::READY, "ready", "Ready"));
+  stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), flute_grinder::GrindResult());
+  ASSERT_NO_FATAL_FAILURE(beSeen(flute_grinder::GrinderState::READY, "ready", "Ready"));
   EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
 }
 
 }  // namespace test_panel_input
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_job {
 
 const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/";
@@ -83,10 +83,10 @@ class WithGrinder : public ::testing::Test {
     return words.value(1).toDouble();
   }
   static void inject(const std::string& fault) {
-    InjectFault call;
+    flute_grinder::InjectFault call;
     call.request.fault = fault;
     // Persistent, since roscpp may lose the answer of any other (ros_comm #1976).
-    auto client = ros::NodeHandle().serviceClient<InjectFault>("grinder/hardware/inject_fault", true);
+    auto client = ros::NodeHandle().serviceClient<flute_grinder::InjectFault>("grinder/hardware/inject_fault", true);
     ASSERT_TRUE(client.call(call) && call.response.success);
   }
 
@@ -197,4 +197,4 @@ TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
 }
 
 }  // namespace test_panel_job
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_jog {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
@@ -33,7 +33,7 @@ struct Row {
 class Jogging : public ::testing::Test {
  protected:
   Jogging() {
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     panel.openTab("Jog");
   }
   Names enabledButtons() {
@@ -49,13 +49,13 @@ class Jogging : public ::testing::Test {
     ASSERT_GE(index, 0) << step.toStdString();
     steps.setCurrentIndex(index);
   }
-  std::vector<Jog> jogs() {
+  std::vector<flute_grinder::Jog> jogs() {
     return stage.get([&] { return stage.jogs; });
   }
-  std::vector<JogStep::Request> steps() {
+  std::vector<flute_grinder::JogStep::Request> steps() {
     return stage.get([&] { return stage.steps; });
   }
-  std::vector<TouchOff::Request> touches() {
+  std::vector<flute_grinder::TouchOff::Request> touches() {
     return stage.get([&] { return stage.touches; });
   }
   /// Presses a button until some messages have come.
@@ -77,19 +77,19 @@ class Jogging : public ::testing::Test {
 };
 
 TEST_F(Jogging, ButtonsAreEnabledWhereAnAxisMayBeJogged) {
-  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
-                                         {GrinderState::HELD, "held", false},
-                                         {GrinderState::RETRACTED, "retracted", true},
-                                         {GrinderState::RUNNING, "running", false},
-                                         {GrinderState::JOGGING, "jogging", true},
-                                         {GrinderState::DISABLED, "disabled", false},
-                                         {GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
+  for (const Row& row : std::vector<Row>{{flute_grinder::GrinderState::READY, "ready", true},
+                                         {flute_grinder::GrinderState::HELD, "held", false},
+                                         {flute_grinder::GrinderState::RETRACTED, "retracted", true},
+                                         {flute_grinder::GrinderState::RUNNING, "running", false},
+                                         {flute_grinder::GrinderState::JOGGING, "jogging", true},
+                                         {flute_grinder::GrinderState::DISABLED, "disabled", false},
+                                         {flute_grinder::GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
     stage.be(row.state, row.name);
     WAIT_FOR(panel.enabled("jog_x_plus") == row.allowed);
     WAIT_FOR(enabledButtons() == (row.allowed ? kButtons : Names()));
   }
   WAIT_FOR(panel.state() == "Jogging retracted");
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
@@ -105,10 +105,10 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
   WAIT_FOR(steps().size() == 1);
   panel.click("jog_a_minus");
   WAIT_FOR(steps().size() == 2);
-  EXPECT_EQ(steps()[0].axis, JogStep::Request::X);
+  EXPECT_EQ(steps()[0].axis, flute_grinder::JogStep::Request::X);
   EXPECT_DOUBLE_EQ(steps()[0].distance, 1e-4);
   EXPECT_DOUBLE_EQ(steps()[0].speed, 0.002);
-  EXPECT_EQ(steps()[1].axis, JogStep::Request::A);
+  EXPECT_EQ(steps()[1].axis, flute_grinder::JogStep::Request::A);
   EXPECT_DOUBLE_EQ(steps()[1].distance, -0.1 * M_PI / 180);
   EXPECT_DOUBLE_EQ(steps()[1].speed, 15 * M_PI / 180);
   EXPECT_TRUE(jogs().empty());
@@ -134,7 +134,7 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   EXPECT_DOUBLE_EQ(touches()[0].position, 1.5e-3);
   EXPECT_EQ(touches()[1].axis, "axis_a");
   EXPECT_DOUBLE_EQ(touches()[1].position, -M_PI / 6);
-  for (const TouchOff::Request& touch : touches()) {
+  for (const flute_grinder::TouchOff::Request& touch : touches()) {
     EXPECT_NE(touch.set_by.find('@'), std::string::npos) << touch.set_by;
   }
   WAIT_FOR(panel.text("messages").find("Touch-off: the work offset of axis A is set") != std::string::npos);
@@ -170,7 +170,7 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   const auto offset = [&] { return panel.label("work_offset"); };
   auto& axes = panel.the<QComboBox>("touch_axis");
   EXPECT_TRUE(offset().empty());
-  WorkOffsets offsets;
+  flute_grinder::WorkOffsets offsets;
   offsets.values = {-0.0515, 0.00149, std::nan(""), -M_PI / 2};
   offsets.set_by[kY] = "anna@cell-3";
   const QDateTime when(QDate(2024, 2, 29), QTime(23, 59, 1));
@@ -201,14 +201,14 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
 }
 
 TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
-  for (const Row& row : std::vector<Row>{{GrinderState::READY, "ready", true},
-                                         {GrinderState::JOGGING, "jogging", false},
-                                         {GrinderState::DISABLED, "disabled", true},
-                                         {GrinderState::RETRACTED, "retracted", false}}) {
+  for (const Row& row : std::vector<Row>{{flute_grinder::GrinderState::READY, "ready", true},
+                                         {flute_grinder::GrinderState::JOGGING, "jogging", false},
+                                         {flute_grinder::GrinderState::DISABLED, "disabled", true},
+                                         {flute_grinder::GrinderState::RETRACTED, "retracted", false}}) {
     stage.be(row.state, row.name);
     WAIT_FOR(panel.enabled("touch_off") == row.allowed);
   }
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.enabled("touch_off"));
   stage.change([&] { stage.state.homed = 0; });
   WAIT_FOR(!panel.enabled("touch_off"));
@@ -237,10 +237,10 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   WAIT_FOR(enabled().size() == 2);
   // While a job runs they are its own.
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.state() == "Running");
   EXPECT_TRUE(enabled().empty());
-  stage.be(GrinderState::DISABLED, "disabled");
+  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
 }
@@ -264,8 +264,8 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
   choose("while pressed");
   panel.the<QDoubleSpinBox>("jog_speed").setValue(300);
   ASSERT_NO_FATAL_FAILURE(hold("jog_y_minus"));
-  for (const Jog& jog : jogs()) {
-    EXPECT_EQ(jog.axis, Jog::Y);
+  for (const flute_grinder::Jog& jog : jogs()) {
+    EXPECT_EQ(jog.axis, flute_grinder::Jog::Y);
     EXPECT_DOUBLE_EQ(jog.velocity, -0.005);
     EXPECT_LT(std::abs((ros::Time::now() - jog.header.stamp).toSec()), 60);
   }
@@ -300,10 +300,10 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
   expectStopped();
   QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
   ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  stage.be(GrinderState::FAULT, "fault");
+  stage.be(flute_grinder::GrinderState::FAULT, "fault");
   expectStopped();
   QTest::mouseRelease(&button, Qt::LeftButton);
 }
 
 }  // namespace test_panel_jog
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_offsets {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
@@ -29,7 +29,7 @@ class ZeroPoints : public ::testing::Test {
       stage.plan.valid = 1;
       stage.plan.duration = 12;
     });
-    stage.be(GrinderState::READY, "ready");
+    stage.be(flute_grinder::GrinderState::READY, "ready");
     panel.widget().show();
     WAIT_FOR(panel.enabled("plan"));
     panel.click("plan");
@@ -38,11 +38,11 @@ class ZeroPoints : public ::testing::Test {
 
   /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter and height [m].
   void setFor(double diameter, double height = 0.002788) {
-    GrindGoal goal = goalFromFile(kPaper.toStdString());
+    flute_grinder::GrindGoal goal = goalFromFile(kPaper.toStdString());
     goal.cutter.end_diameter = diameter;
     goal.process.setup_height = height;
     goal.job_name = "other.yaml";
-    WorkOffsets offsets;
+    flute_grinder::WorkOffsets offsets;
     offsets.values = {0.001, 0.002, 0.003, 0};
     for (const int axis : {kX, kY, kZ}) {
       const auto i = static_cast<std::size_t>(axis);
@@ -53,10 +53,10 @@ class ZeroPoints : public ::testing::Test {
     stage.publishOffsets(offsets);
   }
   bool asks() { return panel.the<QPushButton>("ignore_offset_check").isVisible(); }
-  std::vector<GrindActionGoal> goals() {
+  std::vector<flute_grinder::GrindActionGoal> goals() {
     return stage.get([&] { return stage.goals; });
   }
-  std::vector<SetOffset::Request> offsetsSet() {
+  std::vector<flute_grinder::SetOffset::Request> offsetsSet() {
     return stage.get([&] { return stage.offsets_set; });
   }
 
@@ -65,10 +65,11 @@ class ZeroPoints : public ::testing::Test {
 };
 
 TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
-  GrindGoal other = goalFromFile((QString(kPaper).replace("test/jobs/paper", "jobs/roughing_d10_t4")).toStdString());
+  flute_grinder::GrindGoal other =
+      goalFromFile((QString(kPaper).replace("test/jobs/paper", "jobs/roughing_d10_t4")).toStdString());
   other.cutter.end_diameter = 0.006123;
   other.job_name = "a_roughing_cutter_of_last_week.yaml";
-  WorkOffsets offsets;
+  flute_grinder::WorkOffsets offsets;
   for (const int axis : {kX, kY, kZ}) {
     const auto i = static_cast<std::size_t>(axis);
     offsets.set_at[i] = ros::Time(1.7e9);
@@ -154,12 +155,12 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
   panel.answer("fit_offsets");
   WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
-  const SetOffset::Request set = offsetsSet()[0];
+  const flute_grinder::SetOffset::Request set = offsetsSet()[0];
   EXPECT_EQ(set.axis, "axis_y");
   EXPECT_NEAR(set.value, 0.004, 1e-15);
   EXPECT_EQ(set.basis.job_name, "paper.yaml");
   EXPECT_EQ(set.basis.end_diameter, 0.01);
-  EXPECT_EQ(set.basis.method, OffsetBasis::COMPUTED);
+  EXPECT_EQ(set.basis.method, flute_grinder::OffsetBasis::COMPUTED);
   EXPECT_TRUE(goals().empty()) << "only planned";
 }
 
@@ -214,7 +215,7 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   WAIT_FOR(!asks());
   panel.click("touch_off");
   WAIT_FOR(panel.enabled("touch_off_anyway"));
-  for (const TouchOff::Request& touch : touches()) EXPECT_FALSE(touch.large_change_ok);
+  for (const flute_grinder::TouchOff::Request& touch : touches()) EXPECT_FALSE(touch.large_change_ok);
   large(false);
   panel.answer("touch_off_anyway");
   WAIT_FOR(touches().size() == 7);
@@ -263,4 +264,4 @@ TEST_F(ZeroPoints, OfYAndZNeedAJob) {
 }
 
 }  // namespace test_panel_offsets
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_section {
 
 const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
@@ -107,7 +107,7 @@ TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
 
 TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {
   Panel panel("cell/stage", kPaper);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   openSection(panel);
   WAIT_FOR(shows(panel, "Rake "));
@@ -129,7 +129,7 @@ TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   std::adjacent_difference(pitches.begin(), pitches.end(), pitches.begin());
   const auto [min, max] = std::minmax_element(pitches.begin() + 1, pitches.end());
   Panel panel("cell/stage", job);
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   WAIT_FOR(panel.state() == "Ready");
   openSection(panel);
   WAIT_FOR(shows(panel, "Land "));
@@ -186,7 +186,7 @@ TEST_F(SectionOnStage, CoreSpiralAndChordHaveTheirTolerances) {
 TEST_F(SectionOnStage, ItFollowsTheWheel) {
   Panel panel("cell/stage", kPaper);
   stage.change([&] { stage.state.progress.job_digest = digestOf(kPaper); });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   standAt(0.012345);
   openSection(panel);
   follow(panel);
@@ -207,7 +207,7 @@ TEST_F(SectionOnStage, ItSaysWhatItCannotShow) {
     stage.state.progress.job_name = "published.yaml";
     stage.state.progress.cutter = goalFromFile(kPaper.toStdString()).cutter;
   });
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   standAt(0.01);
   {
     Panel without("cell/stage");
@@ -234,7 +234,7 @@ TEST_F(SectionOnStage, AQuestionAtTheStartIsSeen) {
     stage.plan.valid = 1;
     stage.state.progress.job_digest = std::string(64, 'a');
   });
-  stage.be(GrinderState::READY, "ready");
+  stage.be(flute_grinder::GrinderState::READY, "ready");
   Panel panel("cell/stage", kPaper);
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
@@ -248,4 +248,4 @@ TEST_F(SectionOnStage, AQuestionAtTheStartIsSeen) {
 }
 
 }  // namespace test_panel_section
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -14,7 +14,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_setup {
 
 const QString kPackage = QString::fromStdString(ros::package::getPath("flute_grinder"));
@@ -66,7 +66,7 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
   EXPECT_FALSE(panel->enabled("write_setup"));
   EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U);
-  const Process written = goalFromFile(file.toStdString()).process;
+  const flute_grinder::Process written = goalFromFile(file.toStdString()).process;
   EXPECT_NEAR(written.setup_swivel, figure("swivel") * units::kDegree, 0.0005 * units::kDegree);
   EXPECT_NEAR(written.setup_height, figure("height") * units::kMillimetre, 0.0005 * units::kMillimetre);
   EXPECT_NEAR(written.setup_lead, figure("lead") * units::kMillimetre, 0.0005 * units::kMillimetre);
@@ -92,7 +92,7 @@ TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
   EXPECT_NE(height, -1.366);
   panel->click("write_setup");
   WAIT_FOR(sheet().find("Written into ") != std::string::npos);
-  const Process written = goalFromFile(file.toStdString()).process;
+  const flute_grinder::Process written = goalFromFile(file.toStdString()).process;
   EXPECT_DOUBLE_EQ(written.setup_swivel, 43 * units::kDegree);
   EXPECT_NEAR(written.setup_height, height * units::kMillimetre, 0.0005 * units::kMillimetre);
   QTest::keyClick(&keep, Qt::Key_Down);  // and once more
@@ -134,4 +134,4 @@ TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
 }
 
 }  // namespace test_panel_setup
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <csignal>
 #include <cstring>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_panel_without_master {
 
 constexpr const char* kGrinder = "--grinder";  ///< argument of the grinder's process
@@ -24,18 +24,18 @@ constexpr const char* kGrinder = "--grinder";  ///< argument of the grinder's pr
 int runGrinder() {
   Stage stage;
   const MasterWatch master_watch({"/cell/stage/resume"});
-  stage.be(GrinderState::RUNNING, "running");
+  stage.be(flute_grinder::GrinderState::RUNNING, "running");
   std::size_t done = 0;
   int resumed = 0;
   for (ros::WallRate rate(100); ros::ok(); rate.sleep()) {
     for (const int resumes = stage.get([&] { return stage.resumes; }); resumed < resumes; ++resumed) {
-      stage.be(GrinderState::RUNNING, "running");
+      stage.be(flute_grinder::GrinderState::RUNNING, "running");
     }
     const auto stops = stage.get([&] { return stage.stops; });
     for (; done < stops.size(); ++done) {
-      if (stops[done] == Stop::HOLD) stage.be(GrinderState::HELD, "held");
-      if (stops[done] == Stop::CANCEL) stage.be(GrinderState::READY, "ready");
-      if (stops[done] == Stop::DISABLE) stage.be(GrinderState::DISABLED, "disabled");
+      if (stops[done] == flute_grinder::Stop::HOLD) stage.be(flute_grinder::GrinderState::HELD, "held");
+      if (stops[done] == flute_grinder::Stop::CANCEL) stage.be(flute_grinder::GrinderState::READY, "ready");
+      if (stops[done] == flute_grinder::Stop::DISABLE) stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
     }
   }
   return 0;
@@ -196,10 +196,10 @@ TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
 }
 
 }  // namespace test_panel_without_master
-}  // namespace flute_grinder
+}  // namespace grinder
 
 int main(int argc, char** argv) {
-  using namespace flute_grinder::test_panel_without_master;
+  using namespace grinder::test_panel_without_master;
   const bool is_grinder = argc > 1 && std::strcmp(argv[1], kGrinder) == 0;
   ::testing::InitGoogleTest(&argc, argv);
   const QApplication application(argc, argv);

@@ -13,10 +13,9 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_planned_job {
 
-using core::ReasonKind;
 using units::kDegree;
 
 Machine machine() {
@@ -40,7 +39,7 @@ GrindJob withConstantRake() {
 TEST(PlannedJob, HasWhatItsPartsFind) {
   const GrindJob job = withConstantRake();
   const PlannedJob whole = planned(job);
-  ASSERT_TRUE(whole.good()) << core::text(whole.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(whole.good()) << text(whole.reasons, UnitSystem::kShop);
   EXPECT_EQ(whole.digest, jobDigest(job));
   const GrindJob with_law = withZLaw(job);
   ASSERT_EQ(whole.program->job().z_corrections.size(), 1u);
@@ -89,11 +88,11 @@ TEST(PlannedJob, TheFirstFaultCountsAndAllReasonsAreThere) {
   job.process.wheel_diameter = 0.5;
   job.cutter.flute_length = 0.16;  // the wheel reaches the chuck
   const PlannedJob whole = planned(job);
-  EXPECT_EQ(whole.fault, PlanFault::kTool) << core::text(whole.reasons, UnitSystem::kShop);
+  EXPECT_EQ(whole.fault, PlanFault::kTool) << text(whole.reasons, UnitSystem::kShop);
   ASSERT_GE(whole.reasons.size(), 2u);
   EXPECT_EQ(whole.reasons.front().kind, ReasonKind::kRake);
   EXPECT_EQ(whole.reasons.back().kind, ReasonKind::kCollision);
 }
 
 }  // namespace test_planned_job
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -26,12 +26,12 @@
 /// The record of a job is made of its cycles. Here a job's own setpoints with readings, periods, holds and overrides
 /// made at random; each figure is computed once more from the list of all of them.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_job_record {
 
 constexpr double kStart = 1795367053.123;  ///< 2026-11-22 17:04:13.123 UTC
-const core::MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive",       0.001,
-                                 Axes(1, 2, 3, 4), Axes(5, 6, 7, 8), Axes(9, 10, 11, 12)};
+const MachineInfo kMachine{"mill",           "1.2.3",          "some/Drive",       0.001,
+                           Axes(1, 2, 3, 4), Axes(5, 6, 7, 8), Axes(9, 10, 11, 12)};
 
 /// Two unequal teeth of a short cone in two passes.
 GrindJob shortJob() {
@@ -383,4 +383,4 @@ TEST(RecordName, SortsByTimeAndReadsBack) {
 }
 
 }  // namespace test_job_record
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 /// @file
 /// The verdict on a bag's job of two teeth, all of whose figures are as asked, with one of them changed.
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_verdict {
 
 const Tolerances kTolerances{0.5, 64, 5, 1};
@@ -289,4 +289,4 @@ TEST(Tolerances, BadOnesAreNamed) {
 }
 
 }  // namespace test_verdict
-}  // namespace flute_grinder
+}  // namespace grinder

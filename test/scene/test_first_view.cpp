@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_first_view {
 
 using visualization_msgs::Marker;
@@ -70,4 +70,4 @@ TEST(FirstView, TheBlankIsClosedAndFacesOutward) {
 }
 
 }  // namespace test_first_view
-}  // namespace flute_grinder
+}  // namespace grinder

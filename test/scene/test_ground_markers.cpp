@@ -15,7 +15,7 @@
 #include <cmath>
 #include <filesystem>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_ground_markers {
 
 using test_support::jobOf;
@@ -288,4 +288,4 @@ TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
 }
 
 }  // namespace test_ground_markers
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 namespace test_path_markers {
 
 using visualization_msgs::Marker;
@@ -340,4 +340,4 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
 }
 
 }  // namespace test_path_markers
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The place on a path where two bodies are closest.
 struct ClosestPlace {
@@ -89,4 +89,4 @@ class CollisionCheck {
 /// deep as the flute: of a shank that stands out farther than that from the cutter, no more is left out.
 double runOutEnd(const CollisionJob& job);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The path of a program, from its start on, with straight legs in X, Y and Z.
 struct ProgramPath {
@@ -24,7 +24,7 @@ CollisionJob collisionJobOf(const GrindProgram& program);
 /// How close wheel, machine and cutter come to each other.
 struct CollisionResult {
   std::optional<ClosestPlace> closest;  ///< its leg is a move of the program
-  std::optional<core::Reason> reason;   ///< why that is refused
+  std::optional<Reason> reason;         ///< why that is refused
 };
 
 /// Finds the closest place of a job. Takes a few milliseconds. There is a reason if the bodies hit each other or come
@@ -32,4 +32,4 @@ struct CollisionResult {
 /// of GrindProcess::clearance, but no more than collision_clearance), or if the wheel's corner radii do not fit.
 CollisionResult checkCollision(const GrindProgram& program, const MachineShapes& machine);
 
-}  // namespace flute_grinder
+}  // namespace grinder

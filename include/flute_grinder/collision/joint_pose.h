@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-namespace flute_grinder {
+namespace grinder {
 
 Eigen::Vector3d toEigen(const urdf::Vector3& v);
 Eigen::Isometry3d toEigen(const urdf::Pose& pose);
@@ -14,4 +14,4 @@ Eigen::Isometry3d toEigen(const urdf::Pose& pose);
 /// @param position of the joint [m or rad].
 Eigen::Isometry3d childPose(const urdf::Joint& joint, double position);
 
-}  // namespace flute_grinder
+}  // namespace grinder

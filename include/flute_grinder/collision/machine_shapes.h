@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A body of the machine, with X, Y and Z of the axes at zero.
 struct MachinePart {
@@ -54,4 +54,4 @@ class MachineShapes {
   std::string wheel_side_;  ///< the first link toward the wheel that the cutter does not hang on
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

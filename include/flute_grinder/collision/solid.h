@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A convex body: a box, or the convex hull of rings about its own Z axis, thickened all round by a radius.
 struct Solid {
@@ -45,4 +45,4 @@ struct Gap {
 /// @return the distance of the planes: never more than the true distance, and in practice at most 1 um less.
 Gap gap(const Solid& first, const Solid& second, const Eigen::Vector3d& shift = Eigen::Vector3d::Zero());
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The progress of a job: the setpoints that were written, or those that reached the axes.
 struct JobTrack {
@@ -58,4 +58,4 @@ class CommandHistory {
   std::size_t count_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -21,7 +21,7 @@
 #include <atomic>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The thread that owns the setpoint stream and the drive. Each cycle waits, reads the drive, checks its reports,
 /// executes requests, computes and checks the next setpoint, and writes it. The cycle does not allocate, lock, log,
@@ -170,4 +170,4 @@ class ControlLoop : public RequestBox {
   std::atomic<bool> memory_locked_{false};
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The data of one cycle, for the other threads. Positions and commands are in machine coordinates, a job's setpoints
 /// in its work coordinates.
@@ -44,4 +44,4 @@ struct CycleRecord {
   double followingError(int axis) const noexcept { return std::abs(command_in_effect[axis] - position[axis]); }
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Checks the drive's reports in a cycle against the limits and timeouts. Real-time safe.
 class DriveChecks {
@@ -42,4 +42,4 @@ class DriveChecks {
 /// The first open interlock; kNone if grinding is allowed. Real-time safe.
 Interlock openInterlock(const DriveStatus& drive) noexcept;
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How many durations of each length there were, in classes 4.4 % wide from a nanosecond on. Allocates nothing, however
 /// many are added. Not thread safe.
@@ -56,4 +56,4 @@ class Durations {
   double longest_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

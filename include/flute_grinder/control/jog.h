@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A request to move an axis: by hand, or as a step of a series.
 struct JogRequest {
@@ -53,4 +53,4 @@ class DeadMansSwitch {
   bool blocked_ = false;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

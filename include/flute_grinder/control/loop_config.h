@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How a probing move touches.
 struct ProbingConfig {
@@ -34,4 +34,4 @@ struct LoopConfig {
   double late_fault = 10;     ///< a cycle this long is late: a fault, unless the drive had buffered commands [periods]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

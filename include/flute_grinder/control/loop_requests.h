@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Whether a request was executed, and if not, why.
 struct RequestReply {
@@ -63,4 +63,4 @@ struct Answer {
   RequestReply reply() const;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The position of the axes in a job's program; X in work coordinates.
 struct Place {
@@ -80,4 +80,4 @@ struct LoopStatus {
 };
 static_assert(std::is_trivially_copyable_v<LoopStatus>);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Reads the machine data: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in
 /// ros_control; control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
@@ -21,4 +21,4 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& par
 /// @throw ParameterError
 MachineGeometry readMachineGeometry(const ParameterReader& parameters);
 
-}  // namespace flute_grinder
+}  // namespace grinder

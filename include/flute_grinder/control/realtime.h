@@ -2,7 +2,7 @@
 
 /// @file
 /// Prepares the process and the thread for the control loop. Call each function once, before the first cycle.
-namespace flute_grinder {
+namespace grinder {
 
 /// Gives the threads that are created from now on a stack of 512 KB, unless they ask for another. lockMemory() makes
 /// the stacks of all threads resident as a whole; the system's default is 8 MB.
@@ -19,4 +19,4 @@ bool lockMemory();
 /// @return whether real-time scheduling was granted.
 bool becomeRealtime();
 
-}  // namespace flute_grinder
+}  // namespace grinder

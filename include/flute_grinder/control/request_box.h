@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A job to start.
 struct JobStart {
@@ -128,4 +128,4 @@ class RequestBox {
   std::atomic<std::uint32_t> keep_alives_{0};     ///< calls of keepAlive()
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Holds one request from one thread to the control loop, and its answer. Neither side ever waits for the other.
 template <typename Request>
@@ -49,4 +49,4 @@ class RequestSlot {
   Answer answer_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A value that one thread writes and any number of threads read consistently. store() never waits; load() retries
 /// while a store is in progress. Every word is atomic, so there are no data races. Real-time safe.
@@ -64,4 +64,4 @@ class SeqLock {
   std::array<std::atomic<std::uint64_t>, kWords> words_{};
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

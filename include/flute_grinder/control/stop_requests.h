@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Stop requests to the control loop, as bits of one word: none is refused because a queue is full, none is lost, and
 /// none waits for another request. A stop posted twice before the loop takes it counts once.
@@ -61,4 +61,4 @@ class StopRequests {
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "signal handlers post stops");
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Tracks whether the wheel is in the workpiece. Real-time safe.
 class WheelWatch {
@@ -35,4 +35,4 @@ class WheelWatch {
   Wheel wheel_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/enum_table.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Which way a cutter turns, and so which wall of a flute is its rake face: the edges of a right-hand cutter move
 /// toward decreasing A.
@@ -79,4 +79,4 @@ class ConicalCutter {
   double cos_helix_to_generatrix_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 /// @file
 /// The values of an enum, their names and other properties: one table beside the enum, with a row for every value in
 /// order. `rowsOf` of the enum returns the table. The values are listed nowhere else.
-namespace flute_grinder {
+namespace grinder {
 
 /// A table row with only a name; other row types derive from it.
 template <typename Enum>
@@ -74,4 +74,4 @@ std::string namesOf() {
   return namesOf<Enum>([](Enum) { return true; });
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/conical_cutter.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The edge that a stroke forms, by X of the wheel's centre: while the centre is at X, A is that of the edge at X -
 /// lead. The lead is not simply the distance from the centre to where the wheel forms the edge, since depth and height
@@ -23,4 +23,4 @@ struct FormedEdge {
   }
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/conical_cutter.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The logarithmic curve A(X) = (k/b) ln(1 + bX) of a helix with a constant spiral angle on a cone (the paper's
 /// equation 4 with k = ab), in a form without singularity: a cylinder (b = 0), a back taper (b < 0), a straight
@@ -56,4 +56,4 @@ class LogCurve {
   double a0_ = 0;  ///< A at X = 0 [rad]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

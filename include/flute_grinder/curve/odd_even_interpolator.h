@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/curve/log_curve.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How the even step returns to the curve.
 enum class EvenStepRule {
@@ -89,4 +89,4 @@ class OddEvenInterpolator {
   Tangent tangent_;  ///< at p0_
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Limits of a motion along one coordinate, in units of that coordinate.
 struct MotionLimits {
@@ -117,4 +117,4 @@ class SCurveProfile {
   double time_ = 0;  ///< since the plan was made
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A cutter's curve interpolated with a fixed step length, as in the paper's Table 1.
 struct StepTable {
@@ -28,4 +28,4 @@ struct StepTable {
 /// @param step_length in the same metric, positive [m].
 StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, EvenStepRule rule, double step_length);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 /// @file
 /// The only conversion between the operator's units (mm, deg, mm/min, um) and the SI units of the code: multiply to
 /// convert to SI, divide to convert back.
-namespace flute_grinder::units {
+namespace grinder::units {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kMillimetre = 1e-3;                  ///< [m]
@@ -13,4 +13,4 @@ constexpr double kTurn = 2 * kPi;                     ///< [rad]
 constexpr double kMillimetrePerMinute = 1e-3 / 60;    ///< [m/s]
 constexpr double kMillimetrePerRadian = kMillimetre;  ///< [m/rad]
 
-}  // namespace flute_grinder::units
+}  // namespace grinder::units

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A smooth addition to Z over X: a quintic spline in equal pieces, continuous up to its fourth derivative. Outside its
 /// range it stays as at the ends. Without pieces it is 0. Real-time safe.
@@ -83,4 +83,4 @@ struct ZCorrection {
                                                               {1, 5, 10, 10, 5, -5},    {0, 0, 0, 0, 0, 1}};
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

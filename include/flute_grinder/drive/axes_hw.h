@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Base class of a drive for the grinder's four axes. It holds the state and command buffers, and registers the joints
 /// axis_x, axis_y, axis_z and axis_a (kJointNames) and the handle "drive". A driver implements init(), read(), which
@@ -39,4 +39,4 @@ class AxesHW : public RobotHW {
   DriveInterface drive_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

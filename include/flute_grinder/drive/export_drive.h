@@ -7,20 +7,20 @@
 /// @file
 /// How the library of a drive plugin exports its drives, and states which version of the drive interface it was built
 /// against.
-namespace flute_grinder {
+namespace grinder {
 
 /// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
 /// flute_grinder/job/axes.h declare, and the order of RobotHW's virtual functions. To be increased whenever one of
 /// them changes. The node refuses plugins that were built against another version.
 constexpr std::uint32_t kDriveAbi = 2;
 
-}  // namespace flute_grinder
+}  // namespace grinder
 
 /// Exports a drive, a class derived from flute_grinder::RobotHW, as a plugin for the node. To be used in place of
 /// PLUGINLIB_EXPORT_CLASS, outside of namespaces; in a library with several drives, once for each.
 #define FLUTE_GRINDER_EXPORT_DRIVE(Drive)                                                          \
   extern "C" {                                                                                     \
   extern const std::uint32_t flute_grinder_drive_abi __attribute__((weak, visibility("default"))); \
-  const std::uint32_t flute_grinder_drive_abi = flute_grinder::kDriveAbi;                          \
+  const std::uint32_t flute_grinder_drive_abi = grinder::kDriveAbi;                                \
   }                                                                                                \
-  PLUGINLIB_EXPORT_CLASS(Drive, flute_grinder::RobotHW)
+  PLUGINLIB_EXPORT_CLASS(Drive, grinder::RobotHW)

@@ -9,7 +9,7 @@ namespace ros {
 class NodeHandle;
 }
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A parameter that is missing or not allowed; what() gives its name, its value and the allowed values.
 class ParameterError : public std::runtime_error {
@@ -48,4 +48,4 @@ class ParameterReader {
   std::string ns_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

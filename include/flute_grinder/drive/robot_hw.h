@@ -18,7 +18,7 @@
 /// so a ros_control driver becomes a driver for the grinder when its base class is changed. There are two additions:
 /// DriveHandle, for machine signals that belong to no joint, and RobotHW::wait(), because the drive paces the control
 /// loop.
-namespace flute_grinder {
+namespace grinder {
 
 /// Thrown if a handle or an interface is missing, or if a handle has a null pointer.
 class HardwareInterfaceException : public std::runtime_error {
@@ -199,4 +199,4 @@ class RobotHW : public InterfaceManager {
   std::int64_t last_cycle_ns_ = 0;  ///< 0 before the first cycle
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

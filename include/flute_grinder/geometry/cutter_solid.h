@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Which part of the cutter a solid shows.
 struct SolidExtent {
@@ -46,4 +46,4 @@ struct CutterSolid {
 CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution = {},
                         const std::optional<Wedge>& cut_out = std::nullopt);
 
-}  // namespace flute_grinder
+}  // namespace grinder

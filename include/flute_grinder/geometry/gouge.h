@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How far a recorded move went into what its job leaves of the blank.
 struct Gouge {
@@ -19,4 +19,4 @@ struct Gouge {
 /// @param min depth that counts [m]. @param job as for RecordedStrokes. @param strokes finished.
 std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double min);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What is measured of a tooth in a section. What does not exist there, as the land of a tooth whose land is ground
 /// away, is left out.
@@ -100,4 +100,4 @@ class GroundCutter {
   std::vector<GroundTooth> teeth_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The edge of one tooth where the wheel grinds it, from the small end to the shank: which X of the wheel's centre
 /// forms it, and how far the wheel forms it beside its own lowest point. Known in some sections; both change slowly,
@@ -37,4 +37,4 @@ class GroundEdge {
   std::vector<Place> places_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

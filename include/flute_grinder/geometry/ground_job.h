@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -47,8 +47,8 @@ struct CutterFigures {
 
 /// What a ground cutter was found to be.
 struct CutterCheck {
-  std::optional<Range> complete;      ///< where its flutes are complete; nothing if they are not amid the flute
-  std::vector<core::Reason> reasons;  ///< why it is refused
+  std::optional<Range> complete;  ///< where its flutes are complete; nothing if they are not amid the flute
+  std::vector<Reason> reasons;    ///< why it is refused
   CutterFigures figures;
   std::vector<GroundEdge> edges;  ///< of the teeth
 };
@@ -66,4 +66,4 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
 /// @param job as for groundCutterOf(), with its law of Z.
 CutterCheck checkGroundCutter(const GrindJob& job);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 
 /// @file
 /// The set-up for a job: what `grind setup` and the panel show, and write into the job's file.
-namespace flute_grinder {
+namespace grinder {
 
 /// The set-up for a job, and the tool that the job then grinds.
 struct JobSetup {
@@ -39,4 +39,4 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
                                                   std::optional<SetupFigure> keep);
 
-}  // namespace flute_grinder
+}  // namespace grinder

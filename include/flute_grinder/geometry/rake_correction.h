@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A correction of Z, and the rake that is ground with it.
 struct RakeCorrection {
@@ -22,9 +22,9 @@ struct RakeCorrection {
 /// @param watch if given, may make it give up, within some milliseconds.
 /// @return the best correction found, whose rake the caller compares with what is allowed; nothing if the flute is not
 ///         ground over its whole length.
-/// @throw core::ReasonError if it has given up.
+/// @throw ReasonError if it has given up.
 std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
                                           const WheelSetup& setup, const GrindStroke& stroke, double rake,
                                           const PlanWatch& watch = {});
 
-}  // namespace flute_grinder
+}  // namespace grinder

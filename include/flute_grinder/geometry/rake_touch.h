@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -14,9 +14,9 @@ struct GrindJob;
 ///        up [m].
 /// @param ball_diameter [m].
 /// @return A of the tooth at angle 0, not taken off whole turns, to 1e-7 rad [rad].
-/// @throw core::ReasonError if the ball is not within the flute's length, or touches the flute's floor, its other wall
+/// @throw ReasonError if the ball is not within the flute's length, or touches the flute's floor, its other wall
 ///        or the cutting edge first, with the ball's distances from the axis that are allowed, or a diameter.
 /// @throw as groundCutterOf().
 double rakeTouchAngle(const GrindJob& job, const Eigen::Vector3d& ball, double ball_diameter);
 
-}  // namespace flute_grinder
+}  // namespace grinder

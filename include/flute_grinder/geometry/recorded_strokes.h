@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A stroke in a record; or a part of another move in which the wheel was in the blank where no stroke of the tooth
 /// was.
@@ -120,4 +120,4 @@ class RecordedStrokes {
   std::vector<RecordedStroke> strokes_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Gives a file a new text in one step: whoever reads it sees the old text or the new one, also after a power failure.
 /// Mode and owner stay; of a symbolic link, the file behind it is replaced.
@@ -21,4 +21,4 @@ void writeFile(const std::string& path, const std::string& text);
 /// @throw std::system_error if its folder cannot be synchronized.
 void settleFile(const std::string& path);
 
-}  // namespace flute_grinder
+}  // namespace grinder

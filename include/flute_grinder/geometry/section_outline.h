@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A point of a section, about the cutter's axis.
 struct PolarPoint {
@@ -61,4 +61,4 @@ struct OutlineGrid {
 std::vector<PolarPoint> sectionOutline(const GroundCutter& cutter, double x, double blank_radius,
                                        const OutlineGrid& grid);
 
-}  // namespace flute_grinder
+}  // namespace grinder

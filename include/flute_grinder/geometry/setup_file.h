@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Writes a set-up into its job's file: the old file or the new one, never a part, whatever fails. Comments, order,
 /// layout, permissions and a link to the file stay.
@@ -12,4 +12,4 @@ namespace flute_grinder {
 ///        what to write by hand.
 void writeSetup(const std::string& path, const JobSetup& setup);
 
-}  // namespace flute_grinder
+}  // namespace grinder

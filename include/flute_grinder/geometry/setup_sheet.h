@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The height of a face of the wheel above the cutter's axis at Z = 0, where it is deepest in the cutter [m].
 double upperFaceHeight(const GrindJob& job);
@@ -31,4 +31,4 @@ std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::op
 /// written.
 std::string planRefusal(const JobSetup& setup);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 
 /// @file
 /// The set-up for a tool: which swivel, wheel height and depth give the rake and the core that are asked.
-namespace flute_grinder {
+namespace grinder {
 
 /// A figure of the set-up that the operator keeps.
 enum class SetupFigure : std::uint8_t { kSwivel, kHeight, kDepth };
@@ -116,4 +116,4 @@ struct SetupRefusal {
 /// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.
 std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -35,4 +35,4 @@ double touchY(const GrindJob& job, double diameter);
 /// @param z work position of Z [m].
 std::string heightRefusal(const GrindJob& job, double z);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What is cut out of a solid so that its inside can be seen: all between two half planes that end at the X axis.
 struct Wedge {
@@ -31,4 +31,4 @@ class WedgeCut {
   Eigen::Vector3d from_, to_;  ///< normals of the half planes, into the wedge
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A grinding wheel: a filled solid of revolution between two flat faces. A diameter is the largest one of the wheel as
 /// it is, with its rounded corners: what a micrometer measures. Evaluation is real-time safe.
@@ -80,4 +80,4 @@ class WheelProfile {
   Range max_place_;  ///< w [m]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

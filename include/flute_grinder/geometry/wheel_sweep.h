@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How the machine is set for a wheel.
 struct WheelSetup {
@@ -155,4 +155,4 @@ class WheelSweep {
   Window z_off_{0, 0};            ///< between which Z is off the published law [m]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/motion/job_plan.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -12,7 +12,7 @@ struct GrindJob;
 /// same bits.
 /// @param job a job that validate() accepts.
 /// @param watch if given, may make it give up, within some milliseconds.
-/// @throw core::ReasonError if no correction keeps the rake, or if it has given up. @throw as wheelOf().
+/// @throw ReasonError if no correction keeps the rake, or if it has given up. @throw as wheelOf().
 GrindJob withZLaw(GrindJob job, const PlanWatch& watch = {});
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The machine's axes, in the order used everywhere. Every value is the motion of the wheel relative to the cutter.
 enum Axis : int {
@@ -26,4 +26,4 @@ constexpr std::array<const char*, kAxisCount> kJointNames{"axis_x", "axis_y", "a
 /// The unit of an axis position, for messages.
 constexpr const char* axisUnit(int axis) { return axis == kA ? "rad" : "m"; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A file that cannot be opened, read or written; what() names it.
 class FileError : public std::runtime_error {
@@ -16,4 +16,4 @@ class WriteError : public FileError {
   using FileError::FileError;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The name of an element of a list, e.g. "points_mm[2]".
 std::string element(const std::string& key, std::size_t i);
@@ -132,4 +132,4 @@ class FlatFile {
   int error_count_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct CutterGeometry;
 
@@ -16,4 +16,4 @@ bool hasForm(std::string_view text, std::string_view form);
 /// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The order of teeth and passes.
 enum class GrindOrder { kToothMajor, kPassMajor };
@@ -104,10 +104,10 @@ constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 
 /// Checks all numbers of a job, individually and against each other.
 /// @return one reason for each number that is not allowed; empty if the job is valid.
-std::vector<core::Reason> validate(const GrindJob& job);
+std::vector<Reason> validate(const GrindJob& job);
 
 /// Checks those of the wheel alone: `wheel_points`, and the members of `process` that begin with wheel_.
-std::vector<core::Reason> validateWheel(const GrindJob& job);
+std::vector<Reason> validateWheel(const GrindJob& job);
 
 /// The depth of every pass in order, where the flute is deepest: infeed steps, the finishing pass, spark-out. [m]
 std::vector<double> passDepths(const GrindProcess& process);
@@ -136,4 +136,4 @@ struct DepthLaw {
 /// @param depth of the pass where the flute is deepest, as from passDepths() [m].
 DepthLaw depthLaw(const GrindJob& job, double depth);
 
-}  // namespace flute_grinder
+}  // namespace grinder

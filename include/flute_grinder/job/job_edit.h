@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A number to write into a job file.
 struct JobEdit {
@@ -21,4 +21,4 @@ struct JobEdit {
 ///        number to change, several documents, or where it is not the UTF-8 that it is read as.
 std::string editJob(const std::string& text, const std::string& name, const std::vector<JobEdit>& edits);
 
-}  // namespace flute_grinder
+}  // namespace grinder

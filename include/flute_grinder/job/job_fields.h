@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// One number of a job: its names, its unit and its range. The job file, the checks and the conversion to a goal all
 /// use the table of these fields.
@@ -87,4 +87,4 @@ void visitJobChoices(const Visit& visit) {
 /// The name of a field for the reader of a message: its path, or its key in the job file for the operator.
 std::string fieldName(const std::string& path, UnitSystem units);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -26,4 +26,4 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
 /// The path of the wheel file that a job file names; empty if it names none. @throw JobFileError
 std::string wheelFileOf(const std::string& path);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The purpose of a move in a job.
 enum class MoveKind : std::uint8_t {
@@ -46,4 +46,4 @@ constexpr int kMoveKindCount = countOf<MoveKind>();
 constexpr bool isAtFeed(MoveKind kind) noexcept { return rowOf(kind).at_feed; }
 constexpr PassPhase phaseOf(MoveKind kind) noexcept { return rowOf(kind).phase; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The units of quantities in texts. Each stands for one SI unit and one shop unit.
 enum class Unit : std::uint8_t {
@@ -53,4 +53,4 @@ Unit unitOf(int axis, int derivative) noexcept;
 /// The axis name: "axis_x", or "axis X" for the operator.
 std::string axisName(int axis, UnitSystem units);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 #include <vector>
 
 /// Core types that have a counterpart among the messages have the message's name, in a separate namespace.
-namespace flute_grinder::core {
+namespace grinder {
 
 /// The kind of a reason.
 enum class ReasonKind : std::uint8_t {
@@ -154,4 +154,4 @@ class ReasonError : public std::invalid_argument {
 /// The cause of a feed limit for the reader: "axis_a velocity" becomes "axis A velocity" for the operator.
 std::string causeText(const std::string& cause, UnitSystem units);
 
-}  // namespace flute_grinder::core
+}  // namespace grinder

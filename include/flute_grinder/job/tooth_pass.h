@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flute_grinder {
+namespace grinder {
 
 constexpr int kMaxTeeth = 64;
 constexpr int kMaxPasses = 10000;  ///< per tooth
@@ -14,4 +14,4 @@ struct ToothPass {
   bool operator!=(const ToothPass& other) const { return !(*this == other); }
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

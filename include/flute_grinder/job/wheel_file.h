@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 class FlatFile;
 
@@ -41,4 +41,4 @@ void mountWheel(const WheelFile& wheel, GrindJob& job);
 /// with `prefix`.
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job);
 
-}  // namespace flute_grinder
+}  // namespace grinder

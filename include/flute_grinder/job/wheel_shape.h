@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/enum_table.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The shape of a grinding wheel.
 enum class WheelShape { kStraight, kAngled, kFullRadius, kCup, kPoints };
@@ -29,4 +29,4 @@ struct ProfilePoint {
   double radius = 0;  ///< from the spindle's axis [m]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A job, wheel or machine file that cannot be read; what() has one line per error: file, line, key, value and the
 /// allowed values.
@@ -31,4 +31,4 @@ void checkYaml(const std::string& text, const std::string& name);
 /// Parses a text that checkYaml() accepts. @throw JobFileError with the line.
 YAML::Node parseYaml(const std::string& text, const std::string& name);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/enum_table.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How Z follows X along a stroke.
 enum class ZLaw {
@@ -15,4 +15,4 @@ inline constexpr EnumRow<ZLaw> kZLaws[]{
 };
 constexpr auto& rowsOf(ZLaw) noexcept { return kZLaws; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The conditions for grinding. The value names one that is not met.
 enum class Interlock : std::uint8_t {
@@ -51,24 +51,24 @@ enum class FaultClass : std::uint8_t { kNone, kEmergencyStop, kHardware, kLinkLo
 
 struct FaultRow {
   FaultKind value{};
-  core::ReasonKind reason{};  ///< of kLimit, the violation determines it
-  Unit unit = Unit::kNone;    ///< of value and limit; kMetre is for positions, which are in rad for A
+  ReasonKind reason{};      ///< of kLimit, the violation determines it
+  Unit unit = Unit::kNone;  ///< of value and limit; kMetre is for positions, which are in rad for A
   FaultClass fault_class = FaultClass::kHardware;
 };
 
 inline constexpr FaultRow kFaultKinds[]{
-    {FaultKind::kNone, core::ReasonKind::kNone, Unit::kNone, FaultClass::kNone},
-    {FaultKind::kEmergencyStop, core::ReasonKind::kEmergencyStop, Unit::kNone, FaultClass::kEmergencyStop},
-    {FaultKind::kDriveFault, core::ReasonKind::kDriveFault, Unit::kNone, FaultClass::kHardware},
-    {FaultKind::kPowerLost, core::ReasonKind::kPowerLost, Unit::kNone, FaultClass::kHardware},
-    {FaultKind::kStaleFeedback, core::ReasonKind::kStaleFeedback, Unit::kSecond, FaultClass::kLinkLost},
-    {FaultKind::kInvalidFeedback, core::ReasonKind::kInvalidFeedback, Unit::kMetre, FaultClass::kHardware},
-    {FaultKind::kFollowingError, core::ReasonKind::kFollowingError, Unit::kMetre, FaultClass::kTolerance},
-    {FaultKind::kUnderrun, core::ReasonKind::kUnderrun, Unit::kNone, FaultClass::kHardware},
-    {FaultKind::kLate, core::ReasonKind::kLate, Unit::kSecond, FaultClass::kHardware},
-    {FaultKind::kLimit, core::ReasonKind::kNone, Unit::kNone, FaultClass::kLimit},
-    {FaultKind::kHoming, core::ReasonKind::kHoming, Unit::kSecond, FaultClass::kHardware},
-    {FaultKind::kInterlock, core::ReasonKind::kInterlock, Unit::kSecond, FaultClass::kNotReady},
+    {FaultKind::kNone, ReasonKind::kNone, Unit::kNone, FaultClass::kNone},
+    {FaultKind::kEmergencyStop, ReasonKind::kEmergencyStop, Unit::kNone, FaultClass::kEmergencyStop},
+    {FaultKind::kDriveFault, ReasonKind::kDriveFault, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kPowerLost, ReasonKind::kPowerLost, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kStaleFeedback, ReasonKind::kStaleFeedback, Unit::kSecond, FaultClass::kLinkLost},
+    {FaultKind::kInvalidFeedback, ReasonKind::kInvalidFeedback, Unit::kMetre, FaultClass::kHardware},
+    {FaultKind::kFollowingError, ReasonKind::kFollowingError, Unit::kMetre, FaultClass::kTolerance},
+    {FaultKind::kUnderrun, ReasonKind::kUnderrun, Unit::kNone, FaultClass::kHardware},
+    {FaultKind::kLate, ReasonKind::kLate, Unit::kSecond, FaultClass::kHardware},
+    {FaultKind::kLimit, ReasonKind::kNone, Unit::kNone, FaultClass::kLimit},
+    {FaultKind::kHoming, ReasonKind::kHoming, Unit::kSecond, FaultClass::kHardware},
+    {FaultKind::kInterlock, ReasonKind::kInterlock, Unit::kSecond, FaultClass::kNotReady},
 };
 constexpr auto& rowsOf(FaultKind) noexcept { return kFaultKinds; }
 
@@ -88,6 +88,6 @@ struct LoopFault {
 };
 
 /// Converts a fault to a reason. Not real-time safe.
-core::Reason reasonOf(const LoopFault& fault);
+Reason reasonOf(const LoopFault& fault);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 struct GrindProcess;
@@ -43,4 +43,4 @@ Eigen::Vector3d wheelCentre(const MachineGeometry& machine, const GrindProcess& 
 /// the diameter to which Y is set touches the small end. [m]
 Eigen::Vector3d workZero(const MachineGeometry& machine, const GrindJob& job, const Mounting& mounting);
 
-}  // namespace flute_grinder
+}  // namespace grinder

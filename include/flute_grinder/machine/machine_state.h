@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What the machine is doing.
 enum class MachineState : std::uint8_t {
@@ -200,4 +200,4 @@ bool isInJob(MachineState state) noexcept;
 /// The requests that a state allows and that may change it, e.g. "disable, start (grind run)".
 std::string allowedIn(MachineState state);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,7 +11,7 @@
 /// depends on the end diameter and the wheel, Z on the height and the wheel, and X and Z also on swivel and width,
 /// since the middle of the wheel need not be on the swivel's axis. A depends on nothing: it says where the first tooth
 /// is to be, and on a bare blank that may be anywhere.
-namespace flute_grinder::core {
+namespace grinder {
 
 /// An axis whose work offset does not fit a job.
 struct OffsetMismatch {
@@ -30,4 +30,4 @@ std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetB
 /// it is unknown.
 std::string basisText(int axis, const WorkOffset& offset);
 
-}  // namespace flute_grinder::core
+}  // namespace grinder

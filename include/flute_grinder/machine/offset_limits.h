@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Which work offsets an axis can have.
 struct OffsetLimits {
@@ -25,6 +25,6 @@ std::string travelRefusal(const OffsetLimits& limits, int axis, double value);
 /// Why an offset must be confirmed, for the operator in mm and deg; empty if it need not be. One that was never set, or
 /// is unknown, may become any.
 /// @param from as it was. @param to [m], A [rad].
-std::string changeRefusal(const OffsetLimits& limits, int axis, const core::WorkOffset& from, double to);
+std::string changeRefusal(const OffsetLimits& limits, int axis, const WorkOffset& from, double to);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What the measuring probe measures by itself, once it was jogged near.
 enum class ProbingCycle : std::uint8_t { kEndFace, kDiameter, kTooth };
@@ -33,4 +33,4 @@ inline constexpr ProbingCycleRow kProbingCycles[]{
 };
 constexpr auto& rowsOf(ProbingCycle) noexcept { return kProbingCycles; }
 
-}  // namespace flute_grinder
+}  // namespace grinder

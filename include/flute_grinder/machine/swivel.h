@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Maximum difference between a job's swivel and the swivel as it is [rad].
 constexpr double kSwivelTolerance = 0.05 * units::kDegree;
@@ -25,6 +25,6 @@ struct Swivel {
 
 /// Why a job cannot be ground with the swivel as it is, and what to do about it.
 /// @param asked the job's angle [rad].
-core::Reason reasonOf(const Swivel& swivel, double asked);
+Reason reasonOf(const Swivel& swivel, double asked);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -13,9 +13,10 @@ struct GrindJob;
 /// @param progress progress reported by the grinder.
 /// @param job the goal's job.
 /// @return why this is not possible; empty if it is.
-std::string continueFrom(const JobProgress& progress, const GrindJob& job, GrindGoal& goal);
+std::string continueFrom(const flute_grinder::JobProgress& progress, const GrindJob& job,
+                         flute_grinder::GrindGoal& goal);
 
 /// How the last job ended, for display. @param progress of a job that no longer runs.
-std::string endText(const JobProgress& progress);
+std::string endText(const flute_grinder::JobProgress& progress);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,28 +12,28 @@
 
 /// @file
 /// The only conversion between messages and core types. Both use SI units.
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
 /// The job of a goal, unchecked: a choice that is out of range is kept, so validate() rejects it.
-GrindJob jobFromGoal(const GrindGoal& goal);
+GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal);
 
 /// The goal of a job.
-GrindGoal goalFromJob(const GrindJob& job);
+flute_grinder::GrindGoal goalFromJob(const GrindJob& job);
 
 /// @param tooth_angles of every tooth [rad].
-Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
+flute_grinder::Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
 
 /// Everything in a cutter's message except its teeth.
-CutterGeometry fromMessage(const Cutter& message);
+CutterGeometry fromMessage(const flute_grinder::Cutter& message);
 
-PathStatistics toMessage(const core::PathStatistics& statistics);
-core::PathStatistics fromMessage(const PathStatistics& message);
+flute_grinder::PathStatistics toMessage(const PathStatistics& statistics);
+PathStatistics fromMessage(const flute_grinder::PathStatistics& message);
 
 /// @param actual the axis positions reported by the drive when the setpoint was generated [m], A [rad].
 /// @param cycle_period measured time from the previous control cycle to the one that generated the setpoint [s].
-WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual, double cycle_period);
-Setpoint fromMessage(const WrittenSetpoint& message);
+flute_grinder::WrittenSetpoint toMessage(const Setpoint& setpoint, const Axes& actual, double cycle_period);
+Setpoint fromMessage(const flute_grinder::WrittenSetpoint& message);
 
-}  // namespace flute_grinder
+}  // namespace grinder

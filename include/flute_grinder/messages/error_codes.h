@@ -3,11 +3,11 @@
 #include "flute_grinder/machine/loop_fault.h"
 #include "flute_grinder/motion/job_plan.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The GrindResult code for a refused plan.
 int errorCode(PlanFault fault);
 /// The GrindResult code for a fault that ended a job.
 int errorCode(FaultKind fault);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 Json toJson(const Axes& value, const std::string& per_time);
 
 /// What keeps the feed of a plan below the programmed one, and where.
-Json toJson(const std::vector<core::FeedLimit>& limits);
+Json toJson(const std::vector<FeedLimit>& limits);
 
 /// A job in the keys and units of a job file: as YAML it is one, and read as one it is the same job, to the last bit if
 /// the job has come from a file. A wheel that has a file of its own is written inline.
@@ -33,4 +33,4 @@ Json toJson(const GrindJob& job);
 /// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.
 std::string text(const Json& json, int indent = 2);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,32 +11,32 @@
 
 /// @file
 /// Which figures of a goal its zero points depend on, and whether work offsets were set for them.
-namespace flute_grinder {
+namespace grinder {
 
 /// The goal of a job file, with the names of the file and its wheel file. @throw JobFileError
-GrindGoal goalFromFile(const std::string& path);
+flute_grinder::GrindGoal goalFromFile(const std::string& path);
 
 /// What a work offset is set for that is set for a goal.
-core::OffsetBasis basisOf(const GrindGoal& goal, OffsetMethod method);
+OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method);
 
 /// For files and the command line, in mm and deg; null for the figures if it was set for no particular job.
-Json toJson(const core::OffsetBasis& basis);
+Json toJson(const OffsetBasis& basis);
 
-OffsetBasis toMessage(const core::OffsetBasis& basis);
+flute_grinder::OffsetBasis toMessage(const OffsetBasis& basis);
 /// @return an unknown method if the message has an invalid one.
-core::OffsetBasis fromMessage(const OffsetBasis& message);
-core::WorkOffsets fromMessage(const WorkOffsets& message);
+OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message);
+WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message);
 
 /// The work offsets that do not fit a goal.
-std::vector<core::OffsetMismatch> mismatches(const core::WorkOffsets& offsets, const GrindGoal& goal);
+std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
 
 /// What a dry run or a plan says of them: nothing, or one text.
-std::vector<std::string> offsetWarnings(const core::WorkOffsets& offsets, const GrindGoal& goal);
+std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
 
 /// Why offsets do not fit and what to do about it, for the operator; empty if all fit.
-std::string text(const std::vector<core::OffsetMismatch>& mismatches);
+std::string text(const std::vector<OffsetMismatch>& mismatches);
 
 /// The axes among them whose offset can be computed, e.g. "Y and Z".
-std::string computable(const std::vector<core::OffsetMismatch>& mismatches);
+std::string computable(const std::vector<OffsetMismatch>& mismatches);
 
-}  // namespace flute_grinder
+}  // namespace grinder

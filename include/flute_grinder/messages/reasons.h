@@ -11,21 +11,21 @@
 
 /// @file
 /// Converts reasons to and from messages, and to texts for the operator.
-namespace flute_grinder {
+namespace grinder {
 
-Reason toMessage(const core::Reason& reason);
-std::vector<Reason> toMessage(const std::vector<core::Reason>& reasons);
+flute_grinder::Reason toMessage(const Reason& reason);
+std::vector<flute_grinder::Reason> toMessage(const std::vector<Reason>& reasons);
 
 /// @return a reason of kNone if the message has an invalid kind, axis, unit or move.
-core::Reason fromMessage(const Reason& message);
+Reason fromMessage(const flute_grinder::Reason& message);
 
 /// Why the machine is in a fault, or why the last job did not begin, in the operator's units; empty otherwise.
-std::string faultText(const GrinderState& state);
+std::string faultText(const flute_grinder::GrinderState& state);
 
 /// How a goal ended, in the operator's units; the grinder's own text if it sent no reasons.
-std::string resultText(const GrindResult& result);
+std::string resultText(const flute_grinder::GrindResult& result);
 
 /// Why a job cannot be ground, in the operator's units; the grinder's own texts if it sent no reasons.
-std::vector<std::string> planTexts(const Plan::Response& plan);
+std::vector<std::string> planTexts(const flute_grinder::Plan::Response& plan);
 
-}  // namespace flute_grinder
+}  // namespace grinder

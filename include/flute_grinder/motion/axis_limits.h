@@ -4,7 +4,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/axes.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Bounds for the machine's parameters, in SI units; far beyond any real machine.
 constexpr double kMinFigure = 1e-9, kMaxFigure = 1e9;
@@ -30,4 +30,4 @@ struct Machine {
   Axes work_offset = Axes::Zero();
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

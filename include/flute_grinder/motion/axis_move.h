@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Moves a single axis without a job, from rest to rest within its limits: a lift or a jog. Its setpoints are numbered
 /// from 0 and come in pairs, as in a job; setSpeed() and slowDown() take effect at the next pair. Real-time safe except
@@ -63,4 +63,4 @@ class AxisMove {
   double slow_down_ = 1;  ///< for the next pair
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

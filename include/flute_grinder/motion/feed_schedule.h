@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 constexpr double kMaxFeedOverride = 1.2;  ///< maximum feed override, as a fraction of the job's feed
-
-namespace core {
 
 /// What limits the feed to less than the requested feed, and where along the stroke.
 struct FeedLimit {
@@ -21,8 +19,6 @@ struct FeedLimit {
   double from_x = 0;  ///< the end reached first in the direction of the stroke [m]
   double to_x = 0;    ///< [m]
 };
-
-}  // namespace core
 
 /// Where along a stroke the feed must be reduced so that no axis exceeds a limit, and the limits of the feed law there.
 ///
@@ -84,7 +80,7 @@ class FeedSchedule {
   double rate(double s) const noexcept;
 
   /// What limits the feed to less than the requested feed; empty if nothing does.
-  const std::vector<core::FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
+  const std::vector<FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
 
  private:
   /// A limit of X, and the axis that it comes from.
@@ -111,7 +107,7 @@ class FeedSchedule {
   double z_per_x_ = 0;           ///< maximum |dZ/dX|
   double z_bend_ = 0;            ///< maximum |d^2 Z/dX^2| [1/m]
   double z_twist_ = 0;           ///< maximum |d^3 Z/dX^3| [1/m^2]
-  std::vector<core::FeedLimit> feed_limits_;
+  std::vector<FeedLimit> feed_limits_;
 
   // The blend's parameter q: reduced feed below 0, blend from 0 to blend_, full feed above.
   double beta_ = 0;        ///< relative growth of the speed per unit of q where the feed is reduced [1/m]
@@ -126,4 +122,4 @@ class FeedSchedule {
   double direction_ = 1;    ///< sign of dX/ds
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

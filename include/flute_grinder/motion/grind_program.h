@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -88,4 +88,4 @@ class GrindProgram {
   std::vector<Move> moves_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

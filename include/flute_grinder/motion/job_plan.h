@@ -8,9 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace flute_grinder {
-
-namespace core {
+namespace grinder {
 
 /// Statistics of a job's setpoints.
 struct PathStatistics {
@@ -27,8 +25,6 @@ struct PathStatistics {
   Axes ripple_acceleration = Axes::Zero();  ///< over single cycles, from the odd-even steps [m/s^2], A [rad/s^2]
   std::vector<FeedLimit> feed_limits;       ///< what limits the feed, and where
 };
-
-}  // namespace core
 
 /// Why a plan was refused.
 enum class PlanFault {
@@ -50,8 +46,8 @@ using PlanWatch = std::function<bool(double done)>;
 /// The setpoints of a job, generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
-  std::vector<core::Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
-  core::PathStatistics statistics;
+  std::vector<Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
+  PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
   std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers or its law of Z were refused
 
@@ -73,4 +69,4 @@ struct JobPlan {
 JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
-}  // namespace flute_grinder
+}  // namespace grinder

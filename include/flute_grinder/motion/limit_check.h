@@ -7,7 +7,7 @@
 #include <array>
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The quantity that a limit applies to.
 enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFinite };
@@ -26,7 +26,7 @@ struct LimitViolation {
 };
 
 /// Converts a violation to a reason. Not real-time safe.
-core::Reason reasonOf(const LimitViolation& violation);
+Reason reasonOf(const LimitViolation& violation);
 
 /// Checks consecutive setpoints against the axis limits. Position and velocity are checked at every setpoint;
 /// acceleration and jerk only at pair ends, from differences over two cycles, because within a pair they come from the
@@ -95,4 +95,4 @@ class LimitCheck {
   std::size_t violation_count_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

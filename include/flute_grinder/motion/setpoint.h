@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The step of an odd-even pair that a setpoint belongs to; kNone outside strokes.
 enum class StepKind : std::uint8_t { kNone, kOdd, kEven };
@@ -34,4 +34,4 @@ struct Setpoint {
   bool at_feed = false;  ///< the stroke runs at its target feed: neither on a ramp nor reduced for an axis
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What the setpoints of a move depend on, but for constant offsets of the axes.
 struct MoveShape {
@@ -151,4 +151,4 @@ class SetpointStream {
   Axes lifted_ = Axes::Zero();  ///< position to which retract() lifts the wheel [m], A [rad]
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Maximum size of a work offset; farther than any axis goes, and with a rounding far below any encoder's [m], A [rad].
 constexpr double kMaxOffset = 1000;
@@ -26,8 +26,6 @@ inline constexpr OffsetMethodRow kOffsetMethods[]{
     {{OffsetMethod::kComputed, "computed"}, "computed"},
 };
 constexpr auto& rowsOf(OffsetMethod) noexcept { return kOffsetMethods; }
-
-namespace core {
 
 /// What a work offset was set for: the figures of a job that zero points depend on.
 struct OffsetBasis {
@@ -67,6 +65,4 @@ struct WorkOffsets {
   }
 };
 
-}  // namespace core
-
-}  // namespace flute_grinder
+}  // namespace grinder

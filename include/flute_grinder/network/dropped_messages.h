@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Called with a message that is dropped because it is longer than kMaxPeerMessage: its length as announced [bytes],
 /// and its beginning, at most kDroppedHead bytes. In roscpp's network thread: it must not wait, and not throw.
@@ -20,4 +20,4 @@ void setOnDropped(const std::string& topic, OnDropped on_dropped);
 /// Calls whoever is set for the topic, if anybody is. Thread safe.
 void reportDropped(const std::string& topic, std::uint32_t length, std::vector<std::uint8_t> head);
 
-}  // namespace flute_grinder
+}  // namespace grinder

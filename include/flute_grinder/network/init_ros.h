@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// ros::init() without a disk: by itself it makes the folder `~/.ros/log`, in which roscpp writes nothing, and throws
 /// where that cannot be made.
@@ -13,4 +13,4 @@ namespace flute_grinder {
 /// @throw ros::Exception if the command line or the environment has an invalid name.
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options);
 
-}  // namespace flute_grinder
+}  // namespace grinder

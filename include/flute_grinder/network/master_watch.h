@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Whether a ROS master answers.
 enum class Master { kAnswers, kMissing };
@@ -59,4 +59,4 @@ class MasterWatch {
   std::thread thread_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

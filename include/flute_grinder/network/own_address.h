@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Whether roscpp takes a name in ROS_HOSTNAME or ROS_IP for loopback.
 inline bool isLoopbackName(const std::string& name) {
@@ -16,4 +16,4 @@ inline bool isLoopbackName(const std::string& name) {
 /// @return a message; empty if the address is good.
 std::string ownAddressRefusal();
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace flute_grinder {
+namespace grinder {
 
 // Limits on what a peer that makes a mistake can take of the node. docs/network.md lists them.
 
@@ -12,4 +12,4 @@ constexpr std::size_t kMaxPeerMessage = 262144;
 /// No connection is accepted from this file descriptor on; the rest are reserved for the node itself.
 constexpr int kMaxPeerDescriptor = 512;
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Calls a method of a ROS master's or node's XML-RPC API over a connection of its own, for a second at most.
 /// @param arguments after this node's name.
@@ -17,4 +17,4 @@ std::optional<XmlRpc::XmlRpcValue> callRosApi(const std::string& host, unsigned 
                                               const std::vector<XmlRpc::XmlRpcValue>& arguments,
                                               const std::atomic<bool>& stop);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A service call in its own thread, which can be aborted. ros::ServiceClient would wait for ever for a node that
 /// hangs, and must not be shut down by another thread meanwhile.
@@ -63,4 +63,4 @@ std::optional<typename Service::Response> responseFrom(ros::SerializedMessage* a
   return response;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -2,9 +2,9 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Who runs this program, as `user@host`: for requests of which the grinder remembers who made them.
 std::string userAtHost();
 
-}  // namespace flute_grinder
+}  // namespace grinder

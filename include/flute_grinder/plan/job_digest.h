@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -14,4 +14,4 @@ std::string jobDigest(const GrindJob& job);
 /// Identifies the wheel of a job in the same way: its figures but its wear, which the job follows, and its width.
 std::string wheelDigest(const GrindJob& job);
 
-}  // namespace flute_grinder
+}  // namespace grinder

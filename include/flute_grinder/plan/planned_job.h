@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// A job with its digest, which is computed once.
 class JobWithDigest {
@@ -45,4 +45,4 @@ PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const 
                         const Axes& start, const ToothPass& first = {},
                         const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
-}  // namespace flute_grinder
+}  // namespace grinder

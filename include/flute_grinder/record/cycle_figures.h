@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Whether a control cycle counts as late: after more than 1.5 periods. @param period, nominal [s].
 inline bool isLate(double period, double nominal) { return !(period <= 1.5 * nominal); }
@@ -12,4 +12,4 @@ inline void updateMax(double& max, double value) {
   if (!(value <= max) && !std::isnan(max)) max = value;
 }
 
-}  // namespace flute_grinder
+}  // namespace grinder

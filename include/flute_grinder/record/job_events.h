@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Holds and changes of the feed override of a job, up to 10,000 of each. Not thread safe.
 class JobEvents {
@@ -46,4 +46,4 @@ class JobEvents {
   std::uint64_t omitted_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -13,7 +13,7 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// How a job ended.
 struct JobConclusion {
@@ -37,7 +37,7 @@ class JobRecord {
   /// Adds setpoints that were written, but are not known.
   void addLost(std::uint64_t setpoints) { lost_ += setpoints; }
   /// For what, and by whom, the work offsets were set. @param said_right the goal says that they are right.
-  void setZeroPoints(const core::WorkOffsets& offsets, bool said_right);
+  void setZeroPoints(const WorkOffsets& offsets, bool said_right);
   void conclude(const JobConclusion& conclusion) { conclusion_ = conclusion; }
 
   /// Whether anything moved.
@@ -47,7 +47,7 @@ class JobRecord {
 
   /// The record as it is kept, see docs/ros-interface.md.
   /// @param grinder the node's name.
-  Json json(const std::string& grinder, const core::MachineInfo& machine) const;
+  Json json(const std::string& grinder, const MachineInfo& machine) const;
 
  private:
   double since(const CycleRecord& record) const { return record.time - started_; }
@@ -56,11 +56,11 @@ class JobRecord {
   Json zeroPointsJson() const;
 
   std::shared_ptr<const GrindProgram> program_;
-  core::PathStatistics planned_;
+  PathStatistics planned_;
   std::string digest_;
   ToothPass first_;
   std::string name_;
-  core::WorkOffsets offsets_;
+  WorkOffsets offsets_;
   bool offsets_said_right_ = false;
 
   std::uint64_t cycles_ = 0;
@@ -75,6 +75,6 @@ class JobRecord {
 };
 
 /// A job's plan as records have it.
-Json plannedJson(const core::PathStatistics& planned);
+Json plannedJson(const PathStatistics& planned);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -5,11 +5,9 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct LoopConfig;
-
-namespace core {
 
 /// Identity and limits of the machine, as `~machine` publishes them and the records of jobs have them.
 struct MachineInfo {
@@ -22,12 +20,10 @@ struct MachineInfo {
   Axes max_following_error = Axes::Zero();  ///< [m], A [rad]
 };
 
-}  // namespace core
-
 /// @param drive type of the drive's plugin.
-core::MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
+MachineInfo machineInfo(const LoopConfig& config, const std::string& drive);
 
 /// As records have it, see docs/ros-interface.md.
-Json toJson(const core::MachineInfo& machine);
+Json toJson(const MachineInfo& machine);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,7 +9,7 @@
 /// @file
 /// The files in which a grinder keeps the records of its jobs: one folder for each grinder, one file for each job,
 /// named after the time at which the job started, so that the names sort by it.
-namespace flute_grinder {
+namespace grinder {
 
 /// A time as records write it, to the nearest millisecond, e.g. "2026-11-22T17:04:13.123Z". @param time since the epoch
 /// [s].
@@ -40,4 +40,4 @@ RecordFiles recordFilesIn(const std::string& folder);
 /// The record in a file. @throw FileError if it cannot be read, is no record, or lacks a part.
 Json readRecord(const std::string& path);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// Figures of a stroke as it was ground; the feed is that within the flute. A stroke that was held, and resumed, is
 /// one.
@@ -46,4 +46,4 @@ class StrokeLog {
   std::vector<StrokeFigures> strokes_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

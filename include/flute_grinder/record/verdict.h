@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What a ground tool is passed by, beside the tolerances that its job has.
 struct Tolerances {
@@ -31,4 +31,4 @@ void addVerdict(Json& data, const Tolerances& tolerances);
 /// The same for a record that the grinder keeps of a job: adds "kind" and "duration_s", too.
 void judgeRecord(Json& record, const Tolerances& tolerances);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace flute_grinder {
+namespace grinder {
 
 /// First line of a CSV file of `grind table`, as in the paper's Table 1.
 inline constexpr char kTableColumns[] = "point,x_mm,a_rad,a_theory_rad,error_rad";
@@ -10,4 +10,4 @@ inline constexpr char kSetpointColumns[] =
 /// What `grind run` appends: the position that the drive read one cycle before.
 inline constexpr char kActualColumns[] = ",actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad";
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -9,19 +9,19 @@
 #include <memory>
 #include <string>
 
-namespace flute_grinder {
+namespace grinder {
 
 class MotionOfRows;
 class Plots;
 
 /// What a report says beside what its file has.
 struct ReportContext {
-  std::string file;          ///< its name for the reader
-  Json words;                ///< note, operator and serial, of whoever asks for the report
-  Json tool;                 ///< as `grind simulate` measures it; null if it cannot be
-  std::string no_tool;       ///< why not
-  Tolerances tolerances;     ///< by which the tool is passed
-  core::MachineInfo limits;  ///< of a machine, for files without theirs
+  std::string file;       ///< its name for the reader
+  Json words;             ///< note, operator and serial, of whoever asks for the report
+  Json tool;              ///< as `grind simulate` measures it; null if it cannot be
+  std::string no_tool;    ///< why not
+  Tolerances tolerances;  ///< by which the tool is passed
+  MachineInfo limits;     ///< of a machine, for files without theirs
 };
 
 /// Goes through the rows of a file once, and works out all that a report says of them.
@@ -64,4 +64,4 @@ class Survey {
 /// What a report says of a record that the grinder keeps of a job, see readRecord().
 Json findingsOfRecord(const Json& record, const ReportContext& context);
 
-}  // namespace flute_grinder
+}  // namespace grinder

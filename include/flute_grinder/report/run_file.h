@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// What a file is, by how it begins.
 enum class FileKind {
@@ -122,4 +122,4 @@ class RunFile {
   RowSummary summary_;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

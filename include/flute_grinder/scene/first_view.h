@@ -3,7 +3,7 @@
 #include "flute_grinder/geometry/wheel_profile.h"
 #include "flute_grinder/scene/markers.h"
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The straight wheel and the round blank that rviz shows until there is a job.
 struct FirstView {
@@ -20,4 +20,4 @@ visualization_msgs::MarkerArray firstViewMarkers(const FirstView& view);
 /// Appends a wheel, in the frame `wheel`, whose Z is its axis.
 void appendWheel(visualization_msgs::MarkerArray& array, const WheelProfile& wheel);
 
-}  // namespace flute_grinder
+}  // namespace grinder

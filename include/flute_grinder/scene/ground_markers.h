@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -35,4 +35,4 @@ GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
 visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns,
                                               const std::optional<Reached>& reached = std::nullopt);
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-namespace flute_grinder {
+namespace grinder {
 
 struct GrindJob;
 
@@ -48,4 +48,4 @@ class GroundView {
   std::thread thread_;  ///< last member, so that it finds the others
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -7,7 +7,7 @@
 
 /// @file
 /// Building blocks of the markers for rviz.
-namespace flute_grinder {
+namespace grinder {
 
 /// The maximum number of points in one marker: rviz crashes on a line strip of more than 16,384.
 constexpr std::size_t kMaxMarkerPoints = 16000;
@@ -45,4 +45,4 @@ struct OutlinePoint {
 visualization_msgs::Marker& appendSolid(visualization_msgs::MarkerArray& array, const char* ns, const char* frame,
                                         const std::vector<OutlinePoint>& outline, const std_msgs::ColorRGBA& colour);
 
-}  // namespace flute_grinder
+}  // namespace grinder

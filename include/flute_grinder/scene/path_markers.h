@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The edges of all teeth, where the wheel grinds them, as line strips in the frame `cutter`, so that they turn with A:
 /// a planned one is grey, the one being ground bright, and a finished one coloured point by point by the error measured
@@ -114,4 +114,4 @@ class PathErrorMarkers {
   std::uint64_t every_ = 1;  ///< only every n-th pair is kept
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

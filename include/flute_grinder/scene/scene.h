@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace flute_grinder {
+namespace grinder {
 
 /// The job in rviz: ground cutter, wheel, flutes, executed path and path errors, on `~ground_cutter`, `~scene`,
 /// `~tool_path`, `~executed_path` and `~path_error`, and what they mean in figures on `~legend`; each latched, every
@@ -55,7 +55,7 @@ class Scene {
     ToolPath tool_path;
     ExecutedPath executed;
     PathErrorMarkers errors;
-    Legend legend;
+    flute_grinder::Legend legend;
     Reached reached{};
     Reached ground{};  ///< what was shown last
   };
@@ -78,4 +78,4 @@ class Scene {
   std::uint64_t updates_ = 0;
 };
 
-}  // namespace flute_grinder
+}  // namespace grinder

@@ -11,10 +11,10 @@
 #include <string>
 
 int main(int argc, char** argv) {
-  using namespace flute_grinder;
+  using namespace grinder;
   ros::init(argc, argv, "neighbour");
   ros::NodeHandle nh;
-  const auto state = ros::topic::waitForMessage<GrinderState>("grinder/state", nh, ros::Duration(60));
+  const auto state = ros::topic::waitForMessage<flute_grinder::GrinderState>("grinder/state", nh, ros::Duration(60));
   if (!state) {
     std::cerr << "no state of a grinder within 60 s\n";
     return 1;

@@ -1,0 +1,250 @@
+#include "flute_grinder/curve/relief_path.h"
+
+#include "flute_grinder/curve/log_curve.h"
+#include "flute_grinder/curve/units.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace grinder {
+namespace test_relief_path {
+
+using units::kDegree;
+using units::kMillimetre;
+
+CutterGeometry cutterOf(double diameter, double cone, double spiral, CutDirection cut = CutDirection::kRightHand) {
+  CutterGeometry g;
+  g.end_diameter = diameter * kMillimetre;
+  g.cone_angle = cone * kDegree;
+  g.spiral_angle = spiral * kDegree;
+  g.flute_length = 25 * kMillimetre;
+  g.cut = cut;
+  return g;
+}
+
+/// With the relief's start at a place of the rim.
+ReliefWheel wheelOf(const ConicalCutter& cutter, const ReliefStart& start, double diameter, double width, double swivel,
+                    double contact) {
+  ReliefWheel wheel{diameter / 2 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};
+  wheel.height = ReliefPath::heightFor(cutter, start, wheel, contact * kMillimetre);
+  return wheel;
+}
+
+/// The radius that is left at an angle behind the edge: the least at which a ray from the axis meets the wheel, over
+/// all poses of the axes. Of the figures of a stroke and of the wheel's, nothing else.
+struct BruteForce {
+  const ConicalCutter& cutter;
+  const ReliefPath& path;
+  const ReliefWheel& wheel;
+  double lowered = 0;  ///< Y against the path's
+
+  double hand() const { return cutter.geometry().cut == CutDirection::kLeftHand ? -1 : 1; }
+  double edge(double x) const { return LogCurve(cutter).a(x); }
+
+  double ray(double x, double behind, double axis_x) const {
+    const double w_x = -std::sin(wheel.swivel), w_z = std::cos(wheel.swivel),
+                 radius = wheel.nominal_radius - wheel.wear;
+    const double c_y = cutter.geometry().end_diameter / 2 + wheel.nominal_radius + path.y() + lowered +
+                       axis_x * (cutter.tanCone() + path.taper());
+    const double c_z = wheel.height + axis_x * cutter.tanCone() * path.cutter().zPerY();
+    const double a = LogCurve(cutter, path.lead()).a(axis_x) + path.a();
+    const double psi = edge(x) + hand() * behind - a;
+    // |p - c|^2 - (w (p - c))^2 = radius^2, with p = (x, r cos psi, r sin psi).
+    const double d_x = x - axis_x, e_y = std::cos(psi), e_z = std::sin(psi);
+    const double along0 = w_x * d_x - w_z * c_z, along1 = w_z * e_z;
+    const double a2 = 1 - along1 * along1, a1 = -c_y * e_y - c_z * e_z - along0 * along1;
+    const double a0 = d_x * d_x + c_y * c_y + c_z * c_z - along0 * along0 - radius * radius;
+    const double root = a1 * a1 - a2 * a0;
+    if (root < 0) return std::numeric_limits<double>::infinity();
+    const double r = (-a1 - std::sqrt(root)) / a2;
+    const bool on_rim = std::abs(along0 + r * along1) <= wheel.width / 2;
+    return on_rim && r > 0 ? r : std::numeric_limits<double>::infinity();
+  }
+
+  double radius(double x, double behind) const {
+    constexpr int kPoses = 2000;
+    const double middle = x + path.lead(), reach = 2 * wheel.width, step = 2 * reach / kPoses;
+    int best = 0;
+    const auto at = [&](double i) { return ray(x, behind, middle - reach + i * step); };
+    for (int i = 1; i <= kPoses; ++i) {
+      if (at(i) < at(best)) best = i;
+    }
+    double from = best - 1, to = best + 1;
+    for (int i = 0; i < 80; ++i) {
+      const double third = (to - from) / 3;
+      (at(from + third) < at(to - third) ? to : from) += at(from + third) < at(to - third) ? -third : third;
+    }
+    return std::min(at(best), at((from + to) / 2));
+  }
+
+  /// By how much the radius falls between two angles behind the edge.
+  double clearance(double x, double from, double to) const {
+    const double r1 = radius(x, from), r2 = radius(x, to);
+    return std::atan((r1 - r2) / (r1 * (to - from)));
+  }
+};
+
+struct Row {
+  double diameter, cone, spiral, clearance, swivel, wheel, width, contact, phi;
+};
+
+// Found by a brute force of its own, to the first order.
+TEST(ReliefPath, HasTheClearanceAllAlongTheEdgeAndKeepsItsRadius) {
+  const Row rows[]{{10, 5, 30, 10, 30, 100, 6, -2.5, -16.19},
+                   {10, 5, 30, 20, 60, 100, 6, -2.5, -48.99},
+                   {10, 0, 35, 9, 43, 100, 8, -3, -14.87},
+                   {12, -1, 38, 12, 45, 100, 6, -2, -20.37},
+                   {2, 8, 20, 14, 25, 80, 3, -1.2, -20.02}};
+  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+    const double hand = cut == CutDirection::kLeftHand ? -1 : 1;
+    for (const Row& row : rows) {
+      SCOPED_TRACE(row.phi);
+      const ConicalCutter cutter(cutterOf(row.diameter, row.cone, hand * row.spiral, cut));
+      const ReliefStart start{row.clearance * kDegree};
+      const ReliefWheel wheel = wheelOf(cutter, start, row.wheel, row.width, hand * row.swivel, row.contact);
+      const ReliefPath path(cutter, start, wheel);
+      EXPECT_NEAR(path.phi() / kDegree, row.phi, 0.035);
+      EXPECT_NEAR(path.contact() / kMillimetre, row.contact, 1e-9);
+      const BruteForce left{cutter, path, wheel};
+      for (const double x : {0.0, 12 * kMillimetre, 25 * kMillimetre}) {
+        EXPECT_NEAR(left.radius(x, 0), cutter.radius(x), 1e-12);
+        EXPECT_NEAR(left.clearance(x, 1e-9, 1e-5) / kDegree, row.clearance, 0.001);
+      }
+    }
+  }
+}
+
+/// Cutter, relief and wheel within what a machine has; the swivel is near the spiral angle.
+struct Case {
+  ConicalCutter cutter;
+  ReliefStart start;
+  ReliefWheel wheel;
+};
+
+Case drawn() {
+  const auto within = [](double from, double to) { return from + (to - from) * *rc::gen::inRange(0, 10001) / 1e4; };
+  const bool left = *rc::gen::arbitrary<bool>();
+  const double hand = left ? -1 : 1, spiral = within(0, 45);
+  CutterGeometry g =
+      cutterOf(within(3, 20), within(-1, 10), hand * spiral, left ? CutDirection::kLeftHand : CutDirection::kRightHand);
+  g.flute_length = within(0.5, 1.5) * g.end_diameter;
+  const ConicalCutter cutter(g);
+  const ReliefStart start{within(5, 20) * kDegree, within(0.9, 1), within(0, 20) * kDegree};
+  const double width = within(3, 10), swivel = hand * std::max(0.0, spiral + within(-15, 10));
+  return {cutter, start, wheelOf(cutter, start, within(60, 150), width, swivel, within(-0.45, 0.1) * width)};
+}
+
+RC_GTEST_PROP(ReliefPath, TheSurfaceIsWhatTheWheelLeaves, ()) {
+  const Case c = drawn();
+  const ReliefPath path(c.cutter, c.start, c.wheel);
+  const BruteForce left{c.cutter, path, c.wheel};
+  const double rim_end = c.wheel.width / 2 - path.contact();
+  for (const double x : {0.0, c.cutter.geometry().flute_length}) {
+    RC_ASSERT(std::abs(left.radius(x, c.start.behind) - c.start.radius_part * c.cutter.radius(x)) < 1e-9);
+    for (const double part : {0.0, 0.3, 0.8}) {
+      const ReliefPath::Place at = path.surface(x, part * rim_end);
+      if (!(at.behind - c.start.behind < 0.7)) break;
+      RC_ASSERT(std::abs(left.radius(x, at.behind) - at.radius) < 2e-9);
+      constexpr double aside = 1e-5;  // the mean of both sides: the change of the clearance does not count
+      const double measured = left.clearance(x, at.behind + 1e-9, at.behind + aside);
+      RC_ASSERT(std::abs(measured - at.clearance) < 0.002 * kDegree);
+    }
+  }
+}
+
+// A flat facet has one normal: behind the edge its clearance falls as the radius turns.
+TEST(ReliefPath, WithoutSpiralConeAndSwivelItIsAFlatFacet) {
+  const ConicalCutter cutter(cutterOf(10, 0, 0));
+  const ReliefStart start{10 * kDegree};
+  const ReliefPath path(cutter, start, wheelOf(cutter, start, 100, 6, 0, -2));
+  for (const double behind : {0.0, 3.0, 7.0, 16.0}) {
+    // On the facet, y = R cos(clearance) in the frame of its normal: along the rim from -R sin(clearance).
+    const double along =
+        5 * kMillimetre * std::cos(10 * kDegree) * (std::tan((behind - 10) * kDegree) + std::tan(10 * kDegree));
+    const ReliefPath::Place at = path.surface(12 * kMillimetre, along);
+    EXPECT_NEAR(at.behind / kDegree, behind, 1e-6);
+    EXPECT_NEAR(at.clearance / kDegree, 10 - behind, 1e-6);
+    EXPECT_NEAR(at.radius, 5 * kMillimetre * std::cos(10 * kDegree) / std::cos((behind - 10) * kDegree), 1e-12);
+  }
+  // From the circle to the facet's nearest place to the axis.
+  EXPECT_NEAR(path.depth(), 5 * kMillimetre * (1 - std::cos(10 * kDegree)), 1e-9);
+}
+
+/// A second relief begins on the first where that is as wide as asked, and nowhere else.
+TEST(ReliefPath, BeginsOnAnotherAsFarFromTheEdgeAsAsked) {
+  const ConicalCutter cutter(cutterOf(10, 5, 30));
+  const ReliefStart first{10 * kDegree};
+  const ReliefWheel wheel = wheelOf(cutter, first, 100, 6, 30, -2.5);
+  const ReliefPath primary(cutter, first, wheel);
+  const ReliefPath::Place end = primary.surfaceAt(0, 0.8 * kMillimetre);
+  const BruteForce left{cutter, primary, wheel};
+  EXPECT_NEAR(std::hypot(left.radius(0, end.behind) * std::cos(end.behind) - 5 * kMillimetre,
+                         left.radius(0, end.behind) * std::sin(end.behind)),
+              0.8 * kMillimetre, 1e-8);
+  EXPECT_TRUE(std::isnan(primary.surfaceAt(0, 8 * kMillimetre).radius));
+}
+
+// A pass as much higher than the last as the depth touches the blank at one place and no more.
+RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
+  const Case c = drawn();
+  const ReliefPath path(c.cutter, c.start, c.wheel);
+  const double w_x = -std::sin(c.wheel.swivel), w_z = std::cos(c.wheel.swivel), radius = c.wheel.nominal_radius;
+  double highest = -1;
+  for (const double s : {-path.beyondEnd(), c.cutter.geometry().flute_length + path.beyondShank()}) {
+    const double axis_x = s + path.lead();
+    const double c_y =
+        c.cutter.geometry().end_diameter / 2 + radius + path.y() + axis_x * (c.cutter.tanCone() + path.taper());
+    const double c_z = c.wheel.height + axis_x * c.cutter.tanCone() * path.cutter().zPerY();
+    for (int i = 0; i <= 100; ++i) {
+      const double w = (i / 100.0 - 0.5) * c.wheel.width;
+      for (int k = -1000; k <= 1000; ++k) {
+        const double sine = k / 1250.0;
+        const double x = axis_x + w * w_x + radius * sine * w_z, z = c_z + w * w_z - radius * sine * w_x;
+        const double blank = c.cutter.radius(x);
+        if (!(std::abs(z) < blank)) continue;
+        const double rim = c_y - radius * std::sqrt(1 - sine * sine);
+        highest = std::max(highest, std::sqrt(blank * blank - z * z) - rim);
+      }
+    }
+  }
+  RC_ASSERT(highest <= path.depth() + 1e-9);
+  RC_ASSERT(highest > path.depth() - 50e-6);
+}
+
+// Wear is taken up where the relief begins: it keeps its clearance and its radius, in the closed form and by Y alone.
+TEST(ReliefPath, FollowsTheWheelsWear) {
+  const ConicalCutter cutter(cutterOf(10, 5, 30));
+  const ReliefStart start{10 * kDegree};
+  ReliefWheel wheel = wheelOf(cutter, start, 100, 6, 30, -2.5);
+  const ReliefPath fresh(cutter, start, wheel);
+  wheel.wear = 1 * kMillimetre;
+  const ReliefPath worn(cutter, start, wheel);
+  const BruteForce left{cutter, worn, wheel};
+  EXPECT_NEAR(left.radius(12 * kMillimetre, 0), cutter.radius(12 * kMillimetre), 1e-12);
+  EXPECT_NEAR(left.clearance(12 * kMillimetre, 1e-9, 1e-5) / kDegree, 10, 0.001);
+  // By Y alone, as between passes.
+  wheel.wear = 0.1 * kMillimetre;
+  const BruteForce lowered{cutter, fresh, wheel, -wheel.wear * fresh.yPerWear()};
+  EXPECT_NEAR(lowered.radius(12 * kMillimetre, 0), cutter.radius(12 * kMillimetre), 1e-7);
+}
+
+TEST(ReliefPath, RefusesWhatItCannotGrind) {
+  const ConicalCutter cutter(cutterOf(10, 5, 30));
+  const ReliefStart start{20 * kDegree};
+  const ReliefWheel steep{50 * kMillimetre, 0, 6 * kMillimetre, 78 * kDegree, 0};
+  EXPECT_THROW(ReliefPath(cutter, start, steep), std::invalid_argument);
+  ReliefWheel beside = wheelOf(cutter, start, 100, 6, 30, -3);
+  beside.height += 0.01 * kMillimetre;
+  try {
+    ReliefPath(cutter, start, beside);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("setup.height"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace test_relief_path
+}  // namespace grinder

@@ -110,8 +110,8 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
   y_ = p_y + wheel_radius_ * normal_y_ - radius_ - wheel.nominal_radius;
   a_ = hand * (start.behind - phi_);
   const double length = cutter.geometry().flute_length;
-  beyond_end_ = std::max(0.0, -sin_ * (half_width_ - contact_));
-  beyond_shank_ = std::max(0.0, sin_ * (half_width_ - contact_));
+  beyond_end_ = std::max(0.0, -formedAt(0, half_width_ - contact_));
+  beyond_shank_ = std::max(0.0, formedAt(length, half_width_ - contact_) - length);
   depth_ = std::max(touchDepth(-beyond_end_), touchDepth(length + beyond_shank_));
 }
 
@@ -142,13 +142,15 @@ ReliefPath::Point ReliefPath::contactPoint(double s, double along) const noexcep
   return {x - wheel_radius_ * n_x, y - wheel_radius_ * n_y, z - wheel_radius_ * n_z, n_y, n_z};
 }
 
-ReliefPath::Place ReliefPath::surface(double x, double along) const noexcept {
+double ReliefPath::formedAt(double x, double along) const noexcept {
   double s = x + along * sin_;
-  Point p = contactPoint(s, along);
-  for (int i = 0; i < kSteps; ++i) {
-    s += x - p.x;
-    p = contactPoint(s, along);
-  }
+  for (int i = 0; i < kSteps; ++i) s += x - contactPoint(s, along).x;
+  return s;
+}
+
+ReliefPath::Place ReliefPath::surface(double x, double along) const noexcept {
+  const double s = formedAt(x, along);
+  const Point p = contactPoint(s, along);
   const double angle = std::atan2(p.z, p.y);
   // From the edge in this section: it turns on from s to x.
   const double t = (x - s) * tan_cone_ / (radius_ + s * tan_cone_);

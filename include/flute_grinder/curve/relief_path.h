@@ -86,6 +86,8 @@ class ReliefPath {
     double x, y, z, normal_y, normal_z;
   };
   Point contactPoint(double s, double along) const noexcept;
+  /// Which place of the edge the relief's start is at as a part of the rim forms a section.
+  double formedAt(double x, double along) const noexcept;
   double touchDepth(double s) const noexcept;
 
   ReliefStart start_;

@@ -1,0 +1,202 @@
+#include "flute_grinder/geometry/relief_section.h"
+
+#include "flute_grinder/curve/relief_path.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace grinder {
+namespace test_relief_section {
+
+using units::kDegree;
+using units::kMillimetre;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A stroke of a straight, sharp wheel: where its centre is, and how far the cutter is turned, by X.
+struct Stroke {
+  double from, to, radius, width, swivel;
+  double y, y_per_x, z, z_per_x;  ///< of the centre, from the cutter's axis
+  LogCurve a;
+  double a0;
+
+  /// Where a ray from the axis first meets the wheel.
+  double ray(double x, double angle, double axis_x) const {
+    const double w_x = -std::sin(swivel), w_z = std::cos(swivel);
+    const double psi = angle - a.a(axis_x) - a0, e_y = std::cos(psi), e_z = std::sin(psi);
+    const double c_y = y + axis_x * y_per_x, c_z = z + axis_x * z_per_x, d_x = x - axis_x;
+    const double along0 = w_x * d_x - w_z * c_z, along1 = w_z * e_z;
+    double nearest = kInfinity;
+    const auto take = [&](double r) {
+      if (!(r > 0)) return;
+      const double along = along0 + r * along1;
+      const double square = d_x * d_x + (r * e_y - c_y) * (r * e_y - c_y) + (r * e_z - c_z) * (r * e_z - c_z);
+      if (std::abs(along) > width / 2 + 1e-12 || square - along * along > radius * radius + 1e-12) return;
+      nearest = std::min(nearest, r);
+    };
+    const double a2 = 1 - along1 * along1, a1 = -c_y * e_y - c_z * e_z - along0 * along1;
+    const double root = a1 * a1 - a2 * (d_x * d_x + c_y * c_y + c_z * c_z - along0 * along0 - radius * radius);
+    if (root >= 0) take((-a1 - std::sqrt(root)) / a2);
+    for (const double face : {-width / 2, width / 2}) take((face - along0) / along1);
+    return nearest;
+  }
+
+  /// The radius that is left along a ray.
+  double left(double x, double angle) const {
+    constexpr int kPoses = 1500;
+    const double low = std::max(from, x - 20e-3), step = (std::min(to, x + 20e-3) - low) / kPoses;
+    const auto at = [&](double i) { return ray(x, angle, low + i * step); };
+    int best = 0;
+    for (int i = 1; i <= kPoses; ++i) {
+      if (at(i) < at(best)) best = i;
+    }
+    double begin = std::max(best - 1, 0), end = std::min(best + 1, kPoses);
+    for (int i = 0; i < 60; ++i) {
+      const double third = (end - begin) / 3;
+      at(begin + third) < at(end - third) ? end -= third : begin += third;
+    }
+    return std::min(at(best), at((begin + end) / 2));
+  }
+};
+
+/// A job's flutes with a primary relief whose start is at a place of the rim.
+struct Tool {
+  GrindJob job;
+  GroundCutter cutter;
+  ConicalCutter cone;
+  double hand;
+  ReliefWheel wheel;
+  ReliefPath path;
+  double edge;  ///< of a tooth at angle 0, against its asked helix
+  std::vector<WheelSweep> sweeps;
+
+  Tool(const std::string& file, double clearance, double swivel, double width, double contact)
+      : job(readJobFile(file)),
+        cutter(groundCutterOf(job)),
+        cone(job.cutter),
+        hand(job.cutter.cut == CutDirection::kLeftHand ? -1 : 1),
+        wheel(wheelOf({clearance * kDegree}, hand * swivel, width, contact)),
+        path(cone, {clearance * kDegree}, wheel),
+        edge(edgeOf()),
+        sweeps{WheelSweep(path.cutter(), WheelProfile::straight(2 * wheel.nominal_radius, wheel.width),
+                          wheel.nominal_radius, {wheel.swivel, wheel.height, path.lead()}, stroke())} {}
+
+  ReliefWheel wheelOf(const ReliefStart& start, double swivel, double width, double contact) const {
+    ReliefWheel w{50 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};
+    w.height = ReliefPath::heightFor(cone, start, w, contact * kMillimetre);
+    return w;
+  }
+  double edgeOf() const {
+    const double x = job.cutter.flute_length / 2;
+    return *cutter.section(x).teeth[0].edge - LogCurve(cone).a(x);
+  }
+  GrindStroke stroke() const {
+    GrindStroke s;
+    s.from = path.lead() - path.beyondEnd();
+    s.to = job.cutter.flute_length + path.lead() + path.beyondShank();
+    s.y = path.y();
+    s.y_per_x = path.taper();
+    s.a = path.a() + edge;
+    return s;
+  }
+
+  Stroke reliefStroke() const {
+    const GrindStroke s = stroke();
+    return {s.from,
+            s.to,
+            wheel.nominal_radius,
+            wheel.width,
+            wheel.swivel,
+            job.cutter.end_diameter / 2 + wheel.nominal_radius + s.y,
+            cone.tanCone() + s.y_per_x,
+            wheel.height,
+            cone.tanCone() * path.cutter().zPerY(),
+            LogCurve(cone, path.lead()),
+            s.a};
+  }
+  /// Of the tooth behind the first one.
+  Stroke nextFlute() const {
+    const GrindStroke s = strokeOf(job, 0, job.process.deepest(), 0);
+    const GrindProcess& p = job.process;
+    const double pitch = hand > 0 ? job.tooth_angles[1] : job.tooth_angles.back() - units::kTurn;
+    return {std::min(s.from, s.to),
+            std::max(s.from, s.to),
+            p.wheel_diameter / 2,
+            p.wheel_width,
+            p.setup_swivel,
+            job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + s.y,
+            cone.tanCone() + s.y_per_x,
+            p.setup_height,
+            cone.tanCone() * cone.zPerY(),
+            LogCurve(cone, p.setup_lead),
+            pitch};
+  }
+};
+
+// The land is gone through in steps: what is left of it by the relief, and by the next tooth's flute.
+TEST(ReliefSection, IsWhatTheWheelsLeave) {
+  for (const Tool& tool :
+       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2)}) {
+    const Stroke relief = tool.reliefStroke(), flute = tool.nextFlute();
+    for (const double part : {0.0, 0.5, 1.0}) {
+      const double x = part * tool.job.cutter.flute_length;
+      const GroundSection section = tool.cutter.section(x);
+      const ReliefSection measured = measureRelief(tool.cutter, section, 0, tool.sweeps);
+      const double edge = *section.teeth[0].edge;
+      const auto left = [&](const Stroke& stroke, double behind) { return stroke.left(x, edge + tool.hand * behind); };
+
+      // Where the relief meets the blank; in front of the edge, it undercuts that.
+      double low = -1 * kDegree, high = 1 * kDegree;
+      for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        (left(relief, middle) > section.radius ? low : high) = middle;
+      }
+      EXPECT_NEAR(measured.edge_radius, std::min(section.radius, left(relief, 0)), 5e-9);
+      const double fall = left(relief, high + 1e-6) - left(relief, high + 11e-6);
+      EXPECT_NEAR(*measured.clearance, std::atan(fall / (10e-6 * section.radius)), 0.01 * kDegree);
+
+      // The heel, from where the flute takes more than the relief.
+      low = 0, high = 60 * kDegree;
+      while (left(flute, low) > left(relief, low)) low += 0.25 * kDegree;
+      high = low, low -= 0.25 * kDegree;
+      for (int i = 0; i < 40; ++i) {
+        const double middle = (low + high) / 2;
+        (left(flute, middle) > left(relief, middle) ? low : high) = middle;
+      }
+      const double r = left(relief, low);
+      ASSERT_LT(r, section.radius);
+      const double heel = std::hypot(r * std::cos(low) - section.radius, r * std::sin(low));
+      ASSERT_TRUE(measured.heel && measured.land && measured.land_end_clearance);
+      EXPECT_NEAR(*measured.heel, heel, 1e-6);
+      EXPECT_NEAR(*measured.land, heel, 1e-6);
+      const double end =
+          (left(relief, low - 0.01 * kDegree) - left(relief, low + 0.01 * kDegree)) / (0.02 * kDegree * r);
+      EXPECT_NEAR(*measured.land_end_clearance, std::atan(end), 0.02 * kDegree);
+    }
+  }
+}
+
+/// A relief that reaches the next edge is seen, and one that ends before the heel.
+TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
+  const Tool wide("jobs/taper_d6_t6.yaml", 10, 25, 6, -2.5), narrow("jobs/left_hand_d8_t3.yaml", 12, 30, 3, 0);
+  const GroundSection section = wide.cutter.section(0);
+  const ReliefSection cut = measureRelief(wide.cutter, section, 0, wide.sweeps);
+  EXPECT_LT(cut.next_edge, 0);
+  // The relief is below the blank where the next edge is.
+  EXPECT_LT(wide.reliefStroke().left(0, *section.teeth[1].edge), section.radius - 1e-6);
+
+  const ReliefSection short_of = measureRelief(narrow.cutter, narrow.cutter.section(0), 0, narrow.sweeps);
+  EXPECT_FALSE(short_of.heel);
+  EXPECT_GT(short_of.next_edge, 0);
+}
+
+}  // namespace test_relief_section
+}  // namespace grinder

@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/ground_cutter.h"
 
 #include "flute_grinder/curve/units.h"
+#include "geometry/relief_section.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +58,14 @@ double meanSpiral(const ConicalCutter& cutter, double from, double to, double tu
   return std::atan(turn / (at_45_deg.a(to) - at_45_deg.a(from)));
 }
 
-GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth)
-    : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)) {
+GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth,
+                           std::vector<Reliefs> reliefs)
+    : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)), reliefs_(std::move(reliefs)) {
+  if (reliefs_.empty()) reliefs_.resize(flutes_.size());
+  if (reliefs_.size() != flutes_.size()) {
+    throw std::invalid_argument("reliefs of " + std::to_string(reliefs_.size()) + " flutes; allowed: none, or of " +
+                                std::to_string(flutes_.size()));
+  }
   for (const Flute& flute : flutes_) {
     if (flute.empty()) throw std::invalid_argument("a flute has 0 strokes; allowed: 1 or more");
   }
@@ -68,6 +75,8 @@ GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flute
                                 std::to_string(flutes_.size()));
   }
 }
+
+const Reliefs& GroundCutter::reliefs(std::size_t tooth) const { return reliefs_[teeth_[tooth].flute]; }
 
 std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) const {
   std::optional<Arc> all;
@@ -201,6 +210,11 @@ GroundSection GroundCutter::section(double x) const {
     ToothSection& tooth = section.teeth.back();
     if (tooth.edge) *tooth.edge += teeth_[i].angle;
     tooth.land = land(i, measured);
+  }
+  const auto has_edge = [](const ToothSection& tooth) { return tooth.edge.has_value(); };
+  if (!std::all_of(section.teeth.begin(), section.teeth.end(), has_edge)) return section;
+  for (std::size_t i = 0; i < teeth_.size(); ++i) {
+    if (!reliefs(i).empty()) section.teeth[i].relief = measureRelief(*this, section, i, reliefs(i));
   }
   return section;
 }

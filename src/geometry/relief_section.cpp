@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/relief_section.h"
+#include "geometry/relief_section.h"
 
 #include "geometry/tooth_land.h"
 
@@ -40,7 +40,7 @@ std::optional<double> crossing(double outer, double inner, const Function& f) {
 }  // namespace
 
 ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& section, std::size_t number,
-                            const std::vector<WheelSweep>& reliefs) {
+                            const Reliefs& reliefs) {
   const ToothLand tooth(cutter, section, number);
   const double radius = section.radius;
   ReliefSection measured;

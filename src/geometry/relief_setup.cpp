@@ -1,8 +1,8 @@
 #include "flute_grinder/geometry/relief_setup.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/relief_section.h"
 #include "flute_grinder/job/quantity.h"
+#include "geometry/relief_section.h"
 #include "geometry/tooth_land.h"
 
 #include <algorithm>
@@ -146,7 +146,7 @@ ReliefSetup tried(const Lands& lands, const ReliefRequest& request, double swive
   }
   wheel.height = setup.height = ReliefPath::heightFor(cone, request.start, wheel, wheel.width / 2 - setup.width);
   const ReliefPath final_path(cone, request.start, wheel);
-  const std::vector<WheelSweep> sweep{reliefSweep(cone, final_path, wheel, request.edge)};
+  const Reliefs sweep{reliefSweep(cone, final_path, wheel, request.edge)};
   setup.next_edge = infinity;
   lands.visit([&](const Lands::Land& land) {
     const ReliefSection measured = measureRelief(lands.cutter(), land.section, land.tooth, sweep);

@@ -16,6 +16,8 @@ namespace grinder {
 namespace {
 
 constexpr double kNearFloor = 1e-9;              ///< above a flute's floor [m]
+constexpr int kHeelHalvings = 30;                ///< to where a land meets the flute behind it
+constexpr double kBelowEdgeCircle = 1 - 1e-4;    ///< of the radius, where a relief is looked at first
 constexpr std::uintmax_t kMaxMeetingSteps = 60;  ///< to where two walls meet
 
 double squared(double v) { return v * v; }
@@ -80,7 +82,7 @@ class FluteWalls {
 class Outliner {
  public:
   Outliner(const GroundCutter& cutter, double x, double blank_radius, const OutlineGrid& grid)
-      : cutter_(cutter), blank_(blank_radius), grid_(grid), points_(grid.size()) {
+      : cutter_(cutter), x_(x), blank_(blank_radius), grid_(grid), points_(grid.size()) {
     for (const Flute& flute : cutter.flutes()) walls_.emplace_back(cutter, flute, x, blank_radius);
     for (std::size_t i = 0; i < grid.teeth; ++i) {
       if (!walls(i).empty()) cut_.push_back(i);
@@ -163,11 +165,69 @@ class Outliner {
   /// The body between a flute and the next that removes something.
   void fillBody(std::size_t from, std::size_t to) {
     const double r = top(from, to);
+    if (const auto heel = r < blank_ ? std::nullopt : heelOf(from, to)) return fillRelieved(from, to, *heel);
     PolarPoint first = polar(r, high(from, r)), last = polar(r, low(to, r));
     if (r < blank_) first = last = between(first, last, 0.5);
     fillWall(true, from, r);
     fillWall(false, to, r);
     fillLands(from, first, to, last);
+  }
+
+  bool rightHand() const { return cutter_.direction() == CutDirection::kRightHand; }
+
+  /// Where the surface of a body's reliefs meets a circle: nearest to the edge.
+  std::optional<double> relieved(std::size_t from, std::size_t to, double r) const {
+    const std::size_t flute = rightHand() ? from : to;
+    std::optional<double> nearest;
+    for (const WheelSweep& relief : cutter_.reliefs(flute % grid_.teeth)) {
+      const auto wall = relief.wall(x_, r, !rightHand());
+      if (!wall) continue;
+      const double at = angle(flute) + wall->angle;
+      nearest = !nearest ? at : rightHand() ? std::min(*nearest, at) : std::max(*nearest, at);
+    }
+    return nearest;
+  }
+
+  /// The radius at which the relieved land ends in the flute behind it; nothing if a body is not relieved up to there.
+  std::optional<double> heelOf(std::size_t from, std::size_t to) {
+    if (!relieved(from, to, blank_ * kBelowEdgeCircle)) return std::nullopt;
+    const auto gap = [&](double r) {
+      const auto at = relieved(from, to, r);
+      if (!at) return blank_;
+      return rightHand() ? *at - low(to, r) : high(from, r) - *at;
+    };
+    const double lowest = std::max(walls(from).core(), walls(to).core());
+    if (!(gap(blank_ * kBelowEdgeCircle) < 0) || !(gap(lowest) >= 0)) return std::nullopt;
+    double outer = blank_ * kBelowEdgeCircle, inner = lowest;
+    for (int i = 0; i < kHeelHalvings; ++i) {
+      const double middle = (outer + inner) / 2;
+      (gap(middle) < 0 ? outer : inner) = middle;
+    }
+    return outer;
+  }
+
+  /// A body whose land falls from its edge to its heel.
+  void fillRelieved(std::size_t from, std::size_t to, double heel) {
+    fillWall(true, from, rightHand() ? blank_ : heel);
+    fillWall(false, to, rightHand() ? heel : blank_);
+    std::vector<PolarPoint> land;
+    for (std::size_t column = 0; column <= grid_.columns; ++column) {
+      const double part = static_cast<double>(column) / static_cast<double>(grid_.columns);
+      const double r = blank_ + (heel - blank_) * (rightHand() ? part : 1 - part);
+      const double edge = rightHand() ? high(from, blank_) : low(to, blank_);
+      const double back = rightHand() ? low(to, heel) : high(from, heel);
+      const double at = r == blank_ ? edge : r == heel ? back : relieved(from, to, r).value_or(edge);
+      land.push_back(polar(r, std::clamp(at, std::min(edge, back), std::max(edge, back))));
+    }
+    // The flutes in between remove nothing: they shrink to the land's end.
+    for (std::size_t flute = from; flute < to; ++flute) {
+      for (std::size_t column = 0; column <= grid_.columns; ++column) {
+        set(flute, grid_.land(flute, column), flute == from ? land[column] : land.back());
+      }
+      if (flute + 1 == to) break;
+      for (std::size_t ring = 1; ring < grid_.rings; ++ring) set(flute, grid_.lowOfNext(flute, ring), land.back());
+      for (std::size_t ring = 0; ring < grid_.rings; ++ring) set(flute + 1, grid_.high(flute + 1, ring), land.back());
+    }
   }
 
   void fillWall(bool of_high, std::size_t flute, double top) {
@@ -209,6 +269,7 @@ class Outliner {
   }
 
   const GroundCutter& cutter_;
+  double x_;
   double blank_;
   OutlineGrid grid_;
   std::vector<FluteWalls> walls_;

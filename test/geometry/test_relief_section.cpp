@@ -1,7 +1,8 @@
-#include "flute_grinder/geometry/relief_section.h"
+#include "flute_grinder/geometry/ground_cutter.h"
 
 #include "flute_grinder/curve/relief_path.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
@@ -75,8 +76,8 @@ struct Tool {
   double hand;
   ReliefWheel wheel;
   ReliefPath path;
-  double edge;  ///< of a tooth at angle 0, against its asked helix
-  std::vector<WheelSweep> sweeps;
+  double edge;            ///< of a tooth at angle 0, against its asked helix
+  GroundCutter relieved;  ///< with that
 
   Tool(const std::string& file, double clearance, double swivel, double width, double contact)
       : job(readJobFile(file)),
@@ -86,8 +87,7 @@ struct Tool {
         wheel(wheelOf({clearance * kDegree}, hand * swivel, width, contact)),
         path(cone, {clearance * kDegree}, wheel),
         edge(edgeOf()),
-        sweeps{WheelSweep(path.cutter(), WheelProfile::straight(2 * wheel.nominal_radius, wheel.width),
-                          wheel.nominal_radius, {wheel.swivel, wheel.height, path.lead()}, stroke())} {}
+        relieved(cone, cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), {sweep()})) {}
 
   ReliefWheel wheelOf(const ReliefStart& start, double swivel, double width, double contact) const {
     ReliefWheel w{50 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};
@@ -106,6 +106,11 @@ struct Tool {
     s.y_per_x = path.taper();
     s.a = path.a() + edge;
     return s;
+  }
+
+  WheelSweep sweep() const {
+    const WheelProfile profile = WheelProfile::straight(2 * wheel.nominal_radius, wheel.width);
+    return {path.cutter(), profile, wheel.nominal_radius, {wheel.swivel, wheel.height, path.lead()}, stroke()};
   }
 
   Stroke reliefStroke() const {
@@ -148,8 +153,8 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
     const Stroke relief = tool.reliefStroke(), flute = tool.nextFlute();
     for (const double part : {0.0, 0.5, 1.0}) {
       const double x = part * tool.job.cutter.flute_length;
-      const GroundSection section = tool.cutter.section(x);
-      const ReliefSection measured = measureRelief(tool.cutter, section, 0, tool.sweeps);
+      const GroundSection section = tool.relieved.section(x);
+      const ReliefSection measured = section.teeth[0].relief.value();
       const double edge = *section.teeth[0].edge;
       const auto left = [&](const Stroke& stroke, double behind) { return stroke.left(x, edge + tool.hand * behind); };
 
@@ -184,16 +189,53 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
   }
 }
 
+// The outline follows the relief from the edge to the heel, and the solid is closed over it.
+TEST(ReliefSection, TheOutlineAndTheSolidHaveIt) {
+  for (const Tool& tool :
+       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2)}) {
+    const double length = tool.job.cutter.flute_length, x = 0.4 * length;
+    const OutlineGrid grid{tool.job.tooth_angles.size(), 20, 12};
+    const auto outline = sectionOutline(tool.relieved, x, tool.cone.radius(x), grid);
+    const Stroke relief = tool.reliefStroke();
+    // The first tooth's body: of a left-hand cutter, its edge is at the land's end.
+    const std::size_t body = tool.hand > 0 ? 0 : grid.teeth - 1;
+    for (std::size_t column = 1; column + 1 < grid.columns; ++column) {
+      const PolarPoint p = outline[grid.land(body, column)];
+      EXPECT_NEAR(relief.left(x, p.angle()), p.radius, 2e-7) << column;
+      EXPECT_LT(p.radius, tool.cone.radius(x));
+    }
+    const SolidExtent extent{0, length, 0, 0};
+    const SolidResolution coarse{30, 16, 90};
+    const double without = cutterSolid(tool.cutter, extent, coarse).volume();
+    const double fell = without - cutterSolid(tool.relieved, extent, coarse).volume();
+    // Of one tooth, what the relief takes of the blank and the flute behind it does not.
+    double fallen = 0;
+    constexpr int kSections = 12;
+    const Stroke flute = tool.nextFlute();
+    for (int i = 0; i < kSections; ++i) {
+      const GroundSection section = tool.cutter.section((i + 0.5) / kSections * length);
+      const double step = 0.25 * kDegree;
+      for (double behind = step / 2;; behind += step) {
+        const double at = *section.teeth[0].edge + tool.hand * behind;
+        const double left = std::min(relief.left(section.x, at), section.radius);
+        if (flute.left(section.x, at) < section.radius) break;
+        fallen += length / kSections * step * (section.radius * section.radius - left * left) / 2;
+      }
+    }
+    fallen *= static_cast<double>(tool.job.tooth_angles.size());
+    EXPECT_NEAR(fell, fallen, 0.03 * fallen);
+  }
+}
+
 /// A relief that reaches the next edge is seen, and one that ends before the heel.
 TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
   const Tool wide("jobs/taper_d6_t6.yaml", 10, 25, 6, -2.5), narrow("jobs/left_hand_d8_t3.yaml", 12, 30, 3, 0);
-  const GroundSection section = wide.cutter.section(0);
-  const ReliefSection cut = measureRelief(wide.cutter, section, 0, wide.sweeps);
-  EXPECT_LT(cut.next_edge, 0);
+  const GroundSection section = wide.relieved.section(0);
+  EXPECT_LT(section.teeth[0].relief.value().next_edge, 0);
   // The relief is below the blank where the next edge is.
   EXPECT_LT(wide.reliefStroke().left(0, *section.teeth[1].edge), section.radius - 1e-6);
 
-  const ReliefSection short_of = measureRelief(narrow.cutter, narrow.cutter.section(0), 0, narrow.sweeps);
+  const ReliefSection short_of = narrow.relieved.section(0).teeth[0].relief.value();
   EXPECT_FALSE(short_of.heel);
   EXPECT_GT(short_of.next_edge, 0);
 }

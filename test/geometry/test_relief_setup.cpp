@@ -2,7 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/relief_section.h"
+
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 
@@ -38,9 +38,13 @@ struct Tool {
     return wheel;
   }
 
-  std::vector<WheelSweep> sweepOf(const ReliefSetup& setup) const {
+  WheelSweep sweepOf(const ReliefSetup& setup) const {
     const ReliefWheel wheel = wheelOf(setup);
-    return {reliefSweep(cutter.cutter(), ReliefPath(cutter.cutter(), request.start, wheel), wheel, request.edge)};
+    return reliefSweep(cutter.cutter(), ReliefPath(cutter.cutter(), request.start, wheel), wheel, request.edge);
+  }
+
+  GroundCutter with(const Reliefs& reliefs) const {
+    return {cutter.cutter(), cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), reliefs)};
   }
 };
 
@@ -53,11 +57,11 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
     const Tool tool(file, clearance, width);
     const ReliefSetup setup = findReliefSetup(tool.cutter, tool.request);
     ASSERT_EQ(setup.refused, "");
-    const auto sweeps = tool.sweepOf(setup);
+    const GroundCutter relieved = tool.with({tool.sweepOf(setup)});
     for (int i = 0; i <= 10; ++i) {
-      const GroundSection section = tool.cutter.section(tool.job.cutter.flute_length * i / 10);
-      for (std::size_t tooth = 0; tooth < tool.job.tooth_angles.size(); ++tooth) {
-        const ReliefSection relief = measureRelief(tool.cutter, section, tooth, sweeps);
+      const GroundSection section = relieved.section(tool.job.cutter.flute_length * i / 10);
+      for (const ToothSection& tooth : section.teeth) {
+        const ReliefSection& relief = tooth.relief.value();
         ASSERT_TRUE(relief.heel) << section.x;
         EXPECT_GT(relief.next_edge, setup.next_edge - 1e-6);
         EXPECT_GT(*relief.land_end_clearance, 0);
@@ -95,7 +99,7 @@ TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   tool.request.land = 0.4 * kMillimetre;
   const ReliefSetup first = findReliefSetup(tool.cutter, tool.request);
   ASSERT_EQ(first.refused, "");
-  auto sweeps = tool.sweepOf(first);
+  Reliefs reliefs{tool.sweepOf(first)};
   const ConicalCutter& cone = tool.cutter.cutter();
   const ReliefPath::Place end =
       ReliefPath(cone, tool.request.start, tool.wheelOf(first)).surfaceAt(0, 0.4 * kMillimetre);
@@ -103,9 +107,9 @@ TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   tool.request.start = {20 * kDegree, end.radius / cone.radius(0), end.behind};
   const ReliefSetup second = findReliefSetup(tool.cutter, tool.request);
   ASSERT_EQ(second.refused, "");
-  sweeps.push_back(tool.sweepOf(second).front());
+  reliefs.push_back(tool.sweepOf(second));
   for (const double x : {0.0, 10e-3, 22e-3}) {
-    const ReliefSection relief = measureRelief(tool.cutter, tool.cutter.section(x), 0, sweeps);
+    const ReliefSection relief = tool.with(reliefs).section(x).teeth[0].relief.value();
     EXPECT_NEAR(*relief.land, 0.4 * kMillimetre, 1e-6);
     EXPECT_NEAR(*relief.clearance / kDegree, 10, 0.02);
     ASSERT_TRUE(relief.heel);

@@ -7,6 +7,17 @@
 
 namespace grinder {
 
+/// What reliefs leave of a tooth in a section.
+struct ReliefSection {
+  double edge_radius = 0;           ///< what is left at the edge: the blank's, unless a relief undercuts it [m]
+  std::optional<double> clearance;  ///< of the first relief at the edge, radial [rad]
+  std::optional<double> land;       ///< width of the first relief, up to the second or to the heel [m]
+  std::optional<double> land_end_clearance;  ///< of the first relief there [rad]
+  /// From the edge to where the land meets the next flute; nothing if a relief ends before [m].
+  std::optional<double> heel;
+  double next_edge = 0;  ///< minimum distance of the wheels from the next tooth's rake face; negative if cut [rad]
+};
+
 /// What is measured of a tooth in a section. What does not exist there, as the land of a tooth whose land is ground
 /// away, is left out.
 struct ToothSection {
@@ -17,11 +28,12 @@ struct ToothSection {
   /// Radial, of the chord from the edge to the rake face at CutterGeometry::chordal_rake_depth: what a measuring
   /// machine finds, where the rake is the tangent at the edge, and may be that of a narrow facet [rad].
   std::optional<double> chordal_rake;
-  std::optional<double> flute;   ///< angle that the flute takes at the outer circle [rad]
-  std::optional<double> land;    ///< angle between this flute and the next one behind its edge [rad]
-  std::optional<double> spiral;  ///< of the ground edge against the axis [rad]
-  double depth = 0;              ///< of the flute below the outer circle [m]
-  bool complete = false;         ///< over its whole depth, as a longer stroke would leave it
+  std::optional<double> flute;          ///< angle that the flute takes at the outer circle [rad]
+  std::optional<double> land;           ///< angle between this flute and the next one behind its edge [rad]
+  std::optional<double> spiral;         ///< of the ground edge against the axis [rad]
+  double depth = 0;                     ///< of the flute below the outer circle [m]
+  bool complete = false;                ///< over its whole depth, as a longer stroke would leave it
+  std::optional<ReliefSection> relief;  ///< of a tooth that has an edge and reliefs
 };
 
 /// How far below the edge the chord of a rake face ends. @param flute_depth [m].
@@ -48,6 +60,9 @@ struct GroundSection {
 /// What strokes of the wheel remove together: a tooth's flute.
 using Flute = std::vector<WheelSweep>;
 
+/// The last strokes of a tooth's reliefs, the first relief first.
+using Reliefs = std::vector<WheelSweep>;
+
 /// Where a flute is ground.
 struct GroundTooth {
   double angle = 0;       ///< added to A of the flute's strokes [rad]
@@ -59,8 +74,10 @@ class GroundCutter {
  public:
   /// @param flutes the distinct ones, for a tooth at angle 0.
   /// @param teeth in ascending angles within one turn.
-  /// @throw std::invalid_argument if a flute has no strokes, or a tooth's is not there.
-  GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth);
+  /// @param reliefs of the teeth of each flute, for a tooth at angle 0; empty if there are none.
+  /// @throw std::invalid_argument if a flute has no strokes, if a tooth's is not there, or if only some have reliefs.
+  GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth,
+               std::vector<Reliefs> reliefs = {});
 
   /// @param x of the section, where the blank has a radius [m].
   GroundSection section(double x) const;
@@ -83,6 +100,8 @@ class GroundCutter {
   CutDirection direction() const noexcept { return cutter_.geometry().cut; }
   const std::vector<Flute>& flutes() const noexcept { return flutes_; }
   const std::vector<GroundTooth>& teeth() const noexcept { return teeth_; }
+  /// Of a tooth; as if it were at angle 0.
+  const Reliefs& reliefs(std::size_t tooth) const;
 
  private:
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const;
@@ -98,6 +117,7 @@ class GroundCutter {
   ConicalCutter cutter_;
   std::vector<Flute> flutes_;
   std::vector<GroundTooth> teeth_;
+  std::vector<Reliefs> reliefs_;
 };
 
 }  // namespace grinder

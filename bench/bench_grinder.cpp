@@ -87,7 +87,7 @@ void plan(benchmark::State& state) {
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
-    if (!plan.good()) state.SkipWithError(text(plan.reasons, UnitSystem::kSi).c_str());
+    if (!plan.good()) state.SkipWithError(text(plan.reasons).c_str());
     setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
   }
   state.SetItemsProcessed(setpoints);
@@ -101,7 +101,7 @@ void planTool(benchmark::State& state) {
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
-    if (!plan.good()) state.SkipWithError(text(plan.reasons, UnitSystem::kSi).c_str());
+    if (!plan.good()) state.SkipWithError(text(plan.reasons).c_str());
     setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
   }
   state.SetItemsProcessed(setpoints);

@@ -348,7 +348,7 @@ void printText(const GroundTool& tool) {
 
 Json toJson(const GroundTool& tool) {
   Json reasons = Json::array();
-  for (const Reason& reason : tool.check.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
+  for (const Reason& reason : tool.check.reasons) reasons.push_back(text(reason));
   Json sections = Json::array();
   for (const MeasuredSection& section : tool.sections) sections.push_back(toJson(tool, section));
   const auto& complete = tool.check.complete;

@@ -233,8 +233,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
     return status;
   }
-  const auto shown = [&](double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop, 9); };
-  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis, UnitSystem::kShop).c_str(),
+  const auto shown = [&](double si) { return text(Quantity{si, unitOf(axis, 0)}, 9); };
+  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis).c_str(),
               shown(response->value).c_str(), shown(request.position).c_str());
   return 0;
 }

@@ -71,7 +71,7 @@ std::string reasonWhyNot(const Action& action) {
     action();
     return "";
   } catch (const ReasonError& error) {
-    return text(error.reason(), UnitSystem::kShop);
+    return text(error.reason());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

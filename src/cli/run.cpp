@@ -13,7 +13,6 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/messages/reasons.h"
 
 #include <actionlib/client/action_client.h>
 
@@ -143,7 +142,7 @@ int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder
   if (!connected) return fail(kLinkLost);
   if (!result) return fail("the grinder no longer knows the job: it has been restarted");
   if (goal.succeeded() && result->error_code == 0) return 0;
-  return fail(resultText(*result) + " (code " + std::to_string(result->error_code) + ")");
+  return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
 }
 
 /// Prints what the grinder has found in a dry run beside the path; it has kept the plan.

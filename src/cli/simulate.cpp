@@ -113,7 +113,7 @@ int show(const GroundTool& tool, bool json) {
     printText(tool);
   }
   for (const Reason& reason : tool.check.reasons) {
-    std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
+    std::fprintf(stderr, "%s\n", text(reason).c_str());
   }
   return tool.check.reasons.empty() ? 0 : 1;
 }
@@ -134,7 +134,7 @@ int runSimulate(const SimulateOptions& options) {
     if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
     return status;
   } catch (const ReasonError& error) {
-    std::fprintf(stderr, "%s\n", text(error.reason(), UnitSystem::kShop).c_str());
+    std::fprintf(stderr, "%s\n", text(error.reason()).c_str());
     return 1;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -146,9 +146,8 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   } catch (const AtomicFileError& error) {
     return error.what();
   }
-  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = "
-                                    << text(Quantity{offset.value, unitOf(axis, 0)}, UnitSystem::kSi, 9) << ", "
-                                    << basisText(axis, offset) << ", by " << offset.set_by);
+  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = " << text(Quantity{offset.value, unitOf(axis, 0)}, 9)
+                                    << ", " << basisText(axis, offset) << ", by " << offset.set_by);
   publish();
   return "";
 }

@@ -304,7 +304,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
     message.pass = last.pass;
   }
   const Reason fault = reasonOf(record_.fault);
-  message.fault = text(fault, UnitSystem::kSi);
+  message.fault = text(fault);
   message.fault_reason = grinder::toMessage(fault);
   message.hold_reason = toString(record_.interlock);
   const JournalWriter::Status journal = journal_.status();

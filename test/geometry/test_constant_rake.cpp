@@ -114,7 +114,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     try {
       with_law = withZLaw(*job);
     } catch (const ReasonError& error) {
-      ADD_FAILURE() << text(error.reason(), UnitSystem::kShop);
+      ADD_FAILURE() << text(error.reason());
       continue;
     }
     ++solved;
@@ -248,7 +248,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
                                  actual = p.position;
                                });
   strokes.finish();
-  ASSERT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(plan.good()) << text(plan.reasons);
   const GrindJob& with_law = plan.program->job();
   const ConicalCutter cutter(job.cutter);
   SetpointStream stream(plan.program);

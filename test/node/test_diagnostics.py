@@ -87,7 +87,7 @@ class TestDiagnostics(unittest.TestCase):
         mark = self.reports.mark()
         self.grinder.inject('stuck_axis', 'axis_x')
         run.wait()
-        self.reports.wait('Drive link', ERROR, 'axis_x following error')
+        self.reports.wait('Drive link', ERROR, 'axis X following error')
         errors = [s for s in self.reports.since(mark, 'Following error') if s.level == ERROR]
         self.assertTrue(errors)
         self.assertGreater(max(figures(errors, 'axis_x of the allowed [%]')), 100)

@@ -19,13 +19,13 @@ STEEP_CLEAR = checks.Helix(STEEP).y(31 * MM) + 1 * MM
 FAULTS = {
     ('drive_fault', ''): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault'),
     ('stale_feedback', ''): (GrindResult.LINK_LOST, r'^no fresh positions from the drive for 0\.\d+ s, allowed 0\.002 s'),
-    ('nan_feedback', 'axis_y'): (GrindResult.HARDWARE_FAULT, r'^axis_y position from the drive is -?nan'),
+    ('nan_feedback', 'axis_y'): (GrindResult.HARDWARE_FAULT, r'^axis Y position from the drive is -?nan'),
     ('stuck_axis', 'axis_x'): (GrindResult.PATH_TOLERANCE_VIOLATED,
-                               r'^axis_x following error 0\.001\d* m is beyond its limit 0\.001 m'),
+                               r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm'),
     ('stuck_axis', 'axis_a'): (GrindResult.PATH_TOLERANCE_VIOLATED,
-                               r'^axis_a following error 0\.05\d* rad is beyond its limit 0\.05 rad'),
+                               r'^axis A following error [23]\.\d+ deg is beyond its limit 2\.86479 deg'),
 }
-WHERE = r'stroke of tooth 1, pass 1, X = 0\.0[0-2]\d* m'
+WHERE = r'\(stroke, tooth 1, pass 1, X = [12]?\d(\.\d+)? mm\)'
 
 
 class TestFaultInTheStroke(unittest.TestCase):

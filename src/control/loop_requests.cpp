@@ -52,9 +52,7 @@ RequestReply Answer::reply() const {
       text << "a job is in progress that needs " << degrees(job_swivel, kSwivelDigits)
            << "; allowed: that angle, or to end the job first";
       break;
-    case Refusal::kNoAxis:
-      text << "axis = " << axis << "; allowed: 0 to " << kAxisCount - 1 << " for X, Y, Z, A";
-      break;
+    case Refusal::kNoAxis: text << axisRefusal(axis); break;
     case Refusal::kJogSpeed:
       text << "speed of " << axisName(axis) << " = " << speed(value) << "; allowed: above 0, up to " << speed(limit);
       break;

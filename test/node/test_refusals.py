@@ -97,9 +97,9 @@ class TestState(unittest.TestCase):
         first.wait()
 
     def test_unknown_fault_cannot_be_injected(self):
-        for fault, joint, named in (('earthquake', '', 'fault = earthquake; allowed: none, emergency_stop'),
-                                    ('stuck_axis', 'axis_q', 'joint = axis_q; allowed: axis_x, axis_y')):
-            reply = grinder().inject(fault, joint)
+        for fault, axis, named in (('earthquake', X, 'fault = earthquake; allowed: none, emergency_stop'),
+                                   ('stuck_axis', 4, 'axis = 4; allowed: 0 to 3 for X, Y, Z, A')):
+            reply = grinder().inject(fault, axis)
             self.assertFalse(reply.success)
             self.assertIn(named, reply.message)
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)

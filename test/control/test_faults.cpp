@@ -272,7 +272,7 @@ class FaultIn : public testing::TestWithParam<S> {
   bool hadJob() const { return GetParam() != S::kReady && GetParam() != S::kHoming; }
 
   Rig<FakeDrive> rig_;
-  std::size_t before_ = 0;  ///< last record before the fault
+  std::size_t before_ = 0;  ///< last sample before the fault
 };
 
 TEST_P(FaultIn, EndsTheJobIfThereIsOne) {

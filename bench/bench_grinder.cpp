@@ -87,7 +87,7 @@ void plan(benchmark::State& state) {
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
-    if (!plan.good()) state.SkipWithError(text(plan.reasons, UnitSystem::kSi).c_str());
+    if (!plan.good()) state.SkipWithError(text(plan.reasons).c_str());
     setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
   }
   state.SetItemsProcessed(setpoints);
@@ -101,7 +101,7 @@ void planTool(benchmark::State& state) {
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
-    if (!plan.good()) state.SkipWithError(text(plan.reasons, UnitSystem::kSi).c_str());
+    if (!plan.good()) state.SkipWithError(text(plan.reasons).c_str());
     setpoints += static_cast<std::int64_t>(plan.statistics.setpoints);
   }
   state.SetItemsProcessed(setpoints);
@@ -154,7 +154,7 @@ void simulateTool(benchmark::State& state) {
 }
 BENCHMARK(simulateTool)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
 
-/// One cycle of the control loop: read, checks, next, check, write and record, with the simulated drive.
+/// One cycle of the control loop: read, checks, next, check, write and sample, with the simulated drive.
 void cycle(benchmark::State& state) {
   SimulatedDrive drive;
   SimulatedDrive::Model model;
@@ -173,7 +173,7 @@ void cycle(benchmark::State& state) {
   const ros::Duration period(config.machine.period);
   const GrindProgram program(paperJob(60), config.machine, config.machine.park);
   std::unique_ptr<SetpointStream> stream;
-  CycleRecord record;
+  CycleSample sample;
 
   const auto accepted = [&](const auto& reply) {
     for (int i = 0; i < 5; ++i) {
@@ -195,8 +195,8 @@ void cycle(benchmark::State& state) {
       state.ResumeTiming();
     }
     loop->cycle(time, period);
-    loop->pop(record);
-    if (record.job_ended) moving = false;
+    loop->pop(sample);
+    if (sample.job_ended) moving = false;
   }
   state.SetItemsProcessed(state.iterations());
 }

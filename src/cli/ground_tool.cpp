@@ -180,11 +180,11 @@ std::string text(const Range& range) {
   return format("X %.3f to %.3f mm", range.from / kMillimetre, range.to / kMillimetre);
 }
 
-/// Of a record, the strokes of each tooth; that there are none is printed as well. Passes as long share a line.
+/// Of a run, the strokes of each tooth; that there are none is printed as well. Passes as long share a line.
 void printStrokes(const GroundTool& tool) {
   for (std::size_t i = 0; i < tool.job.tooth_angles.size(); ++i) {
-    std::vector<RecordedStroke> strokes;
-    for (const RecordedStroke& stroke : tool.strokes) {
+    std::vector<RunStroke> strokes;
+    for (const RunStroke& stroke : tool.strokes) {
       if (stroke.move == MoveKind::kStroke && stroke.place.tooth == static_cast<int>(i)) strokes.push_back(stroke);
     }
     std::string passes;
@@ -211,7 +211,7 @@ void printGouges(const GroundTool& tool) {
 
 Json strokes(const GroundTool& tool) {
   Json strokes = Json::array();
-  for (const RecordedStroke& stroke : tool.strokes) {
+  for (const RunStroke& stroke : tool.strokes) {
     if (stroke.move != MoveKind::kStroke) continue;
     strokes.push_back({{"tooth", stroke.place.tooth},
                        {"pass", stroke.place.pass},
@@ -313,10 +313,10 @@ GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter 
   return tool;
 }
 
-GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
+GroundTool measure(const GrindJob& job, const std::string& source, const RunStrokes& strokes,
                    const std::vector<double>& at) {
   GroundTool tool = measure(job, source, strokes.cutter(), at);
-  tool.recorded = true;
+  tool.of_run = true;
   tool.strokes = strokes.strokes();
   tool.gouges = gougesOf(job, strokes, kMinGouge);
   if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
@@ -341,14 +341,14 @@ void printText(const GroundTool& tool) {
   std::printf("%-18s  %.3f mm^3, X 0 to %.3f mm\n", "volume removed",
               tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre),
               tool.job.cutter.flute_length / kMillimetre);
-  if (!tool.recorded) return;
+  if (!tool.of_run) return;
   printStrokes(tool);
   printGouges(tool);
 }
 
 Json toJson(const GroundTool& tool) {
   Json reasons = Json::array();
-  for (const Reason& reason : tool.check.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
+  for (const Reason& reason : tool.check.reasons) reasons.push_back(text(reason));
   Json sections = Json::array();
   for (const MeasuredSection& section : tool.sections) sections.push_back(toJson(tool, section));
   const auto& complete = tool.check.complete;
@@ -364,8 +364,8 @@ Json toJson(const GroundTool& tool) {
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
           {"rake_tolerance_deg", tool.job.cutter.rake_tolerance / kDegree},
-          {"strokes", tool.recorded ? strokes(tool) : Json(nullptr)},
-          {"gouges", tool.recorded ? gouges(tool) : Json(nullptr)},
+          {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
+          {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},
           {"sections", sections}};
 }
 

@@ -4,7 +4,7 @@
 #include "cli/json_output.h"
 #include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/job/grind_job.h"
 
 #include <optional>
@@ -27,8 +27,8 @@ struct GroundTool {
   CutterCheck check;
   std::vector<MeasuredSection> sections;
   double volume_removed = 0;  ///< over the flute's length [m^3]
-  bool recorded = false;      ///< as ground in a run
-  std::vector<RecordedStroke> strokes;
+  bool of_run = false;        ///< as ground in a run
+  std::vector<RunStroke> strokes;
   std::vector<Gouge> gouges;  ///< those deeper than what sampling leaves
 };
 
@@ -38,8 +38,8 @@ std::vector<double> evenSections(const GrindJob& job, int count);
 /// Measures a cutter. @param at X of the sections [m].
 GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
 
-/// Measures the cutter of a record; gouges are among the reasons why it is unusable.
-GroundTool measure(const GrindJob& job, const std::string& source, const RecordedStrokes& strokes,
+/// Measures the cutter of a run; gouges are among the reasons why it is unusable.
+GroundTool measure(const GrindJob& job, const std::string& source, const RunStrokes& strokes,
                    const std::vector<double>& at);
 
 /// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.

@@ -55,7 +55,7 @@ void addSimulate(Commands& commands) {
   const auto options = std::make_shared<SimulateOptions>();
   auto& command = commands.add("simulate", "compute and measure the cutter that a job grinds or a run has ground",
                                "jobs/paper.yaml --at 1,17,29", [options] { return runSimulate(*options); });
-  command.add_option("FILE", options->file, "job file, CSV file of run, or a bag of 'roslaunch ... record:=true'")
+  command.add_option("FILE", options->file, "job file, CSV file of run, or a bag of 'roslaunch ... bag:=true'")
       ->required()
       ->type_name(kAnyFile);
   auto* at = command.add_option("--at", options->at_mm, "X of the sections in mm, separated by commas")->delimiter(',');
@@ -110,10 +110,9 @@ void addReport(Commands& commands) {
                                  writeReport(commands.node, *options);
                                  return 0;
                                });
-  auto* file =
-      command.add_option("FILE", options->file,
-                         "bag of 'roslaunch ... record:=true', record of 'grind history', or CSV file of table, "
-                         "plan or run");
+  auto* file = command.add_option("FILE", options->file,
+                                  "bag of 'roslaunch ... bag:=true', record of 'grind history', or CSV file of table, "
+                                  "plan or run");
   file->type_name(kAnyFile);
   auto* last = command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself");
   last->excludes(file);

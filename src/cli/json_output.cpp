@@ -4,7 +4,6 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/messages/reasons.h"
 
 #include <cstdio>
 
@@ -84,7 +83,7 @@ Json toJson(const GrindJob& job, const CutterFigures& ground) {
 Json toJson(const PlannedJob& plan) {
   const PathStatistics& s = plan.statistics;
   Json reasons = Json::array();
-  for (const Reason& reason : plan.reasons) reasons.push_back(text(reason, UnitSystem::kShop));
+  for (const Reason& reason : plan.reasons) reasons.push_back(text(reason));
   return {{"valid", plan.good()},
           {"reasons", reasons},
           {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
@@ -129,7 +128,7 @@ Json toJson(const std::string& node, const flute_grinder::GrinderState& state,
           {"tooth", job ? Json(state.tooth + 1) : Json(nullptr)},
           {"pass", job ? Json(state.pass + 1) : Json(nullptr)},
           {"hold_reason", state.hold_reason},
-          {"fault", faultText(state)},
+          {"fault", state.fault},
           {"journal_error", state.journal_error},
           {"last_job", lastJobObject(state.progress)}};
 }

@@ -92,8 +92,8 @@ void printStatistics(const PathStatistics& s) {
     std::printf("feed constancy       never reached\n");
   }
   for (const FeedLimit& limit : s.feed_limits) {
-    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", causeText(limit.cause, UnitSystem::kShop).c_str(),
-                limit.from_x / kMillimetre, limit.to_x / kMillimetre);
+    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", limit.cause.c_str(), limit.from_x / kMillimetre,
+                limit.to_x / kMillimetre);
   }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
@@ -147,7 +147,7 @@ int runPlan(const PlanOptions& options) {
     printChecks(job, plan.figures, plan.complete, plan.closest);
   }
   for (const Reason& reason : plan.reasons) {
-    std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
+    std::fprintf(stderr, "%s\n", text(reason).c_str());
   }
   return plan.good() ? 0 : 1;
 }

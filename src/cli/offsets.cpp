@@ -168,7 +168,7 @@ int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
 
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok) {
   flute_grinder::SetOffset::Request request;
-  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.axis = static_cast<std::uint8_t>(axis);
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
@@ -212,7 +212,7 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     throw std::invalid_argument("touch-off y needs --at DIAMETER, of the blank that the wheel touches");
   }
   flute_grinder::TouchOff::Request request;
-  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.axis = static_cast<std::uint8_t>(axis);
   request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
   request.set_by = userAtHost();
   const OffsetBasis basis = basisFor(options.job, OffsetMethod::kTouchOff);
@@ -233,8 +233,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
     return status;
   }
-  const auto shown = [&](double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop, 9); };
-  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis, UnitSystem::kShop).c_str(),
+  const auto shown = [&](double si) { return text(Quantity{si, unitOf(axis, 0)}, 9); };
+  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis).c_str(),
               shown(response->value).c_str(), shown(request.position).c_str());
   return 0;
 }

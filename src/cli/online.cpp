@@ -16,7 +16,6 @@
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/messages/reasons.h"
 
 #include <actionlib_msgs/GoalID.h>
 #include <ros/service_manager.h>
@@ -92,8 +91,7 @@ void printPosition(const char* name, const boost::array<double, kAxisCount>& axe
 
 std::string swivelText(const flute_grinder::GrinderState& state) {
   if (std::isnan(state.swivel)) return "not confirmed";
-  return text({state.swivel, Unit::kRadian}, UnitSystem::kShop) +
-         (state.swivel_measured ? ", measured" : ", confirmed");
+  return text(Quantity{state.swivel, Unit::kRadian}) + (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
 /// What the work offsets were set for. @param offsets null if they are not known.
@@ -128,7 +126,7 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
               state.override * 100);
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
   if (!state.hold_reason.empty()) std::printf("held because    %s\n", state.hold_reason.c_str());
-  if (!state.fault.empty()) std::printf("fault           %s\n", faultText(state).c_str());
+  if (!state.fault.empty()) std::printf("fault           %s\n", state.fault.c_str());
   if (!state.journal_error.empty()) std::printf("no journal      %s\n", state.journal_error.c_str());
   if (state.progress.job_digest.empty()) return;
   std::printf("last job        %s\n", lastJob(state.progress).c_str());
@@ -240,7 +238,7 @@ int home(const std::string& node) {
     return refused != 0 ? refused : fail("homing was aborted; the power is off");
   }
   if (state.homed) return succeed("homed");
-  return fail(state.fault.empty() ? "homing was aborted" : faultText(state));
+  return fail(state.fault.empty() ? "homing was aborted" : state.fault);
 }
 
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
@@ -371,7 +369,7 @@ int confirmSwivel(const std::string& node, double degrees) {
   request.swivel = degrees * units::kDegree;
   const int status = call<flute_grinder::ConfirmSwivel>(nh, "confirm_swivel", request);
   if (status != 0) return status;
-  return succeed("the swivel is confirmed at " + text({request.swivel, Unit::kRadian}, UnitSystem::kShop));
+  return succeed("the swivel is confirmed at " + text(Quantity{request.swivel, Unit::kRadian}));
 }
 
 int setFeedOverride(const std::string& node, double percent) {

@@ -4,7 +4,7 @@
 #include "cli/history.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/job_file.h"
@@ -71,7 +71,7 @@ std::string reasonWhyNot(const Action& action) {
     action();
     return "";
   } catch (const ReasonError& error) {
-    return text(error.reason(), UnitSystem::kShop);
+    return text(error.reason());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -80,7 +80,7 @@ std::string reasonWhyNot(const Action& action) {
 /// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
 void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
   GrindJob job;
-  std::optional<RecordedStrokes> strokes;
+  std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
   const auto begin = [&] {
     job = withZLaw(*run.job());

@@ -3,9 +3,9 @@
 #include "cli/offline.h"
 #include "cli/online.h"
 #include "cli/progress_bar.h"
-#include "cli/recorder.h"
 #include "cli/state_watch.h"
 #include "cli/stop_keys.h"
+#include "cli/stream_watch.h"
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/job/format.h"
@@ -13,7 +13,6 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/messages/reasons.h"
 
 #include <actionlib/client/action_client.h>
 
@@ -120,30 +119,30 @@ bool showProgress(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
 }
 
 /// @param written to the drive, as the goal's result says; 0 if unknown.
-void printStream(const Recorder& recorder, std::uint64_t written) {
-  recorder.awaitAll(written);
-  if (recorder.received() == 0 && recorder.lost() == 0) return;
+void printStream(const StreamWatch& stream, std::uint64_t written) {
+  stream.awaitAll(written);
+  if (stream.received() == 0 && stream.lost() == 0) return;
   std::printf("streamed             %llu setpoints in %.3f s, %llu missed",
-              static_cast<unsigned long long>(recorder.received()), recorder.duration(),
-              static_cast<unsigned long long>(recorder.missed(written)));
-  if (recorder.lost() > 0) {
-    std::printf(", %llu written but not published", static_cast<unsigned long long>(recorder.lost()));
+              static_cast<unsigned long long>(stream.received()), stream.duration(),
+              static_cast<unsigned long long>(stream.missed(written)));
+  if (stream.lost() > 0) {
+    std::printf(", %llu written but not published", static_cast<unsigned long long>(stream.lost()));
   }
   std::printf("\n");
 }
 
 /// Prints the outcome of a goal. @param connected whether the connection lasted to its end. @return the exit status.
-int printOutcome(const GoalWatch& goal, bool connected, const Recorder& recorder) {
+int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& stream) {
   const flute_grinder::GrindResultConstPtr result = goal.result();
   if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   if (result) {
     for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
-  printStream(recorder, result ? result->setpoints_written : 0);
+  printStream(stream, result ? result->setpoints_written : 0);
   if (!connected) return fail(kLinkLost);
   if (!result) return fail("the grinder no longer knows the job: it has been restarted");
   if (goal.succeeded() && result->error_code == 0) return 0;
-  return fail(resultText(*result) + " (code " + std::to_string(result->error_code) + ")");
+  return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
 }
 
 /// Prints what the grinder has found in a dry run beside the path; it has kept the plan.
@@ -176,13 +175,13 @@ int printDryChecks(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, co
 }
 
 /// Closes the CSV file, after everything about the job has been printed. @param status so far. @return the exit status.
-int closeRecord(Recorder& recorder, const std::string& csv, int status) {
+int closeStream(StreamWatch& stream, const std::string& csv, int status) {
   try {
-    recorder.close();
+    stream.close();
   } catch (const FileError& error) {
     return fail(error.what());
   }
-  if (!csv.empty() && recorder.received() > 0) std::printf("setpoints written to %s\n", csv.c_str());
+  if (!csv.empty() && stream.received() > 0) std::printf("setpoints written to %s\n", csv.c_str());
   return status;
 }
 
@@ -200,13 +199,13 @@ int runJob(const std::string& node, const RunOptions& options) {
   flute_grinder::GrindGoal goal = goalFor(options);
   const GrindJob job = jobFromGoal(goal);
   ros::NodeHandle nh(node);
-  Recorder recorder(nh, options.csv);
+  StreamWatch stream(nh, options.csv);
   const StateWatch watch(nh);
   GoalWatch watched;
   Client client(nh, "grind");
   StopKeys keys(nh, watch);
   if (!await(kPatience,
-             [&] { return watch.begun() && client.isServerConnected() && recorder.connected() && keys.connected(); })) {
+             [&] { return watch.begun() && client.isServerConnected() && stream.connected() && keys.connected(); })) {
     return noGrinder(nh);
   }
   if (options.go_on) {
@@ -229,9 +228,9 @@ int runJob(const std::string& node, const RunOptions& options) {
   keys.start([&] { running.cancel(); });
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
-  int status = printOutcome(watched, connected, recorder);
+  int status = printOutcome(watched, connected, stream);
   if (status == 0 && options.dry_run) status = printDryChecks(nh, goal, job);
-  return closeRecord(recorder, options.csv, status);
+  return closeStream(stream, options.csv, status);
 }
 
 }  // namespace grinder

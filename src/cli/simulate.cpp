@@ -4,7 +4,7 @@
 #include "cli/report.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/stl.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
@@ -99,7 +99,7 @@ Source sourceOf(const SimulateOptions& options) {
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
   const GrindJob job = withZLaw(source.job);
   if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
-  RecordedStrokes strokes(job);
+  RunStrokes strokes(job);
   source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
   return measure(job, source.name, strokes, at);
@@ -113,7 +113,7 @@ int show(const GroundTool& tool, bool json) {
     printText(tool);
   }
   for (const Reason& reason : tool.check.reasons) {
-    std::fprintf(stderr, "%s\n", text(reason, UnitSystem::kShop).c_str());
+    std::fprintf(stderr, "%s\n", text(reason).c_str());
   }
   return tool.check.reasons.empty() ? 0 : 1;
 }
@@ -134,7 +134,7 @@ int runSimulate(const SimulateOptions& options) {
     if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
     return status;
   } catch (const ReasonError& error) {
-    std::fprintf(stderr, "%s\n", text(error.reason(), UnitSystem::kShop).c_str());
+    std::fprintf(stderr, "%s\n", text(error.reason()).c_str());
     return 1;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -8,16 +8,16 @@ namespace grinder {
 
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   hw_.read(time, period);
-  record_.time = time.toSec();
-  record_.period = period.toSec();
-  const bool moving = record_.has_setpoint && (record_.setpoint.velocity != 0).any();
-  record_.has_setpoint = false;
-  record_.job = next_status_.jobs_started;
+  sample_.time = time.toSec();
+  sample_.period = period.toSec();
+  const bool moving = sample_.has_setpoint && (sample_.setpoint.velocity != 0).any();
+  sample_.has_setpoint = false;
+  sample_.job = next_status_.jobs_started;
   drive_command_.reset = false;
 
   readDrive();
   trackMotion();
-  moving_unbuffered_ = moving && record_.drive.commands_waiting == 0;
+  moving_unbuffered_ = moving && sample_.drive.commands_waiting == 0;
   if (isPowered(state_)) checkDrive();
   watchClients();
   executeRequests();
@@ -30,62 +30,62 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
 }
 
 void ControlLoop::readDrive() {
-  const std::uint64_t last_feedback = record_.drive.feedback_count;
-  touched_ = record_.drive.probe_contact;
-  record_.drive = drive_.getStatus();
-  drive_checks_.observe(record_.drive);
-  record_.feedback_age = record_.drive.feedback_count == last_feedback ? record_.feedback_age + record_.period : 0;
+  const std::uint64_t last_feedback = sample_.drive.feedback_count;
+  touched_ = sample_.drive.probe_contact;
+  sample_.drive = drive_.getStatus();
+  drive_checks_.observe(sample_.drive);
+  sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
   for (int i = 0; i < kAxisCount; ++i) {
     const JointHandle& joint = joints_[static_cast<std::size_t>(i)];
-    record_.position[i] = joint.getPosition();
-    record_.velocity[i] = joint.getVelocity();
+    sample_.position[i] = joint.getPosition();
+    sample_.velocity[i] = joint.getVelocity();
   }
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
   // again; after a fault the commands do not change.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
-  if (follows && record_.position.isFinite().all()) {
-    command_ = record_.position;
+  if (follows && sample_.position.isFinite().all()) {
+    command_ = sample_.position;
     history_.clear();
   }
-  record_.command_in_effect = history_.empty() ? command_ : history_.inEffect(record_.drive.commands_waiting).command;
+  sample_.command_in_effect = history_.empty() ? command_ : history_.inEffect(sample_.drive.commands_waiting).command;
   readSwivel();
 }
 
 void ControlLoop::readSwivel() {
-  if (std::isfinite(record_.drive.swivel)) {
-    record_.swivel = {record_.drive.swivel, true};
-  } else if (record_.swivel.measured) {
-    record_.swivel = {};  // an encoder that fails leaves nothing to rely on
+  if (std::isfinite(sample_.drive.swivel)) {
+    sample_.swivel = {sample_.drive.swivel, true};
+  } else if (sample_.swivel.measured) {
+    sample_.swivel = {};  // an encoder that fails leaves nothing to rely on
   }
 }
 
 void ControlLoop::trackMotion() {
   if (stream_) {
-    const JobTrack& reached = history_.inEffect(record_.drive.commands_waiting).track;
+    const JobTrack& reached = history_.inEffect(sample_.drive.commands_waiting).track;
     // The drive's buffer may still hold commands of the previous job.
     if (reached.job != next_status_.jobs_started || reached.setpoints == 0) return;
     next_status_.place = reached.place;
     next_status_.strokes_ended_at = reached.strokes_ended_at;
-    wheel_.followJob(record_.command_in_effect[kY]);
+    wheel_.followJob(sample_.command_in_effect[kY]);
   } else if (state_ != MachineState::kLifting) {
-    const bool fresh = record_.feedback_age <= config_.feedback_timeout;
-    if (record_.drive.homed && fresh) wheel_.observePosition(record_.position[kY]);
+    const bool fresh = sample_.feedback_age <= config_.feedback_timeout;
+    if (sample_.drive.homed && fresh) wheel_.observePosition(sample_.position[kY]);
   }
 }
 
 void ControlLoop::checkDrive() {
-  if (const auto fault = drive_checks_.findFault(record_, moving_unbuffered_)) fail(*fault);
+  if (const auto fault = drive_checks_.findFault(sample_, moving_unbuffered_)) fail(*fault);
 }
 
 void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period) {
-  // Put together here and copied as a whole, like record and status.
+  // Put together here and copied as a whole, like sample and status.
   DriveCommand drive_command = drive_command_;
   drive_command.home = state_ == MachineState::kHoming;
   // A job takes over what was switched on by hand; a fault, a lost power, homing and a lift switch it off.
   if (!after(state_, MachineEvent::kSpindleOn)) spindle_by_hand_ = coolant_by_hand_ = false;
-  if (!record_.drive.probe_free) spindle_by_hand_ = false;
-  record_.spindle_commanded = drive_command.spindle = stream_ || spindle_by_hand_;
-  record_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
+  if (!sample_.drive.probe_free) spindle_by_hand_ = false;
+  sample_.spindle_commanded = drive_command.spindle = stream_ || spindle_by_hand_;
+  sample_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
   drive_.setCommand(drive_command);
   hw_.write(time, period);
@@ -93,31 +93,31 @@ void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period)
 }
 
 void ControlLoop::publish() {
-  record_.command = command_;
-  record_.state = state_;
-  record_.feed_override = feed_override_;
-  record_.wheel_in_work = wheel_.wheel().in_work;
-  record_.distance_to_go = distanceToGo();
+  sample_.command = command_;
+  sample_.state = state_;
+  sample_.feed_override = feed_override_;
+  sample_.wheel_in_work = wheel_.wheel().in_work;
+  sample_.distance_to_go = distanceToGo();
 
   ++next_status_.cycles;
-  next_status_.time = record_.time;
+  next_status_.time = sample_.time;
   next_status_.state = state_;
-  next_status_.homed = record_.drive.homed;
+  next_status_.homed = sample_.drive.homed;
   Eigen::Map<Axes>(next_status_.command.data()) = command_;
-  Eigen::Map<Axes>(next_status_.position.data()) = record_.position;
-  next_status_.position_valid = record_.position.isFinite().all() && record_.feedback_age <= config_.feedback_timeout;
-  next_status_.feed_override = record_.feed_override;
-  next_status_.swivel = record_.swivel;
-  next_status_.has_probe = record_.drive.has_probe;
-  next_status_.probe_contact = record_.drive.probe_contact;
+  Eigen::Map<Axes>(next_status_.position.data()) = sample_.position;
+  next_status_.position_valid = sample_.position.isFinite().all() && sample_.feedback_age <= config_.feedback_timeout;
+  next_status_.feed_override = sample_.feed_override;
+  next_status_.swivel = sample_.swivel;
+  next_status_.has_probe = sample_.drive.has_probe;
+  next_status_.probe_contact = sample_.drive.probe_contact;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
 
   // Both are filled in before they are copied: a copy of what was just written has to wait for it.
-  if (records_.push(record_)) {
-    record_.job_ended = false;
+  if (samples_.push(sample_)) {
+    sample_.job_ended = false;
   } else {
-    ++record_.records_lost;  // job_ended stays set for the next record that fits
+    ++sample_.samples_lost;  // job_ended stays set for the next sample that fits
   }
   status_.store(next_status_);
 }
@@ -128,18 +128,18 @@ Axes ControlLoop::distanceToGo() const {
     Axes to_go = Axes::Zero();
     const int axis = axis_move_.axis();
     // A continuous jog has no end of its own.
-    if (!(jogging_ && continuous_)) to_go[axis] = axis_move_.to() - record_.position[axis];
+    if (!(jogging_ && continuous_)) to_go[axis] = axis_move_.to() - sample_.position[axis];
     return to_go;
   }
   if (!stream_) return Axes::Zero();
-  return stream_->program().moves()[next_status_.place.move_index].to + job_offset_ - record_.position;
+  return stream_->program().moves()[next_status_.place.move_index].to + job_offset_ - sample_.position;
 }
 
 void ControlLoop::awaitHoming() {
-  waited_ += record_.period;
-  homing_seen_ |= record_.drive.homing;
-  const bool over = homing_seen_ && !record_.drive.homing;
-  if (over && record_.drive.homed) return apply(MachineEvent::kDone);
+  waited_ += sample_.period;
+  homing_seen_ |= sample_.drive.homing;
+  const bool over = homing_seen_ && !sample_.drive.homing;
+  if (over && sample_.drive.homed) return apply(MachineEvent::kDone);
   if (!over && waited_ <= config_.homing_timeout) return;
   LoopFault fault;
   fault.kind = FaultKind::kHoming;
@@ -156,12 +156,12 @@ bool ControlLoop::awaitInterlocks() {
     if (stream_->holding()) apply(MachineEvent::kHold);
     return true;
   }
-  waited_ += record_.period;
+  waited_ += sample_.period;
   if (waited_ <= config_.spindle_timeout) return false;
-  record_.fault.kind = FaultKind::kInterlock;
-  record_.fault.interlock = open;
-  record_.fault.value = waited_;
-  record_.fault.limit = config_.spindle_timeout;
+  sample_.fault.kind = FaultKind::kInterlock;
+  sample_.fault.interlock = open;
+  sample_.fault.value = waited_;
+  sample_.fault.limit = config_.spindle_timeout;
   endJob(JobEnd::kFault);
   comeToRest();
   return false;
@@ -183,7 +183,7 @@ void ControlLoop::advance() {
 
 void ControlLoop::slowDownIfLate() {
   if (!moving_unbuffered_) return;
-  const double periods = record_.period / config_.machine.period;
+  const double periods = sample_.period / config_.machine.period;
   if (!(periods >= config_.late_slow_down)) return;
   // A delay of several periods: the axes covered only one period's distance in that time.
   if (stream_) stream_->slowDown(1 / periods);
@@ -197,8 +197,8 @@ void ControlLoop::advanceJob() {
   if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
   checkInterlocks();
   stream_->setFeedOverride(feed_override_);
-  bool moves = stream_->next(record_.setpoint);
-  if (!moves && beginLiftOff()) moves = stream_->next(record_.setpoint);
+  bool moves = stream_->next(sample_.setpoint);
+  if (!moves && beginLiftOff()) moves = stream_->next(sample_.setpoint);
   if (state_ == MachineState::kResuming && stream_->onPath()) apply(MachineEvent::kDone);
   if (!moves) return restJob();
   commandOfJob();
@@ -206,7 +206,7 @@ void ControlLoop::advanceJob() {
 
 void ControlLoop::commandOfJob() {
   command(job_offset_);
-  if (stream_) written_.add(record_.setpoint);
+  if (stream_) written_.add(sample_.setpoint);
 }
 
 void ControlLoop::advanceLift() {
@@ -216,7 +216,7 @@ void ControlLoop::advanceLift() {
 }
 
 bool ControlLoop::advanceAxisMove() {
-  Setpoint& setpoint = record_.setpoint;
+  Setpoint& setpoint = sample_.setpoint;
   if (!axis_move_.next(setpoint)) return allReachedAxes();
   if (stream_) {
     // The axes rest already where the move begins.
@@ -226,18 +226,18 @@ bool ControlLoop::advanceAxisMove() {
     stream_->adopt(setpoint);
     commandOfJob();
     // Not rounded on the way to work coordinates and back: an end at a limit is reached exactly.
-    if (record_.has_setpoint) command_ = at;
+    if (sample_.has_setpoint) command_ = at;
     return false;
   }
   command();
-  if (record_.has_setpoint) record_.job = 0;
+  if (sample_.has_setpoint) sample_.job = 0;
   return false;
 }
 
 Interlock ControlLoop::openInterlock() const {
-  const Interlock open = grinder::openInterlock(record_.drive);
+  const Interlock open = grinder::openInterlock(sample_.drive);
   if (open != Interlock::kNone || !stream_) return open;
-  if (!record_.swivel.isAt(job_swivel_)) return Interlock::kSwivel;
+  if (!sample_.swivel.isAt(job_swivel_)) return Interlock::kSwivel;
   const bool entered = in_journal_ || jobInJournal() == next_status_.jobs_started;
   return entered ? Interlock::kNone : Interlock::kJournal;
 }
@@ -245,8 +245,8 @@ Interlock ControlLoop::openInterlock() const {
 void ControlLoop::checkInterlocks() {
   if (state_ == MachineState::kCanceling) return;
   const Interlock open = openInterlock();
-  if (open != Interlock::kNone && record_.interlock == Interlock::kNone) {
-    record_.interlock = open;
+  if (open != Interlock::kNone && sample_.interlock == Interlock::kNone) {
+    sample_.interlock = open;
     // A wheel that is being lifted is moving to safety; one that was lifted is already safe.
     if (after(state_, MachineEvent::kHold) && state_ != MachineState::kRetracting) {
       stream_->hold();
@@ -254,16 +254,16 @@ void ControlLoop::checkInterlocks() {
     }
   }
   // A dwelling wheel burns the tool; a stopped or dry wheel damages it.
-  if (record_.interlock != Interlock::kNone && state_ == MachineState::kHeld) {
+  if (sample_.interlock != Interlock::kNone && state_ == MachineState::kHeld) {
     stream_->retract();
     apply(MachineEvent::kRetract);
   }
 }
 
-/// Commands the record's setpoint, unless it exceeds a limit.
+/// Commands the sample's setpoint, unless it exceeds a limit.
 /// @param offset machine position - position of the setpoint [m], A [rad].
 void ControlLoop::command(const Axes& offset) {
-  const Setpoint& setpoint = record_.setpoint;
+  const Setpoint& setpoint = sample_.setpoint;
   if (const auto violation = limit_check_.check(setpoint, offset)) {
     LoopFault fault;
     fault.kind = FaultKind::kLimit;
@@ -275,10 +275,10 @@ void ControlLoop::command(const Axes& offset) {
   command_ =
       (setpoint.position + offset).max(config_.machine.limits.min_position).min(config_.machine.limits.max_position);
   rested_ = 0;
-  record_.has_setpoint = true;
+  sample_.has_setpoint = true;
 }
 
-bool ControlLoop::allReachedAxes() { return record_.drive.commands_waiting <= rested_++; }
+bool ControlLoop::allReachedAxes() { return sample_.drive.commands_waiting <= rested_++; }
 
 void ControlLoop::restJob() {
   const bool all_reached = allReachedAxes();
@@ -308,15 +308,15 @@ void ControlLoop::comeToRest() {
 
 void ControlLoop::endJob(JobEnd end) {
   stream_ = nullptr;
-  record_.job_ended = true;
-  record_.interlock = Interlock::kNone;
+  sample_.job_ended = true;
+  sample_.interlock = Interlock::kNone;
   ++next_status_.jobs_ended;
   next_status_.end = end;
-  if (end == JobEnd::kFault) next_status_.fault = record_.fault;
+  if (end == JobEnd::kFault) next_status_.fault = sample_.fault;
 }
 
 void ControlLoop::fail(const LoopFault& fault) {
-  record_.fault = fault;
+  sample_.fault = fault;
   if (stream_) endJob(JobEnd::kFault);
   if (jogging_) endJog();
   drive_command_.enable = power_off_next_ = false;

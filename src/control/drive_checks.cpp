@@ -18,41 +18,41 @@ LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis =
 
 }  // namespace
 
-Refusal DriveChecks::powerRefusal(const CycleRecord& record) const noexcept {
-  if (record.drive.emergency_stop) return Refusal::kEmergencyStop;
-  if (record.drive.fault) return was_reset_ ? Refusal::kDriveFaultStays : Refusal::kDriveFault;
-  if (!record.position.isFinite().all() || !feedbackIsFresh(record)) return Refusal::kFeedback;
+Refusal DriveChecks::powerRefusal(const CycleSample& sample) const noexcept {
+  if (sample.drive.emergency_stop) return Refusal::kEmergencyStop;
+  if (sample.drive.fault) return was_reset_ ? Refusal::kDriveFaultStays : Refusal::kDriveFault;
+  if (!sample.position.isFinite().all() || !feedbackIsFresh(sample)) return Refusal::kFeedback;
   return Refusal::kNone;
 }
 
-std::optional<LoopFault> DriveChecks::findFault(const CycleRecord& record, bool moving_unbuffered) const noexcept {
-  if (record.drive.emergency_stop) return faultOf(FaultKind::kEmergencyStop);
+std::optional<LoopFault> DriveChecks::findFault(const CycleSample& sample, bool moving_unbuffered) const noexcept {
+  if (sample.drive.emergency_stop) return faultOf(FaultKind::kEmergencyStop);
   // Checked before drive fault and lost power, which may be the drive's reaction to underruns and late cycles.
-  if (record.drive.underruns != underruns_at_power_on_) {
-    const auto count = static_cast<double>(record.drive.underruns - underruns_at_power_on_);
+  if (sample.drive.underruns != underruns_at_power_on_) {
+    const auto count = static_cast<double>(sample.drive.underruns - underruns_at_power_on_);
     LoopFault fault = faultOf(FaultKind::kUnderrun, count);
-    fault.cycle = record.setpoint.cycle;
+    fault.cycle = sample.setpoint.cycle;
     return fault;
   }
   const double longest = config_.late_fault * config_.machine.period;
-  if (moving_unbuffered && !(record.period <= longest)) return faultOf(FaultKind::kLate, record.period, longest);
-  if (record.drive.fault) return faultOf(FaultKind::kDriveFault);
-  if (!record.drive.enabled) return faultOf(FaultKind::kPowerLost);
-  return findFeedbackFault(record);
+  if (moving_unbuffered && !(sample.period <= longest)) return faultOf(FaultKind::kLate, sample.period, longest);
+  if (sample.drive.fault) return faultOf(FaultKind::kDriveFault);
+  if (!sample.drive.enabled) return faultOf(FaultKind::kPowerLost);
+  return findFeedbackFault(sample);
 }
 
-bool DriveChecks::feedbackIsFresh(const CycleRecord& record) const noexcept {
-  return record.feedback_age <= config_.feedback_timeout;
+bool DriveChecks::feedbackIsFresh(const CycleSample& sample) const noexcept {
+  return sample.feedback_age <= config_.feedback_timeout;
 }
 
-std::optional<LoopFault> DriveChecks::findFeedbackFault(const CycleRecord& record) const noexcept {
-  if (!feedbackIsFresh(record)) {
-    return faultOf(FaultKind::kStaleFeedback, record.feedback_age, config_.feedback_timeout);
+std::optional<LoopFault> DriveChecks::findFeedbackFault(const CycleSample& sample) const noexcept {
+  if (!feedbackIsFresh(sample)) {
+    return faultOf(FaultKind::kStaleFeedback, sample.feedback_age, config_.feedback_timeout);
   }
   for (int i = 0; i < kAxisCount; ++i) {
-    const double position = record.position[i];
+    const double position = sample.position[i];
     if (!std::isfinite(position)) return faultOf(FaultKind::kInvalidFeedback, position, 0, i);
-    const double error = record.followingError(i);
+    const double error = sample.followingError(i);
     const double allowed = config_.following_error[i];
     if (!(error <= allowed)) return faultOf(FaultKind::kFollowingError, error, allowed, i);
   }

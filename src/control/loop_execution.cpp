@@ -36,7 +36,7 @@ Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
   // The spindle by hand depends on one interlock alone.
   const Interlock interlock = isSwitch(event) ? Interlock::kProbe : openInterlock();
   return {event,          state_,     refusal, interlock, kY, liftTarget(), config_.machine.limits.max_position[kY],
-          record_.swivel, job_swivel_};
+          sample_.swivel, job_swivel_};
 }
 
 Refusal ControlLoop::execute(MachineEvent event) {
@@ -85,7 +85,7 @@ Refusal ControlLoop::executeStop(MachineEvent event) {
 // Power
 
 Refusal ControlLoop::enable() {
-  const Refusal refusal = drive_checks_.powerRefusal(record_);
+  const Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal != Refusal::kNone || isPowered(state_)) return refusal;
   drive_command_.enable = true;
   awaiting_power_ = true;
@@ -95,7 +95,7 @@ Refusal ControlLoop::enable() {
 
 Refusal ControlLoop::spindleOn() {
   if (jogging_ && for_client_) return Refusal::kProbing;
-  return record_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
+  return sample_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
 }
 
 /// @param commanded by hand. A wheel that starts in the work breaks.
@@ -107,13 +107,13 @@ Refusal ControlLoop::switchOn(bool& commanded) {
 
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
-  waited_ += record_.period;
-  const Refusal refusal = drive_checks_.powerRefusal(record_);
+  waited_ += sample_.period;
+  const Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal != Refusal::kNone) {
     drive_command_.enable = false;
     answerEnable(refusal);
-  } else if (record_.drive.enabled) {
-    drive_checks_.powerOn(record_.drive);
+  } else if (sample_.drive.enabled) {
+    drive_checks_.powerOn(sample_.drive);
     apply(MachineEvent::kEnable);
     answerEnable(Refusal::kNone);
   } else if (!(waited_ <= config_.enable_timeout)) {
@@ -135,10 +135,10 @@ void ControlLoop::switchOff() {
 }
 
 Refusal ControlLoop::reset() {
-  if (record_.drive.emergency_stop) return Refusal::kEmergencyStop;
+  if (sample_.drive.emergency_stop) return Refusal::kEmergencyStop;
   drive_command_.reset = true;
   drive_checks_.reset();
-  record_.fault = LoopFault{};
+  sample_.fault = LoopFault{};
   apply(MachineEvent::kReset);
   return Refusal::kNone;
 }
@@ -157,8 +157,8 @@ Refusal ControlLoop::home() {
 Refusal ControlLoop::beginJob(const JobStart& job) {
   if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
   if (wheel_.wheel().in_work) return Refusal::kInWork;
-  if (!record_.drive.homed) return Refusal::kInterlock;
-  if (!record_.swivel.isAt(job.swivel)) return Refusal::kSwivel;
+  if (!sample_.drive.homed) return Refusal::kInterlock;
+  if (!sample_.swivel.isAt(job.swivel)) return Refusal::kSwivel;
   // The same difference as the planner's, and therefore exact although it is rounded.
   if (!(job.stream->program().start() == command_ - job.offset).all()) return Refusal::kMoved;
   stream_ = job.stream;
@@ -167,15 +167,15 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   in_journal_ = job.in_journal;
   wheel_.startJob(job.wheel);
   limit_check_.restart();
-  record_.fault = LoopFault{};
-  record_.interlock = Interlock::kNone;
-  record_.job_ended = false;  // for a previous job whose record was lost
+  sample_.fault = LoopFault{};
+  sample_.interlock = Interlock::kNone;
+  sample_.job_ended = false;  // for a previous job whose sample was lost
   next_status_.end = JobEnd::kNone;
   next_status_.fault = LoopFault{};
   next_status_.place = Place{};
   next_status_.strokes_ended_at = 0;
   written_ = JobTrack{};
-  written_.job = record_.job = ++next_status_.jobs_started;
+  written_.job = sample_.job = ++next_status_.jobs_started;
   waited_ = 0;
   may_lift_off_ = true;
   power_off_next_ = false;
@@ -187,7 +187,7 @@ Refusal ControlLoop::resume() {
   // A job that has not begun keeps waiting for its interlocks.
   const bool starting = state_ == MachineState::kStarting;
   if (!starting && openInterlock() != Interlock::kNone) return Refusal::kInterlock;
-  record_.interlock = Interlock::kNone;
+  sample_.interlock = Interlock::kNone;
   stream_->resume();
   apply(MachineEvent::kResume);
   return Refusal::kNone;
@@ -211,15 +211,15 @@ Refusal ControlLoop::lift() {
 }
 
 Refusal ControlLoop::setSwivel(double angle) {
-  if (record_.swivel.measured) return Refusal::kSwivelMeasured;
+  if (sample_.swivel.measured) return Refusal::kSwivelMeasured;
   const Swivel confirmed{angle, false};
   if (stream_ && !confirmed.isAt(job_swivel_)) return Refusal::kSwivelInUse;
-  record_.swivel = next_status_.swivel = confirmed;
+  sample_.swivel = next_status_.swivel = confirmed;
   // Before the answer, so that the goal that follows it finds the angle; the cycle may still wait for the drive.
   status_.store(next_status_);
   return Refusal::kNone;
 }
 
-double ControlLoop::liftTarget() const { return wheel_.liftTarget(record_.drive.homed, command_[kY]); }
+double ControlLoop::liftTarget() const { return wheel_.liftTarget(sample_.drive.homed, command_[kY]); }
 
 }  // namespace grinder

@@ -47,10 +47,10 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
   if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
-  if (jog.for_client && (record_.spindle_commanded || record_.drive.spindle_at_speed)) return Refusal::kWheelTurns;
-  if (jog.to_touch && record_.drive.probe_contact) return Refusal::kTouches;
+  if (jog.for_client && (sample_.spindle_commanded || sample_.drive.spindle_at_speed)) return Refusal::kWheelTurns;
+  if (jog.to_touch && sample_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
-  if (!record_.drive.homed) return Refusal::kInterlock;
+  if (!sample_.drive.homed) return Refusal::kInterlock;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
   if (const Refusal refusal = refusalOfPosition(answer); refusal != Refusal::kNone) return refusal;
   const double way = jog.continuous ? jog.velocity : jog.distance;
@@ -107,7 +107,7 @@ double ControlLoop::lowestJog(int axis) const {
 
 void ControlLoop::watchClients() {
   // A loop that comes late has not heard them meanwhile.
-  const double unheard = std::min(record_.period, kMostPeriods * config_.machine.period);
+  const double unheard = std::min(sample_.period, kMostPeriods * config_.machine.period);
   dead_man_.wait(unheard);
   client_.wait(unheard);
   const std::uint32_t keep_alives = keepAlives();
@@ -119,7 +119,7 @@ void ControlLoop::advanceJog() {
   stopJogOnContact();
   stopJogWithoutClient();
   // Without the reference the limits mean nothing.
-  if ((continuous_ && dead_man_.released()) || !record_.drive.homed) axis_move_.setSpeed(0);
+  if ((continuous_ && dead_man_.released()) || !sample_.drive.homed) axis_move_.setSpeed(0);
   if (!advanceAxisMove()) return;
   endJog();
   // A job that was canceled meanwhile ends by itself.
@@ -128,10 +128,10 @@ void ControlLoop::advanceJog() {
 
 void ControlLoop::stopJogOnContact() {
   // From a contact, the probe may be moved away.
-  const bool begins = record_.drive.probe_contact && !touched_;
+  const bool begins = sample_.drive.probe_contact && !touched_;
   if (!begins || next_status_.contact.made) return;
   next_status_.contact.made = true;
-  std::copy(record_.position.data(), record_.position.data() + kAxisCount, next_status_.contact.position.begin());
+  std::copy(sample_.position.data(), sample_.position.data() + kAxisCount, next_status_.contact.position.begin());
   dead_man_.block();
   axis_move_.setSpeed(0);
 }

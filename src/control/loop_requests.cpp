@@ -9,18 +9,16 @@ namespace {
 constexpr int kSwivelDigits = 10;  ///< so that a job's angle appears as entered
 
 /// Of an angle, as operators read it. @param angle [rad].
-std::string degrees(double angle, int digits = 6) {
-  return grinder::text({angle, Unit::kRadian}, UnitSystem::kShop, digits);
-}
+std::string degrees(double angle, int digits = 6) { return grinder::text(Quantity{angle, Unit::kRadian}, digits); }
 
 }  // namespace
 
 RequestReply Answer::reply() const {
   if (refusal == Refusal::kNone) return {true, "", true};
-  const auto position = [&](double si) { return grinder::text({si, unitOf(axis, 0)}, UnitSystem::kShop); };
+  const auto position = [&](double si) { return grinder::text(Quantity{si, unitOf(axis, 0)}); };
   const auto speed = [&](double si) {
     const Unit unit = axis == kA ? Unit::kRadianPerSecond : Unit::kFeedMetrePerSecond;
-    return grinder::text({si, unit}, UnitSystem::kShop);
+    return grinder::text(Quantity{si, unit});
   };
   std::ostringstream text;
   const bool confirmation = refusal == Refusal::kSwivelMeasured || refusal == Refusal::kSwivelInUse;
@@ -42,10 +40,10 @@ RequestReply Answer::reply() const {
     case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
     // In shop units, because only people read them: the answer to a request has no fields for data.
     case Refusal::kTooFar:
-      text << "it would lead " << axisName(axis, UnitSystem::kShop) << " to " << position(value)
+      text << "it would lead " << axisName(axis) << " to " << position(value)
            << (value < limit ? "; allowed: down to " : "; allowed: up to ") << position(limit);
       break;
-    case Refusal::kSwivel: text << grinder::text(reasonOf(swivel, job_swivel), UnitSystem::kShop); break;
+    case Refusal::kSwivel: text << grinder::text(reasonOf(swivel, job_swivel)); break;
     case Refusal::kSwivelMeasured:
       text << "the drive measures the swivel, which stands at " << degrees(swivel.angle)
            << "; nothing is to be confirmed";
@@ -54,19 +52,13 @@ RequestReply Answer::reply() const {
       text << "a job is in progress that needs " << degrees(job_swivel, kSwivelDigits)
            << "; allowed: that angle, or to end the job first";
       break;
-    case Refusal::kNoAxis:
-      text << "axis = " << axis << "; allowed: 0 to " << kAxisCount - 1 << " for X, Y, Z, A";
-      break;
+    case Refusal::kNoAxis: text << axisRefusal(axis); break;
     case Refusal::kJogSpeed:
-      text << "speed of " << axisName(axis, UnitSystem::kShop) << " = " << speed(value) << "; allowed: above 0, up to "
-           << speed(limit);
+      text << "speed of " << axisName(axis) << " = " << speed(value) << "; allowed: above 0, up to " << speed(limit);
       break;
-    case Refusal::kAtLimit:
-      text << axisName(axis, UnitSystem::kShop) << " stands at " << position(limit) << ", the end of its way";
-      break;
+    case Refusal::kAtLimit: text << axisName(axis) << " stands at " << position(limit) << ", the end of its way"; break;
     case Refusal::kOutside:
-      text << axisName(axis, UnitSystem::kShop) << " stands at " << position(value) << ", outside its limit "
-           << position(limit);
+      text << axisName(axis) << " stands at " << position(value) << ", outside its limit " << position(limit);
       break;
     case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
     case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;

@@ -67,7 +67,7 @@ void ControlLoop::run() {
     const Clock::time_point begin = Clock::now();
     time += period;
     cycle(time, period);
-    record_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
+    sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
   drive_command_ = DriveCommand{};
   drive_.setCommand(drive_command_);

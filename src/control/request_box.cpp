@@ -60,7 +60,7 @@ std::optional<RequestReply> RequestBox::reply() { return toReply(requests_.reply
 
 RequestReply RequestBox::confirmSwivel(double angle) {
   if (!(std::abs(angle) <= kMaxSwivel)) {
-    const auto degrees = [](double value) { return text({value, Unit::kRadian}, UnitSystem::kShop); };
+    const auto degrees = [](double value) { return text(Quantity{value, Unit::kRadian}); };
     return {false,
             "confirm-swivel refused: " + degrees(angle) + "; allowed: -" + degrees(kMaxSwivel) + " to " +
                 degrees(kMaxSwivel),

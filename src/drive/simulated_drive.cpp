@@ -23,19 +23,6 @@ constexpr std::array<const char*, 11> kFaultNames{"none",         "emergency_sto
 /// A buffer of the axes' values, to compute with.
 auto axes(std::array<double, kAxisCount>& buffer) { return Eigen::Map<Axes>(buffer.data()); }
 
-template <std::size_t N>
-int indexOf(const std::array<const char*, N>& names, const std::string& name) {
-  const auto it = std::find(names.begin(), names.end(), name);
-  return it == names.end() ? -1 : static_cast<int>(it - names.begin());
-}
-
-template <std::size_t N>
-std::string list(const std::array<const char*, N>& names) {
-  std::string text;
-  for (const char* name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-  return text;
-}
-
 /// That this thread has used [ns].
 std::int64_t processorTime() {
   timespec used;
@@ -217,16 +204,15 @@ void SimulatedDrive::inject(Fault fault, int axis) {
 
 bool SimulatedDrive::onInjectFault(flute_grinder::InjectFault::Request& request,
                                    flute_grinder::InjectFault::Response& response) {
-  const int fault = indexOf(kFaultNames, request.fault);
-  const bool needs_joint = request.fault == "stuck_axis" || request.fault == "nan_feedback";
-  const int axis = needs_joint ? indexOf(kJointNames, request.joint) : kX;
-  response.success = fault >= 0 && axis >= 0;
-  if (fault < 0) {
-    response.message = "fault = " + request.fault + "; allowed: " + list(kFaultNames);
-  } else if (axis < 0) {
-    response.message = "joint = " + request.joint + "; allowed: " + list(kJointNames);
+  const auto named = std::find(kFaultNames.begin(), kFaultNames.end(), request.fault);
+  response.success = named != kFaultNames.end() && request.axis < kAxisCount;
+  if (named == kFaultNames.end()) {
+    response.message = "fault = " + request.fault + "; allowed: ";
+    for (const char* name : kFaultNames) response.message += std::string(name == kFaultNames[0] ? "" : ", ") + name;
+  } else if (request.axis >= kAxisCount) {
+    response.message = axisRefusal(request.axis);
   } else {
-    inject(static_cast<Fault>(fault), axis);
+    inject(static_cast<Fault>(named - kFaultNames.begin()), request.axis);
   }
   return true;
 }

@@ -19,7 +19,7 @@ constexpr int kPlacesOfWall = 16;  ///< of a wall, from which the nearest is ref
 constexpr std::uintmax_t kNearestSteps = 60;
 
 /// X of the sections in which a stroke is measured.
-std::vector<double> sectionsOf(const RecordedStroke& stroke, const Range& blank) {
+std::vector<double> sectionsOf(const RunStroke& stroke, const Range& blank) {
   const std::vector<PathDeviation>& all = stroke.deviations;
   const double length = stroke.range.to - stroke.range.from;
   std::vector<double> sections;
@@ -100,11 +100,11 @@ struct Asked {
 
 }  // namespace
 
-std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double min) {
+std::vector<Gouge> gougesOf(const GrindJob& job, const RunStrokes& strokes, double min) {
   const GroundCutter asked = groundCutterOf(job);
   const Range blank{0, job.cutter.flute_length + job.process.overtravel_shank};
   std::vector<Gouge> gouges;
-  for (const RecordedStroke& stroke : strokes.strokes()) {
+  for (const RunStroke& stroke : strokes.strokes()) {
     const GroundTooth& tooth = asked.teeth()[static_cast<std::size_t>(stroke.place.tooth)];
     const Asked flute{asked.flutes()[tooth.flute].front(), ConicalCutter(cutterOf(job, stroke.place.tooth))};
     const WheelSweep sweep = strokes.sweep(stroke);

@@ -38,7 +38,7 @@ std::string textOf(double value, double scale, int decimals) {
 }
 
 JobEdit editOf(const char* path, double value, int decimals) {
-  JobEdit edit{fieldName(path, UnitSystem::kShop), ""};
+  JobEdit edit{fieldName(path), ""};
   visitJobFields([&](const JobField& field, auto) {
     if (field.path == std::string_view(path)) edit.value = textOf(value, shopScale(field.unit), decimals);
   });
@@ -46,21 +46,19 @@ JobEdit editOf(const char* path, double value, int decimals) {
 }
 
 std::string asked(const char* path, double value, Unit unit) {
-  return fieldName(path, UnitSystem::kShop) + " = " + text(Quantity{value, unit}, UnitSystem::kShop, 5);
+  return fieldName(path) + " = " + text(Quantity{value, unit}, 5);
 }
 
-std::string range(const SetupRefusal& r, Unit unit) {
-  return text(Quantity{r.min, unit}, Quantity{r.max, unit}, UnitSystem::kShop, 5);
-}
+std::string range(const SetupRefusal& r, Unit unit) { return text(Quantity{r.min, unit}, Quantity{r.max, unit}, 5); }
 
 std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
   const auto line = [](const std::string& name, double value, const Range& had, double tolerance, Unit unit) {
-    const auto shown = [&](double si) { return text({si, unit}, UnitSystem::kShop, 3); };
-    return "\n  " + name + " = " + text(Quantity{value, unit}, UnitSystem::kShop, 5) + " within " + shown(tolerance) +
-           ": " + shown(had.from) + (had.to == had.from ? "" : " to " + shown(had.to));
+    const auto shown = [&](double si) { return text(Quantity{si, unit}, 3); };
+    return "\n  " + name + " = " + text(Quantity{value, unit}, 5) + " within " + shown(tolerance) + ": " +
+           shown(had.from) + (had.to == had.from ? "" : " to " + shown(had.to));
   };
-  const auto key = [](const char* path) { return fieldName(path, UnitSystem::kShop); };
+  const auto key = [](const char* path) { return fieldName(path); };
   const auto& [core, end] = nearest.core_diameter;
   return line(key("cutter.rake_angle"), c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian) +
          line("chordal rake", c.rake_angle, nearest.chordal_rake, c.chordal_rake_tolerance, Unit::kRadian) +
@@ -71,7 +69,7 @@ std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
 
 std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
   const auto figure = [](const char* path, double value) {
-    return fieldName(path, UnitSystem::kShop) + " = " + textOf(value, units::kMillimetre, 3);
+    return fieldName(path) + " = " + textOf(value, units::kMillimetre, 3);
   };
   if (mend.wheel_diameter > 0) {
     return "\nIt would be set up with " +
@@ -86,13 +84,13 @@ std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
 }
 
 std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
-  const std::string change = "; change " + fieldName(rowOf(r.problem).change, UnitSystem::kShop);
+  const std::string change = "; change " + fieldName(rowOf(r.problem).change);
   switch (r.problem) {
     case SetupProblem::kSwivel:
       return keep == SetupFigure::kSwivel
                  ? asked("process.setup_swivel", r.asked, Unit::kRadian) + "; the machine swivels " +
                        range(r, Unit::kRadian) + "; change it"
-                 : "the set-up takes a swivel of " + text(Quantity{r.asked, Unit::kRadian}, UnitSystem::kShop, 5) +
+                 : "the set-up takes a swivel of " + text(Quantity{r.asked, Unit::kRadian}, 5) +
                        "; the machine swivels " + range(r, Unit::kRadian) + change;
     case SetupProblem::kReach: return "this wheel reaches the cutter in no set-up" + change;
     case SetupProblem::kCore: return "the wheel cuts through the core" + change;
@@ -104,11 +102,11 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
       return "no set-up gives all that is asked within its tolerance; the nearest one gives for" +
              textOf(r.nearest, job) + textOf(r.mend, job);
     case SetupProblem::kLand:
-      return "no land is left: the flutes overlap by " + text(Quantity{-r.min, Unit::kMetre}, UnitSystem::kShop, 3) +
-             " along the circle" + change + (r.mend.wheel_width > 0 ? textOf(r.mend, job) : "");
+      return "no land is left: the flutes overlap by " + text(Quantity{-r.min, Unit::kMetre}, 3) + " along the circle" +
+             change + (r.mend.wheel_width > 0 ? textOf(r.mend, job) : "");
     case SetupProblem::kIncomplete:
       return "near the cone's apex no overtravel makes the flute complete" + change + ", or set " +
-             fieldName("process.incomplete_ok", UnitSystem::kShop);
+             fieldName("process.incomplete_ok");
   }
   return "";
 }
@@ -239,7 +237,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
     take(std::get<SolvedSetup>(result), keep, setup);
     for (int i = 0;; ++i) {
       const std::vector<Reason> reasons = validate(setup.job);
-      if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons, UnitSystem::kShop);
+      if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons);
       if (i == 0 && !hasZLaw(setup.job)) {
         giveRoom(setup);
         continue;
@@ -248,7 +246,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
   } catch (const ReasonError& error) {
-    return text(error.reason(), UnitSystem::kShop);
+    return text(error.reason());
   } catch (const std::invalid_argument& error) {
     return std::string(error.what());
   }

@@ -29,7 +29,7 @@ constexpr double kWidest = 50 * kMillimetre;        ///< of a rim
 constexpr int kSectionsOfFlute = 3;
 constexpr int kPlacesOfWall = 12;  ///< between which a flute's wall is straight enough
 
-std::string figure(double si, Unit unit) { return text(Quantity{si, unit}, UnitSystem::kShop); }
+std::string figure(double si, Unit unit) { return text(Quantity{si, unit}); }
 
 /// The lands in some sections, of one tooth of those that are alike.
 class Lands {

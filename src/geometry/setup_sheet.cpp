@@ -155,7 +155,7 @@ std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::op
 std::string planRefusal(const JobSetup& setup) {
   std::string text;
   for (const Reason& reason : setup.check.reasons) {
-    text += "a plan would refuse this tool: " + grinder::text(reason, UnitSystem::kShop);
+    text += "a plan would refuse this tool: " + grinder::text(reason);
     const bool is_uneven = reason.kind == ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
     text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
   }

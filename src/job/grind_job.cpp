@@ -80,7 +80,7 @@ void checkSpirals(Checker& checker, const GrindJob& job) {
     if (std::string_view(field.path) != "cutter.spiral_angle") return;
     if (!(angles[0] == of(job))) {
       checker.refuse(ReasonKind::kNotAllowed, "cutter.spiral_angles", {angles[0], Unit::kRadian},
-                     "first cutter.spiral_angle,", of(job));
+                     std::string("first ") + field.file_key + ",", of(job));
     }
     field.path = "cutter.spiral_angles";
     for (const double angle : angles) checker.range(field, angle);

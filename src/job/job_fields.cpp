@@ -11,8 +11,7 @@ constexpr const char* kLists[][2]{{"cutter.tooth_angles", "cutter.tooth_angles_d
 
 }  // namespace
 
-std::string fieldName(const std::string& path, UnitSystem units) {
-  if (units == UnitSystem::kSi) return path;
+std::string fieldName(const std::string& path) {
   std::string name = path;
   for (const auto& list : kLists) {
     if (path == list[0]) name = list[1];

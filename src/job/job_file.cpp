@@ -131,7 +131,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
       if (field.path == std::string_view(kDepth)) of(job) = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
       return file.know(field.file_key);
     }
-    std::string allowed = grinder::text(field.low(), field.high(), UnitSystem::kShop);
+    std::string allowed = grinder::text(field.low(), field.high());
     if (!file.has(field.file_key)) allowed += remedy(field.path);
     file.take(field.file_key, allowed, value);
     of(job) = value * shopScale(field.unit);
@@ -159,7 +159,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   file.throwErrors();
 
   for (const Reason& reason : validate(job)) {
-    file.fail(file.line(fieldName(reason.field, UnitSystem::kShop)), grinder::text(reason, UnitSystem::kShop));
+    file.fail(file.line(fieldName(reason.field)), grinder::text(reason));
   }
   file.throwErrors();
   return job;

@@ -13,49 +13,46 @@ namespace grinder {
 
 namespace {
 
-struct Symbols {
-  const char* si;
-  const char* shop;
+struct ShopUnit {
+  const char* symbol;
   double scale;  ///< SI value divided by shop value
 };
 
 using namespace units;
 
-constexpr std::array<Symbols, kUnitCount> kSymbols{{
-    {"", "", 1},
-    {" m", " mm", kMillimetre},
-    {" m/s", " mm/s", kMillimetre},
-    {" m/s^2", " mm/s^2", kMillimetre},
-    {" m/s^3", " mm/s^3", kMillimetre},
-    {" rad", " deg", kDegree},
-    {" rad/s", " deg/s", kDegree},
-    {" rad/s^2", " deg/s^2", kDegree},
-    {" rad/s^3", " deg/s^3", kDegree},
-    {" s", " s", 1},
-    {" m/s", " mm/min", kMillimetrePerMinute},
-    {" m", " um", kMicrometre},
-    {" m/rad", " mm/rad", kMillimetrePerRadian},
+constexpr std::array<ShopUnit, kUnitCount> kShopUnits{{
+    {"", 1},
+    {" mm", kMillimetre},
+    {" mm/s", kMillimetre},
+    {" mm/s^2", kMillimetre},
+    {" mm/s^3", kMillimetre},
+    {" deg", kDegree},
+    {" deg/s", kDegree},
+    {" deg/s^2", kDegree},
+    {" deg/s^3", kDegree},
+    {" s", 1},
+    {" mm/min", kMillimetrePerMinute},
+    {" um", kMicrometre},
+    {" mm/rad", kMillimetrePerRadian},
 }};
 
-const Symbols& symbolsOf(Unit unit) { return kSymbols[static_cast<std::size_t>(unit)]; }
+const ShopUnit& shopUnitOf(Unit unit) { return kShopUnits[static_cast<std::size_t>(unit)]; }
 
-std::string number(const Quantity& quantity, UnitSystem units, int digits) {
-  const double value = units == UnitSystem::kSi ? quantity.si : quantity.si / shopScale(quantity.unit);
-  return format("%.*g", digits, value);
+std::string number(const Quantity& quantity, int digits) {
+  return format("%.*g", digits, quantity.si / shopScale(quantity.unit));
 }
 
 }  // namespace
 
-std::string text(const Quantity& quantity, UnitSystem units, int digits) {
-  const Symbols& symbols = symbolsOf(quantity.unit);
-  return number(quantity, units, digits) + (units == UnitSystem::kSi ? symbols.si : symbols.shop);
+std::string text(const Quantity& quantity, int digits) {
+  return number(quantity, digits) + shopUnitOf(quantity.unit).symbol;
 }
 
-std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int digits) {
-  return number(from, units, digits) + " to " + text(to, units, digits);
+std::string text(const Quantity& from, const Quantity& to, int digits) {
+  return number(from, digits) + " to " + text(to, digits);
 }
 
-double shopScale(Unit unit) noexcept { return symbolsOf(unit).scale; }
+double shopScale(Unit unit) noexcept { return shopUnitOf(unit).scale; }
 
 double shopNumber(double si, Unit unit) {
   const double scale = shopScale(unit);
@@ -78,9 +75,6 @@ Unit unitOf(int axis, int derivative) noexcept {
   return static_cast<Unit>(static_cast<int>(position) + derivative);
 }
 
-std::string axisName(int axis, UnitSystem units) {
-  const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
-  return units == UnitSystem::kSi ? joint : std::string("axis ") + "XYZA"[axis];
-}
+std::string axisName(int axis) { return std::string("axis ") + "XYZA"[axis]; }
 
 }  // namespace grinder

@@ -16,7 +16,7 @@ constexpr int kFieldDigits = 10;  ///< for a job's numbers, so that they appear 
 /// Converts a reason to words.
 class Writer {
  public:
-  Writer(const Reason& reason, UnitSystem units) : r_(reason), units_(units) {}
+  explicit Writer(const Reason& reason) : r_(reason) {}
 
   std::string what() const {
     switch (r_.kind) {
@@ -25,7 +25,7 @@ class Writer {
       case ReasonKind::kAbove: return refused("up to " + r_.detail + ", " + digits(r_.limit));
       case ReasonKind::kNotAllowed: return refused(r_.detail + (r_.limit == 0 ? "" : " " + digits(r_.limit)));
       case ReasonKind::kFeedTooLow:
-        return name("process.feed") + ": " + causeText(r_.detail, units_) + " allows " + value() + " at X = " + x() +
+        return name("process.feed") + ": " + r_.detail + " allows " + value() + " at X = " + x() +
                "; the slowest feed is " + limit();
       case ReasonKind::kParkInWork:
         return "park position " + axis() + " = " + value() + "; allowed for this job: at least " + limit() +
@@ -36,36 +36,34 @@ class Writer {
                ", or set interpolation.even_step to exact";
       case ReasonKind::kRake:
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
-               " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
-               " of it; change " + name("process.setup_swivel") + " or " + name("process.setup_height");
+               " at X = " + x() + "; allowed: within " + low() + " of it; change " + name("process.setup_swivel") +
+               " or " + name("process.setup_height");
       case ReasonKind::kChordalRake:
         return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " has a chordal rake of " +
-               value() + " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
-               " of it; change " + name("process.wheel_diameter") + " or " + name("process.wheel_width");
+               value() + " at X = " + x() + "; allowed: within " + low() + " of it; change " +
+               name("process.wheel_diameter") + " or " + name("process.wheel_width");
       case ReasonKind::kSpiral:
         return name("cutter.spiral_angle") + " = " + limit() + ": the edge of tooth " + tooth() + " is ground with " +
-               value() + " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) +
-               " of it; change " + name("process.setup_lead");
+               value() + " at X = " + x() + "; allowed: within " + low() + " of it; change " +
+               name("process.setup_lead");
       case ReasonKind::kCoreSize:
         return name("cutter.core_diameter") + ", " + name("cutter.core_diameter_end") + ": the core is " + value() +
-               " at X = " + x() + "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " of " +
-               limit() + "; change " + name("process.depth") + " or " + name("process.depth_end");
+               " at X = " + x() + "; allowed: within " + low() + " of " + limit() + "; change " +
+               name("process.depth") + " or " + name("process.depth_end");
       case ReasonKind::kLand:
         return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
                ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");
       case ReasonKind::kCore: return name("process.depth") + ": the core is cut through at X = " + x() + "; lower it";
       case ReasonKind::kIncomplete:
         return name("process.overtravel_end") + ", " + name("process.overtravel_shank") + ": the flutes are complete " +
-               (r_.value > r_.low ? "from X = " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " + value()
-                                  : std::string("nowhere")) +
+               (r_.value > r_.low ? "from X = " + low() + " to " + value() : std::string("nowhere")) +
                "; allowed: over the whole flute length, 0 to " + limit() + ", unless process.incomplete_ok is true";
       case ReasonKind::kCollision: return collision();
       case ReasonKind::kSwivel: return name(r_.field) + " = " + digits(r_.limit) + ": " + swivel();
       case ReasonKind::kUnevenRake:
         return name("process.z_law") + " = constant_rake: tooth " + tooth() +
-               (r_.low <= r_.value ? " is ground with " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " to " +
-                                         value() + " at best, asked " + limit() + "; allowed: within " +
-                                         grinder::text(Quantity{kEvenRake, r_.unit}, units_) + " of it"
+               (r_.low <= r_.value ? " is ground with " + low() + " to " + value() + " at best, asked " + limit() +
+                                         "; allowed: within " + grinder::text(Quantity{kEvenRake, r_.unit}) + " of it"
                                    : std::string(" has no rake face over its whole flute")) +
                "; change " + name("process.setup_swivel") + " or " + name("process.setup_height") + ", or raise " +
                name("process.overtravel_end") + " or " + name("process.overtravel_shank");
@@ -80,11 +78,8 @@ class Writer {
 
   std::string place() const {
     if (!r_.has_place) return "";
-    const std::string move = toString(r_.move);
-    const std::string tooth = "tooth " + std::to_string(r_.tooth + 1) + ", pass " + std::to_string(r_.pass + 1);
-    if (units_ == UnitSystem::kShop) return " (" + move + ", " + tooth + ", X = " + x() + ")";
-    if (ofSetpoint()) return " (" + move + ", cycle " + std::to_string(r_.cycle) + ", X = " + x() + ")";
-    return " (at " + move + " of " + tooth + ", X = " + x() + ")";
+    return std::string(" (") + toString(r_.move) + ", tooth " + tooth() + ", pass " + std::to_string(r_.pass + 1) +
+           ", X = " + x() + ")";
   }
 
   /// Whether place() comes after what(), and not within it.
@@ -124,25 +119,25 @@ class Writer {
     return r_.kind == ReasonKind::kTolerance || (ReasonKind::kPosition <= r_.kind && r_.kind <= ReasonKind::kNotFinite);
   }
 
-  std::string digits(double si) const { return grinder::text(Quantity{si, r_.unit}, units_, kFieldDigits); }
-  std::string value() const { return grinder::text(Quantity{r_.value, r_.unit}, units_); }
-  std::string limit() const { return grinder::text(Quantity{r_.limit, r_.unit}, units_); }
-  std::string low() const { return grinder::text(Quantity{r_.low, r_.unit}, units_); }
-  std::string x() const { return grinder::text(Quantity{r_.x, Unit::kMetre}, units_); }
+  std::string digits(double si) const { return grinder::text(Quantity{si, r_.unit}, kFieldDigits); }
+  std::string value() const { return grinder::text(Quantity{r_.value, r_.unit}); }
+  std::string limit() const { return grinder::text(Quantity{r_.limit, r_.unit}); }
+  std::string low() const { return grinder::text(Quantity{r_.low, r_.unit}); }
+  std::string x() const { return grinder::text(Quantity{r_.x, Unit::kMetre}); }
   std::string tooth() const { return std::to_string(r_.tooth + 1); }
-  std::string number() const { return grinder::text(Quantity{r_.value, Unit::kNone}, units_); }
+  std::string number() const { return grinder::text(Quantity{r_.value, Unit::kNone}); }
   std::string range() const {
-    return grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, units_, kFieldDigits);
+    return grinder::text(Quantity{r_.low, r_.unit}, Quantity{r_.limit, r_.unit}, kFieldDigits);
   }
-  std::string axis() const { return axisName(r_.axis, units_); }
-  std::string name(const std::string& path) const { return fieldName(path, units_); }
+  std::string axis() const { return axisName(r_.axis); }
+  std::string name(const std::string& path) const { return fieldName(path); }
   std::string refused(const std::string& allowed) const {
     return name(r_.field) + " = " + digits(r_.value) + "; allowed: " + allowed;
   }
   std::string excess() const {
     const double magnitude = r_.kind == ReasonKind::kPosition ? r_.value : std::abs(r_.value);
     const Quantity beyond{std::abs(magnitude - r_.limit), r_.unit};
-    return value() + " is " + grinder::text(beyond, units_) + " beyond its limit " + limit();
+    return value() + " is " + grinder::text(beyond) + " beyond its limit " + limit();
   }
 
   std::string collision() const {
@@ -164,42 +159,30 @@ class Writer {
     return "; stick the blank out further, and set the zero of X anew";
   }
 
-  /// Where the swivel stands, and what to do about it: in deg, as people set it and type it.
+  /// Where the swivel stands, and what to do about it.
   std::string swivel() const {
-    const std::string target = grinder::text(Quantity{r_.limit, r_.unit}, UnitSystem::kShop, kFieldDigits);
-    const std::string allowed =
-        "; allowed: within " + grinder::text(Quantity{r_.low, r_.unit}, units_) + " of that; set it to " + target;
+    const std::string allowed = "; allowed: within " + low() + " of that; set it to " + digits(r_.limit);
     if (r_.detail == "measured") return "the swivel stands at " + digits(r_.value) + allowed;
-    const std::string confirm =
-        " and confirm it: grind confirm-swivel " +
-        grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, UnitSystem::kShop, kFieldDigits);
-    if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + target + confirm;
+    const std::string confirm = " and confirm it: grind confirm-swivel " +
+                                grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, kFieldDigits);
+    if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + digits(r_.limit) + confirm;
     return "the swivel is confirmed at " + digits(r_.value) + allowed + confirm;
   }
 
   const Reason& r_;
-  UnitSystem units_;
 };
 
 }  // namespace
 
-std::string text(const Reason& reason, UnitSystem units) {
-  const Writer writer(reason, units);
+std::string text(const Reason& reason) {
+  const Writer writer(reason);
   return writer.what() + (writer.placeAtEnd() ? writer.place() : "") + writer.others();
 }
 
-std::string text(const std::vector<Reason>& reasons, UnitSystem units) {
+std::string text(const std::vector<Reason>& reasons) {
   std::string all;
-  for (const Reason& reason : reasons) all += (all.empty() ? "" : "; ") + text(reason, units);
+  for (const Reason& reason : reasons) all += (all.empty() ? "" : "; ") + text(reason);
   return all;
-}
-
-std::string causeText(const std::string& cause, UnitSystem units) {
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
-    if (cause.compare(0, joint.size(), joint) == 0) return axisName(axis, units) + cause.substr(joint.size());
-  }
-  return cause;
 }
 
 }  // namespace grinder

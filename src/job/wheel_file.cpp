@@ -51,13 +51,13 @@ void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
 void takeFlange(FlatFile& file, WheelFile& wheel) {
   const std::string key = "flange_mm";
   const Quantity low{-0.1, Unit::kMetre}, high{0.1, Unit::kMetre};
-  const std::string allowed = text(low, high, UnitSystem::kShop);
+  const std::string allowed = text(low, high);
   double value = 0;
   if (!file.has(key)) return file.know(key);
   if (!file.take(key, allowed, value)) return;
   const Quantity flange{value * kMillimetre, Unit::kMetre};
   if (!(flange.si >= low.si && flange.si <= high.si)) {
-    return file.fail(file.line(key), key + " = " + text(flange, UnitSystem::kShop, 10) + "; allowed: " + allowed);
+    return file.fail(file.line(key), key + " = " + text(flange, 10) + "; allowed: " + allowed);
   }
   wheel.flange = flange.si;
 }
@@ -75,14 +75,13 @@ void takeMeasuredDiameter(FlatFile& file, GrindProcess& process) {
   const bool set = process.wheel_diameter >= diameter.low().si && process.wheel_diameter <= diameter.high().si;
   const double max = set ? process.wheel_diameter : diameter.high().si;
   const double min = set ? std::max(diameter.low().si, max - 2 * wear.high().si) : diameter.low().si;
-  const std::string allowed = text(Quantity{min, Unit::kMetre}, Quantity{max, Unit::kMetre}, UnitSystem::kShop, 10) +
-                              ", the diameter to which Y = 0 is set";
+  const std::string allowed =
+      text(Quantity{min, Unit::kMetre}, Quantity{max, Unit::kMetre}, 10) + ", the diameter to which Y = 0 is set";
   double value = 0;
   if (!file.take(kDiameter, allowed, value)) return;
   const double measured = value * kMillimetre;
   if (!(measured >= min && measured <= max)) {
-    return file.fail(file.line(kDiameter), std::string(kDiameter) + " = " +
-                                               text(Quantity{measured, Unit::kMetre}, UnitSystem::kShop, 10) +
+    return file.fail(file.line(kDiameter), std::string(kDiameter) + " = " + text(Quantity{measured, Unit::kMetre}, 10) +
                                                "; allowed: " + allowed);
   }
   process.wheel_wear = wearOf(process.wheel_diameter, measured);
@@ -105,7 +104,7 @@ void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
   const JobField field = fieldOf("process.wheel_width");
   if (!file.has(kWidth)) {
     file.know(kWidth);
-  } else if (file.take(kWidth, text(field.low(), field.high(), UnitSystem::kShop), width)) {
+  } else if (file.take(kWidth, text(field.low(), field.high()), width)) {
     process.wheel_width = width * kMillimetre;
   }
   if (file.has(kBy)) {
@@ -130,7 +129,7 @@ std::string keyOf(const Reason& reason, bool measured) {
 void check(FlatFile& file, const GrindJob& job, bool measured) {
   for (Reason reason : validateWheel(job)) {
     reason.field = keyOf(reason, measured && file.mentions(kWidth));
-    file.fail(file.line(reason.field), text(reason, UnitSystem::kShop));
+    file.fail(file.line(reason.field), text(reason));
   }
   file.throwErrors();
 }
@@ -153,7 +152,7 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
     double value = 0;
     if (key.empty()) return;
     if (field.optional && !file.mentionsPart(key)) return file.know(key);
-    file.take(key, grinder::text(field.low(), field.high(), UnitSystem::kShop), value);
+    file.take(key, grinder::text(field.low(), field.high()), value);
     of(job) = value * shopScale(field.unit);
   });
   takeWheelShape(file, "", job);

@@ -2,7 +2,7 @@
 
 namespace grinder {
 
-std::string LoopFault::text() const { return grinder::text(reasonOf(*this), UnitSystem::kSi); }
+std::string LoopFault::text() const { return grinder::text(reasonOf(*this)); }
 
 Reason reasonOf(const LoopFault& fault) {
   if (fault.kind == FaultKind::kLimit) return reasonOf(fault.violation);

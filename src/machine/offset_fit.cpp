@@ -37,7 +37,7 @@ bool isSameWheel(const OffsetBasis& a, const OffsetBasis& b) {
   return a.wheel_digest == b.wheel_digest && !other_file;
 }
 
-std::string shown(double value, Unit unit) { return text({value, unit}, UnitSystem::kShop); }
+std::string shown(double value, Unit unit) { return text(Quantity{value, unit}); }
 
 std::string wheelText(const OffsetBasis& basis) {
   return "wheel " + (basis.wheel_name.empty() ? "" : basis.wheel_name + ", ") + "D " +

@@ -13,9 +13,9 @@ constexpr int kDigits = 9;  ///< so that offsets that differ look different
 
 Quantity quantityOf(int axis, double value) { return {value, unitOf(axis, 0)}; }
 
-std::string shown(int axis, double value) { return text(quantityOf(axis, value), UnitSystem::kShop, kDigits); }
+std::string shown(int axis, double value) { return text(quantityOf(axis, value), kDigits); }
 
-std::string offsetOf(int axis) { return "work offset of " + axisName(axis, UnitSystem::kShop); }
+std::string offsetOf(int axis) { return "work offset of " + axisName(axis); }
 
 }  // namespace
 
@@ -30,8 +30,8 @@ OffsetLimits offsetLimits(const AxisLimits& travel, const Axes& change) {
 
 std::string travelRefusal(const OffsetLimits& limits, int axis, double value) {
   if (value >= limits.min[axis] && value <= limits.max[axis]) return "";
-  return offsetOf(axis) + " = " + shown(axis, value) + "; allowed: " +
-         text(quantityOf(axis, limits.min[axis]), quantityOf(axis, limits.max[axis]), UnitSystem::kShop, kDigits) +
+  return offsetOf(axis) + " = " + shown(axis, value) +
+         "; allowed: " + text(quantityOf(axis, limits.min[axis]), quantityOf(axis, limits.max[axis]), kDigits) +
          ", the travel of the axis";
 }
 

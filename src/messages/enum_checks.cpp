@@ -77,9 +77,9 @@ static_assert(has<CutDirection>(message_text::kCutter));
 static_assert(has<GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(message_text::kProcess));
 static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<ProbingCycle>(message_text::kProbe));
-// Its other constants are units, which reasons.cpp compares.
+// Its other constants are axes and units, which reasons.cpp compares.
 static_assert(hasAllOf<ReasonKind>(message_text::kReason) &&
-              countConstants(message_text::kReason) == kReasonKindCount + kUnitCount);
+              countConstants(message_text::kReason) == kReasonKindCount + kAxisCount + kUnitCount);
 static_assert(has<MachineState>(message_text::kGrinderState));
 static_assert(has<MoveKind, StepKind>(message_text::kWrittenSetpoint));
 static_assert(flute_grinder::PathStatistics::_move_duration_type::static_size == kMoveKindCount,

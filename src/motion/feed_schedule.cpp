@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/job/quantity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,9 +47,9 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
 
 /// The limit on X that results from the limits of X, Y and Z.
 FeedSchedule::ForX FeedSchedule::forX(const Axes& limit) const noexcept {
-  ForX lowest{limit[kX], kJointNames[kX]};
+  ForX lowest{limit[kX], kX};
   const auto bound = [&](double candidate, int axis) {
-    if (candidate < lowest.limit) lowest = {candidate, kJointNames[static_cast<std::size_t>(axis)]};
+    if (candidate < lowest.limit) lowest = {candidate, axis};
   };
   bound(limit[kY] / y_per_x_, kY);
   bound(limit[kZ] / z_per_x_, kZ);
@@ -97,18 +98,18 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     const double dx = step * u_thin / std::hypot(u_thin, curve.k());
     even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
   }
-  even.add(velocity.limit / ripple, velocity.axis + std::string(" velocity"));
+  even.add(velocity.limit / ripple, axisName(velocity.axis) + " velocity");
   // A quarter of the limits of Z, each, is for its bending.
-  even.add(std::sqrt(limits.max_acceleration[kZ] / (4 * z_bend_)), "axis_z acceleration");
-  even.add(std::cbrt(limits.max_jerk[kZ] / (4 * z_twist_)), "axis_z jerk");
+  even.add(std::sqrt(limits.max_acceleration[kZ] / (4 * z_bend_)), axisName(kZ) + " acceleration");
+  even.add(std::cbrt(limits.max_jerk[kZ] / (4 * z_twist_)), axisName(kZ) + " jerk");
   if (even.value < wanted) feed_limits_.push_back({even.cause, stroke.from, stroke.to});
   feed_speed_ = std::min(wanted, even.value);
 
   // Half of A's acceleration and most of its jerk are reserved for the feed law and the blend.
   Bound per_radius;
-  per_radius.add(limits.max_velocity[kA] / k / ripple, "axis_a velocity");
-  per_radius.add(std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), "axis_a acceleration");
-  per_radius.add(std::cbrt(limits.max_jerk[kA] / (20 * k * b * b)), "axis_a jerk");
+  per_radius.add(limits.max_velocity[kA] / k / ripple, axisName(kA) + " velocity");
+  per_radius.add(std::sqrt(limits.max_acceleration[kA] / (2 * k * b)), axisName(kA) + " acceleration");
+  per_radius.add(std::cbrt(limits.max_jerk[kA] / (20 * k * b * b)), axisName(kA) + " jerk");
   per_radius.add(longest, "control rate");
 
   if (!(per_radius.value < feed_speed_ / u_thin)) {
@@ -119,8 +120,8 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   // Where A turns at constant speed, X accelerates: dv/dt = b c v.
   const ForX acceleration = accelerationForX(limits, feed_speed_);
   const ForX jerk = jerkForX(limits, feed_speed_);
-  per_radius.add(acceleration.limit / (2 * b * feed_speed_), acceleration.axis + std::string(" acceleration"));
-  per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), jerk.axis + std::string(" jerk"));
+  per_radius.add(acceleration.limit / (2 * b * feed_speed_), axisName(acceleration.axis) + " acceleration");
+  per_radius.add(std::sqrt(jerk.limit / (4 * b * b * feed_speed_)), axisName(jerk.axis) + " jerk");
   feed_limits_.push_back({per_radius.cause, stroke.from, stroke.to});  // placeOnCone() may shorten it
   speed_per_radius_ = per_radius.value;
   feed_speed_ = speed_ = std::min(feed_speed_, speed_per_radius_ * u_thick);

@@ -86,38 +86,38 @@ void Diagnostics::addTo(diagnostic_updater::Updater& updater) {
   updater.add("History", this, &Diagnostics::reportHistory);
 }
 
-void Diagnostics::add(const CycleRecord& record) {
+void Diagnostics::add(const CycleSample& sample) {
   ++loop_.cycles;
-  loop_.total += record.period;
-  updateMax(loop_.longest, record.period);
-  if (isLate(record.period, config_.machine.period)) ++loop_.late;
-  loop_.busy.add(record.busy);
-  loop_.delay.add(record.period - config_.machine.period);
+  loop_.total += sample.period;
+  updateMax(loop_.longest, sample.period);
+  if (isLate(sample.period, config_.machine.period)) ++loop_.late;
+  loop_.busy.add(sample.busy);
+  loop_.delay.add(sample.period - config_.machine.period);
 
-  addDrive(record);
+  addDrive(sample);
   const bool was_powered = isPowered(last_.state);
-  if (!was_powered && isPowered(record.state)) fullest_ = 0;
+  if (!was_powered && isPowered(sample.state)) fullest_ = 0;
   // The cycle that ends in a fault still shows its cause.
-  if (was_powered || isPowered(record.state)) {
-    for (int i = 0; i < kAxisCount; ++i) updateMax(following_error_[i], record.followingError(i));
-    addBuffer(record.drive);
+  if (was_powered || isPowered(sample.state)) {
+    for (int i = 0; i < kAxisCount; ++i) updateMax(following_error_[i], sample.followingError(i));
+    addBuffer(sample.drive);
   }
-  if (record.has_setpoint) addSetpoint(record.setpoint, record.command);
-  if (was_powered && record.fault.kind == FaultKind::kLimit && record.state == MachineState::kFault) {
-    addViolation(record.fault.violation);
+  if (sample.has_setpoint) addSetpoint(sample.setpoint, sample.command);
+  if (was_powered && sample.fault.kind == FaultKind::kLimit && sample.state == MachineState::kFault) {
+    addViolation(sample.fault.violation);
   }
-  last_ = record;
+  last_ = sample;
 }
 
-void Diagnostics::addDrive(const CycleRecord& record) {
-  const DriveStatus& drive = record.drive;
-  updateMax(drive_.feedback_age, record.feedback_age);
+void Diagnostics::addDrive(const CycleSample& sample) {
+  const DriveStatus& drive = sample.drive;
+  updateMax(drive_.feedback_age, sample.feedback_age);
   drive_.emergency_stop |= drive.emergency_stop;
   drive_.fault |= drive.fault;
-  if (record.interlock != Interlock::kNone) drive_.interlock = record.interlock;
-  if (record.state == MachineState::kFault) drive_.loop_fault = record.fault;
+  if (sample.interlock != Interlock::kNone) drive_.interlock = sample.interlock;
+  if (sample.state == MachineState::kFault) drive_.loop_fault = sample.fault;
   for (int i = 0; i < kAxisCount; ++i) {
-    if (std::isfinite(drive_.position[i])) drive_.position[i] = record.position[i];
+    if (std::isfinite(drive_.position[i])) drive_.position[i] = sample.position[i];
   }
 }
 
@@ -165,7 +165,7 @@ void Diagnostics::addBuffer(const DriveStatus& drive) {
 void Diagnostics::reportLoop(Status& status) {
   const Scheduling granted = scheduling_();
   const auto cycles = static_cast<double>(loop_.cycles);
-  const std::uint64_t lost = last_.records_lost - records_lost_;
+  const std::uint64_t lost = last_.samples_lost - samples_lost_;
   status.summary(DiagnosticStatus::OK, "running");
   if (loop_.cycles == 0) {
     status.mergeSummary(DiagnosticStatus::ERROR, "not running");
@@ -173,7 +173,7 @@ void Diagnostics::reportLoop(Status& status) {
     status.mergeSummary(levelAbove(static_cast<double>(loop_.late) / cycles, thresholds_.late_cycles),
                         text(loop_.late, " of ", loop_.cycles, " cycles were late"));
   }
-  if (lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(lost, " cycle records were lost"));
+  if (lost > 0) status.mergeSummary(DiagnosticStatus::ERROR, text(lost, " cycle samples were lost"));
   if (!granted.realtime) status.mergeSummary(DiagnosticStatus::WARN, "no real-time scheduling");
   if (!granted.memory_locked) status.mergeSummary(DiagnosticStatus::WARN, "memory is not locked");
   status.add("State", toString(last_.state));
@@ -184,10 +184,10 @@ void Diagnostics::reportLoop(Status& status) {
   addDurations(status, "wake-up delay", loop_.delay);
   status.add("Cycles", loop_.cycles);
   status.add("Late cycles", loop_.late);
-  status.add("Records lost", last_.records_lost);
+  status.add("Samples lost", last_.samples_lost);
   status.add("Real-time scheduling", granted.realtime);
   status.add("Memory locked", granted.memory_locked);
-  records_lost_ = last_.records_lost;
+  samples_lost_ = last_.samples_lost;
   loop_ = {};
 }
 

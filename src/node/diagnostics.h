@@ -50,8 +50,8 @@ class Diagnostics {
   /// Registers all reports with the updater, which this object must outlive.
   void addTo(diagnostic_updater::Updater& updater);
 
-  /// Adds the record of a cycle. To be called for every cycle, in order.
-  void add(const CycleRecord& record);
+  /// Adds the sample of a cycle. To be called for every cycle, in order.
+  void add(const CycleSample& sample);
   /// Sets what is wrong with the journal; empty if nothing.
   void setJournalError(const std::string& error) { journal_error_ = error; }
   /// Sets why the records of jobs are not kept; empty if they are.
@@ -94,7 +94,7 @@ class Diagnostics {
     std::uint32_t min = 0;  ///< commands
   };
 
-  void addDrive(const CycleRecord& record);
+  void addDrive(const CycleSample& sample);
   void addSetpoint(const Setpoint& setpoint, const Axes& command);
   void addViolation(const LimitViolation& violation);
   void addBuffer(const DriveStatus& drive);
@@ -104,13 +104,13 @@ class Diagnostics {
   const DiagnosticThresholds thresholds_;
   const std::function<Scheduling()> scheduling_;
 
-  CycleRecord last_;
+  CycleSample last_;
   std::string journal_error_, history_error_;
   LimitCheck limit_check_;
   std::uint64_t next_setpoint_ = 0;  ///< cycle number
   int unknown_setpoints_ = 0;        ///< setpoints to come whose history is incomplete
   std::uint32_t fullest_ = 0;        ///< fill since power-on
-  std::uint64_t records_lost_ = 0;   ///< as of the last report
+  std::uint64_t samples_lost_ = 0;   ///< as of the last report
   std::uint64_t underruns_ = 0;      ///< as of the last report
 
   // Each since its last report.

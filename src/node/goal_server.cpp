@@ -32,7 +32,7 @@ flute_grinder::GrindResult result(int code, const std::string& text, const PathS
 }
 
 flute_grinder::GrindResult result(int code, const std::vector<Reason>& reasons, const PathStatistics& statistics = {}) {
-  flute_grinder::GrindResult r = result(code, text(reasons, UnitSystem::kSi), statistics);
+  flute_grinder::GrindResult r = result(code, text(reasons), statistics);
   r.reasons = toMessage(reasons);
   return r;
 }
@@ -351,7 +351,7 @@ void GoalServer::endWhenPublished() {
   if (goal_->ended.isZero()) {
     goal_->ended = now;
     if (goal_->journal_error.empty()) {
-      const std::string how = resultText(resultOfJob(status));
+      const std::string how = resultOfJob(status).error_string;
       tracker_.end(status, how.empty() ? outcomeOf(status.end) : how);
     } else {
       tracker_.revert();
@@ -369,7 +369,7 @@ void GoalServer::endJob() {
   const flute_grinder::GrindResult r = resultOfJob(status);
   publishFeedback();
   release();
-  telemetry_.concludeJob(number, {outcomeOf(status.end), resultText(r), r.setpoints_written});
+  telemetry_.concludeJob(number, {outcomeOf(status.end), r.error_string, r.setpoints_written});
   if (aborted) {
     ROS_ERROR_STREAM("goal aborted: " << r.error_string);
     return handle.setAborted(r, r.error_string);

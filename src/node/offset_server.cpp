@@ -5,7 +5,6 @@
 #include "flute_grinder/messages/offset_basis.h"
 #include "node/plain_name.h"
 
-#include <algorithm>
 #include <cmath>
 #include <future>
 #include <memory>
@@ -14,11 +13,6 @@
 namespace grinder {
 
 namespace {
-
-/// @return kAxisCount if there is no such axis.
-int axisOf(const std::string& name) {
-  return static_cast<int>(std::find(kJointNames.begin(), kJointNames.end(), name) - kJointNames.begin());
-}
 
 bool isDigest(const std::string& text) {
   constexpr std::size_t digits = 64;
@@ -46,10 +40,7 @@ std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
 /// Why a request is wrong at any time; empty if it is not.
 template <typename Request>
 std::string requestRefusal(const Request& request) {
-  if (axisOf(request.axis) == kAxisCount) {
-    return "axis = " + (isPlainName(request.axis) ? request.axis : "(not printable)") +
-           "; allowed: axis_x, axis_y, axis_z, axis_a";
-  }
+  if (request.axis >= kAxisCount) return axisRefusal(request.axis);
   if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
   return basisRefusal(request.basis);
 }
@@ -92,7 +83,6 @@ bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_g
 
 template <typename Request, typename Response>
 void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response) {
-  const int axis = axisOf(request.axis);
   std::string refused = requestRefusal(request);
   bool large_change = false;
   if (refused.empty() && !gate_.lockOutJobs()) {
@@ -103,7 +93,7 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
     offset.set_by = request.set_by;
     offset.basis = fromMessage(request.basis);
     offset.basis.method = method;
-    refused = setWithoutJob(axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
+    refused = setWithoutJob(request.axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
     gate_.letJobsIn();
   }
   if (!refused.empty()) ROS_WARN_STREAM("work offset not set: " << refused);
@@ -146,9 +136,8 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   } catch (const AtomicFileError& error) {
     return error.what();
   }
-  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = "
-                                    << text(Quantity{offset.value, unitOf(axis, 0)}, UnitSystem::kSi, 9) << ", "
-                                    << basisText(axis, offset) << ", by " << offset.set_by);
+  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = " << text(Quantity{offset.value, unitOf(axis, 0)}, 9)
+                                    << ", " << basisText(axis, offset) << ", by " << offset.set_by);
   publish();
   return "";
 }

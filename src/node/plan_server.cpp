@@ -79,7 +79,7 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
   }
   response.warnings = offsetWarnings(offsets, request.goal);
   response.violations = toMessage(plan.reasons);
-  for (const Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
+  for (const Reason& reason : plan.reasons) response.reasons.push_back(text(reason));
   if (plan.good()) telemetry_.show(preview);
   return true;
 }

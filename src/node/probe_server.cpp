@@ -78,7 +78,7 @@ void ProbeServer::run(GoalHandle handle, std::uint64_t stops) {
   try {
     runUnguarded(handle, stops, result);
   } catch (const ReasonError& error) {
-    result.message = "probing ended: " + text(error.reason(), UnitSystem::kShop);
+    result.message = "probing ended: " + text(error.reason());
   } catch (const std::exception& error) {
     result.message = std::string("probing ended: ") + error.what();
   }

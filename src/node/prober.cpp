@@ -18,7 +18,7 @@ std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
 
 }  // namespace
 
-std::string shownOf(int axis, double si) { return text({si, unitOf(axis, 0)}, UnitSystem::kShop); }
+std::string shownOf(int axis, double si) { return text(Quantity{si, unitOf(axis, 0)}); }
 
 Prober::Prober(ControlLoop& loop, std::uint64_t stops, std::function<void(int, int)> on_touch)
     : loop_(loop), stops_(stops), on_touch_(std::move(on_touch)) {}
@@ -103,7 +103,7 @@ LoopStatus Prober::step(int axis, double distance, double velocity, bool to_touc
   const LoopStatus status = awaitEnd(jog);
   if (status.state == MachineState::kFault) throw ProbingError("the machine is in state fault");
   if (status.client_lost) {
-    throw ProbingError("its client was silent for " + text({config().jog_timeout, Unit::kSecond}, UnitSystem::kShop) +
+    throw ProbingError("its client was silent for " + text(Quantity{config().jog_timeout, Unit::kSecond}) +
                        "; ~probe_alive is to be repeated, stamped by a clock that agrees");
   }
   if (status.stops != stops_) throw ProbingError("stopped");

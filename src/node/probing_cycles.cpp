@@ -125,7 +125,7 @@ std::string goalRefusal(const flute_grinder::ProbeGoal& goal) {
   if (!isPlainName(goal.set_by)) return nameRefusal("set_by", goal.set_by);
   if (!isPlainName(goal.job.job_name)) return nameRefusal("job_name", goal.job.job_name);
   if (!isPlainName(goal.job.wheel_name)) return nameRefusal("wheel_name", goal.job.wheel_name);
-  return text(validate(jobFromGoal(goal.job)), UnitSystem::kShop);
+  return text(validate(jobFromGoal(goal.job)));
 }
 
 double runCycle(Prober& prober, const flute_grinder::ProbeGoal& goal, const WorkOffsets& offsets,

@@ -57,9 +57,9 @@ std::string ProgressTracker::offsetChanges(const Axes& offset) const {
   std::string changes;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     if (std::abs(offset[axis] - progress_.offset[axis]) <= (axis == kA ? kSameAngle : kSameOffset)) continue;
-    const auto shown = [&](double value) { return text({value, unitOf(axis, 0)}, UnitSystem::kShop, kOffsetDigits); };
-    changes += "; that of " + axisName(axis, UnitSystem::kShop) + " was " + shown(progress_.offset[axis]) + " and is " +
-               shown(offset[axis]);
+    const auto shown = [&](double value) { return text(Quantity{value, unitOf(axis, 0)}, kOffsetDigits); };
+    changes +=
+        "; that of " + axisName(axis) + " was " + shown(progress_.offset[axis]) + " and is " + shown(offset[axis]);
   }
   return changes;
 }

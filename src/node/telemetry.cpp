@@ -128,7 +128,7 @@ void Telemetry::showJob(const Preview& preview) {
 
 void Telemetry::tick() {
   readRecords();
-  if (records_read_ == 0) return;
+  if (samples_read_ == 0) return;
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
     showJob(*job->preview);
@@ -138,7 +138,7 @@ void Telemetry::tick() {
   const bool batch_due = ++ticks_ % kTicksPerBatch == 0 || begins;
   if (batch_due || !resting_) {
     publishJointStates();
-    frames_.publish(record_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(record_.time));
+    frames_.publish(sample_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(sample_.time));
   }
   if (batch_due) {
     publishBatch();
@@ -180,41 +180,41 @@ void Telemetry::publishDiagnostics() {
 Telemetry::Job* Telemetry::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
 
 void Telemetry::readRecords() {
-  while (loop_.pop(record_)) {
-    ++records_read_;
+  while (loop_.pop(sample_)) {
+    ++samples_read_;
     processRecord();
   }
 }
 
 void Telemetry::processRecord() {
-  diagnostics_.add(record_);
+  diagnostics_.add(sample_);
   logFault();
-  // If the record of a job's end was lost, a record of a later job ends it.
-  while (jobs_.size() > 1 && record_.job > jobs_.front().number) endJob(jobs_.front());
-  if (!jobs_.empty() && record_.job == jobs_.front().number) trackJob(jobs_.front());
+  // If the sample of a job's end was lost, a sample of a later job ends it.
+  while (jobs_.size() > 1 && sample_.job > jobs_.front().number) endJob(jobs_.front());
+  if (!jobs_.empty() && sample_.job == jobs_.front().number) trackJob(jobs_.front());
 }
 
 /// A fault that has ended a job is logged with its goal.
 void Telemetry::logFault() {
-  const bool in_fault = record_.state == MachineState::kFault;
-  if (in_fault && !in_fault_ && !record_.job_ended) ROS_ERROR_STREAM("fault without a job: " << record_.fault.text());
+  const bool in_fault = sample_.state == MachineState::kFault;
+  if (in_fault && !in_fault_ && !sample_.job_ended) ROS_ERROR_STREAM("fault without a job: " << sample_.fault.text());
   in_fault_ = in_fault;
 }
 
 void Telemetry::trackJob(Job& job) {
   JobRecord& job_record = recorder_.of(job.number);
-  job_record.addCycle(record_);
-  if (record_.has_setpoint) job.buffered.push_back({cycle(), record_.period, record_.setpoint});
+  job_record.addCycle(sample_);
+  if (sample_.has_setpoint) job.buffered.push_back({cycle(), sample_.period, sample_.setpoint});
   // A drive may buffer commands: publish a setpoint with the positions of the cycle before it reaches the axes.
   auto& buffered = job.buffered;
-  while (!buffered.empty() && buffered.front().cycle + record_.drive.commands_waiting <= cycle()) {
+  while (!buffered.empty() && buffered.front().cycle + sample_.drive.commands_waiting <= cycle()) {
     job.last = buffered.front().setpoint;
     if (job.shown) scene_.add(job.last, workPosition(job));
-    job_record.addSetpoint(job.last, record_);
+    job_record.addSetpoint(job.last, sample_);
     addToBatch(job, buffered.front());
     buffered.pop_front();
   }
-  if (record_.job_ended) endJob(job);
+  if (sample_.job_ended) endJob(job);
 }
 
 void Telemetry::addToBatch(Job& job, const Buffered& written) {
@@ -224,18 +224,18 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
   recorder_.of(job.number).addLost(lost);
   if (lost > 0) publishBatch();
   if (batch_.setpoints.empty()) {
-    batch_.header.stamp = ros::Time(record_.time);
+    batch_.header.stamp = ros::Time(sample_.time);
     batch_.goal_id = job.goal_id;
     batch_.lost = lost;
   }
   batch_.setpoints.push_back(toMessage(setpoint, workPosition(job), written.period));
-  batch_.end_stamp = ros::Time(record_.time);
+  batch_.end_stamp = ros::Time(sample_.time);
   job.max_error = std::max(job.max_error, std::abs(setpoint.path_error));
 }
 
 /// The position read, in the job's work coordinates.
 Axes Telemetry::workPosition(const Job& job) const {
-  return record_.position - job.preview->plan->program->machine().work_offset;
+  return sample_.position - job.preview->plan->program->machine().work_offset;
 }
 
 void Telemetry::endJob(Job& job) {
@@ -253,11 +253,11 @@ void Telemetry::endJob(Job& job) {
 
 void Telemetry::publishJointStates() {
   sensor_msgs::JointState message;
-  message.header.stamp = ros::Time(record_.time);
+  message.header.stamp = ros::Time(sample_.time);
   for (int i = 0; i < kAxisCount; ++i) {
     message.name.emplace_back(kJointNames[static_cast<std::size_t>(i)]);
-    message.position.push_back(record_.position[i]);
-    message.velocity.push_back(record_.velocity[i]);
+    message.position.push_back(sample_.position[i]);
+    message.velocity.push_back(sample_.velocity[i]);
   }
   joint_states_.publish(message);
 }
@@ -270,32 +270,32 @@ void Telemetry::publishBatch() {
 
 void Telemetry::publishState() {
   flute_grinder::GrinderState message = stateMessage();
-  message.header.stamp = ros::Time(record_.time);
+  message.header.stamp = ros::Time(sample_.time);
   state_.publish(message);
 }
 
 /// Without a stamp.
 flute_grinder::GrinderState Telemetry::stateMessage() const {
   flute_grinder::GrinderState message;
-  message.state = static_cast<std::uint8_t>(record_.state);
-  message.state_name = toString(record_.state);
-  message.enabled = record_.drive.enabled;
-  message.homed = record_.drive.homed;
-  message.spindle_at_speed = record_.drive.spindle_at_speed;
-  message.coolant_on = record_.drive.coolant_on;
-  message.spindle_commanded = record_.spindle_commanded;
-  message.coolant_commanded = record_.coolant_commanded;
-  message.emergency_stop = record_.drive.emergency_stop;
-  message.wheel_in_work = record_.wheel_in_work;
-  message.swivel = record_.swivel.angle;
-  message.swivel_measured = record_.swivel.measured;
-  message.probe_contact = record_.drive.probe_contact;
-  message.override = record_.feed_override;
+  message.state = static_cast<std::uint8_t>(sample_.state);
+  message.state_name = toString(sample_.state);
+  message.enabled = sample_.drive.enabled;
+  message.homed = sample_.drive.homed;
+  message.spindle_at_speed = sample_.drive.spindle_at_speed;
+  message.coolant_on = sample_.drive.coolant_on;
+  message.spindle_commanded = sample_.spindle_commanded;
+  message.coolant_commanded = sample_.coolant_commanded;
+  message.emergency_stop = sample_.drive.emergency_stop;
+  message.wheel_in_work = sample_.wheel_in_work;
+  message.swivel = sample_.swivel.angle;
+  message.swivel_measured = sample_.swivel.measured;
+  message.probe_contact = sample_.drive.probe_contact;
+  message.override = sample_.feed_override;
   const Axes offset = offsets_.offsets().values();
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    message.position[static_cast<std::size_t>(axis)] = record_.position[axis];
-    message.distance_to_go[static_cast<std::size_t>(axis)] = record_.distance_to_go[axis];
-    message.work_position[static_cast<std::size_t>(axis)] = record_.position[axis] - offset[axis];
+    message.position[static_cast<std::size_t>(axis)] = sample_.position[axis];
+    message.distance_to_go[static_cast<std::size_t>(axis)] = sample_.distance_to_go[axis];
+    message.work_position[static_cast<std::size_t>(axis)] = sample_.position[axis] - offset[axis];
   }
   if (!jobs_.empty()) {
     const Setpoint& last = jobs_.front().last;
@@ -303,10 +303,10 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
     message.tooth = last.tooth;
     message.pass = last.pass;
   }
-  const Reason fault = reasonOf(record_.fault);
-  message.fault = text(fault, UnitSystem::kSi);
+  const Reason fault = reasonOf(sample_.fault);
+  message.fault = text(fault);
   message.fault_reason = grinder::toMessage(fault);
-  message.hold_reason = toString(record_.interlock);
+  message.hold_reason = toString(sample_.interlock);
   const JournalWriter::Status journal = journal_.status();
   message.progress = toMessage(journal.on_disk);
   message.journal_error = journal.error;
@@ -322,7 +322,7 @@ void Telemetry::makeFeedback() {
   const double done = plannedCycles(p, plan.move_ends);
   const auto all = static_cast<double>(plan.move_ends.back());
   flute_grinder::GrindFeedback feedback;
-  feedback.state = toString(record_.state);
+  feedback.state = toString(sample_.state);
   feedback.planned = 1;
   feedback.tooth = p.tooth;
   feedback.pass = p.pass;

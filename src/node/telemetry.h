@@ -28,7 +28,7 @@ namespace grinder {
 
 /// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the frames and markers for rviz, and
 /// diagnostics; computes a goal's feedback, which GoalServer publishes; and gathers the records of jobs for the
-/// history. Its own thread reads the loop's records; nothing blocks on it. If it falls too far behind, records are
+/// history. Its own thread reads the loop's samples; nothing blocks on it. If it falls too far behind, samples are
 /// lost, and it reports how many. While nothing changes, it publishes less often.
 class Telemetry {
  public:
@@ -98,7 +98,7 @@ class Telemetry {
   void publishState();
   void makeFeedback();
   Job* running();
-  std::uint64_t cycle() const { return records_read_ + record_.records_lost; }  ///< of the loop, since it started
+  std::uint64_t cycle() const { return samples_read_ + sample_.samples_lost; }  ///< of the loop, since it started
 
   ControlLoop& loop_;
   const JournalWriter& journal_;
@@ -110,9 +110,9 @@ class Telemetry {
   Frames frames_;
   Scene scene_;
 
-  CycleRecord record_;  ///< the latest
-  std::uint64_t records_read_ = 0;
-  bool in_fault_ = false;  ///< by the record before
+  CycleSample sample_;  ///< the latest
+  std::uint64_t samples_read_ = 0;
+  bool in_fault_ = false;  ///< by the sample before
   std::deque<Job> jobs_;   ///< announced; the first may be running
   JobRecorder recorder_;
   std::mutex feedback_mutex_;  ///< guards the next two

@@ -6,7 +6,6 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/messages/reasons.h"
 #include "panel/click_guard.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
@@ -61,7 +60,7 @@ std::string diameterDoubt(const GrindJob& job, double diameter) {
   const CutterGeometry& cutter = job.cutter;
   const double blank = std::max(cutter.end_diameter, 2 * ConicalCutter(cutter).radius(cutter.flute_length));
   if (diameter <= std::max(blank, cutter.shank_diameter) + kLargerGauge) return "";
-  const auto shown = [](double d) { return "D " + text({d, Unit::kMetre}, UnitSystem::kShop, kDiameterDigits); };
+  const auto shown = [](double d) { return "D " + text(Quantity{d, Unit::kMetre}, kDiameterDigits); };
   return shown(diameter) + " was entered. The largest blank of this job has " + shown(blank) + ", its shank " +
          shown(cutter.shank_diameter) + ".";
 }
@@ -432,7 +431,7 @@ void GrindPanel::send(const flute_grinder::GrindGoal& goal) {
 void GrindPanel::confirmSwivel(double angle) {
   link_->confirmSwivel(angle, [this, angle](const std::string& refusal) {
     if (!refusal.empty()) return showMessage(refusal);
-    showMessage("confirm-swivel: the swivel is set to " + text(Quantity{angle, Unit::kRadian}, UnitSystem::kShop));
+    showMessage("confirm-swivel: the swivel is set to " + text(Quantity{angle, Unit::kRadian}));
     job_->startConfirmed();
   });
 }
@@ -450,12 +449,11 @@ void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResul
       }
       flute_grinder::Plan::Response refused;
       refused.reasons = {result.error_string};
-      refused.violations = result.reasons;
       job_->setPlan(goal, refused);
       return;
     }
   }
-  if (!good) return showMessage("the job has ended: " + resultText(result));
+  if (!good) return showMessage("the job has ended: " + result.error_string);
   // A dry run of somebody else has written none.
   showMessage(result.setpoints_written > 0 ? "the job is done" : result.error_string);
 }
@@ -469,15 +467,15 @@ void GrindPanel::setFeedOverride(double fraction) {
 }
 
 void GrindPanel::jogStep(int axis, double distance, double speed) {
-  const std::string way = text(Quantity{distance, unitOf(axis, 0)}, UnitSystem::kShop);
-  link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis, UnitSystem::kShop) + " by " + way));
+  const std::string way = text(Quantity{distance, unitOf(axis, 0)});
+  link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis) + " by " + way));
 }
 
 void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
   try {
     const OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
-    const auto answered = reply("touch-off: the work offset of " + axisName(axis, UnitSystem::kShop) + " is set");
+    const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is set");
     link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
       answered(refusal);
       if (large_change) touch_off_->ask(capitalized(refusal), [=] { touchOff(axis, at, true); });
@@ -511,9 +509,9 @@ void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
   for (const OffsetMismatch& mismatch : mismatches(offsets, goal)) {
     if (!mismatch.change) continue;
     const double was = offsets.axes[static_cast<std::size_t>(mismatch.axis)].value, is = was + *mismatch.change;
-    const auto shown = [](double metres) { return text({metres, Unit::kMetre}, UnitSystem::kShop); };
-    const std::string done = "work offset of " + axisName(mismatch.axis, UnitSystem::kShop) + ": " + shown(is) +
-                             ", was " + shown(was) + "; computed";
+    const auto shown = [](double metres) { return text(Quantity{metres, Unit::kMetre}); };
+    const std::string done =
+        "work offset of " + axisName(mismatch.axis) + ": " + shown(is) + ", was " + shown(was) + "; computed";
     ++replies->missing;
     link_->setOffset(mismatch.axis, is, basisOf(goal, OffsetMethod::kComputed),
                      [this, replies, axis = mismatch.axis, done](const std::string& refusal) {

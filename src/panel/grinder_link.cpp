@@ -202,7 +202,7 @@ void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
 void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
                            const std::function<void(const std::string& refusal, bool large_change)>& on_answer) {
   flute_grinder::TouchOff::Request request;
-  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.axis = static_cast<std::uint8_t>(axis);
   request.position = position;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
@@ -216,7 +216,7 @@ void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, 
 
 void GrinderLink::setOffset(int axis, double value, const OffsetBasis& basis, const OnAnswer& on_answer) {
   flute_grinder::SetOffset::Request request;
-  request.axis = kJointNames[static_cast<std::size_t>(axis)];
+  request.axis = static_cast<std::uint8_t>(axis);
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);

@@ -323,8 +323,8 @@ std::vector<OffsetMismatch> JobBox::offsetsToAskFor() const {
 void JobBox::askForSwivel() {
   if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
   const Quantity angle{planned_->process.setup_swivel, Unit::kRadian};
-  ask(swivel_question_, QString::fromStdString("Set the swivel to " + text(angle, UnitSystem::kShop, kAngleDigits) +
-                                               ". Is it set and clamped?"));
+  ask(swivel_question_,
+      QString::fromStdString("Set the swivel to " + text(angle, kAngleDigits) + ". Is it set and clamped?"));
 }
 
 void JobBox::startConfirmed() {

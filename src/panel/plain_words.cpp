@@ -4,7 +4,6 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/messages/reasons.h"
 
 #include <cmath>
 
@@ -53,7 +52,7 @@ std::string describe(const flute_grinder::GrinderState& state) {
   const auto machine = static_cast<MachineState>(state.state);
   std::string text;
   // In states other than a fault it says why the last job did not begin.
-  if (!state.fault.empty()) text = "Fault: " + faultText(state) + ". ";
+  if (!state.fault.empty()) text = "Fault: " + state.fault + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
   if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
@@ -69,8 +68,7 @@ std::string describe(const flute_grinder::GrinderState& state) {
 
 std::string swivelText(const flute_grinder::GrinderState& state) {
   if (!std::isfinite(state.swivel)) return state.swivel_measured ? "Swivel not known" : "Swivel not confirmed";
-  return (state.swivel_measured ? "Swivel at " : "Swivel set to ") +
-         text(Quantity{state.swivel, Unit::kRadian}, UnitSystem::kShop);
+  return (state.swivel_measured ? "Swivel at " : "Swivel set to ") + text(Quantity{state.swivel, Unit::kRadian});
 }
 
 std::string done(MachineEvent event) {
@@ -100,7 +98,7 @@ std::string describe(const flute_grinder::Plan::Response& plan) {
   std::string text;
   if (!plan.valid) {
     text = "Cannot be ground:";
-    for (const std::string& reason : planTexts(plan)) text += "\n" + reason;
+    for (const std::string& reason : plan.reasons) text += "\n" + reason;
     return text;
   }
   text = "Takes " + duration(plan.duration) + ".\n";
@@ -111,8 +109,7 @@ std::string describe(const flute_grinder::Plan::Response& plan) {
   for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
   text += feedText(plan.statistics);
   for (const flute_grinder::FeedLimit& limit : plan.statistics.feed_limits) {
-    text += "\n" + causeText(limit.cause, UnitSystem::kShop) +
-            format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
+    text += "\n" + limit.cause + format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
   }
   return text;
 }

@@ -95,7 +95,7 @@ SectionView::Computed SectionView::computed(const Wanted& wanted) {
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));
     return {wanted.job, section, figuresText(*section), Clock::now() - begin, job};
   } catch (const ReasonError& error) {
-    return failed(text(error.reason(), UnitSystem::kShop));
+    return failed(text(error.reason()));
   } catch (const std::exception& error) {
     return failed(error.what());
   }

@@ -39,23 +39,23 @@ JobRecord::JobRecord(const PlannedJob& plan, std::string name)
   conclusion_.reason = kNoEnd;
 }
 
-void JobRecord::addCycle(const CycleRecord& record) {
-  if (cycles_++ == 0) started_ = record.time;
-  ended_ = record.time;
-  if (isLate(record.period, program_->machine().period)) ++late_;
-  updateMax(longest_, record.period);
-  const bool by_operator = record.interlock == Interlock::kNone;
-  events_.add(since(record), rowOf(record.state).holds_job, by_operator ? "" : toString(record.interlock),
-              record.feed_override, pass_);
+void JobRecord::addCycle(const CycleSample& sample) {
+  if (cycles_++ == 0) started_ = sample.time;
+  ended_ = sample.time;
+  if (isLate(sample.period, program_->machine().period)) ++late_;
+  updateMax(longest_, sample.period);
+  const bool by_operator = sample.interlock == Interlock::kNone;
+  events_.add(since(sample), rowOf(sample.state).holds_job, by_operator ? "" : toString(sample.interlock),
+              sample.feed_override, pass_);
 }
 
-void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleRecord& record) {
+void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleSample& sample) {
   ++setpoints_;
   pass_ = {setpoint.tooth, setpoint.pass};
   if (setpoint.move != MoveKind::kStroke) return;
-  strokes_.add(setpoint, since(record));
+  strokes_.add(setpoint, since(sample));
   Axes error;
-  for (int axis = 0; axis < kAxisCount; ++axis) error[axis] = record.followingError(axis);
+  for (int axis = 0; axis < kAxisCount; ++axis) error[axis] = sample.followingError(axis);
   strokes_.addFollowingError(error);
 }
 

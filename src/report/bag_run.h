@@ -17,7 +17,7 @@ class MessageInstance;
 
 namespace grinder {
 
-/// A job in a bag that `roslaunch flute_grinder grinder.launch record:=true` wrote.
+/// A job in a bag that `roslaunch flute_grinder grinder.launch bag:=true` wrote.
 class BagRun : public RunFile {
  public:
   BagRun(std::string path, int job);

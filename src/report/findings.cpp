@@ -193,7 +193,7 @@ Json findingsOfRecord(const Json& record, const ReportContext& context) {
   if (!context.tool.is_null()) data["tool"] = context.tool;
   judgeRecord(data, context.tolerances);
   data["left_out"] = {
-      "Pictures of the axes: a record of the grinder keeps each stroke's figures only; a bag of record:=true has every "
+      "Pictures of the axes: a record of the grinder keeps each stroke's figures only; a bag (bag:=true) has every "
       "setpoint. The tool is the one that the job asks for, not measured."};
   if (!context.no_tool.empty()) data["left_out"].push_back("The ground tool: " + context.no_tool);
   return data;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "control/fixtures.h"
-#include "flute_grinder/control/cycle_record.h"
+#include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <array>
@@ -45,7 +45,7 @@ inline testing::AssertionResult sameSetpoints(const std::vector<Setpoint>& a, co
 /// Whether a log shows only motion within the axes' limits, and every setpoint of a job once and in order: no step
 /// beyond the velocity limit; no acceleration or jerk beyond its limit, over pairs, since the odd and even steps within
 /// a pair differ from the path's; cycle numbers without a gap; and constant commands where there is no setpoint.
-inline testing::AssertionResult smooth(const std::vector<CycleRecord>& log,
+inline testing::AssertionResult smooth(const std::vector<CycleSample>& log,
                                        const AxisLimits& limits = machineConfig().machine.limits) {
   constexpr double kPeriod = 0.001;
   constexpr double kRounding = 1e-6;  // relative; far above that of positions, far below any fault
@@ -56,29 +56,29 @@ inline testing::AssertionResult smooth(const std::vector<CycleRecord>& log,
   std::array<Axes, 4> ends;  // of the last pairs, newest first
   ends.fill(Axes::Zero());
   for (std::size_t i = 1; i < log.size(); ++i) {
-    const CycleRecord& record = log[i];
+    const CycleSample& sample = log[i];
     const auto failure = [&] {
-      return testing::AssertionFailure() << "record " << i << ", " << toString(record.state) << ", cycle "
-                                         << record.setpoint.cycle << " in " << toString(record.setpoint.move) << ": ";
+      return testing::AssertionFailure() << "sample " << i << ", " << toString(sample.state) << ", cycle "
+                                         << sample.setpoint.cycle << " in " << toString(sample.setpoint.move) << ": ";
     };
     const bool follows = [&] {
       const auto off = [](MachineState s) { return s == MachineState::kDisabled || s == MachineState::kHoming; };
-      return off(record.state) || off(log[i - 1].state);
+      return off(sample.state) || off(log[i - 1].state);
     }();
     if (follows) continue;
-    if (!record.has_setpoint) {
-      if (!sameBits(record.command, log[i - 1].command)) return failure() << "the command moves without a setpoint";
+    if (!sample.has_setpoint) {
+      if (!sameBits(sample.command, log[i - 1].command)) return failure() << "the command moves without a setpoint";
       continue;
     }
-    const Axes& p = record.setpoint.position;
-    if (!sameBits(record.command, p)) return failure() << "the command is not the setpoint";
+    const Axes& p = sample.setpoint.position;
+    if (!sameBits(sample.command, p)) return failure() << "the command is not the setpoint";
     const Axes step = p - log[i - 1].command;
     if (!(step.abs() <= step_limit).all()) return failure() << "a step of " << step.transpose();
-    if (record.setpoint.cycle == 0) {
+    if (sample.setpoint.cycle == 0) {
       next = 0;
       ends.fill(p);
     }
-    if (record.setpoint.cycle != next) return failure() << "expected cycle " << next;
+    if (sample.setpoint.cycle != next) return failure() << "expected cycle " << next;
     if (next++ % 2 == 1) continue;
     ends = {p, ends[0], ends[1], ends[2]};
     const Axes bend = ends[0] - 2 * ends[1] + ends[2];
@@ -89,12 +89,12 @@ inline testing::AssertionResult smooth(const std::vector<CycleRecord>& log,
   return testing::AssertionSuccess();
 }
 
-/// Whether all records of a log from an index on show the axes at rest.
-inline testing::AssertionResult atRestFrom(const std::vector<CycleRecord>& log, std::size_t from) {
+/// Whether all samples of a log from an index on show the axes at rest.
+inline testing::AssertionResult atRestFrom(const std::vector<CycleSample>& log, std::size_t from) {
   for (std::size_t i = from; i < log.size(); ++i) {
-    if (log[i].has_setpoint) return testing::AssertionFailure() << "a setpoint in record " << i;
+    if (log[i].has_setpoint) return testing::AssertionFailure() << "a setpoint in sample " << i;
     if (!sameBits(log[i].command, log[from].command)) {
-      return testing::AssertionFailure() << "the command moves in record " << i;
+      return testing::AssertionFailure() << "the command moves in sample " << i;
     }
   }
   return testing::AssertionSuccess();

@@ -13,7 +13,7 @@
 // Runs the control loop cycle by cycle, without its thread and without ROS.
 namespace grinder::test_support {
 
-/// A drive and its loop; every cycle's record is popped into the log. The swivel is confirmed for the paper's job.
+/// A drive and its loop; every cycle's sample is popped into the log. The swivel is confirmed for the paper's job.
 /// Neither a cycle nor a request may use the heap.
 template <typename Drive>
 class Rig {
@@ -33,22 +33,22 @@ class Rig {
   }
 
   /// @param periods since the last cycle.
-  const CycleRecord& cycle(double periods = 1) {
+  const CycleSample& cycle(double periods = 1) {
     const ros::Duration period(periods * config_.machine.period);
     unseen(period);
-    CycleRecord record;
-    if (!loop->pop(record)) ADD_FAILURE() << "a cycle left no record";
-    log.push_back(record);
+    CycleSample sample;
+    if (!loop->pop(sample)) ADD_FAILURE() << "a cycle left no sample";
+    log.push_back(sample);
     return log.back();
   }
 
-  /// Runs cycles whose records nobody takes.
+  /// Runs cycles whose samples nobody takes.
   void runUnseen(std::size_t cycles) {
     const ros::Duration period(config_.machine.period);
     for (std::size_t i = 0; i < cycles; ++i) unseen(period);
   }
 
-  const CycleRecord& run(int cycles) {
+  const CycleSample& run(int cycles) {
     for (int i = 0; i < cycles; ++i) cycle();
     return log.back();
   }
@@ -169,25 +169,25 @@ class Rig {
     FAIL() << "the job does not end";
   }
 
-  const CycleRecord& last() const { return log.back(); }
+  const CycleSample& last() const { return log.back(); }
 
   int jobsEnded() const {
     int count = 0;
-    for (const CycleRecord& record : log) count += record.job_ended;
+    for (const CycleSample& sample : log) count += sample.job_ended;
     return count;
   }
 
   std::vector<Setpoint> setpoints() const {
     std::vector<Setpoint> all;
-    for (const CycleRecord& record : log) {
-      if (record.has_setpoint) all.push_back(record.setpoint);
+    for (const CycleSample& sample : log) {
+      if (sample.has_setpoint) all.push_back(sample.setpoint);
     }
     return all;
   }
 
   Drive drive;
   std::unique_ptr<ControlLoop> loop;
-  std::vector<CycleRecord> log;
+  std::vector<CycleSample> log;
   std::optional<SetpointStream> stream;
 
  private:

@@ -76,7 +76,7 @@ class CancelIn : public testing::TestWithParam<S> {
   }
 
   Rig<FakeDrive> rig_;
-  std::size_t before_ = 0;  ///< last record before the request
+  std::size_t before_ = 0;  ///< last sample before the request
 };
 
 TEST_P(CancelIn, EndsTheJobReadyAndAtRest) {

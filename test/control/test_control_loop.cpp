@@ -4,7 +4,7 @@
 
 #include <limits>
 
-// Construction, the loop without power, a whole job, and the records.
+// Construction, the loop without power, a whole job, and the samples.
 namespace grinder::test_support {
 namespace test_control_loop {
 
@@ -98,19 +98,19 @@ TEST(ControlLoopDisabled, CommandsKeepTheLastGoodPositionWhileOneIsNotANumber) {
   EXPECT_TRUE(sameBits(toAxes(rig.drive.written), good));
 }
 
-TEST(ControlLoopDisabled, RecordsWhatWasRead) {
+TEST(ControlLoopDisabled, SamplesWhatWasRead) {
   Rig<FakeDrive> rig;
   rig.drive.place({0.01, 0.02, 0.03, 0.04});
   rig.drive.velocity = {1, 2, 3, 4};
   rig.drive.status.emergency_stop = true;
-  const CycleRecord& record = rig.cycle();
-  EXPECT_TRUE(sameBits(record.position, Axes(0.01, 0.02, 0.03, 0.04)));
-  EXPECT_TRUE(sameBits(record.velocity, Axes(1, 2, 3, 4)));
-  EXPECT_TRUE(record.drive.emergency_stop);
-  EXPECT_TRUE(record.drive.homed);
-  EXPECT_EQ(record.drive.feedback_count, 1u);
-  EXPECT_DOUBLE_EQ(record.time, 1000.001);
-  EXPECT_DOUBLE_EQ(record.period, 0.001);
+  const CycleSample& sample = rig.cycle();
+  EXPECT_TRUE(sameBits(sample.position, Axes(0.01, 0.02, 0.03, 0.04)));
+  EXPECT_TRUE(sameBits(sample.velocity, Axes(1, 2, 3, 4)));
+  EXPECT_TRUE(sample.drive.emergency_stop);
+  EXPECT_TRUE(sample.drive.homed);
+  EXPECT_EQ(sample.drive.feedback_count, 1u);
+  EXPECT_DOUBLE_EQ(sample.time, 1000.001);
+  EXPECT_DOUBLE_EQ(sample.period, 0.001);
 }
 
 TEST(ControlLoopDisabled, AnEmergencyStopWithoutPowerIsNoFault) {
@@ -143,36 +143,36 @@ TEST_F(PaperJob, WritesEverySetpointInACycleOfItsOwnWithoutGaps) {
   std::uint64_t expected = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < rig_.log.size(); ++i) {
-    const CycleRecord& record = rig_.log[i];
-    if (!record.has_setpoint) continue;
+    const CycleSample& sample = rig_.log[i];
+    if (!sample.has_setpoint) continue;
     if (expected == 0) first = i;
-    ASSERT_EQ(record.state, S::kRunning);
+    ASSERT_EQ(sample.state, S::kRunning);
     ASSERT_EQ(i - first, expected);
-    ASSERT_EQ(record.setpoint.cycle, expected++);
-    ASSERT_TRUE(sameBits(record.command, record.setpoint.position));
+    ASSERT_EQ(sample.setpoint.cycle, expected++);
+    ASSERT_TRUE(sameBits(sample.command, sample.setpoint.position));
   }
   EXPECT_GT(expected, 3000u);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Records
+// Samples
 
-TEST(ControlLoopRecords, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
+TEST(ControlLoopSamples, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
   Rig<FakeDrive> rig;
   rig.runUnseen(8192 + 7);
   EXPECT_EQ(rig.drive.status.feedback_count, 8192u + 7);
-  CycleRecord record;
+  CycleSample sample;
   int taken = 0;
-  while (rig.loop->pop(record)) {
-    EXPECT_EQ(record.records_lost, 0u);
+  while (rig.loop->pop(sample)) {
+    EXPECT_EQ(sample.samples_lost, 0u);
     ++taken;
   }
   EXPECT_EQ(taken, 8192);
-  EXPECT_EQ(rig.cycle().records_lost, 7u);
-  EXPECT_EQ(rig.cycle().records_lost, 7u);
+  EXPECT_EQ(rig.cycle().samples_lost, 7u);
+  EXPECT_EQ(rig.cycle().samples_lost, 7u);
 }
 
-TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
+TEST(ControlLoopSamples, AJobIsStreamedWholeWithNobodyTakingThem) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
@@ -183,26 +183,26 @@ TEST(ControlLoopRecords, AJobIsStreamedWholeWithNobodyTakingThem) {
   EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
   EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
   EXPECT_EQ(rig.loop->status().setpoints_written, planned);
-  CycleRecord record;
-  while (rig.loop->pop(record)) {
+  CycleSample sample;
+  while (rig.loop->pop(sample)) {
   }
-  const CycleRecord& last = rig.cycle();
+  const CycleSample& last = rig.cycle();
   EXPECT_EQ(last.state, S::kReady);
-  EXPECT_GT(last.records_lost, 0u);
+  EXPECT_GT(last.samples_lost, 0u);
   EXPECT_TRUE((last.command == machineConfig().machine.park).all());
 }
 
-TEST(ControlLoopRecords, TheEndOfAJobIsReportedEvenIfItsOwnRecordWasLost) {
+TEST(ControlLoopSamples, TheEndOfAJobIsReportedEvenIfItsOwnSampleWasLost) {
   Rig<FakeDrive> rig;
   rig.cycle();
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
-  rig.runUnseen(8192);  // no room for any record of the job
+  rig.runUnseen(8192);  // no room for any sample of the job
   ASSERT_TRUE(rig.loop->startJob(&stream));
   rig.runUnseen(planned + 10);
-  CycleRecord record;
-  while (rig.loop->pop(record)) EXPECT_FALSE(record.job_ended);
+  CycleSample sample;
+  while (rig.loop->pop(sample)) EXPECT_FALSE(sample.job_ended);
   EXPECT_TRUE(rig.cycle().job_ended);
   EXPECT_FALSE(rig.cycle().job_ended);
 }

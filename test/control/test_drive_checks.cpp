@@ -13,73 +13,73 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class DriveChecksTest : public testing::Test {
  protected:
   DriveChecksTest() {
-    record_.period = config_.machine.period;
-    record_.drive.enabled = true;
-    record_.drive.underruns = 7;
-    record_.position = record_.command_in_effect = config_.machine.park;
-    checks_.powerOn(record_.drive);
+    sample_.period = config_.machine.period;
+    sample_.drive.enabled = true;
+    sample_.drive.underruns = 7;
+    sample_.position = sample_.command_in_effect = config_.machine.park;
+    checks_.powerOn(sample_.drive);
   }
 
   FaultKind found(bool moving_unbuffered = true) const {
-    const auto fault = checks_.findFault(record_, moving_unbuffered);
+    const auto fault = checks_.findFault(sample_, moving_unbuffered);
     return fault ? fault->kind : FaultKind::kNone;
   }
 
   const LoopConfig config_ = machineConfig();
   DriveChecks checks_{config_};
-  CycleRecord record_;
+  CycleSample sample_;
 };
 
 TEST_F(DriveChecksTest, FindNothingWhereNothingIsWrong) {
   EXPECT_EQ(found(), FaultKind::kNone);
-  EXPECT_EQ(checks_.powerRefusal(record_), Refusal::kNone);
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kNone);
 }
 
 // Each cause is added to the ones over which it takes precedence.
 TEST_F(DriveChecksTest, FindTheCauseBeforeItsConsequences) {
-  record_.position[kY] += 1;
+  sample_.position[kY] += 1;
   EXPECT_EQ(found(), FaultKind::kFollowingError);
-  record_.position[kY] = kNan;
+  sample_.position[kY] = kNan;
   EXPECT_EQ(found(), FaultKind::kInvalidFeedback);
-  record_.feedback_age = 1;
+  sample_.feedback_age = 1;
   EXPECT_EQ(found(), FaultKind::kStaleFeedback);
-  record_.drive.enabled = false;
+  sample_.drive.enabled = false;
   EXPECT_EQ(found(), FaultKind::kPowerLost);
-  record_.drive.fault = true;
+  sample_.drive.fault = true;
   EXPECT_EQ(found(), FaultKind::kDriveFault);
-  record_.period *= 2 * config_.late_fault;
+  sample_.period *= 2 * config_.late_fault;
   EXPECT_EQ(found(), FaultKind::kLate);
-  ++record_.drive.underruns;
+  ++sample_.drive.underruns;
   EXPECT_EQ(found(), FaultKind::kUnderrun);
-  record_.drive.emergency_stop = true;
+  sample_.drive.emergency_stop = true;
   EXPECT_EQ(found(), FaultKind::kEmergencyStop);
 }
 
 TEST_F(DriveChecksTest, ALateCycleIsNoFaultWhileTheAxesStandOrPlayABuffer) {
-  record_.period *= 2 * config_.late_fault;
+  sample_.period *= 2 * config_.late_fault;
   EXPECT_EQ(found(false), FaultKind::kNone);
 }
 
 TEST_F(DriveChecksTest, UnderrunsCountFromThePowerOn) {
-  record_.drive.underruns += 3;
-  const auto fault = checks_.findFault(record_, false);
+  sample_.drive.underruns += 3;
+  const auto fault = checks_.findFault(sample_, false);
   ASSERT_TRUE(fault);
   EXPECT_EQ(fault->kind, FaultKind::kUnderrun);
   EXPECT_EQ(fault->value, 3);
 }
 
 TEST_F(DriveChecksTest, RefusePowerWithTheReason) {
-  record_.position[kZ] = kNan;
-  EXPECT_EQ(checks_.powerRefusal(record_), Refusal::kFeedback);
-  record_.drive.fault = true;
-  EXPECT_EQ(checks_.powerRefusal(record_), Refusal::kDriveFault);
-  record_.drive.emergency_stop = true;
-  EXPECT_EQ(checks_.powerRefusal(record_), Refusal::kEmergencyStop);
+  sample_.position[kZ] = kNan;
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
+  sample_.drive.fault = true;
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kDriveFault);
+  sample_.drive.emergency_stop = true;
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kEmergencyStop);
 }
 
 TEST_F(DriveChecksTest, RefusePowerForAFeedbackAgeThatIsNotANumber) {
-  record_.feedback_age = kNan;
-  EXPECT_EQ(checks_.powerRefusal(record_), Refusal::kFeedback);
+  sample_.feedback_age = kNan;
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
   EXPECT_EQ(found(), FaultKind::kStaleFeedback);
 }
 

@@ -53,33 +53,33 @@ std::vector<FaultCase> faultCases() {
        1,
        FaultKind::kFollowingError,
        kA,
-       {"axis_a following error 6.2831", " rad", "limit 0.05 rad"}},
+       {"axis A following error 360", " deg", "limit 2.86479 deg"}},
       {"FullTurnBack",
        [](FakeDrive& d) { d.position[kA] -= 2 * std::acos(-1.0); },
        1,
        FaultKind::kFollowingError,
        kA,
-       {"axis_a following error 6.2831", " rad", "limit 0.05 rad"}},
+       {"axis A following error 360", " deg", "limit 2.86479 deg"}},
   };
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string letter(1, "XYZA"[axis]);
-    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    const std::string name = "axis " + letter;
     const auto n = static_cast<std::size_t>(axis);
     cases.push_back({"Nan" + letter,
                      [=](FakeDrive& d) { d.position[n] = kNan; },
                      1,
                      FaultKind::kInvalidFeedback,
                      axis,
-                     {joint + " position", "nan"}});
+                     {name + " position", "nan"}});
     cases.push_back({"Infinite" + letter,
                      [=](FakeDrive& d) { d.position[n] = -HUGE_VAL; },
                      1,
                      FaultKind::kInvalidFeedback,
                      axis,
-                     {joint + " position", "-inf"}});
+                     {name + " position", "-inf"}});
     const double limit = axis == kA ? 0.05 : 0.001;
-    const std::vector<std::string> words{joint + " following error", axis == kA ? "0.0501 rad" : "0.001002 m",
-                                         axis == kA ? "limit 0.05 rad" : "limit 0.001 m"};
+    const std::vector<std::string> words{name + " following error", axis == kA ? "2.87" : "1.002 mm",
+                                         axis == kA ? "limit 2.86479 deg" : "limit 1 mm"};
     for (const double side : {1.0, -1.0}) {
       cases.push_back({"Following" + letter + (side > 0 ? "Ahead" : "Behind"),
                        [=](FakeDrive& d) { d.position[n] += side * limit * 1.002; }, 1, FaultKind::kFollowingError,
@@ -272,7 +272,7 @@ class FaultIn : public testing::TestWithParam<S> {
   bool hadJob() const { return GetParam() != S::kReady && GetParam() != S::kHoming; }
 
   Rig<FakeDrive> rig_;
-  std::size_t before_ = 0;  ///< last record before the fault
+  std::size_t before_ = 0;  ///< last sample before the fault
 };
 
 TEST_P(FaultIn, EndsTheJobIfThereIsOne) {

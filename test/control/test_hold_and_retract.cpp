@@ -22,7 +22,7 @@ class HoldAt : public testing::TestWithParam<Moment> {
   }
 
   Rig<SimulatedDrive> rig_;
-  std::size_t before_ = 0;  ///< records before the request
+  std::size_t before_ = 0;  ///< samples before the request
 };
 
 TEST_P(HoldAt, StopsAsAStreamHeldInTheSameCycle) {
@@ -67,7 +67,7 @@ TEST_P(HoldAt, ResumeBeforeItRestsGoesOnWithoutARest) {
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
   expectCompleted(rig_);
-  for (std::size_t i = before_; i + 1 < rig_.log.size(); ++i) ASSERT_TRUE(rig_.log[i].has_setpoint) << "record " << i;
+  for (std::size_t i = before_; i + 1 < rig_.log.size(); ++i) ASSERT_TRUE(rig_.log[i].has_setpoint) << "sample " << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(, HoldAt, testing::ValuesIn(moments({0, 300, 500, 990})), momentName);
@@ -114,7 +114,7 @@ class RetractAt : public testing::TestWithParam<Moment> {
   }
 
   Rig<SimulatedDrive> rig_;
-  std::size_t held_ = 0;  ///< last record before the request
+  std::size_t held_ = 0;  ///< last sample before the request
 };
 
 TEST_P(RetractAt, LiftsTheWheelRadiallyUntilItIsClear) {
@@ -151,17 +151,17 @@ TEST_P(RetractAt, ResumeGoesBackAndCompletesTheJob) {
   if (!in_stroke) return;
   // The flute is ground without a gap: the stroke goes on from where it was left, or from before.
   const auto entered = std::find_if(rig_.log.begin() + static_cast<std::ptrdiff_t>(lifted), rig_.log.end(),
-                                    [](const CycleRecord& r) { return r.setpoint.move == MoveKind::kStroke; });
+                                    [](const CycleSample& r) { return r.setpoint.move == MoveKind::kStroke; });
   ASSERT_NE(entered, rig_.log.end());
   EXPECT_LE((entered - 1)->command[kX], left[kX]);
-  for (auto record = rig_.log.begin() + static_cast<std::ptrdiff_t>(lifted); record != entered; ++record) {
-    const bool along = record->has_setpoint && record->command[kX] != (record - 1)->command[kX];
+  for (auto sample = rig_.log.begin() + static_cast<std::ptrdiff_t>(lifted); sample != entered; ++sample) {
+    const bool along = sample->has_setpoint && sample->command[kX] != (sample - 1)->command[kX];
     if (!along) continue;
-    ASSERT_GE(record->command[kY], kClearanceHeight - 1e-12) << "goes along the work in it";
+    ASSERT_GE(sample->command[kY], kClearanceHeight - 1e-12) << "goes along the work in it";
   }
-  for (auto record = entered; record != rig_.log.end(); ++record) {
-    const bool stroke = record->has_setpoint && record->setpoint.move == MoveKind::kStroke;
-    ASSERT_TRUE(!stroke || onPath(record->setpoint));
+  for (auto sample = entered; sample != rig_.log.end(); ++sample) {
+    const bool stroke = sample->has_setpoint && sample->setpoint.move == MoveKind::kStroke;
+    ASSERT_TRUE(!stroke || onPath(sample->setpoint));
   }
 }
 
@@ -172,7 +172,7 @@ TEST_P(RetractAt, IsResumingUntilItIsOnThePathThenRunning) {
   bool running = false;
   for (std::size_t i = lifted; i + 1 < rig_.log.size(); ++i) {
     running |= rig_.log[i].state == S::kRunning;
-    ASSERT_EQ(rig_.log[i].state, running ? S::kRunning : S::kResuming) << "record " << i;
+    ASSERT_EQ(rig_.log[i].state, running ? S::kRunning : S::kResuming) << "sample " << i;
   }
 }
 

@@ -199,8 +199,8 @@ TEST(SpindleAndCoolant, AreCommandedThroughAWholeJob) {
   ASSERT_TRUE(rig.loop->startJob(&*rig.stream));
   for (int i = 0; i < 100000; ++i) {
     rig.cycle();
-    ASSERT_EQ(rig.drive.written_drive.spindle, !rig.last().job_ended) << "record " << i;
-    ASSERT_EQ(rig.drive.written_drive.coolant, !rig.last().job_ended) << "record " << i;
+    ASSERT_EQ(rig.drive.written_drive.spindle, !rig.last().job_ended) << "sample " << i;
+    ASSERT_EQ(rig.drive.written_drive.coolant, !rig.last().job_ended) << "sample " << i;
     if (rig.last().job_ended) break;
   }
   EXPECT_EQ(rig.last().state, S::kReady);

@@ -70,7 +70,7 @@ TEST_P(JogFrom, AStepMovesItsAxisExactlyByItsDistanceAndComesBackToTheState) {
     EXPECT_EQ(rig_.last().state, GetParam());
     EXPECT_EQ(rig_.last().command[axis], from[axis] + distance);
     const std::uint64_t by_now = rig_.loop->status().setpoints_written;
-    EXPECT_TRUE(GetParam() == S::kReady ? by_now == written : by_now > written) << "a job records its jogs";
+    EXPECT_TRUE(GetParam() == S::kReady ? by_now == written : by_now > written) << "a job samples its jogs";
   }
   EXPECT_TRUE(smooth(rig_.log));
 }
@@ -460,10 +460,10 @@ TEST_P(JogRetractedAt, TheJobIsCompletedOnTheSamePath) {
   rig.runToEnd();
   expectCompleted(rig);
   std::uint64_t next = 0;
-  for (const CycleRecord& record : rig.log) {
-    if (!record.has_setpoint) continue;
-    ASSERT_EQ(record.setpoint.cycle, next++);
-    ASSERT_TRUE(record.setpoint.move != MoveKind::kStroke || onPath(record.setpoint));
+  for (const CycleSample& sample : rig.log) {
+    if (!sample.has_setpoint) continue;
+    ASSERT_EQ(sample.setpoint.cycle, next++);
+    ASSERT_TRUE(sample.setpoint.move != MoveKind::kStroke || onPath(sample.setpoint));
   }
   EXPECT_EQ(rig.loop->status().setpoints_written, next);
 }

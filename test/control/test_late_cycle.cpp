@@ -27,11 +27,11 @@ class LateWhileMovingIn : public testing::TestWithParam<S> {
 };
 
 TEST_P(LateWhileMovingIn, BeyondTheLimitIsAFault) {
-  const CycleRecord& record = rig_.cycle(52);
-  EXPECT_EQ(record.state, S::kFault);
-  EXPECT_EQ(record.fault.kind, FaultKind::kLate);
-  EXPECT_EQ(record.fault.text(), "the control loop came 0.052 s after the cycle before, allowed 0.01 s");
-  EXPECT_FALSE(record.has_setpoint);
+  const CycleSample& sample = rig_.cycle(52);
+  EXPECT_EQ(sample.state, S::kFault);
+  EXPECT_EQ(sample.fault.kind, FaultKind::kLate);
+  EXPECT_EQ(sample.fault.text(), "the control loop came 0.052 s after the cycle before, allowed 0.01 s");
+  EXPECT_FALSE(sample.has_setpoint);
   EXPECT_FALSE(rig_.drive.written_drive.enable);
 }
 

@@ -42,13 +42,13 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   EXPECT_EQ(rig_.last().state, S::kLifting);
   const std::uint64_t written = rig_.loop->status().setpoints_written;
   while (rig_.last().state == S::kLifting) {
-    const CycleRecord& record = rig_.last();
-    ASSERT_TRUE(record.has_setpoint);
-    ASSERT_EQ(record.job, 0u);
-    ASSERT_EQ(record.setpoint.move, MoveKind::kLift);
-    ASSERT_TRUE(record.wheel_in_work);
-    ASSERT_TRUE(sameBits(record.command, Axes(from[kX], record.command[kY], from[kZ], from[kA])));
-    ASSERT_GE(record.command[kY], rig_.log[rig_.log.size() - 2].command[kY]);
+    const CycleSample& sample = rig_.last();
+    ASSERT_TRUE(sample.has_setpoint);
+    ASSERT_EQ(sample.job, 0u);
+    ASSERT_EQ(sample.setpoint.move, MoveKind::kLift);
+    ASSERT_TRUE(sample.wheel_in_work);
+    ASSERT_TRUE(sameBits(sample.command, Axes(from[kX], sample.command[kY], from[kZ], from[kA])));
+    ASSERT_GE(sample.command[kY], rig_.log[rig_.log.size() - 2].command[kY]);
     ASSERT_FALSE(rig_.drive.written_drive.spindle);
     rig_.cycle();
   }
@@ -94,7 +94,7 @@ class StopsTheLift : public testing::TestWithParam<E> {};
 TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
   Rig<FakeDrive> rig;
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
-  const auto is_lift = [](const CycleRecord& r) { return r.state == S::kLifting; };
+  const auto is_lift = [](const CycleSample& r) { return r.state == S::kLifting; };
   const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
   const auto before = begun - rig.log.begin() - 1;
   ASSERT_TRUE(rig.ask(GetParam()).accepted);

@@ -23,9 +23,9 @@ class ControlLoopThread : public testing::Test {
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
   }
 
-  bool popInTime(CycleRecord& record) {
+  bool popInTime(CycleSample& sample) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!loop_->pop(record)) {
+    while (!loop_->pop(sample)) {
       if (std::chrono::steady_clock::now() > deadline) return false;
       std::this_thread::yield();
     }
@@ -38,17 +38,17 @@ class ControlLoopThread : public testing::Test {
 
 TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   loop_->startThread();
-  CycleRecord record;
-  ASSERT_TRUE(popInTime(record));
-  const double first = record.time;
+  CycleSample sample;
+  ASSERT_TRUE(popInTime(sample));
+  const double first = sample.time;
   double sum = 0;
   for (int i = 0; i < 30; ++i) {
-    ASSERT_TRUE(popInTime(record));
-    EXPECT_GT(record.period, 0);
-    sum += record.period;
+    ASSERT_TRUE(popInTime(sample));
+    EXPECT_GT(sample.period, 0);
+    sum += sample.period;
   }
   // Seconds since 1970 have a resolution of a quarter of a microsecond as a double.
-  EXPECT_NEAR(record.time - first, sum, 1e-6);
+  EXPECT_NEAR(sample.time - first, sum, 1e-6);
 }
 
 TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {
@@ -61,13 +61,13 @@ TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {
   drive_.on_read = [&](FakeDrive&) { spend(); };
   drive_.on_wait = spend;
   loop_->startThread();
-  CycleRecord record;
-  ASSERT_TRUE(popInTime(record));
-  EXPECT_EQ(record.busy, 0);
+  CycleSample sample;
+  ASSERT_TRUE(popInTime(sample));
+  EXPECT_EQ(sample.busy, 0);
   for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(popInTime(record));
-    EXPECT_GE(record.busy, 0.002);
-    EXPECT_LE(record.busy, record.period - 0.002);
+    ASSERT_TRUE(popInTime(sample));
+    EXPECT_GE(sample.busy, 0.002);
+    EXPECT_LE(sample.busy, sample.period - 0.002);
   }
 }
 
@@ -88,14 +88,14 @@ TEST_F(ControlLoopThread, KeepsTheComputersTime) {
   ros::Time::setNow(ros::Time(5));  // as of a simulation
   const double before = ros::WallTime::now().toSec();
   loop_->startThread();
-  CycleRecord record;
-  const bool popped = popInTime(record);
+  CycleSample sample;
+  const bool popped = popInTime(sample);
   loop_->stopThread();
   ros::Time::init();
   ASSERT_TRUE(popped);
-  EXPECT_GE(record.time, before - 1e-3);
-  EXPECT_LE(record.time, ros::WallTime::now().toSec());
-  EXPECT_GE(loop_->status().time, record.time);
+  EXPECT_GE(sample.time, before - 1e-3);
+  EXPECT_LE(sample.time, ros::WallTime::now().toSec());
+  EXPECT_GE(loop_->status().time, sample.time);
 }
 
 TEST_F(ControlLoopThread, TakesNoSignal) {
@@ -110,8 +110,8 @@ TEST_F(ControlLoopThread, TakesNoSignal) {
     open = count;
   };
   loop_->startThread();
-  CycleRecord record;
-  ASSERT_TRUE(popInTime(record));
+  CycleSample sample;
+  ASSERT_TRUE(popInTime(sample));
   loop_->stopThread();
   EXPECT_EQ(open, 0);
 }
@@ -137,8 +137,8 @@ TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
 
 TEST_F(ControlLoopThread, AnswersAStopAndReportsItsStatus) {
   loop_->startThread();
-  CycleRecord record;
-  ASSERT_TRUE(popInTime(record));
+  CycleSample sample;
+  ASSERT_TRUE(popInTime(sample));
   EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
   const RequestReply answer = loop_->stop(E::kCancel);
   EXPECT_TRUE(answer.answered);
@@ -162,14 +162,14 @@ TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
 
 TEST_F(ControlLoopThread, StopEndsTheCycles) {
   loop_->startThread();
-  CycleRecord record;
-  ASSERT_TRUE(popInTime(record));
+  CycleSample sample;
+  ASSERT_TRUE(popInTime(sample));
   loop_->stopThread();
-  while (loop_->pop(record)) {
+  while (loop_->pop(sample)) {
   }
   const std::uint64_t cycles = drive_.status.feedback_count;
   std::this_thread::yield();
-  EXPECT_FALSE(loop_->pop(record));
+  EXPECT_FALSE(loop_->pop(sample));
   EXPECT_EQ(drive_.status.feedback_count, cycles);
 }
 

@@ -126,11 +126,11 @@ TEST_F(LoopThreads, AskAtRandomMoments) {
     bad += (status.end == JobEnd::kNone) != (status.jobs_started != status.jobs_ended) && status.jobs_started > 0;
   });
   spawn(7, [&](std::mt19937&) {
-    CycleRecord record;
-    while (loop_->pop(record)) {
+    CycleSample sample;
+    while (loop_->pop(sample)) {
       ++taken;
-      bad += record.has_setpoint && !record.drive.enabled;
-      bad += record.state == S::kDisabled && record.has_setpoint;
+      bad += sample.has_setpoint && !sample.drive.enabled;
+      bad += sample.state == S::kDisabled && sample.has_setpoint;
     }
   });
   EXPECT_TRUE(soon([&] { return loop_->status().cycles > kCycles && loop_->status().jobs_ended > 2; }));

@@ -93,7 +93,7 @@ class Lost : public testing::TestWithParam<std::tuple<Part, LossMoment>> {
   }
 
   Rig<FakeDrive> rig_;
-  std::size_t before_ = 0;  ///< last record before the loss
+  std::size_t before_ = 0;  ///< last sample before the loss
 };
 
 TEST_P(Lost, IsReportedAndActedUponInTheSameCycle) {
@@ -174,9 +174,9 @@ TEST_P(LostPart, WhileCancelingDoesNotKeepTheJobFromEnding) {
   rig_.drive.on_read = GetParam().lose;
   rig_.runUntil(S::kReady);
   EXPECT_EQ(rig_.jobsEnded(), 1);
-  for (const CycleRecord& record : rig_.log) {
-    ASSERT_NE(record.state, S::kRetracting);
-    ASSERT_EQ(record.interlock, Interlock::kNone) << "it was not the loop that stopped the job";
+  for (const CycleSample& sample : rig_.log) {
+    ASSERT_NE(sample.state, S::kRetracting);
+    ASSERT_EQ(sample.interlock, Interlock::kNone) << "it was not the loop that stopped the job";
   }
 }
 

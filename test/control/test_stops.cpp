@@ -23,8 +23,8 @@ class HoldWhileStarting : public testing::Test {
 
   /// Expects that no axis was commanded to move.
   void expectStanding() const {
-    for (const CycleRecord& record : rig_.log) {
-      ASSERT_TRUE(sameBits(record.command, machineConfig().machine.park)) << toString(record.state);
+    for (const CycleSample& sample : rig_.log) {
+      ASSERT_TRUE(sameBits(sample.command, machineConfig().machine.park)) << toString(sample.state);
     }
   }
 
@@ -41,7 +41,7 @@ TEST_F(HoldWhileStarting, LetsSpindleAndCoolantRunUpAndIsHeldThen) {
   rig_.run(500);
   EXPECT_EQ(rig_.last().state, S::kHeld);
   EXPECT_TRUE(rig_.drive.written_drive.spindle);
-  for (const CycleRecord& record : rig_.log) EXPECT_NE(record.state, S::kRunning);
+  for (const CycleSample& sample : rig_.log) EXPECT_NE(sample.state, S::kRunning);
   expectStanding();
 }
 
@@ -62,7 +62,7 @@ TEST_F(HoldWhileStarting, ResumeWhileStartingTakesItBack) {
   rig_.runUntil(S::kRunning);
   rig_.runToEnd();
   EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
-  for (const CycleRecord& record : rig_.log) EXPECT_NE(record.state, S::kHeld);
+  for (const CycleSample& sample : rig_.log) EXPECT_NE(sample.state, S::kHeld);
 }
 
 TEST_F(HoldWhileStarting, CancelEndsTheJobWithoutASetpoint) {

@@ -7,7 +7,7 @@ namespace test_switches {
 class Switches : public testing::Test {
  protected:
   void SetUp() override { rig.cycle(); }
-  /// What the drive is commanded to do, and what the record says of it.
+  /// What the drive is commanded to do, and what the sample says of it.
   std::string on() {
     const DriveCommand& c = rig.drive.written_drive;
     EXPECT_EQ(c.spindle, rig.last().spindle_commanded);

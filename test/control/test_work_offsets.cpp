@@ -43,19 +43,19 @@ bool isSum(double c, double p, double o) {
   return std::abs(static_cast<long double>(c) - sum) <= 0.5L * kUlp * std::abs(sum) + 1e-300L;
 }
 
-bool commandsAreShifted(const std::vector<CycleRecord>& log, const Axes& offset) {
-  for (const CycleRecord& record : log) {
-    if (!record.has_setpoint || record.job == 0) continue;
+bool commandsAreShifted(const std::vector<CycleSample>& log, const Axes& offset) {
+  for (const CycleSample& sample : log) {
+    if (!sample.has_setpoint || sample.job == 0) continue;
     for (int axis = 0; axis < kAxisCount; ++axis) {
-      if (!isSum(record.command[axis], record.setpoint.position[axis], offset[axis])) return false;
+      if (!isSum(sample.command[axis], sample.setpoint.position[axis], offset[axis])) return false;
     }
   }
   return true;
 }
 
 /// The log of a job in its own coordinates.
-std::vector<CycleRecord> inWork(const std::vector<CycleRecord>& log, const Axes& offset) {
-  std::vector<CycleRecord> work = log;
+std::vector<CycleSample> inWork(const std::vector<CycleSample>& log, const Axes& offset) {
+  std::vector<CycleSample> work = log;
   for (std::size_t i = 0; i < log.size(); ++i) {
     work[i].command -= offset;
     if (log[i].has_setpoint) {
@@ -102,9 +102,9 @@ RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
   rig.runToEnd();
   RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
   RC_ASSERT(!rig.last().wheel_in_work);
-  for (const CycleRecord& record : rig.log) {
-    RC_ASSERT((record.command <= limits.max_position).all());
-    RC_ASSERT((record.command >= limits.min_position).all());
+  for (const CycleSample& sample : rig.log) {
+    RC_ASSERT((sample.command <= limits.max_position).all());
+    RC_ASSERT((sample.command >= limits.min_position).all());
   }
   const RequestReply jog = rig.jog({kX, false, 0.001, 0.01});
   RC_ASSERT(jog.accepted);
@@ -142,7 +142,7 @@ TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
   EXPECT_EQ(rig.last().fault.violation.limit, 0.3);
   EXPECT_GT(rig.last().fault.violation.value, 0.3);
   EXPECT_LT(rig.last().fault.violation.x, kStrokeTo);
-  for (const CycleRecord& record : rig.log) ASSERT_LE(record.command[kX], 0.3);
+  for (const CycleSample& sample : rig.log) ASSERT_LE(sample.command[kX], 0.3);
 }
 
 TEST(WorkOffsets, TheParkPositionIsTheMachines) {

@@ -53,7 +53,7 @@ TEST_F(BufferedDrive, EndsTheJobWhenTheAxesHaveGotTheLastSetpoint) {
   const std::vector<Setpoint> setpoints = rig_.setpoints();
   EXPECT_TRUE(sameBits(rig_.last().position, setpoints.back().position));
   const auto& log = rig_.log;
-  const auto last = std::find_if(log.rbegin(), log.rend(), [](const CycleRecord& r) { return r.has_setpoint; });
+  const auto last = std::find_if(log.rbegin(), log.rend(), [](const CycleSample& r) { return r.has_setpoint; });
   EXPECT_EQ(static_cast<std::size_t>(last - log.rbegin()), kDepth + 1);
 }
 
@@ -73,12 +73,12 @@ TEST_F(BufferedDrive, UnderrunIsAFaultWithCountAndSetpoint) {
   const std::uint64_t cycle = rig_.last().setpoint.cycle;
   rig_.drive.status.underruns += 3;
   rig_.drive.status.fault = true;  // which is what the drive makes of it
-  const CycleRecord& record = rig_.cycle();
-  EXPECT_EQ(record.state, S::kFault);
-  EXPECT_TRUE(record.job_ended);
+  const CycleSample& sample = rig_.cycle();
+  EXPECT_EQ(sample.state, S::kFault);
+  EXPECT_TRUE(sample.job_ended);
   EXPECT_FALSE(rig_.drive.written_drive.enable);
-  EXPECT_EQ(record.fault.kind, FaultKind::kUnderrun);
-  EXPECT_EQ(record.fault.text(),
+  EXPECT_EQ(sample.fault.kind, FaultKind::kUnderrun);
+  EXPECT_EQ(sample.fault.text(),
             "the axes found no setpoint in 3 servo cycles, after setpoint " + std::to_string(cycle));
 }
 

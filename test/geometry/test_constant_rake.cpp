@@ -5,7 +5,7 @@
 #include "curve/reference.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_file.h"
@@ -114,7 +114,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     try {
       with_law = withZLaw(*job);
     } catch (const ReasonError& error) {
-      ADD_FAILURE() << text(error.reason(), UnitSystem::kShop);
+      ADD_FAILURE() << text(error.reason());
       continue;
     }
     ++solved;
@@ -240,7 +240,7 @@ TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
 // From the job to the streamed setpoints and back to the cutter.
 TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
-  RecordedStrokes strokes(withZLaw(job));
+  RunStrokes strokes(withZLaw(job));
   Axes actual = test_support::roomyMachine().park;
   const JobPlan plan = planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, {},
                                [&](const Setpoint& p) {
@@ -248,7 +248,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
                                  actual = p.position;
                                });
   strokes.finish();
-  ASSERT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(plan.good()) << text(plan.reasons);
   const GrindJob& with_law = plan.program->job();
   const ConicalCutter cutter(job.cutter);
   SetpointStream stream(plan.program);
@@ -262,7 +262,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
     ++points;
   }
   EXPECT_GT(points, 1000);
-  for (const RecordedStroke& stroke : strokes.strokes()) {
+  for (const RunStroke& stroke : strokes.strokes()) {
     for (const PathDeviation& d : stroke.deviations) EXPECT_LT(std::abs(d.z), 1e-12);
   }
   EXPECT_LT(rakeError(strokes.cutter(), job), 0.006);  // sampled from setpoints

@@ -27,7 +27,7 @@ using units::kMillimetre;
 
 CutterCheck checked(const GrindJob& job) {
   const JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
-  EXPECT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(plan.good()) << text(plan.reasons);
   return checkGroundCutter(job);
 }
 
@@ -38,7 +38,7 @@ Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
   for (const Reason& reason : check.reasons) {
     if (reason.kind == kind) found = reason, ++count;
   }
-  EXPECT_EQ(count, 1) << text(check.reasons, UnitSystem::kShop);
+  EXPECT_EQ(count, 1) << text(check.reasons);
   return found;
 }
 
@@ -60,7 +60,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     SCOPED_TRACE(entry.path());
     const GrindJob job = readJobFile(entry.path());
     const CutterCheck check = checked(job);
-    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
@@ -180,7 +180,7 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
 
   job.process.incomplete_ok = true;
   check = checked(job);
-  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   EXPECT_LT(check.complete->to, job.cutter.flute_length);
 }
 
@@ -209,7 +209,7 @@ TEST(GroundJob, CornersThatDoNotFitAreRefused) {
   job.wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
   job.process.wheel_corner_radius_lower = 1 * kMillimetre;
   const CutterCheck check = checked(job);
-  EXPECT_NE(text(check.reasons, UnitSystem::kShop).find("corner_radius"), std::string::npos);
+  EXPECT_NE(text(check.reasons).find("corner_radius"), std::string::npos);
 }
 
 TEST(GroundJob, EveryProfileIsTheWheelsOfItsFigures) {
@@ -336,7 +336,7 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   p.setup_swivel = 0;
   p.setup_height = -p.wheel_width / 2;  // the upper face at the axis
   const CutterCheck check = checked(job);
-  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   const GroundSection end = groundCutterOf(job).section(c.flute_length);
   EXPECT_NEAR(end.core_radius, 0.005 * kMillimetre, 1e-9);
   EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
@@ -430,11 +430,11 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
   EXPECT_LT(expected, 10 * kMillimetre);
   for (const double overtravel : {9.2, 9.5, 9.8}) {
     const GrindJob job = nearApex(overtravel);
-    ASSERT_TRUE(validate(job).empty()) << text(validate(job), UnitSystem::kShop);
+    ASSERT_TRUE(validate(job).empty()) << text(validate(job));
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_TRUE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);
-    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   }
   for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
     const GrindJob job = nearApex(overtravel);
@@ -443,7 +443,7 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
     const CutterCheck check = checkGroundCutter(job, cutter);
     const auto named = std::find_if(check.reasons.begin(), check.reasons.end(),
                                     [](const Reason& r) { return r.kind == ReasonKind::kNotBelow; });
-    ASSERT_NE(named, check.reasons.end()) << text(check.reasons, UnitSystem::kShop);
+    ASSERT_NE(named, check.reasons.end()) << text(check.reasons);
     EXPECT_EQ(named->field, "process.overtravel_end");
     EXPECT_EQ(named->value, job.process.overtravel_end);
     EXPECT_NEAR(named->limit, expected, 0.02 * kMillimetre);

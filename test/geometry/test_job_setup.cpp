@@ -74,7 +74,7 @@ TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
     for (const double part : {0.1, 0.4, 0.55, 0.9}) {
       EXPECT_LE(std::abs(rakeAt(setup.job, part * length) - asked), std::abs(at_ends) + 0.005) << entry;
     }
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
     if (job.cutter.core_tolerance > 0) {
       EXPECT_NEAR(cores[0], job.cutter.core_diameter, job.cutter.core_tolerance) << entry;
       EXPECT_NEAR(cores[1], job.cutter.core_diameter_end, job.cutter.core_tolerance) << entry;
@@ -131,7 +131,7 @@ TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
   for (GrindJob job : {left, right}) {
     job.process.z_law = ZLaw::kConstantRake;
     const JobSetup setup = solved(job);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
     const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
     for (int i = 0; i <= 20; ++i) {
       const double x = job.cutter.flute_length * i / 20;
@@ -318,7 +318,7 @@ TEST(JobSetup, ACylindersCoreMayDifferByItsTolerance) {
     job.cutter.core_diameter = job.cutter.core_diameter_end = core * kMillimetre;
     const JobSetup setup = solved(job, SetupFigure::kDepth);
     EXPECT_EQ(setup.job.process.depth, job.process.depth);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
     EXPECT_NEAR(setup.check.figures.core_diameter[0], core * kMillimetre, job.cutter.core_tolerance);
   }
 }
@@ -339,7 +339,7 @@ TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
     const auto* setup = std::get_if<JobSetup>(&result);
     if (!setup) continue;
     ++set_up;
-    EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons, UnitSystem::kShop);
+    EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons);
   }
   EXPECT_GT(set_up, 0);
 }

@@ -165,7 +165,7 @@ TEST(Mirror, ALeftHandJobIsARightHandOneInTheMirror) {
   for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
     const GrindJob right = random.job(), left = mirrored(right);
-    ASSERT_TRUE(validate(right).empty()) << text(validate(right), UnitSystem::kShop);
+    ASSERT_TRUE(validate(right).empty()) << text(validate(right));
     ASSERT_TRUE(validate(left).empty());
     expectMirrored(groundCutterOf(right), groundCutterOf(left));
     expectMirroredPlans(right, left);

@@ -235,7 +235,7 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
     const double x = job.cutter.flute_length / 3;
     const double depth = ConicalCutter(job.cutter).radius(x) - groundCutterOf(job).section(x).core_radius;
     const Ball ball{x, Groove(job).radius(x) - 0.15 * depth, 0.3, 0.2 * depth};
-    ASSERT_FALSE(refusal(job, ball)) << text(*refusal(job, ball), UnitSystem::kShop);
+    ASSERT_FALSE(refusal(job, ball)) << text(*refusal(job, ball));
     expectTouch(job, ball, touch(job, ball));
   }
 }
@@ -357,7 +357,7 @@ TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
   const auto reason = refusal(job, {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "ball's X");
-  EXPECT_EQ(text(*reason, UnitSystem::kShop), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
+  EXPECT_EQ(text(*reason), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
 }
 
 }  // namespace test_rake_touch

@@ -72,7 +72,7 @@ class Stop:
         self.goal_run.wait()
         self.assertEqual((self.goal_run.status, self.goal_run.code), ('ABORTED', code), self.goal_run.text)
         self.assertRegex(self.goal_run.text, text)
-        self.assertRegex(self.goal_run.text, r'stroke of tooth 1, pass 1, X = 0\.0[0-3]\d* m')
+        self.assertRegex(self.goal_run.text, r'\(stroke, tooth 1, pass 1, X = [1-3]?\d(\.\d+)? mm\)')
 
     def check_start_from_standing(self):
         """Reset, power, the wheel lifted where it is in the work, and a new goal: the axes start from where they stand."""
@@ -203,7 +203,7 @@ class TestFollowingError(Stop, unittest.TestCase):
     def test_node_compares_with_the_command_that_was_played(self):
         hal_bench.halcmd('setp', 'motor-x.maxv', '0.0001')
         self.addCleanup(hal_bench.halcmd, 'setp', 'motor-x.maxv', '0.25')
-        self.check_goal(GrindResult.PATH_TOLERANCE_VIOLATED, r'^axis_x following error 0\.001\d* m is beyond its limit 0\.001 m')
+        self.check_goal(GrindResult.PATH_TOLERANCE_VIOLATED, r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm')
         self.check_standing()
 
 

@@ -248,9 +248,7 @@ bool planAndJudge(const Case& c) {
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(in_range || !plan.good());
   for (const Reason& reason : plan.reasons) {
-    for (const UnitSystem units : {UnitSystem::kSi, UnitSystem::kShop}) {
-      EXPECT_TRUE(sane(text(reason, units))) << text(reason, units);
-    }
+    EXPECT_TRUE(sane(text(reason))) << text(reason);
   }
   if (!plan.good()) return false;
   EXPECT_EQ(count, plan.statistics.setpoints);
@@ -271,7 +269,7 @@ struct Tally {
     const JobPlan one = c.plan();
     const JobPlan other = c.plan();
     EXPECT_EQ(one.fault, other.fault);
-    EXPECT_EQ(text(one.reasons, UnitSystem::kSi), text(other.reasons, UnitSystem::kSi));
+    EXPECT_EQ(text(one.reasons), text(other.reasons));
     EXPECT_EQ(one.move_ends, other.move_ends);
     EXPECT_EQ(one.statistics.setpoints, other.statistics.setpoints);
   }
@@ -339,7 +337,7 @@ void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
     if (!resting) {
       ASSERT_TRUE(p.position.isFinite().all() && p.velocity.isFinite().all() && std::isfinite(p.feed));
       const auto violation = check.check(p);
-      ASSERT_FALSE(violation) << text(reasonOf(*violation), UnitSystem::kSi);
+      ASSERT_FALSE(violation) << text(reasonOf(*violation));
     }
     meddler.meddle(stream, resting);
   }

@@ -19,7 +19,7 @@ inline JobPlan planOf(const GrindJob& job, const Machine& machine = plainMachine
 
 inline std::string textOf(const JobPlan& plan) {
   std::string text;
-  for (const Reason& reason : plan.reasons) text += grinder::text(reason, UnitSystem::kSi) + "\n";
+  for (const Reason& reason : plan.reasons) text += grinder::text(reason) + "\n";
   return text;
 }
 
@@ -36,7 +36,7 @@ inline std::string causesOf(const JobPlan& plan) {
 inline std::vector<std::string> reasonsWith(const JobPlan& plan, const std::string& part) {
   std::vector<std::string> reasons;
   for (const Reason& reason : plan.reasons) {
-    const std::string text = grinder::text(reason, UnitSystem::kSi);
+    const std::string text = grinder::text(reason);
     if (contains(text, part)) reasons.push_back(text);
   }
   return reasons;

@@ -295,7 +295,7 @@ RC_GTEST_PROP(FeedScheduleProperty, UsesTheLimitOfAWhereAHindersTheFeed, ()) {
   const Real a_speed = schedule.limits().velocity * schedule.rate(0) * std::abs(curve.slope(schedule.x(0)));
   RC_ASSERT(a_speed <= machine.limits.max_velocity[kA]);
   RC_ASSERT(a_speed >= 0.99 * machine.limits.max_velocity[kA]);
-  RC_ASSERT(causeOf(schedule) == "axis_a velocity");
+  RC_ASSERT(causeOf(schedule) == "axis A velocity");
 }
 
 TEST(FeedSchedule, TurnsAEvenlyWhereItCutsTheFeed) {
@@ -318,7 +318,7 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
   c.stroke = {0, 20e-3, 0.01, 1e-3};
   const double growth = std::tan(20 * units::kDegree);
   const double per_x[]{1, growth, growth * std::sin(8 * units::kDegree)};
-  const char* const names[]{"axis_x", "axis_y", "axis_z"};
+  const char* const names[]{"axis X", "axis Y", "axis Z"};
   for (const int axis : {kX, kY, kZ}) {
     for (const bool by_jerk : {true, false}) {
       SCOPED_TRACE(names[axis]);
@@ -351,7 +351,7 @@ TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
     FeedSchedule::Stroke stroke = plainStroke();
     if (backward) std::swap(stroke.from, stroke.to);
     const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
-    ASSERT_EQ(causeOf(schedule), "axis_x velocity, axis_a velocity");
+    ASSERT_EQ(causeOf(schedule), "axis X velocity, axis A velocity");
     const FeedLimit& along = schedule.feedLimits()[0];
     const FeedLimit& tip = schedule.feedLimits()[1];
     EXPECT_EQ(along.from_x, stroke.from);
@@ -388,22 +388,22 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   EXPECT_EQ(limitedBy(boundless(), 1e-9), "interpolation tolerance");
   Machine m = boundless();
   m.limits.max_velocity[kX] = x_speed / 2;
-  EXPECT_EQ(limitedBy(m), "axis_x velocity");
+  EXPECT_EQ(limitedBy(m), "axis X velocity");
   m = boundless();
   m.limits.max_velocity[kY] = x_speed / 10;
-  EXPECT_EQ(limitedBy(m), "axis_y velocity");
+  EXPECT_EQ(limitedBy(m), "axis Y velocity");
   m = boundless();
   m.limits.max_velocity[kZ] = x_speed / 100;
-  EXPECT_EQ(limitedBy(m), "axis_z velocity");
+  EXPECT_EQ(limitedBy(m), "axis Z velocity");
   m = boundless();
   m.limits.max_velocity[kA] = 1;
-  EXPECT_EQ(limitedBy(m), "axis_a velocity");
+  EXPECT_EQ(limitedBy(m), "axis A velocity");
   m = boundless();
   m.limits.max_acceleration[kA] = 1;
-  EXPECT_EQ(limitedBy(m), "axis_a acceleration");
+  EXPECT_EQ(limitedBy(m), "axis A acceleration");
   m = boundless();
   m.limits.max_jerk[kA] = 1;
-  EXPECT_EQ(limitedBy(m), "axis_a jerk");
+  EXPECT_EQ(limitedBy(m), "axis A jerk");
 }
 
 TEST(FeedSchedule, OfACylinderIsNotBentByA) {
@@ -416,7 +416,7 @@ TEST(FeedSchedule, OfACylinderIsNotBentByA) {
   EXPECT_NEAR(schedule.limits().velocity, 1e-3, 1e-12);
   EXPECT_NEAR(schedule.length(), 20.5e-3, 1e-15);
   EXPECT_EQ(schedule.rate(0), 1);
-  EXPECT_EQ(causeOf(schedule), "axis_a velocity");
+  EXPECT_EQ(causeOf(schedule), "axis A velocity");
 }
 
 TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {

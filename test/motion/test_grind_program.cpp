@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
         Unfit{"NanStart", [](Machine&, Axes& start) { start[kA] = kNan; }, "start"},
         Unfit{"InfiniteStart", [](Machine&, Axes& start) { start[kX] = kInf; }, "start"},
         Unfit{"NanPark", [](Machine& m, Axes&) { m.park[kZ] = kNan; }, "park"},
-        Unfit{"ParkInTheWork", [](Machine& m, Axes&) { m.park[kY] = 7e-3; }, "park position axis_y = 0.007 m"}),
+        Unfit{"ParkInTheWork", [](Machine& m, Axes&) { m.park[kY] = 7e-3; }, "park position axis Y = 7 mm"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
@@ -221,7 +221,7 @@ TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
   machine.limits.max_velocity[kA] = 1e-5;
   const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, machine.park); });
   EXPECT_TRUE(contains(error, "process.feed")) << error;
-  EXPECT_TRUE(contains(error, "axis_a velocity")) << error;
+  EXPECT_TRUE(contains(error, "axis A velocity")) << error;
 }
 
 TEST(GrindProgram, ReportsTheHeightAtWhichAllOfTheStrokeIsClear) {

@@ -39,17 +39,19 @@ std::map<MoveKind, Beyond> beyondUpperLimit(const std::vector<Setpoint>& setpoin
 /// the count, and no other for that axis.
 void expectReasons(const JobPlan& plan, const std::vector<Setpoint>& setpoints, int axis, double limit) {
   const auto moves = beyondUpperLimit(setpoints, axis, limit);
-  const std::string name = kJointNames[static_cast<std::size_t>(axis)];
+  const std::string name = axisName(axis);
+  const double scale = axis == kA ? units::kDegree : units::kMillimetre;
+  const char* const unit = axis == kA ? " deg" : " mm";
   EXPECT_EQ(reasonsWith(plan, name).size(), moves.size()) << textOf(plan);
   for (const auto& [kind, beyond] : moves) {
-    const auto reasons = reasonsWith(plan, std::string("(") + toString(kind) + ", cycle");
+    const auto reasons = reasonsWith(plan, std::string("(") + toString(kind) + ", tooth ");
     std::string reason;
     for (const std::string& r : reasons) reason = contains(r, name) ? r : reason;
     std::ostringstream worst;
-    worst << name << " position " << beyond.worst << ' ' << axisUnit(axis) << " is ";
+    worst << name << " position " << beyond.worst / scale << unit << " is ";
     EXPECT_TRUE(contains(reason, worst.str())) << worst.str() << " in\n" << textOf(plan);
     std::ostringstream beyond_limit;
-    beyond_limit << "beyond its limit " << limit << ' ' << axisUnit(axis);
+    beyond_limit << "beyond its limit " << limit / scale << unit;
     EXPECT_TRUE(contains(reason, beyond_limit.str())) << reason;
     const std::string others = "; the worst of " + std::to_string(beyond.count) + " setpoints";
     if (beyond.count > 1) {
@@ -67,7 +69,8 @@ TEST(JobPlan, RefusesAWayBeyondAnAxisLimitWithTheAmount) {
   const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
   ASSERT_EQ(plan.reasons.size(), 3u) << textOf(plan);  // stroke, and retract and return from its end
-  EXPECT_EQ(textOf(plan).find("axis_x position 0.031 m is 0.001 m beyond its limit 0.03 m (stroke, cycle "), 0u)
+  EXPECT_EQ(textOf(plan).find("axis X position 31 mm is 1 mm beyond its limit 30 mm (stroke, tooth 1, pass 1, X = "),
+            0u)
       << textOf(plan);
   expectReasons(plan, visited, kX, 0.030);
   // It goes through to the end.
@@ -89,7 +92,7 @@ TEST(JobPlan, ReportsEveryAxisThatIsBeyondItsLimits) {
   for (const Setpoint& p : visited) {
     if (p.position[kZ] < -1e-5) low.insert(p.move);
   }
-  EXPECT_EQ(low.size(), reasonsWith(plan, "axis_z").size()) << textOf(plan);
+  EXPECT_EQ(low.size(), reasonsWith(plan, "axis Z").size()) << textOf(plan);
   EXPECT_FALSE(low.empty());
 }
 
@@ -106,7 +109,7 @@ TEST(JobPlan, ReportsASingleSetpointWithoutACount) {
   std::vector<Setpoint> visited;
   const JobPlan plan = planJob(paperJob(), machine, machine.park, {}, [&](const Setpoint& p) { visited.push_back(p); });
   ASSERT_EQ(beyondUpperLimit(visited, kX, machine.limits.max_position[kX])[MoveKind::kStroke].count, 1u);
-  const auto reasons = reasonsWith(plan, "(stroke, cycle");
+  const auto reasons = reasonsWith(plan, "(stroke, ");
   ASSERT_EQ(reasons.size(), 1u) << textOf(plan);
   EXPECT_FALSE(contains(reasons[0], "worst of")) << reasons[0];
 }
@@ -129,8 +132,8 @@ TEST(JobPlan, RefusesAStartBeyondALimit) {
   start[kX] = -0.5;
   const JobPlan plan = planJob(paperJob(), machine, start);
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
-  EXPECT_TRUE(contains(textOf(plan), "axis_x position -0.5 m")) << textOf(plan);
-  EXPECT_TRUE(contains(textOf(plan), "limit -0.3 m")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "axis X position -500 mm")) << textOf(plan);
+  EXPECT_TRUE(contains(textOf(plan), "limit -300 mm")) << textOf(plan);
 }
 
 TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
@@ -158,9 +161,9 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   ASSERT_GT(off, 1u);
   EXPECT_TRUE(contains(tolerance[0], "; the worst of " + std::to_string(off) + " setpoints")) << tolerance[0];
   std::ostringstream worst;
-  worst << "deviates by " << plan.statistics.max_deviation << " m";
+  worst << "deviates by " << plan.statistics.max_deviation / units::kMicrometre << " um";
   EXPECT_TRUE(contains(tolerance[0], worst.str())) << tolerance[0];
-  EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis_x").size());
+  EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis X").size());
 }
 
 }  // namespace test_plan_limits

@@ -160,9 +160,9 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
   Machine machine = plainMachine();
   machine.limits.max_jerk[kZ] = 2e-3;
   const JobPlan plan = planJob(bentJob(500e-6), machine, machine.park);
-  EXPECT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
+  EXPECT_TRUE(plan.good()) << text(plan.reasons);
   ASSERT_EQ(plan.statistics.feed_limits.size(), 1u);
-  EXPECT_EQ(plan.statistics.feed_limits[0].cause, "axis_z jerk");
+  EXPECT_EQ(plan.statistics.feed_limits[0].cause, "axis Z jerk");
   EXPECT_LT(plan.statistics.max_feed, 0.0099);
   EXPECT_LT(plan.statistics.max_jerk[kZ], 2.001e-3);
 }

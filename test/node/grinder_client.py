@@ -338,15 +338,13 @@ class Grinder:
         return rospy.ServiceProxy(name, kind)(*arguments)
 
     def set_offset(self, axis, value, by='anna@grinder', basis=None, large_change_ok=True):
-        """@param axis of JOINTS, or a joint's name."""
         return self._offset('set_offset', SetOffset, axis, value, by, basis, large_change_ok)
 
     def touch_off(self, axis, position, by='anna@grinder', basis=None, large_change_ok=True):
         return self._offset('touch_off', TouchOff, axis, position, by, basis, large_change_ok)
 
     def _offset(self, service, kind, axis, value, by, basis, large_change_ok):
-        joint = axis if isinstance(axis, str) else JOINTS[axis]
-        return self._call(service, kind, joint, value, by, basis or OffsetBasis(), large_change_ok)
+        return self._call(service, kind, axis, value, by, basis or OffsetBasis(), large_change_ok)
 
     enable = partialmethod(_call, 'enable', Trigger)
     disable = partialmethod(_call, 'disable', Trigger)
@@ -393,11 +391,11 @@ class Grinder:
         if self.injects_faults():
             self.inject('none')
 
-    def inject(self, fault, joint=''):
+    def inject(self, fault, axis=X):
         """Injects a fault; skips the test on a drive that does not let it."""
         if not self.injects_faults():
             raise unittest.SkipTest('only the simulated drive lets a fault be injected')
-        return self._call('hardware/inject_fault', InjectFault, fault, joint)
+        return self._call('hardware/inject_fault', InjectFault, fault, axis)
 
     def send(self, job, confirm=True, **fields):
         return Run(self, goal_of(job, **fields), confirm)

@@ -58,7 +58,7 @@ class TestClient(CommandLine):
     def test_client_says_why_a_job_is_refused(self):
         done = self.run_client(gc.job_file(self.path('long.yaml'), flute_length_mm=400))
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn('axis_x position 0.401 m is 0.101 m beyond its limit', done.stdout.splitlines()[-1])
+        self.assertIn('axis X position 401 mm is 101 mm beyond its limit', done.stdout.splitlines()[-1])
 
 
 if __name__ == '__main__':

@@ -17,26 +17,26 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 DiagnosticThresholds thresholds() { return {{0.01, 0.25}, {0.5, 0.9}, {0.8, 1.000001}, {0.5, 0.2}}; }
 
-/// Made-up records of a powered machine, a millisecond each, and what the diagnostics say of them.
+/// Made-up samples of a powered machine, a millisecond each, and what the diagnostics say of them.
 class DiagnosticsTest : public ::testing::Test {
  protected:
   DiagnosticsTest() {
-    record_.period = 0.001;
-    record_.state = MachineState::kReady;
-    record_.drive.enabled = record_.drive.homed = true;
+    sample_.period = 0.001;
+    sample_.state = MachineState::kReady;
+    sample_.drive.enabled = sample_.drive.homed = true;
   }
 
   void watch(int cycles = 1) {
     for (; cycles > 0; --cycles) {
-      record_.feedback_age = 0;
-      diagnostics_.add(record_);
+      sample_.feedback_age = 0;
+      diagnostics_.add(sample_);
     }
   }
 
   /// A cycle without fresh positions.
   void watchStale() {
-    record_.feedback_age += record_.period;
-    diagnostics_.add(record_);
+    sample_.feedback_age += sample_.period;
+    diagnostics_.add(sample_);
   }
 
   Diagnostics::Status ask(Report report) {
@@ -62,19 +62,19 @@ class DiagnosticsTest : public ::testing::Test {
 
   /// Watches a setpoint at the positions, the next of its job.
   void write(const Axes& position) {
-    record_.state = MachineState::kRunning;
-    record_.has_setpoint = true;
-    record_.setpoint.cycle = next_cycle_++;
-    record_.setpoint.position = position;
-    record_.command = position;
+    sample_.state = MachineState::kRunning;
+    sample_.has_setpoint = true;
+    sample_.setpoint.cycle = next_cycle_++;
+    sample_.setpoint.position = position;
+    sample_.command = position;
     watch();
-    record_.has_setpoint = false;
+    sample_.has_setpoint = false;
   }
 
   LoopConfig config_ = test_support::machineConfig();
   Scheduling scheduling_{true, true};
   Diagnostics diagnostics_{config_, thresholds(), [this] { return scheduling_; }};
-  CycleRecord record_;
+  CycleSample sample_;
   std::uint64_t next_cycle_ = 0;
 };
 
@@ -90,7 +90,7 @@ TEST_F(DiagnosticsTest, LoopThatStopsIsAnError) {
 
 TEST_F(DiagnosticsTest, LoopReportsItsPeriods) {
   watch(3);
-  record_.period = 0.0012;
+  sample_.period = 0.0012;
   watch();
   const auto status = expect(&Diagnostics::reportLoop, DiagnosticStatus::OK, "running");
   EXPECT_EQ(value(status, "State"), "ready");
@@ -105,13 +105,13 @@ TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
   const auto seconds = [&](const Diagnostics::Status& status, const std::string& key) {
     return std::stod(value(status, key));
   };
-  record_.busy = 2e-6;
+  sample_.busy = 2e-6;
   watch(60);
-  record_.busy = 5e-6;
-  record_.period = 0.00103;
+  sample_.busy = 5e-6;
+  sample_.period = 0.00103;
   watch(39);
-  record_.busy = 70e-6;
-  record_.period = 0.0012;
+  sample_.busy = 70e-6;
+  sample_.period = 0.0012;
   watch();
   auto status = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
@@ -123,8 +123,8 @@ TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
   EXPECT_NEAR(seconds(status, "99 % wake-up delay [s]"), 30e-6, 1.5e-6);
   EXPECT_EQ(value(status, "Longest wake-up delay [s]"), "0.0002");
 
-  record_.busy = 1e-6;
-  record_.period = 0.0009;
+  sample_.busy = 1e-6;
+  sample_.period = 0.0009;
   watch();
   status = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(value(status, "Longest cycle duration [s]"), "1e-06");
@@ -133,9 +133,9 @@ TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
 
 TEST_F(DiagnosticsTest, LateCyclesAreAWarningAndThenAnError) {
   const auto late = [&](int of_hundred) {
-    record_.period = 0.0016;
+    sample_.period = 0.0016;
     watch(of_hundred);
-    record_.period = 0.0015;  // not late yet
+    sample_.period = 0.0015;  // not late yet
     watch(100 - of_hundred);
     return ask(&Diagnostics::reportLoop);
   };
@@ -159,40 +159,40 @@ TEST_F(DiagnosticsTest, SchedulingThatWasNotGrantedIsAWarning) {
 }
 
 TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
-  record_.records_lost = 7;
+  sample_.samples_lost = 7;
   watch();
-  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "7 cycle records were lost");
+  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "7 cycle samples were lost");
   watch();
   const auto next = ask(&Diagnostics::reportLoop);
   EXPECT_EQ(next.level, DiagnosticStatus::OK);
-  EXPECT_EQ(value(next, "Records lost"), "7");
+  EXPECT_EQ(value(next, "Samples lost"), "7");
 }
 
 TEST_F(DiagnosticsTest, DriveIsOkWhenHomed) {
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportDrive).message, "enabled");
-  record_.drive.enabled = false;
+  sample_.drive.enabled = false;
   watch();
   const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "disabled");
   EXPECT_EQ(value(status, "Enabled"), "False");
 }
 
 TEST_F(DiagnosticsTest, DriveThatIsNotHomedIsAWarning) {
-  record_.drive.homed = false;
+  sample_.drive.homed = false;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "not homed");
 }
 
 TEST_F(DiagnosticsTest, InterlockIsAWarning) {
-  record_.interlock = Interlock::kCoolant;
+  sample_.interlock = Interlock::kCoolant;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "no coolant flows");
 }
 
 TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
-  record_.drive.emergency_stop = true;
+  sample_.drive.emergency_stop = true;
   watch();
-  record_.drive.emergency_stop = false;
+  sample_.drive.emergency_stop = false;
   watch(100);
   const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop");
   EXPECT_EQ(value(status, "Emergency stop"), "True");
@@ -201,10 +201,10 @@ TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
 }
 
 TEST_F(DiagnosticsTest, FaultIsReportedOnceAndWithAllElse) {
-  record_.state = MachineState::kFault;
-  record_.fault.kind = FaultKind::kEmergencyStop;
-  record_.drive.emergency_stop = record_.drive.fault = true;
-  record_.drive.homed = false;
+  sample_.state = MachineState::kFault;
+  sample_.fault.kind = FaultKind::kEmergencyStop;
+  sample_.drive.emergency_stop = sample_.drive.fault = true;
+  sample_.drive.homed = false;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop; the drive reports a fault; not homed");
 }
@@ -223,9 +223,9 @@ TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
 }
 
 TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
-  record_.position[kZ] = kNan;
+  sample_.position[kZ] = kNan;
   watch();
-  record_.position[kZ] = 0;
+  sample_.position[kZ] = 0;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "axis_z position is nan");
   const auto following = ask(&Diagnostics::reportFollowing);
@@ -234,10 +234,10 @@ TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxis) {
-  record_.command_in_effect << 0.1, 0, 0, 3;
-  record_.position << 0.1004, 0, 0, 3;
+  sample_.command_in_effect << 0.1, 0, 0, 3;
+  sample_.position << 0.1004, 0, 0, 3;
   watch();
-  record_.position << 0.1, 0.0002, 0, 2.975;
+  sample_.position << 0.1, 0.0002, 0, 2.975;
   watch();
   const auto status = ask(&Diagnostics::reportFollowing);
   EXPECT_EQ(status.level, DiagnosticStatus::OK);
@@ -249,27 +249,27 @@ TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxis) {
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorIsAWarningAndThenAnError) {
-  record_.position << 0, 0.0006, 0, 0;
+  sample_.position << 0, 0.0006, 0, 0;
   watch();
   expect(&Diagnostics::reportFollowing, DiagnosticStatus::WARN, "axis_y 0.0006 m of 0.001 m");
-  record_.position << 0, 0.0006, 0, -0.046;
+  sample_.position << 0, 0.0006, 0, -0.046;
   watch();
   expect(&Diagnostics::reportFollowing, DiagnosticStatus::ERROR,
          "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
-  record_.position.setZero();
+  sample_.position.setZero();
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
   watch();
-  record_.state = MachineState::kFault;
-  record_.position[kX] = 0.002;
+  sample_.state = MachineState::kFault;
+  sample_.position[kX] = 0.002;
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::ERROR);
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
-  record_.state = MachineState::kDisabled;
+  sample_.state = MachineState::kDisabled;
   watch();
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
 }
@@ -345,9 +345,9 @@ TEST_F(DiagnosticsTest, NextJobBeginsAfresh) {
 
 TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
   watch();
-  record_.state = MachineState::kFault;
-  record_.fault.kind = FaultKind::kLimit;
-  record_.fault.violation = {kA, LimitedQuantity::kVelocity, -25.132, 12.566, 8, 0, MoveKind::kStroke};
+  sample_.state = MachineState::kFault;
+  sample_.fault.kind = FaultKind::kLimit;
+  sample_.fault.violation = {kA, LimitedQuantity::kVelocity, -25.132, 12.566, 8, 0, MoveKind::kStroke};
   watch();
   const auto status =
       expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, "axis_a velocity at 200 % of its limit");
@@ -358,12 +358,12 @@ TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
 
 TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
   for (const double position : {0.35, kNan}) {
-    record_.state = MachineState::kReady;
+    sample_.state = MachineState::kReady;
     watch();
-    record_.state = MachineState::kFault;
-    record_.fault.kind = FaultKind::kLimit;
+    sample_.state = MachineState::kFault;
+    sample_.fault.kind = FaultKind::kLimit;
     const auto quantity = std::isnan(position) ? LimitedQuantity::kNotFinite : LimitedQuantity::kPosition;
-    record_.fault.violation = {kX, quantity, position, 0.3, 8, 0, MoveKind::kStroke};
+    sample_.fault.violation = {kX, quantity, position, 0.3, 8, 0, MoveKind::kStroke};
     watch();
     const auto status = ask(&Diagnostics::reportLimits);
     EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
@@ -380,11 +380,11 @@ TEST_F(DiagnosticsTest, DriveWithoutBufferIsReportedSo) {
 
 TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
   const auto min = [&](std::uint32_t commands) {
-    record_.drive.commands_waiting = 50;
+    sample_.drive.commands_waiting = 50;
     watch(3);
-    record_.drive.commands_waiting = commands;
+    sample_.drive.commands_waiting = commands;
     watch();
-    record_.drive.commands_waiting = 49;
+    sample_.drive.commands_waiting = 49;
     watch(3);
     return ask(&Diagnostics::reportBuffer);
   };
@@ -402,25 +402,25 @@ TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
 }
 
 TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
-  record_.drive.commands_waiting = 50;
+  sample_.drive.commands_waiting = 50;
   watch();
   ask(&Diagnostics::reportBuffer);
-  record_.state = MachineState::kDisabled;
+  sample_.state = MachineState::kDisabled;
   watch();
-  record_.drive.commands_waiting = 0;
+  sample_.drive.commands_waiting = 0;
   ask(&Diagnostics::reportBuffer);
   watch();
   expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "no power");
   // How full it was before does not count.
-  record_.state = MachineState::kReady;
-  record_.drive.commands_waiting = 20;
+  sample_.state = MachineState::kReady;
+  sample_.drive.commands_waiting = 20;
   watch();
   EXPECT_EQ(value(ask(&Diagnostics::reportBuffer), "Minimum fill [%]"), "100");
 }
 
 TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
-  record_.drive.commands_waiting = 50;
-  record_.drive.underruns = 3;
+  sample_.drive.commands_waiting = 50;
+  sample_.drive.underruns = 3;
   watch();
   expect(&Diagnostics::reportBuffer, DiagnosticStatus::ERROR, "3 underruns");
   watch();

@@ -9,7 +9,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 import grinder_client as gc
-from grinder_client import MM
+from grinder_client import MM, X
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
 NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffer', 'Journal', 'History']
@@ -85,9 +85,9 @@ class TestDiagnostics(unittest.TestCase):
     def test_stuck_axis(self):
         run = self.grinder.send(gc.PAPER).wait_in_stroke(2 * MM)
         mark = self.reports.mark()
-        self.grinder.inject('stuck_axis', 'axis_x')
+        self.grinder.inject('stuck_axis', X)
         run.wait()
-        self.reports.wait('Drive link', ERROR, 'axis_x following error')
+        self.reports.wait('Drive link', ERROR, 'axis X following error')
         errors = [s for s in self.reports.since(mark, 'Following error') if s.level == ERROR]
         self.assertTrue(errors)
         self.assertGreater(max(figures(errors, 'axis_x of the allowed [%]')), 100)

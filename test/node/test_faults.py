@@ -15,26 +15,26 @@ from grinder_client import A, DEG, LIFT, MM, MM_MIN, STROKE, X, Y, Z, grinder
 STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, feed=120 * MM_MIN)
 STEEP_CLEAR = checks.Helix(STEEP).y(31 * MM) + 1 * MM
 
-# fault, joint: code and text of the result
+# fault, axis: code and text of the result
 FAULTS = {
-    ('drive_fault', ''): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault'),
-    ('stale_feedback', ''): (GrindResult.LINK_LOST, r'^no fresh positions from the drive for 0\.\d+ s, allowed 0\.002 s'),
-    ('nan_feedback', 'axis_y'): (GrindResult.HARDWARE_FAULT, r'^axis_y position from the drive is -?nan'),
-    ('stuck_axis', 'axis_x'): (GrindResult.PATH_TOLERANCE_VIOLATED,
-                               r'^axis_x following error 0\.001\d* m is beyond its limit 0\.001 m'),
-    ('stuck_axis', 'axis_a'): (GrindResult.PATH_TOLERANCE_VIOLATED,
-                               r'^axis_a following error 0\.05\d* rad is beyond its limit 0\.05 rad'),
+    ('drive_fault', X): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault'),
+    ('stale_feedback', X): (GrindResult.LINK_LOST, r'^no fresh positions from the drive for 0\.\d+ s, allowed 0\.002 s'),
+    ('nan_feedback', Y): (GrindResult.HARDWARE_FAULT, r'^axis Y position from the drive is -?nan'),
+    ('stuck_axis', X): (GrindResult.PATH_TOLERANCE_VIOLATED,
+                               r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm'),
+    ('stuck_axis', A): (GrindResult.PATH_TOLERANCE_VIOLATED,
+                               r'^axis A following error [23]\.\d+ deg is beyond its limit 2\.86479 deg'),
 }
-WHERE = r'stroke of tooth 1, pass 1, X = 0\.0[0-2]\d* m'
+WHERE = r'\(stroke, tooth 1, pass 1, X = [12]?\d(\.\d+)? mm\)'
 
 
 class TestFaultInTheStroke(unittest.TestCase):
-    def fault_in_stroke(self, fault, joint=''):
+    def fault_in_stroke(self, fault, axis=X):
         """The run that the fault has ended, and the state."""
         g = grinder()
         g.make_ready()
         run = g.send(STEEP).wait_in_stroke(5 * MM)
-        reply = g.inject(fault, joint)
+        reply = g.inject(fault, axis)
         self.assertTrue(reply.success, reply.message)
         run.wait_complete()
         return run, g.wait_state(GrinderState.FAULT)
@@ -51,9 +51,9 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertEqual(checks.off_path(run.setpoints, checks.Helix(STEEP)), [])
 
     def test_code_and_text_of_every_fault(self):
-        for (fault, joint), (code, text) in FAULTS.items():
-            with self.subTest(fault=fault, joint=joint):
-                self.check_end(*self.fault_in_stroke(fault, joint), code, text)
+        for (fault, axis), (code, text) in FAULTS.items():
+            with self.subTest(fault=fault, axis=axis):
+                self.check_end(*self.fault_in_stroke(fault, axis), code, text)
 
     def test_way_back_from_an_emergency_stop(self):
         g = grinder()

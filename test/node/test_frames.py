@@ -76,8 +76,8 @@ class Story:
         # All that is reported of one time is here once the wheel is.
         self.contact_before = self.frames.buffer.can_transform('work', 'contact', rospy.Time())
         g.make_ready()
-        for joint, offset in zip(gc.JOINTS, OFFSETS):
-            answer = g.set_offset(joint, offset)
+        for axis, offset in enumerate(OFFSETS):
+            answer = g.set_offset(axis, offset)
             assert answer.success, answer.message
         self.of_axes = []
         subscriber = rospy.Subscriber('/tf', TFMessage, self.of_axes.append, queue_size=10000)
@@ -119,8 +119,8 @@ def story():
 
 def tearDownModule():
     """Other tests may follow with the same grinder."""
-    for joint in gc.JOINTS:
-        assert grinder().set_offset(joint, 0).success
+    for axis in range(4):
+        assert grinder().set_offset(axis, 0).success
 
 
 class TestStroke(unittest.TestCase):
@@ -216,7 +216,7 @@ class TestSetUp(unittest.TestCase):
         self.check_frame(late, 'wheel', 'wheel_head', [0, 0, 0], swivel)
 
     def move_work(self, x):
-        self.assertTrue(grinder().set_offset('axis_x', x).success)
+        self.assertTrue(grinder().set_offset(X, x).success)
         for frame, within in (('work', 'table'), ('cutter', 'chuck')):
             gc.poll(lambda: abs(story().late.find(frame, within)[0][0] - x) < EXACT, 'the new place of ' + frame)
 

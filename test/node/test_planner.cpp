@@ -113,7 +113,7 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   Asked asked(job);
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
-  ASSERT_TRUE(preview->plan->good()) << text(preview->plan->reasons, UnitSystem::kShop);
+  ASSERT_TRUE(preview->plan->good()) << text(preview->plan->reasons);
   std::vector<Axes> expected;
   planJob(withZLaw(job), machine(), machine().park, {}, [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
@@ -142,7 +142,7 @@ TEST(Planner, ReportsWhyAJobCannotBeGround) {
   const auto preview = asked.wait();
   EXPECT_EQ(preview->plan->fault, PlanFault::kInvalidJob);
   ASSERT_EQ(preview->plan->reasons.size(), 1U);
-  EXPECT_NE(text(preview->plan->reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
+  EXPECT_NE(text(preview->plan->reasons[0]).find("process.feed"), std::string::npos);
   EXPECT_FALSE(preview->stream);
 }
 
@@ -172,14 +172,14 @@ TEST(Planner, AGoalGoesFirst) {
   EXPECT_FALSE(planner.submit(late.request));
   const auto given_up = plan.wait();
   ASSERT_EQ(given_up->plan->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(text(given_up->plan->reasons, UnitSystem::kShop), "given up: a goal came first; plan again after it");
+  EXPECT_EQ(text(given_up->plan->reasons), "given up: a goal came first; plan again after it");
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   EXPECT_GT(goal.request.control->done, 0);
   EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
   EXPECT_FALSE(planner.submit(late.request));
   goal.request.control->give_up = true;
-  EXPECT_EQ(text(goal.wait()->plan->reasons, UnitSystem::kShop).find("a goal came first"), std::string::npos);
+  EXPECT_EQ(text(goal.wait()->plan->reasons).find("a goal came first"), std::string::npos);
   ASSERT_TRUE(planner.submit(next.request));
   EXPECT_TRUE(next.wait()->plan->good());
 }

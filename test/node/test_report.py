@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shows that `record:=true` writes a bag of all setpoints, which Ctrl-C closes, and that `grind report` makes of it, and of
+"""Shows that `bag:=true` writes a bag of all setpoints, which Ctrl-C closes, and that `grind report` makes of it, and of
 the CSV files, one HTML file whose figures are the job's and whose pictures show its points."""
 
 import datetime
@@ -45,14 +45,14 @@ FILES = {}  # made once for all tests
 
 
 class Recording:
-    """A launched grinder with record:=true: one job run to its end, and one in whose stroke Ctrl-C ends it all."""
+    """A launched grinder with bag:=true: one job run to its end, and one in whose stroke Ctrl-C ends it all."""
 
     def __init__(self, folder):
         self.folder = folder
         self.bag = os.path.join(folder, 'record.bag')
         self.csv = os.path.join(folder, 'run.csv')
-        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=recorded', 'record:=true',
-                                   'bag:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal'),
+        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=recorded', 'bag:=true',
+                                   'bag_file:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal'),
                                    'history:=' + os.path.join(folder, '.ros/flute_grinder/history/'),
                                    'config:=' + gc.machine_file(os.path.join(folder, 'machine.yaml'))],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -99,7 +99,7 @@ class Recording:
         api = xmlrpc.client.ServerProxy(rosgraph.Master('/test_report').lookupNode('/recorded'))
         wanted = {'/joint_states', '/diagnostics'} | {'/recorded/' + name for name in (
             'setpoints', 'state', 'machine', 'offsets', 'job', 'grind/result')}
-        gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == '/recorded_record'},
+        gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == '/recorded_bag'},
                 'the recorder')
 
 

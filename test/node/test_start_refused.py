@@ -127,7 +127,7 @@ class TestSwivel(gc.OwnNode):
         for angle in (math.nan, 81 * DEG):
             run = self.send(gc.paper(setup_swivel=angle)).wait()
             self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL), run.text)
-            self.assertRegex(run.text, r'process\.setup_swivel = \S+ rad; allowed: ')
+            self.assertRegex(run.text, r'process\.setup\.swivel_deg = \S+ deg; allowed: ')
         self.assertTrue(math.isnan(g.fresh_state().swivel))
 
         for angle in ('-31.769', '31.769'):

@@ -285,8 +285,8 @@ class TestStates(NodeTest):
         run.cancel()  # twice, as impatient people do
         self.assertEqual((run.wait_complete().status, run.code), ('PREEMPTED', GrindResult.CANCELED))
         stroke = [s for s in run.setpoints if s.move == STROKE]
-        self.assertEqual(run.text, 'canceled; stopped on the path (at stroke of tooth 1, pass 1, X = %g m)'
-                         % stroke[-1].position[X])
+        self.assertEqual(run.text, 'canceled; stopped on the path (stroke, tooth 1, pass 1, X = %g mm)'
+                         % (stroke[-1].position[X] / MM))
         self.check_stopped_on_path_and_lifted(run)
         self.assertFalse(self.client.wait_state(GrinderState.READY).wheel_in_work)
 
@@ -307,7 +307,7 @@ class TestTheEnd(NodeTest):
     def check_signal(self, with_signal):
         run = self.check_end(with_signal, 0)
         self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
-        self.assertRegex(run.text, r'^canceled; stopped on the path \(at stroke of tooth 1, pass 1, X = ')
+        self.assertRegex(run.text, r'^canceled; stopped on the path \(stroke, tooth 1, pass 1, X = ')
 
     def test_sighup(self):
         self.check_signal(signal.SIGHUP)

@@ -33,39 +33,6 @@ class OnStage : public ::testing::Test {
   Stage stage;
 };
 
-flute_grinder::Reason followingError() {
-  flute_grinder::Reason reason;
-  reason.kind = flute_grinder::Reason::FOLLOWING_ERROR;
-  reason.unit = flute_grinder::Reason::METRE;
-  reason.value = 0.0012;
-  reason.limit = 0.001;
-  return reason;
-}
-
-flute_grinder::Reason positionBeyondItsLimit() {
-  flute_grinder::Reason reason;
-  reason.kind = flute_grinder::Reason::POSITION;
-  reason.unit = flute_grinder::Reason::METRE;
-  reason.value = reason.x = 0.301;
-  reason.limit = 0.3;
-  reason.has_place = 1;
-  reason.move = flute_grinder::WrittenSetpoint::STROKE;
-  reason.pass = 1;
-  reason.cycle = 1204;
-  return reason;
-}
-
-flute_grinder::Reason feedOutOfRange() {
-  flute_grinder::Reason reason;
-  reason.kind = flute_grinder::Reason::OUT_OF_RANGE;
-  reason.field = "process.feed";
-  reason.unit = flute_grinder::Reason::FEED_METRE_PER_SECOND;
-  reason.value = 1;
-  reason.low = 1e-4 / 60;
-  reason.limit = 10.0 / 60;
-  return reason;
-}
-
 /// What the states allow, as docs/ros-interface.md draws them, without what is so already, except Hold.
 struct Row {
   std::uint8_t state;
@@ -110,8 +77,7 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     SCOPED_TRACE(row.name);
     stage.change([&] {
       const bool fault = row.state == flute_grinder::GrinderState::FAULT;
-      stage.state.fault = fault ? "axis_x following error 0.0012 m is beyond its limit 0.001 m" : "";
-      stage.state.fault_reason = fault ? followingError() : flute_grinder::Reason();
+      stage.state.fault = fault ? "axis X following error 1.2 mm is beyond its limit 1 mm" : "";
     });
     stage.be(row.state, row.name);
     std::string name = row.name;
@@ -608,7 +574,7 @@ TEST_F(OnStage, ADryRunThatIsRefusedSaysWhy) {
   WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
   flute_grinder::GrindResult refused;
   refused.error_code = flute_grinder::GrindResult::LIMIT_VIOLATED;
-  refused.reasons = {feedOutOfRange()};
+  refused.error_string = "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min";
   stage.end(stage.get([&] { return stage.goals[0].goal_id.id; }), refused);
   WAIT_FOR(panel.text("verdict") ==
            "Cannot be ground:\nprocess.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min");
@@ -903,9 +869,9 @@ TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
   Panel panel("cell/stage", kPaper);
   stage.be(flute_grinder::GrinderState::READY, "ready");
   stage.change([&] {
-    stage.plan.reasons = {"axis_x position 0.301 m is 0.001 m beyond its limit 0.3 m (stroke, cycle 1204, X = 0.301 m)",
-                          "process.feed = 1 m/s; allowed: 1.666666667e-06 to 0.1666666667 m/s"};
-    stage.plan.violations = {positionBeyondItsLimit(), feedOutOfRange()};
+    stage.plan.reasons = {
+        "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
+        "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
   });
   WAIT_FOR(panel.enabled("plan"));
   panel.click("plan");
@@ -922,7 +888,7 @@ TEST_F(OnStage, WhatLimitsTheFeedIsShown) {
   Panel panel("cell/stage", kPaper);
   stage.be(flute_grinder::GrinderState::READY, "ready");
   flute_grinder::FeedLimit limit;
-  limit.cause = "axis_a velocity";
+  limit.cause = "axis A velocity";
   limit.from_x = 0.003;
   limit.to_x = 0.0052;
   stage.change([&] {

@@ -130,9 +130,9 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   at.setValue(-30);
   panel.click("touch_off");
   WAIT_FOR(touches().size() == 2);
-  EXPECT_EQ(touches()[0].axis, "axis_x");
+  EXPECT_EQ(touches()[0].axis, kX);
   EXPECT_DOUBLE_EQ(touches()[0].position, 1.5e-3);
-  EXPECT_EQ(touches()[1].axis, "axis_a");
+  EXPECT_EQ(touches()[1].axis, kA);
   EXPECT_DOUBLE_EQ(touches()[1].position, -M_PI / 6);
   for (const flute_grinder::TouchOff::Request& touch : touches()) {
     EXPECT_NE(touch.set_by.find('@'), std::string::npos) << touch.set_by;
@@ -162,7 +162,7 @@ TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
   stage.change([&] { stage.state.work_position[kZ] = -2.788e-3; });
   // The job's end diameter is 10 mm.
   WAIT_FOR((with_job.click("touch_off"), !touches().empty()));
-  EXPECT_EQ(touches()[0].axis, "axis_y");
+  EXPECT_EQ(touches()[0].axis, kY);
   EXPECT_NEAR(touches()[0].position, 1.01e-3, 1e-12);
 }
 

@@ -156,7 +156,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   panel.answer("fit_offsets");
   WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
   const flute_grinder::SetOffset::Request set = offsetsSet()[0];
-  EXPECT_EQ(set.axis, "axis_y");
+  EXPECT_EQ(set.axis, kY);
   EXPECT_NEAR(set.value, 0.004, 1e-15);
   EXPECT_EQ(set.basis.job_name, "paper.yaml");
   EXPECT_EQ(set.basis.end_diameter, 0.01);

@@ -39,7 +39,7 @@ GrindJob withConstantRake() {
 TEST(PlannedJob, HasWhatItsPartsFind) {
   const GrindJob job = withConstantRake();
   const PlannedJob whole = planned(job);
-  ASSERT_TRUE(whole.good()) << text(whole.reasons, UnitSystem::kShop);
+  ASSERT_TRUE(whole.good()) << text(whole.reasons);
   EXPECT_EQ(whole.digest, jobDigest(job));
   const GrindJob with_law = withZLaw(job);
   ASSERT_EQ(whole.program->job().z_corrections.size(), 1u);
@@ -88,7 +88,7 @@ TEST(PlannedJob, TheFirstFaultCountsAndAllReasonsAreThere) {
   job.process.wheel_diameter = 0.5;
   job.cutter.flute_length = 0.16;  // the wheel reaches the chuck
   const PlannedJob whole = planned(job);
-  EXPECT_EQ(whole.fault, PlanFault::kTool) << text(whole.reasons, UnitSystem::kShop);
+  EXPECT_EQ(whole.fault, PlanFault::kTool) << text(whole.reasons);
   ASSERT_GE(whole.reasons.size(), 2u);
   EXPECT_EQ(whole.reasons.front().kind, ReasonKind::kRake);
   EXPECT_EQ(whole.reasons.back().kind, ReasonKind::kCollision);

@@ -50,7 +50,7 @@ GrindJob shortJob() {
 }
 
 struct Cycle {
-  CycleRecord record;
+  CycleSample sample;
   bool has_setpoint = false;
   Setpoint setpoint;  ///< that reaches the axes in this cycle
 };
@@ -70,7 +70,7 @@ class JobRecordTest : public ::testing::Test {
 
   Cycle& cycle(MachineState state) {
     Cycle cycle;
-    CycleRecord& r = cycle.record;
+    CycleSample& r = cycle.sample;
     r.period = once(50) ? random(0.0015, 0.01) : random(0.0009, 0.0015);
     time_ += r.period;
     r.time = time_;
@@ -98,7 +98,7 @@ class JobRecordTest : public ::testing::Test {
   void hold(Interlock interlock) {
     for (const MachineState state : {MachineState::kHolding, MachineState::kHeld, MachineState::kRetracting,
                                      MachineState::kRetracted, MachineState::kJoggingRetracted}) {
-      for (int i = 0; i < 5; ++i) cycle(state).record.interlock = interlock;
+      for (int i = 0; i < 5; ++i) cycle(state).sample.interlock = interlock;
       if (once(3)) break;
     }
     cycle(MachineState::kResuming);
@@ -124,8 +124,8 @@ class JobRecordTest : public ::testing::Test {
   Json recorded() {
     JobRecord record(plan_, "short.yaml");
     for (const Cycle& c : cycles_) {
-      record.addCycle(c.record);
-      if (c.has_setpoint) record.addSetpoint(c.setpoint, c.record);
+      record.addCycle(c.sample);
+      if (c.has_setpoint) record.addSetpoint(c.setpoint, c.sample);
     }
     record.conclude({"done", "", 5});
     return record.json("/grinder", kMachine);
@@ -140,7 +140,7 @@ class JobRecordTest : public ::testing::Test {
     }
     return stroke;
   }
-  double since(const CycleRecord& record) const { return record.time - cycles_.front().record.time; }
+  double since(const CycleSample& sample) const { return sample.time - cycles_.front().sample.time; }
 
   void expectStroke(const Json& reported, int tooth, int pass) const;
 
@@ -159,8 +159,8 @@ void JobRecordTest::expectStroke(const Json& reported, int tooth, int pass) cons
   EXPECT_EQ(reported["tooth"], tooth + 1);
   EXPECT_EQ(reported["pass"], pass + 1);
   EXPECT_TRUE(reported["complete"]);
-  EXPECT_NEAR(reported["started_s"], since(stroke.front().record), 1e-6);
-  EXPECT_NEAR(reported["duration_s"], stroke.back().record.time - stroke.front().record.time, 1e-6);
+  EXPECT_NEAR(reported["started_s"], since(stroke.front().sample), 1e-6);
+  EXPECT_NEAR(reported["duration_s"], stroke.back().sample.time - stroke.front().sample.time, 1e-6);
   double low = 1e9, high = 0, deviation = 0, low_x = 0, deviation_x = 0;
   Axes following = Axes::Zero();
   const double spiral = std::tan(job_.spiral_angles[static_cast<std::size_t>(tooth)]), cone = job_.cutter.cone_angle;
@@ -171,7 +171,7 @@ void JobRecordTest::expectStroke(const Json& reported, int tooth, int pass) cons
     const double off = std::abs(c.setpoint.path_error) * radius * normal;
     if (off > deviation) deviation_x = x;
     deviation = std::max(deviation, off);
-    following = following.max((c.record.command_in_effect - c.record.position).abs());
+    following = following.max((c.sample.command_in_effect - c.sample.position).abs());
     if (c.setpoint.step != StepKind::kEven || x < 0 || x > job_.cutter.flute_length) continue;
     if (c.setpoint.feed < low) low_x = x;
     low = std::min(low, c.setpoint.feed);
@@ -218,7 +218,7 @@ TEST_F(JobRecordTest, HoldsAndOverridesAreThoseOfTheCycles) {
     double override = 1;
     ToothPass pass;
     for (std::size_t i = 0; i < cycles_.size(); ++i) {
-      const CycleRecord& r = cycles_[i].record;
+      const CycleSample& r = cycles_[i].sample;
       if (r.feed_override != override) {
         override = r.feed_override;
         ASSERT_LT(change, overrides.size());
@@ -227,12 +227,12 @@ TEST_F(JobRecordTest, HoldsAndOverridesAreThoseOfTheCycles) {
         EXPECT_EQ(overrides[change]["tooth"], pass.tooth + 1);
         EXPECT_EQ(overrides[change++]["pass"], pass.pass + 1);
       }
-      if (r.state == MachineState::kHolding && cycles_[i - 1].record.state != MachineState::kHolding) {
+      if (r.state == MachineState::kHolding && cycles_[i - 1].sample.state != MachineState::kHolding) {
         std::size_t end = i;
-        while (cycles_[end].record.state != MachineState::kResuming) ++end;
+        while (cycles_[end].sample.state != MachineState::kResuming) ++end;
         ASSERT_LT(hold, holds.size());
         EXPECT_NEAR(holds[hold]["at_s"], since(r), 1e-6);
-        EXPECT_NEAR(holds[hold]["duration_s"], cycles_[end].record.time - r.time, 1e-6);
+        EXPECT_NEAR(holds[hold]["duration_s"], cycles_[end].sample.time - r.time, 1e-6);
         EXPECT_EQ(holds[hold]["reason"], r.interlock == Interlock::kNone ? "operator" : "no coolant flows");
         EXPECT_EQ(holds[hold]["tooth"], pass.tooth + 1);
         EXPECT_EQ(holds[hold++]["pass"], pass.pass + 1);
@@ -250,8 +250,8 @@ TEST_F(JobRecordTest, LateCyclesAreCounted) {
   double longest = 0;
   int late = 0;
   for (const Cycle& c : cycles_) {
-    longest = std::max(longest, c.record.period);
-    late += c.record.period > 0.0015;
+    longest = std::max(longest, c.sample.period);
+    late += c.sample.period > 0.0015;
   }
   const Json reported = recorded()["late_cycles"];
   EXPECT_EQ(reported["count"], late);
@@ -278,8 +278,8 @@ TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
   EXPECT_EQ(record["planned"]["duration_s"], 4.32);
   EXPECT_EQ(record["planned"]["max_deviation_um"], 0.5);
   EXPECT_EQ(record["outcome"], "done");
-  EXPECT_EQ(record["started"], utcText(cycles_.front().record.time));
-  EXPECT_EQ(record["ended"], utcText(cycles_.back().record.time));
+  EXPECT_EQ(record["started"], utcText(cycles_.front().sample.time));
+  EXPECT_EQ(record["ended"], utcText(cycles_.back().sample.time));
   EXPECT_FALSE(record.contains("omitted"));
 }
 
@@ -287,15 +287,15 @@ TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {
   JobRecord record(plan_, "");
   for (int i = 0; i < 10004; ++i) {
     override_ = i % 2 == 0 ? 0.5 : 1;
-    record.addCycle(cycle(MachineState::kRunning).record);
-    record.addCycle(cycle(MachineState::kHeld).record);
-    record.addCycle(cycle(MachineState::kHeld).record);
+    record.addCycle(cycle(MachineState::kRunning).sample);
+    record.addCycle(cycle(MachineState::kHeld).sample);
+    record.addCycle(cycle(MachineState::kHeld).sample);
   }
   const Json reported = record.json("/grinder", kMachine);
   EXPECT_EQ(reported["holds"].size(), 10000U);
   EXPECT_EQ(reported["overrides"].size(), 10000U);
   EXPECT_EQ(reported["omitted"], 8);
-  EXPECT_NEAR(reported["holds"].back()["duration_s"], cycles_[29999].record.time - cycles_[29998].record.time, 0.01);
+  EXPECT_NEAR(reported["holds"].back()["duration_s"], cycles_[29999].sample.time - cycles_[29998].sample.time, 0.01);
 }
 
 TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
@@ -310,13 +310,13 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
     recorder.announce(7, preview(), "short.yaml");
     recorder.announce(8, preview(), "has not moved.yaml");
     for (const Cycle& c : cycles_) {
-      recorder.of(7).addCycle(c.record);
-      if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.record);
+      recorder.of(7).addCycle(c.sample);
+      if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.sample);
     }
   }
   const std::vector<std::string> files = recordFilesIn(folder).records;
   ASSERT_EQ(files.size(), 1U);
-  EXPECT_EQ(std::filesystem::path(files[0]).filename(), recordName(cycles_.front().record.time));
+  EXPECT_EQ(std::filesystem::path(files[0]).filename(), recordName(cycles_.front().sample.time));
   std::ifstream stream(files[0]);
   const Json record = Json::parse(stream);
   EXPECT_EQ(record["outcome"], "fault");
@@ -342,9 +342,9 @@ TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
     JobRecorder recorder("/grinder", kMachine, history);
     recorder.announce(1, preview(), "");
     for (Cycle& c : cycles_) {
-      c.record.time += result_first ? 0 : 100;
-      recorder.of(1).addCycle(c.record);
-      if (c.has_setpoint) recorder.of(1).addSetpoint(c.setpoint, c.record);
+      c.sample.time += result_first ? 0 : 100;
+      recorder.of(1).addCycle(c.sample);
+      if (c.has_setpoint) recorder.of(1).addSetpoint(c.setpoint, c.sample);
     }
     if (result_first) recorder.conclude(1, {"canceled", "by hand", 9});
     recorder.end(1);

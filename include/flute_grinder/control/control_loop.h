@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/command_history.h"
-#include "flute_grinder/control/cycle_record.h"
+#include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/control/drive_checks.h"
 #include "flute_grinder/control/jog.h"
 #include "flute_grinder/control/loop_config.h"
@@ -49,8 +49,8 @@ class ControlLoop : public RequestBox {
   /// @return false, and nothing changes, if the fraction is out of range.
   bool setFeedOverride(double fraction);
 
-  /// Takes the oldest record; false if there is none. One consumer at a time.
-  bool pop(CycleRecord& record) { return records_.pop(record); }
+  /// Takes the oldest sample; false if there is none. One consumer at a time.
+  bool pop(CycleSample& sample) { return samples_.pop(sample); }
 
   /// One cycle without the wait. Real-time.
   /// @param time time of the cycle, for stamps.
@@ -157,11 +157,11 @@ class ControlLoop : public RequestBox {
   double waited_ = 0;  ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
   bool homing_seen_ = false;
-  CycleRecord record_;
+  CycleSample sample_;
   LoopStatus next_status_;  ///< published at the end of the cycle
 
   SeqLock<LoopStatus> status_;
-  boost::lockfree::spsc_queue<CycleRecord, boost::lockfree::capacity<8192>> records_;
+  boost::lockfree::spsc_queue<CycleSample, boost::lockfree::capacity<8192>> samples_;
 
   std::thread thread_;
   std::atomic<double> feed_override_{1};

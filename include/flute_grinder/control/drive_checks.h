@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/control/cycle_record.h"
+#include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/control/loop_requests.h"
 
@@ -24,15 +24,15 @@ class DriveChecks {
   void observe(const DriveStatus& drive) noexcept { was_reset_ = was_reset_ && drive.fault; }
 
   /// Why the drive may not be powered; kNone if it may.
-  Refusal powerRefusal(const CycleRecord& record) const noexcept;
+  Refusal powerRefusal(const CycleSample& sample) const noexcept;
 
   /// The fault for which the powered machine must stop, if there is one.
   /// @param moving_unbuffered whether the axes were moving and the drive's buffer had no more commands.
-  std::optional<LoopFault> findFault(const CycleRecord& record, bool moving_unbuffered) const noexcept;
+  std::optional<LoopFault> findFault(const CycleSample& sample, bool moving_unbuffered) const noexcept;
 
  private:
-  bool feedbackIsFresh(const CycleRecord& record) const noexcept;
-  std::optional<LoopFault> findFeedbackFault(const CycleRecord& record) const noexcept;
+  bool feedbackIsFresh(const CycleSample& sample) const noexcept;
+  std::optional<LoopFault> findFeedbackFault(const CycleSample& sample) const noexcept;
 
   const LoopConfig& config_;
   std::uint64_t underruns_at_power_on_ = 0;

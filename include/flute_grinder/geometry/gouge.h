@@ -1,12 +1,12 @@
 #pragma once
 
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 
 #include <vector>
 
 namespace grinder {
 
-/// How far a recorded move went into what its job leaves of the blank.
+/// How far a move of a run went into what its job leaves of the blank.
 struct Gouge {
   ToothPass place;
   MoveKind move = MoveKind::kStroke;
@@ -14,9 +14,9 @@ struct Gouge {
   double depth = 0;  ///< normal to the flute that the job asks for [m]
 };
 
-/// The gouges of a record, each the deepest of its move, in the order of RecordedStrokes::strokes(). Looks at sections
+/// The gouges of a run, each the deepest of its move, in the order of RunStrokes::strokes(). Looks at sections
 /// where the axes were farthest off the path and at some in between, from the small end up to the overtravel.
-/// @param min depth that counts [m]. @param job as for RecordedStrokes. @param strokes finished.
-std::vector<Gouge> gougesOf(const GrindJob& job, const RecordedStrokes& strokes, double min);
+/// @param min depth that counts [m]. @param job as for RunStrokes. @param strokes finished.
+std::vector<Gouge> gougesOf(const GrindJob& job, const RunStrokes& strokes, double min);
 
 }  // namespace grinder

@@ -30,7 +30,7 @@ struct GrindStroke {
   double y_per_x = 0;          ///< added to the cone's own, for a core taper
   double a = 0;                ///< A at X = 0 [rad]
   ZCorrection z_correction{};  ///< added to Z
-  /// Of a stroke that was recorded: at even distances between the ends, from the lesser X on, linear in between; empty
+  /// Of a stroke of a run: at even distances between the ends, from the lesser X on, linear in between; empty
   /// for none.
   std::vector<PathDeviation> deviations{};
 };

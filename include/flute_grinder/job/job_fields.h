@@ -84,7 +84,8 @@ void visitJobChoices(const Visit& visit) {
   // clang-format on
 }
 
-/// The name of a field for the reader of a message: its path, or its key in the job file for the operator.
-std::string fieldName(const std::string& path, UnitSystem units);
+/// The name of a field in texts: its key in a job file.
+/// @param path its name in messages; returned if a job file has no other.
+std::string fieldName(const std::string& path);
 
 }  // namespace grinder

@@ -5,7 +5,7 @@
 
 namespace grinder {
 
-/// The units of quantities in texts. Each stands for one SI unit and one shop unit.
+/// The units of quantities. Each stands for one SI unit, in which values are, and one shop unit, in which texts are.
 enum class Unit : std::uint8_t {
   kNone,                  ///< a plain number
   kMetre,                 ///< mm
@@ -23,22 +23,18 @@ enum class Unit : std::uint8_t {
 };
 constexpr int kUnitCount = 13;
 
-/// The reader of a text: SI units and ROS names for programs and logs; mm, deg, mm/min and job-file keys for the
-/// operator.
-enum class UnitSystem { kSi, kShop };
-
 /// A number with its unit.
 struct Quantity {
   double si = 0;
   Unit unit = Unit::kNone;
 };
 
-/// A number and its unit as text, e.g. "0.301 m" or "301 mm".
+/// A number and its unit as text in shop units, e.g. "301 mm".
 /// @param digits number of significant digits.
-std::string text(const Quantity& quantity, UnitSystem units, int digits = 6);
+std::string text(const Quantity& quantity, int digits = 6);
 
 /// A range as text, e.g. "0.1 to 100 mm". @param to has the unit of `from`.
-std::string text(const Quantity& from, const Quantity& to, UnitSystem units, int digits = 6);
+std::string text(const Quantity& from, const Quantity& to, int digits = 6);
 
 /// SI value divided by shop value, e.g. 0.001 for millimetres.
 double shopScale(Unit unit) noexcept;
@@ -50,7 +46,7 @@ double shopNumber(double si, Unit unit);
 /// The unit of an axis position (derivative 0), velocity (1), acceleration (2) or jerk (3).
 Unit unitOf(int axis, int derivative) noexcept;
 
-/// The axis name: "axis_x", or "axis X" for the operator.
-std::string axisName(int axis, UnitSystem units);
+/// The axis name in texts, e.g. "axis X".
+std::string axisName(int axis);
 
 }  // namespace grinder

@@ -134,24 +134,20 @@ inline Reason otherReason(std::string detail) {
   return reason;
 }
 
-/// A reason in words, in which teeth and passes count from 1.
-std::string text(const Reason& reason, UnitSystem units);
+/// A reason in words and shop units, in which teeth and passes count from 1.
+std::string text(const Reason& reason);
 
 /// Reasons in words, separated by "; ".
-std::string text(const std::vector<Reason>& reasons, UnitSystem units);
+std::string text(const std::vector<Reason>& reasons);
 
-/// A job that cannot be ground on a machine; what() is the reason's text in SI.
+/// A job that cannot be ground on a machine; what() is the reason's text.
 class ReasonError : public std::invalid_argument {
  public:
-  explicit ReasonError(Reason reason)
-      : std::invalid_argument(text(reason, UnitSystem::kSi)), reason_(std::move(reason)) {}
+  explicit ReasonError(Reason reason) : std::invalid_argument(text(reason)), reason_(std::move(reason)) {}
   const Reason& reason() const noexcept { return reason_; }
 
  private:
   Reason reason_;
 };
-
-/// The cause of a feed limit for the reader: "axis_a velocity" becomes "axis A velocity" for the operator.
-std::string causeText(const std::string& cause, UnitSystem units);
 
 }  // namespace grinder

@@ -15,7 +15,7 @@ constexpr double kMaxFeedOverride = 1.2;  ///< maximum feed override, as a fract
 
 /// What limits the feed to less than the requested feed, and where along the stroke.
 struct FeedLimit {
-  std::string cause;  ///< e.g. "axis_a velocity"; causeText() converts it for the operator
+  std::string cause;  ///< in words, e.g. "axis A velocity"
   double from_x = 0;  ///< the end reached first in the direction of the stroke [m]
   double to_x = 0;    ///< [m]
 };
@@ -86,7 +86,7 @@ class FeedSchedule {
   /// A limit of X, and the axis that it comes from.
   struct ForX {
     double limit;
-    const char* axis;
+    int axis;
   };
   ForX forX(const Axes& limit) const noexcept;
   ForX accelerationForX(const AxisLimits& limits, double speed) const noexcept;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/control/cycle_record.h"
+#include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
@@ -31,9 +31,9 @@ class JobRecord {
   JobRecord(const PlannedJob& plan, std::string name);
 
   /// Adds a cycle. To be called for every cycle from the job's start to its end, in order.
-  void addCycle(const CycleRecord& record);
+  void addCycle(const CycleSample& sample);
   /// Adds the setpoint that reaches the axes in a cycle, after that cycle.
-  void addSetpoint(const Setpoint& setpoint, const CycleRecord& record);
+  void addSetpoint(const Setpoint& setpoint, const CycleSample& sample);
   /// Adds setpoints that were written, but are not known.
   void addLost(std::uint64_t setpoints) { lost_ += setpoints; }
   /// For what, and by whom, the work offsets were set. @param said_right the goal says that they are right.
@@ -50,7 +50,7 @@ class JobRecord {
   Json json(const std::string& grinder, const MachineInfo& machine) const;
 
  private:
-  double since(const CycleRecord& record) const { return record.time - started_; }
+  double since(const CycleSample& sample) const { return sample.time - started_; }
   Json jobJson() const;
   Json strokesJson() const;
   Json zeroPointsJson() const;

@@ -14,7 +14,7 @@ namespace grinder {
 
 /// The data of one cycle, for the other threads. Positions and commands are in machine coordinates, a job's setpoints
 /// in its work coordinates.
-struct CycleRecord {
+struct CycleSample {
   double time = 0;    ///< time since the epoch of ROS time, but monotonic [s]
   double period = 0;  ///< since the previous cycle [s]
   double busy = 0;    ///< how much of it the previous cycle took, without the wait for this one; 0 in the first [s]
@@ -29,7 +29,7 @@ struct CycleRecord {
   bool has_setpoint = false;
   Setpoint setpoint;       ///< the setpoint written, if there was one
   std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a setpoint without a job
-  bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next record if this one is lost
+  bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next sample if this one is lost
   bool wheel_in_work = false;
   bool spindle_commanded = false;
   bool coolant_commanded = false;
@@ -38,7 +38,7 @@ struct CycleRecord {
   LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed
   double feed_override = 1;                ///< fraction
-  std::uint64_t records_lost = 0;          ///< because the queue was full; counted since the loop started
+  std::uint64_t samples_lost = 0;          ///< because the queue was full; counted since the loop started
 
   /// How far an axis is from `command_in_effect`, from 0 [m], A [rad]; NaN if the drive read NaN. Real-time safe.
   double followingError(int axis) const noexcept { return std::abs(command_in_effect[axis] - position[axis]); }

@@ -14,12 +14,12 @@ namespace grinder {
 
 /// Receives the setpoints of this program's own goals, counts them and writes them to a file. Runs in its own thread,
 /// so that a slow disk delays nothing else. Thread safe.
-class Recorder {
+class StreamWatch {
  public:
   /// @param nh the grinder's namespace.
   /// @param csv file to write, or empty; it is opened, but unchanged until the first setpoint.
   /// @throw FileError if it cannot be opened.
-  Recorder(const ros::NodeHandle& nh, const std::string& csv);
+  StreamWatch(const ros::NodeHandle& nh, const std::string& csv);
 
   bool connected() const { return subscriber_.getNumPublishers() > 0; }
 
@@ -35,7 +35,7 @@ class Recorder {
   /// From the first setpoint to the last, by the clock of the grinder [s].
   double duration() const;
 
-  /// Ends the recording. @throw FileError if writing failed.
+  /// Closes the file. @throw FileError if writing failed.
   void close();
 
  private:

@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -20,7 +20,7 @@
 #include <vector>
 
 namespace grinder {
-namespace test_recorded_strokes {
+namespace test_run_strokes {
 
 using units::kDegree;
 using units::kMillimetre;
@@ -72,14 +72,14 @@ std::vector<Read> readOf(const GrindJob& job, const Error& error) {
   return all;
 }
 
-RecordedStrokes recordOf(const GrindJob& job, const std::vector<Read>& read) {
-  RecordedStrokes strokes(job);
+RunStrokes runOf(const GrindJob& job, const std::vector<Read>& read) {
+  RunStrokes strokes(job);
   for (std::size_t i = 1; i < read.size(); ++i) strokes.add(read[i].setpoint, read[i - 1].at);
   strokes.finish();
   return strokes;
 }
 
-RecordedStrokes recordOf(const GrindJob& job, const Error& error) { return recordOf(job, readOf(job, error)); }
+RunStrokes runOf(const GrindJob& job, const Error& error) { return runOf(job, readOf(job, error)); }
 
 const Error kExact = [](const Setpoint&) { return Axes(Axes::Zero()); };
 
@@ -110,25 +110,25 @@ bool removed(const GroundCutter& cutter, double x, double r, double theta) {
 
 double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).core_radius; }
 
-TEST(RecordedStrokes, ASparkOutThatWasDeeperIsInTheCore) {
+TEST(RunStrokes, ASparkOutThatWasDeeperIsInTheCore) {
   const GrindJob job = straight();
   const double planned = coreAt(groundCutterOf(job), 0.01);
-  const double ground = coreAt(recordOf(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4))).cutter(), 0.01);
+  const double ground = coreAt(runOf(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4))).cutter(), 0.01);
   EXPECT_NEAR(planned - ground, 1e-4, 1e-8);
 }
 
-TEST(RecordedStrokes, AFirstPassThatWasDeeperThanTheLastIsInTheCore) {
+TEST(RunStrokes, AFirstPassThatWasDeeperThanTheLastIsInTheCore) {
   const GrindJob job = straight();
   const double first = passDepths(job.process).front();
-  const double ground = coreAt(recordOf(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3))).cutter(), 0.01);
+  const double ground = coreAt(runOf(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3))).cutter(), 0.01);
   EXPECT_NEAR(ground, job.cutter.end_diameter / 2 - first - 1.6e-3, 1e-8);
 }
 
-TEST(RecordedStrokes, AnExactRecordIsThePlanAndKeepsEveryStroke) {
+TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
   const GrindJob job = roughing();
-  const RecordedStrokes strokes = recordOf(job, kExact);
+  const RunStrokes strokes = runOf(job, kExact);
   ASSERT_EQ(strokes.strokes().size(), passDepths(job.process).size());
-  for (const RecordedStroke& stroke : strokes.strokes()) {
+  for (const RunStroke& stroke : strokes.strokes()) {
     EXPECT_EQ(stroke.move, MoveKind::kStroke);
     EXPECT_NEAR(stroke.range.from, -job.process.overtravel_end, 1e-12);
     EXPECT_NEAR(stroke.range.to, job.cutter.flute_length + job.process.overtravel_shank, 1e-12);
@@ -146,7 +146,7 @@ TEST(RecordedStrokes, AnExactRecordIsThePlanAndKeepsEveryStroke) {
 }
 
 // The wheel wears, errors of the axes are other in every move, and some are small enough for strokes to be left out.
-TEST(RecordedStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
+TEST(RunStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
   constexpr int kCases = 3, kPoints = 100;
   constexpr double kMargin = 12e-6;  // samples are averaged
   std::mt19937 random(7);
@@ -167,7 +167,7 @@ TEST(RecordedStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
     const auto read = readOf(job, [&](const Setpoint& p) {
       return p.move == MoveKind::kReturn ? Axes(Axes::Zero()) : errors[p.pass][static_cast<std::size_t>(p.move)];
     });
-    const GroundCutter cutter = recordOf(job, read).cutter();
+    const GroundCutter cutter = runOf(job, read).cutter();
     for (int k = 0; k < kPoints; ++k) {
       const double x = uniform(0, 0.022), edge = cutter.section(x).teeth.front().edge.value();
       const double r = uniform(0.6, 1) * 0.005;
@@ -187,12 +187,12 @@ TEST(RecordedStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
   EXPECT_GT(taken, kCases * kPoints / 10);
 }
 
-TEST(RecordedStrokes, AStrokeIsLeftOutOnlyIfAnotherCoversIt) {
+TEST(RunStrokes, AStrokeIsLeftOutOnlyIfAnotherCoversIt) {
   const GrindJob job = straight();
   const auto flutes = [&](int pass, const Axes& error) {
-    return recordOf(job, errorOf(pass, MoveKind::kStroke, error)).cutter().flutes().front().size();
+    return runOf(job, errorOf(pass, MoveKind::kStroke, error)).cutter().flutes().front().size();
   };
-  const double little = 0.8 * RecordedStrokes::kSame, more = 1.2 * RecordedStrokes::kSame;
+  const double little = 0.8 * RunStrokes::kSame, more = 1.2 * RunStrokes::kSame;
   EXPECT_EQ(flutes(2, along(kZ, little)), 1u);
   EXPECT_EQ(flutes(2, along(kZ, more)), 2u);
   EXPECT_EQ(flutes(2, along(kA, little / 0.005)), 1u);
@@ -203,7 +203,7 @@ TEST(RecordedStrokes, AStrokeIsLeftOutOnlyIfAnotherCoversIt) {
 }
 
 Gouge onlyGouge(const GrindJob& job, const Error& error) {
-  const std::vector<Gouge> gouges = gougesOf(job, recordOf(job, error), 2e-6);
+  const std::vector<Gouge> gouges = gougesOf(job, runOf(job, error), 2e-6);
   EXPECT_EQ(gouges.size(), 1u);
   return gouges.empty() ? Gouge{} : gouges.front();
 }
@@ -225,7 +225,7 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
 TEST(Gouges, AShallowerPassIsNone) {
   GrindJob job = readJobFile("jobs/left_hand_d8_t3.yaml");
   job.tooth_angles = {0};
-  EXPECT_TRUE(gougesOf(job, recordOf(job, kExact), 1e-6).empty());
+  EXPECT_TRUE(gougesOf(job, runOf(job, kExact), 1e-6).empty());
   EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);
 }
 
@@ -256,15 +256,15 @@ TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
   const GrindJob job = straight();
   // Y hangs after the third pass; A turns by a quarter meanwhile.
   const std::vector<Gouge> gouges = gougesOf(job,
-                                             recordOf(job,
-                                                      [&](const Setpoint& p) {
-                                                        Axes off = Axes::Zero();
-                                                        if (p.pass == 2 && p.move == MoveKind::kRetract) {
-                                                          off[kY] = -1.2e-3 - p.position[kY];
-                                                          off[kA] = p.move_fraction * kPi / 2;
-                                                        }
-                                                        return off;
-                                                      }),
+                                             runOf(job,
+                                                   [&](const Setpoint& p) {
+                                                     Axes off = Axes::Zero();
+                                                     if (p.pass == 2 && p.move == MoveKind::kRetract) {
+                                                       off[kY] = -1.2e-3 - p.position[kY];
+                                                       off[kA] = p.move_fraction * kPi / 2;
+                                                     }
+                                                     return off;
+                                                   }),
                                              2e-6);
   ASSERT_EQ(gouges.size(), 1u);
   EXPECT_EQ(gouges.front().move, MoveKind::kRetract);
@@ -272,7 +272,7 @@ TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
 }
 
 // After a stop in the stroke it goes on a little before; the first part was deeper there.
-TEST(RecordedStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
+TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
   const GrindJob job = straight();
   std::vector<Read> read = readOf(job, kExact);
   const auto in_last = [](const Read& r) { return r.setpoint.pass == 5 && r.setpoint.move == MoveKind::kStroke; };
@@ -287,9 +287,9 @@ TEST(RecordedStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
   with_lift.push_back(lift);
   with_lift.insert(with_lift.end(), from, read.end());
   for (std::size_t i = 0; i < with_lift.size(); ++i) with_lift[i].setpoint.cycle = i + 1;
-  const GroundCutter cutter = recordOf(job, with_lift).cutter();
+  const GroundCutter cutter = runOf(job, with_lift).cutter();
   EXPECT_NEAR(coreAt(groundCutterOf(job), 9.5e-3) - coreAt(cutter, 9.5e-3), 1e-4, 1e-7);
 }
 
-}  // namespace test_recorded_strokes
+}  // namespace test_run_strokes
 }  // namespace grinder

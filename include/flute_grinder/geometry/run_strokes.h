@@ -15,9 +15,9 @@
 
 namespace grinder {
 
-/// A stroke in a record; or a part of another move in which the wheel was in the blank where no stroke of the tooth
+/// A stroke of a run; or a part of another move in which the wheel was in the blank where no stroke of the tooth
 /// was.
-struct RecordedStroke {
+struct RunStroke {
   ToothPass place;
   MoveKind move = MoveKind::kStroke;
   Range range;                            ///< of X [m]
@@ -25,16 +25,16 @@ struct RecordedStroke {
 };
 
 /// The strokes of a run from the positions that the drive read, and the cutter as they ground it: all that they and the
-/// other moves, as infeed and retract, removed together. What is not in the record is not removed. Setpoints that are
+/// other moves, as infeed and retract, removed together. What was not received is not removed. Setpoints that are
 /// missing within a stroke are taken to lie between their neighbours.
-class RecordedStrokes {
+class RunStrokes {
  public:
   /// How far a stroke may lie beyond another one and still count as covered by it: what it removes in addition is
   /// thinner than twice that [m].
   static constexpr double kSame = 0.5e-6;
 
   /// @param job a job that validate() accepts, from withZLaw().
-  explicit RecordedStrokes(const GrindJob& job);
+  explicit RunStrokes(const GrindJob& job);
 
   /// Takes the setpoints of a job in order. Those that do not belong to a stroke are needed as well.
   /// @param actual position that was read one cycle before [m], A [rad].
@@ -45,12 +45,12 @@ class RecordedStrokes {
   /// To be called after the last setpoint.
   void finish();
 
-  /// All strokes in the order of the record; one that was broken off by a lift and went on is there twice, up to the
+  /// All strokes in the order of the run; one that was broken off by a lift and went on is there twice, up to the
   /// lift and as a whole. Behind them, the parts of other moves.
-  const std::vector<RecordedStroke>& strokes() const noexcept { return strokes_; }
+  const std::vector<RunStroke>& strokes() const noexcept { return strokes_; }
 
   /// What the wheel removed in one of these, as if the tooth were at angle 0.
-  WheelSweep sweep(const RecordedStroke& stroke) const;
+  WheelSweep sweep(const RunStroke& stroke) const;
 
   /// The cutter as ground; a tooth without a stroke removes nothing. Strokes that another one covers are left out: they
   /// cost time and remove nothing more.
@@ -88,7 +88,7 @@ class RecordedStrokes {
 
   Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
   double wearOf(const ToothPass& place) const;
-  double depthOf(const RecordedStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
+  double depthOf(const RunStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
   void beginStroke(const ToothPass& place, double x);
   /// Whether a stroke begins at the last position: where its infeed ended, which is the end of its path.
@@ -99,10 +99,10 @@ class RecordedStrokes {
   void addPose(const Part& part, const Axes& actual);
   /// Whether a stroke's wheel at an X takes with it what the wheel of another pass takes while it is off the path by
   /// `off`.
-  bool covers(const RecordedStroke& stroke, const ToothPass& place, double x, const PathDeviation& off) const;
-  bool covers(const RecordedStroke& stroke, const RecordedStroke& other) const;
+  bool covers(const RunStroke& stroke, const ToothPass& place, double x, const PathDeviation& off) const;
+  bool covers(const RunStroke& stroke, const RunStroke& other) const;
   void addOutside(const Poses& poses, std::size_t strokes);
-  RecordedStroke strokeOf(const Poses& poses, std::size_t from, std::size_t to) const;
+  RunStroke strokeOf(const Poses& poses, std::size_t from, std::size_t to) const;
 
   const GrindJob job_;
   const std::vector<ToothPass> order_;
@@ -117,7 +117,7 @@ class RecordedStrokes {
   Range range_;                       ///< of that stroke
   std::vector<Poses> poses_;
   bool in_blank_ = false;  ///< whether the last position is in the last of these
-  std::vector<RecordedStroke> strokes_;
+  std::vector<RunStroke> strokes_;
 };
 
 }  // namespace grinder

@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/recorded_strokes.h"
+#include "flute_grinder/geometry/run_strokes.h"
 
 #include "flute_grinder/geometry/ground_job.h"
 
@@ -22,12 +22,12 @@ PathDeviation between(const PathDeviation& a, const PathDeviation& b, double par
 }
 
 /// X of a stroke's deviation.
-double xOf(const RecordedStroke& stroke, std::size_t i) {
+double xOf(const RunStroke& stroke, std::size_t i) {
   const auto parts = static_cast<double>(std::max<std::size_t>(1, stroke.deviations.size() - 1));
   return stroke.range.from + (stroke.range.to - stroke.range.from) * static_cast<double>(i) / parts;
 }
 
-PathDeviation deviationAt(const RecordedStroke& stroke, double x) {
+PathDeviation deviationAt(const RunStroke& stroke, double x) {
   const std::vector<PathDeviation>& all = stroke.deviations;
   const double length = stroke.range.to - stroke.range.from;
   const double at = length > 0 ? std::clamp((x - stroke.range.from) / length, 0.0, 1.0) : 0;
@@ -37,7 +37,7 @@ PathDeviation deviationAt(const RecordedStroke& stroke, double x) {
 }
 
 bool holds(const Range& range, double x) {
-  return x >= range.from - RecordedStrokes::kSame && x <= range.to + RecordedStrokes::kSame;
+  return x >= range.from - RunStrokes::kSame && x <= range.to + RunStrokes::kSame;
 }
 
 double maxRadius(const GrindJob& job) {
@@ -47,18 +47,18 @@ double maxRadius(const GrindJob& job) {
 
 }  // namespace
 
-RecordedStrokes::RecordedStrokes(const GrindJob& job)
+RunStrokes::RunStrokes(const GrindJob& job)
     : job_(job),
       order_(passOrder(job)),
       wear_(wearOfPasses(job)),
       depths_(passDepths(job.process)),
       radius_(maxRadius(job)) {}
 
-double RecordedStrokes::wearOf(const ToothPass& place) const {
+double RunStrokes::wearOf(const ToothPass& place) const {
   return wear_[static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin())];
 }
 
-void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
+void RunStrokes::add(const Setpoint& setpoint, const Axes& actual) {
   const Part part{{setpoint.tooth, setpoint.pass}, setpoint.move, setpoint.cycle};
   if (!(part.place.tooth < static_cast<int>(job_.tooth_angles.size()) &&
         part.place.pass < static_cast<int>(depths_.size()))) {
@@ -75,7 +75,7 @@ void RecordedStrokes::add(const Setpoint& setpoint, const Axes& actual) {
   last_ = part;
 }
 
-void RecordedStrokes::finish() {
+void RunStrokes::finish() {
   endStroke();
   reading_.reset();
   const std::size_t strokes = strokes_.size();
@@ -83,7 +83,7 @@ void RecordedStrokes::finish() {
   poses_.clear();
 }
 
-void RecordedStrokes::take(const Part& part, const Axes& actual) {
+void RunStrokes::take(const Part& part, const Axes& actual) {
   const bool same = reading_ && reading_->place == part.place && reading_->move == part.move;
   if (!same) endStroke();
   if (part.move == MoveKind::kStroke) {
@@ -98,7 +98,7 @@ void RecordedStrokes::take(const Part& part, const Axes& actual) {
   read_ = actual;
 }
 
-bool RecordedStrokes::fedInBefore(const Part& part, const Axes& actual) const {
+bool RunStrokes::fedInBefore(const Part& part, const Axes& actual) const {
   if (!reading_ || reading_->move != MoveKind::kInfeed || !(reading_->place == part.place) ||
       reading_->cycle + 1 != part.cycle) {
     return false;
@@ -109,7 +109,7 @@ bool RecordedStrokes::fedInBefore(const Part& part, const Axes& actual) const {
          kApart;
 }
 
-void RecordedStrokes::beginStroke(const ToothPass& place, double x) {
+void RunStrokes::beginStroke(const ToothPass& place, double x) {
   const bool goes_on = !strokes_.empty() && strokes_.back().place == place;
   path_.emplace(pathOf(place));
   if (!goes_on) {
@@ -124,7 +124,7 @@ void RecordedStrokes::beginStroke(const ToothPass& place, double x) {
   (rises ? range_.to : range_.from) = x;
 }
 
-void RecordedStrokes::sample(const Axes& actual) {
+void RunStrokes::sample(const Axes& actual) {
   const double x = actual[kX];
   const PathDeviation off = path_->deviation(x, actual);
   range_ = samples_.empty() ? Range{x, x} : Range{std::min(range_.from, x), std::max(range_.to, x)};
@@ -134,7 +134,7 @@ void RecordedStrokes::sample(const Axes& actual) {
   cell.off = between(cell.off, off, 1.0 / cell.count);
 }
 
-std::vector<PathDeviation> RecordedStrokes::deviations() const {
+std::vector<PathDeviation> RunStrokes::deviations() const {
   if (samples_.size() == 1) return {samples_.begin()->second.off};
   const double length = range_.to - range_.from;
   const auto parts = std::max(1L, std::lround(length / kCell));
@@ -149,23 +149,23 @@ std::vector<PathDeviation> RecordedStrokes::deviations() const {
   return deviations;
 }
 
-void RecordedStrokes::endStroke() {
+void RunStrokes::endStroke() {
   if (!reading_ || reading_->move != MoveKind::kStroke) return;
   if (range_.to > range_.from) strokes_.push_back({reading_->place, MoveKind::kStroke, range_, deviations()});
 }
 
-RecordedStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
+RunStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
     : cutter(cutterOf(job, tooth)),
       curve(cutter, job.process.setup_lead),
       stroke(grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
       angle(job.tooth_angles[static_cast<std::size_t>(tooth)]) {}
 
-PathDeviation RecordedStrokes::Path::deviation(double x, const Axes& at) const {
+PathDeviation RunStrokes::Path::deviation(double x, const Axes& at) const {
   return {at[kY] - (stroke.y + cutter.y(x) + x * stroke.y_per_x), at[kZ] - (cutter.z(x) + stroke.z_correction.at(x).z),
           at[kA] - angle - curve.a(x)};
 }
 
-void RecordedStrokes::addPose(const Part& part, const Axes& actual) {
+void RunStrokes::addPose(const Part& part, const Axes& actual) {
   const bool goes_on =
       in_blank_ && reading_->place == part.place && reading_->move == part.move && reading_->cycle + 1 == part.cycle;
   in_blank_ = job_.cutter.end_diameter / 2 + actual[kY] < radius_;
@@ -180,8 +180,7 @@ void RecordedStrokes::addPose(const Part& part, const Axes& actual) {
   at.push_back(actual);
 }
 
-bool RecordedStrokes::covers(const RecordedStroke& stroke, const ToothPass& place, double x,
-                             const PathDeviation& off) const {
+bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double x, const PathDeviation& off) const {
   if (!holds(stroke.range, x)) return false;
   const PathDeviation own = deviationAt(stroke, x);
   // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
@@ -192,7 +191,7 @@ bool RecordedStrokes::covers(const RecordedStroke& stroke, const ToothPass& plac
          std::abs(off.z - own.z) + radius_ * std::abs(off.a - own.a) <= kSame;
 }
 
-bool RecordedStrokes::covers(const RecordedStroke& stroke, const RecordedStroke& other) const {
+bool RunStrokes::covers(const RunStroke& stroke, const RunStroke& other) const {
   if (stroke.place.tooth != other.place.tooth) return false;
   const auto at = [&](double x) { return covers(stroke, other.place, x, deviationAt(other, x)); };
   // In between, both are linear.
@@ -206,12 +205,12 @@ bool RecordedStrokes::covers(const RecordedStroke& stroke, const RecordedStroke&
   return at(other.range.from) && at(other.range.to);
 }
 
-void RecordedStrokes::addOutside(const Poses& poses, std::size_t strokes) {
+void RunStrokes::addOutside(const Poses& poses, std::size_t strokes) {
   const Path path = pathOf(poses.place);
   const auto covered = [&](const Axes& at) {
     const PathDeviation off = path.deviation(at[kX], at);
     return std::any_of(strokes_.begin(), strokes_.begin() + static_cast<std::ptrdiff_t>(strokes),
-                       [&](const RecordedStroke& stroke) {
+                       [&](const RunStroke& stroke) {
                          return stroke.place.tooth == poses.place.tooth && covers(stroke, poses.place, at[kX], off);
                        });
   };
@@ -227,11 +226,11 @@ void RecordedStrokes::addOutside(const Poses& poses, std::size_t strokes) {
   }
 }
 
-RecordedStroke RecordedStrokes::strokeOf(const Poses& poses, std::size_t from, std::size_t to) const {
+RunStroke RunStrokes::strokeOf(const Poses& poses, std::size_t from, std::size_t to) const {
   std::vector<Axes> at(poses.at.begin() + static_cast<std::ptrdiff_t>(from),
                        poses.at.begin() + static_cast<std::ptrdiff_t>(to) + 1);
   if (at.front()[kX] > at.back()[kX]) std::reverse(at.begin(), at.end());
-  RecordedStroke stroke{poses.place, poses.move, {at.front()[kX], at.back()[kX]}, {}};
+  RunStroke stroke{poses.place, poses.move, {at.front()[kX], at.back()[kX]}, {}};
   stroke.range.to = std::max(stroke.range.to, stroke.range.from + kShortest);
   const Path path = pathOf(poses.place);
   stroke.deviations.resize(at.size());
@@ -239,29 +238,28 @@ RecordedStroke RecordedStrokes::strokeOf(const Poses& poses, std::size_t from, s
   return stroke;
 }
 
-WheelSweep RecordedStrokes::sweep(const RecordedStroke& recorded) const {
-  const int tooth = recorded.place.tooth;
-  const double wear = wearOf(recorded.place);
+WheelSweep RunStrokes::sweep(const RunStroke& run) const {
+  const int tooth = run.place.tooth;
+  const double wear = wearOf(run.place);
   GrindStroke stroke = grinder::strokeOf(job_, tooth, job_.process.deepest(), wear);
-  stroke.from = recorded.range.from;
-  stroke.to = recorded.range.to;
-  stroke.deviations = recorded.deviations;
+  stroke.from = run.range.from;
+  stroke.to = run.range.to;
+  stroke.deviations = run.deviations;
   return sweepOf(job_, tooth, wear, stroke);
 }
 
-GroundCutter RecordedStrokes::cutter() const {
-  std::vector<const RecordedStroke*> deepest_first;
-  for (const RecordedStroke& stroke : strokes_) deepest_first.push_back(&stroke);
+GroundCutter RunStrokes::cutter() const {
+  std::vector<const RunStroke*> deepest_first;
+  for (const RunStroke& stroke : strokes_) deepest_first.push_back(&stroke);
   std::stable_sort(deepest_first.begin(), deepest_first.end(),
-                   [&](const RecordedStroke* a, const RecordedStroke* b) { return depthOf(*a) > depthOf(*b); });
-  std::vector<const RecordedStroke*> kept;
-  for (const RecordedStroke* stroke : deepest_first) {
-    const auto covering = [&](const RecordedStroke* other) { return covers(*other, *stroke); };
+                   [&](const RunStroke* a, const RunStroke* b) { return depthOf(*a) > depthOf(*b); });
+  std::vector<const RunStroke*> kept;
+  for (const RunStroke* stroke : deepest_first) {
+    const auto covering = [&](const RunStroke* other) { return covers(*other, *stroke); };
     if (std::none_of(kept.begin(), kept.end(), covering)) kept.push_back(stroke);
   }
   std::vector<Flute> flutes(job_.tooth_angles.size());
-  for (const RecordedStroke* stroke : kept)
-    flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
+  for (const RunStroke* stroke : kept) flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
   std::vector<GroundTooth> teeth;
   for (std::size_t i = 0; i < flutes.size(); ++i) {
     // A stroke without a length removes nothing.

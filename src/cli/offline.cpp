@@ -135,7 +135,7 @@ int runPlan(const PlanOptions& options) {
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
   const PlannedJob plan =
-      planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
+      planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, visit);
   if (csv) csv->close();
   if (options.json) {
     Json json = toJson(plan);

@@ -122,7 +122,7 @@ CollisionJob collisionJobOf(const GrindProgram& program) {
           has_neck ? std::optional<double>(job.cutter.flute_length + job.cutter.neck_length) : std::nullopt,
           strokeEndOf(program),
           program.machine().collision_clearance,
-          program.machine().work_offset[kX],
+          program.run().offset[kX],
           workClearance(program)};
 }
 

@@ -28,8 +28,8 @@ FeedSchedule::Stroke strokeOf(const GrindJob& job) {
   return stroke;
 }
 
-/// @throw std::invalid_argument unless the machine's data and the start position are valid for motion.
-const Machine& checked(const Machine& machine, const Axes& start) {
+/// @throw std::invalid_argument unless the machine's data, the start position and the offset are valid for motion.
+const Machine& checked(const Machine& machine, const RunStart& run) {
   const AxisLimits& l = machine.limits;
   const auto require = [](bool good, const char* what) {
     if (!good) throw std::invalid_argument(std::string("machine: ") + what);
@@ -41,8 +41,8 @@ const Machine& checked(const Machine& machine, const Axes& start) {
           "velocity, acceleration and jerk limits must be 1e-9 to 1e9, in SI units");
   require(place(l.min_position) && place(l.max_position) && (l.min_position < l.max_position).all(),
           "position limits must be within -1e9 to 1e9, the lower below the upper");
-  require(place(start) && place(machine.park), "start and park position must be within -1e9 to 1e9");
-  require((machine.work_offset.abs() <= kMaxOffset).all(), "work offsets must be within -1000 to 1000 m or rad");
+  require(place(run.at) && place(machine.park), "start and park position must be within -1e9 to 1e9");
+  require((run.offset.abs() <= kMaxOffset).all(), "work offsets must be within -1000 to 1000 m or rad");
   require(machine.max_job_duration > 0 && machine.max_job_duration <= kMaxFigure,
           "max_job_duration must be more than 0, up to 1e9 s");
   return machine;
@@ -76,15 +76,15 @@ void requireSwivel(const Machine& machine, const GrindJob& job) {
   throw ReasonError(reason);
 }
 
-/// @param park position [m], A [rad]. @param clearance_y [m]; both in work coordinates.
-void requireParkClear(const Machine& machine, const Axes& park, double clearance_y) {
-  if (park[kY] >= clearance_y) return;
+/// @param clearance_y in work coordinates. @param park, offset of Y; see RunStart [m].
+void requireParkClear(double clearance_y, double park, double offset) {
+  if (park - offset >= clearance_y) return;
   Reason reason;
   reason.kind = ReasonKind::kParkInWork;
   reason.axis = kY;
   reason.unit = Unit::kMetre;
-  reason.value = machine.park[kY];
-  reason.limit = clearance_y + machine.work_offset[kY];
+  reason.value = park;
+  reason.limit = clearance_y + offset;
   throw ReasonError(reason);
 }
 
@@ -110,10 +110,10 @@ std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, c
 
 }  // namespace
 
-GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first)
+GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const RunStart& run)
     : job_(std::make_shared<const GrindJob>(job)),
-      machine_(checked(machine, start)),
-      start_(start),
+      machine_(checked(machine, run)),
+      run_(run),
       stroke_(strokeOf(job)),
       helices_(helicesOf(job, stroke_, machine)),
       helix_of_tooth_(job.tooth_angles.size()),
@@ -123,13 +123,12 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   }
   for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.edge.cutter);
   requireSwivel(machine, job);
-  const Axes park = machine.park - machine.work_offset;
-  requireParkClear(machine, park, clearance_y_);
+  requireParkClear(clearance_y_, machine.park[kY], run.offset[kY]);
   const std::vector<ToothPass> order = passOrder(job);
-  const auto begin = std::find(order.begin(), order.end(), first);
+  const auto begin = std::find(order.begin(), order.end(), run.first);
   if (begin == order.end()) {
     std::ostringstream text;
-    text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to "
+    text << "first_tooth = " << run.first.tooth << ", first_pass = " << run.first.pass << "; allowed: 0 to "
          << order.back().tooth << " and 0 to " << order.back().pass;
     throw std::invalid_argument(text.str());
   }
@@ -138,12 +137,13 @@ GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Ax
   const std::vector<double> wear = wearOfPasses(job);
   constexpr std::ptrdiff_t moves_per_pass = 6;
   moves_.reserve(static_cast<std::size_t>((order.end() - begin) * moves_per_pass + 2));
-  Axes at = start;
+  const Axes park = machine.park - run.offset;
+  Axes at = start();
   // After a job that did not finish, the wheel may be in a flute of a different cutter: only the park position is clear
   // of every cutter.
   if (at[kY] < park[kY]) {
     at[kY] = park[kY];
-    append(MoveKind::kLift, first, at);
+    append(MoveKind::kLift, run.first, at);
   }
   for (auto pass = begin; pass != order.end(); ++pass) {
     const double depth = depths[static_cast<std::size_t>(pass->pass)];

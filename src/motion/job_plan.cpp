@@ -201,7 +201,7 @@ void planSetpoints(JobPlan& plan, const PlanWatch& watch) {
 
 }  // namespace
 
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+JobPlan planJob(const GrindJob& job, const Machine& machine, const RunStart& run,
                 const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   JobPlan plan;
   plan.reasons = validate(job);
@@ -209,13 +209,13 @@ JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, 
     plan.fault = PlanFault::kInvalidJob;
     return plan;
   }
-  const double min = minDuration(job, first);
+  const double min = minDuration(job, run.first);
   if (min > machine.max_job_duration) {
     refuseAsTooLong(plan, job, machine, min);
     return plan;
   }
   try {
-    plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
+    plan.program = std::make_shared<const GrindProgram>(job, machine, run);
   } catch (const ReasonError& error) {
     refuse(plan, PlanFault::kInvalidJob, error.reason());
     return plan;

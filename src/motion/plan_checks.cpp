@@ -42,7 +42,7 @@ PlanChecks::PlanChecks(JobPlan& plan)
 }
 
 bool PlanChecks::add(const Setpoint& p) {
-  if (check_.check(p, program_.machine().work_offset)) {
+  if (check_.check(p, program_.run().offset)) {
     std::for_each(check_.begin(), check_.end(), [&](const auto& v) { addViolation(v); });
     if (!p.position.isFinite().all()) return false;
   }
@@ -53,7 +53,7 @@ bool PlanChecks::add(const Setpoint& p) {
 }
 
 void PlanChecks::recall(const Setpoint& p) {
-  check_.check(p, program_.machine().work_offset);
+  check_.check(p, program_.run().offset);
   count(p);
   last_velocity_ = check_.velocity();
   if (p.cycle % 2 == 0) end_x_ = p.position[kX];

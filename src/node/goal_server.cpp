@@ -184,14 +184,14 @@ void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& jo
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request{job};
   const WorkOffsets offsets = offsets_.offsets();
-  request.offset = offsets.values();
   const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);
   }
-  request.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
+                 {handle.getGoal()->first_tooth, handle.getGoal()->first_pass},
+                 offsets.values()};
   request.for_goal = true;
   request.control = control;
   request.done = [this](std::unique_ptr<Preview> preview) {
@@ -246,7 +246,7 @@ void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
   goal_->number = loop_.status().jobs_started + 1;
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->preview->plan;
-  tracker_.begin(*plan.program, plan.digest, name, plan.first, goal_->number);
+  tracker_.begin(*plan.program, plan.digest, name, goal_->number);
   telemetry_.announceJob(goal_->number, handle.getGoalID().id, goal_->preview, name);
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
@@ -382,8 +382,8 @@ flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) con
   const PlannedJob& plan = *goal_->preview->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
-    at.tooth = static_cast<std::uint16_t>(plan.first.tooth);
-    at.pass = static_cast<std::uint16_t>(plan.first.pass);
+    at.tooth = static_cast<std::uint16_t>(plan.program->run().first.tooth);
+    at.pass = static_cast<std::uint16_t>(plan.program->run().first.pass);
     at.x = plan.program->start()[kX];
   }
   flute_grinder::GrindResult r = result(flute_grinder::GrindResult::SUCCESSFUL, "", plan.statistics);

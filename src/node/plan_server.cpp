@@ -47,9 +47,9 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
   auto answer = promise.get_future();
   Planner::Request plan_request{JobWithDigest(jobFromGoal(request.goal))};
   const WorkOffsets offsets = offsets_.offsets();
-  plan_request.offset = offsets.values();
-  plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
+  plan_request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
+                      {request.goal.first_tooth, request.goal.first_pass},
+                      offsets.values()};
   plan_request.control = control_;
   plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
   const bool taken = planner_.submit(std::move(plan_request));

@@ -60,9 +60,7 @@ std::unique_ptr<Preview> Planner::plan(const Request& request) {
 }
 
 bool Planner::isKept(const Request& request) const {
-  return kept_ && kept_->digest == request.job.digest() && kept_->first.tooth == request.first.tooth &&
-         kept_->first.pass == request.first.pass && (kept_->program->machine().work_offset == request.offset).all() &&
-         (kept_->program->start() == request.start - request.offset).all();
+  return kept_ && kept_->digest == request.job.digest() && kept_->program->run() == request.run;
 }
 
 PlannedJob Planner::makePlan(const Request& request) const {
@@ -70,10 +68,7 @@ PlannedJob Planner::makePlan(const Request& request) const {
     request.control->done = done;
     return !request.control->give_up && !goal_waits_;
   };
-  Machine machine = machine_;
-  machine.work_offset = request.offset;
-  PlannedJob plan =
-      planWholeJob(request.job, machine, shapes_, request.start - request.offset, request.first, {}, watch);
+  PlannedJob plan = planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
   if (plan.fault == PlanFault::kGivenUp && goal_waits_)
     plan.reasons.back().detail = "a goal came first; plan again after it";
   return plan;

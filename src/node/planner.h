@@ -34,12 +34,10 @@ class Planner {
  public:
   struct Request {
     JobWithDigest job;
-    Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
-    Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
-    ToothPass first;             ///< to grind
+    RunStart run{};
     bool for_goal = false;
-    std::shared_ptr<PlanControl> control;
-    std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
+    std::shared_ptr<PlanControl> control{};
+    std::function<void(std::unique_ptr<Preview>)> done{};  ///< called once, in the planner's thread; must not block
   };
 
   Planner(const Machine& machine, const MachineShapes& shapes);

@@ -65,7 +65,7 @@ std::string ProgressTracker::offsetChanges(const Axes& offset) const {
 }
 
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                            const ToothPass& first, std::uint64_t number) {
+                            std::uint64_t number) {
   before_ = progress_;
   number_ = number;
   moves_ = program.moves();
@@ -78,12 +78,12 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.job_name = name;
   progress_.cutter = program.job().cutter;
   progress_.tooth_angles = program.job().tooth_angles;
-  progress_.next = first;
+  progress_.next = program.run().first;
   progress_.x = program.strokeFrom();
   // Assumed until the job has ended: after a crash nothing but the drive's positions could prove the wheel clear.
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
-  progress_.offset = program.machine().work_offset;
+  progress_.offset = program.run().offset;
   write();
 }
 

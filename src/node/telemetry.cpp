@@ -123,7 +123,7 @@ void Telemetry::showJob(const Preview& preview) {
   last_change_ = ros::SteadyTime::now();
   const PlannedJob& plan = *preview.plan;
   frames_.show(plan.program, plan.edges);
-  scene_.show(plan.program, plan.edges, plan.digest, plan.first);
+  scene_.show(plan.program, plan.edges, plan.digest, plan.program->run().first);
 }
 
 void Telemetry::tick() {
@@ -235,7 +235,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
 
 /// The position read, in the job's work coordinates.
 Axes Telemetry::workPosition(const Job& job) const {
-  return record_.position - job.preview->plan->program->machine().work_offset;
+  return record_.position - job.preview->plan->program->run().offset;
 }
 
 void Telemetry::endJob(Job& job) {

@@ -19,10 +19,10 @@ JobPlan refused(Reason reason) {
   return plan;
 }
 
-JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const RunStart& run,
                     const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   // Of an invalid job, planJob() finds what is wrong.
-  if (!validate(job).empty()) return planJob(job, machine, start, first, visit, watch);
+  if (!validate(job).empty()) return planJob(job, machine, run, visit, watch);
   GrindJob with_law;
   try {
     with_law = withZLaw(job, watch);
@@ -31,7 +31,7 @@ JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& sta
   } catch (const std::invalid_argument& error) {
     return refused(otherReason(error.what()));
   }
-  return planJob(with_law, machine, start, first, visit, watch);
+  return planJob(with_law, machine, run, visit, watch);
 }
 
 void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) {
@@ -45,9 +45,9 @@ JobWithDigest::JobWithDigest(GrindJob job)
     : job_(std::make_shared<const GrindJob>(std::move(job))), digest_(jobDigest(*job_)) {}
 
 PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
-                        const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,
+                        const RunStart& run, const std::function<void(const Setpoint&)>& visit,
                         const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}, {}, {}};
+  PlannedJob planned{planWithLaw(job.job(), machine, run, visit, watch), job.digest(), {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
   CutterCheck cutter = checkGroundCutter(planned.program->job());
   planned.complete = cutter.complete;

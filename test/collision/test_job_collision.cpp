@@ -37,8 +37,7 @@ GrindJob cylinderJob(double shank_diameter) {
 GrindProgram programOf(const GrindJob& job, const Axes& offset = Axes::Zero()) {
   Machine machine = plainMachine();
   machine.collision_clearance = 1e-3;
-  machine.work_offset = offset;
-  return {job, machine, machine.park - offset};
+  return {job, machine, {machine.park, {}, offset}};
 }
 
 CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),

@@ -242,11 +242,11 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
   RecordedStrokes strokes(withZLaw(job));
   Axes actual = test_support::roomyMachine().park;
-  const JobPlan plan = planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, {},
-                               [&](const Setpoint& p) {
-                                 strokes.add(p, actual);
-                                 actual = p.position;
-                               });
+  const JobPlan plan =
+      planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
+        strokes.add(p, actual);
+        actual = p.position;
+      });
   strokes.finish();
   ASSERT_TRUE(plan.good()) << text(plan.reasons, UnitSystem::kShop);
   const GrindJob& with_law = plan.program->job();

@@ -202,7 +202,7 @@ struct Case {
   ToothPass first;
 
   JobPlan plan(const std::function<void(const Setpoint&)>& visit = {}) const {
-    return planJob(job, machine, start, first, visit);
+    return planJob(job, machine, {start, first}, visit);
   }
 };
 

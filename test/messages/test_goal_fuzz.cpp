@@ -86,7 +86,7 @@ bool answer(const flute_grinder::GrindGoal& goal) {
   expectSame(job, jobFromGoal(goalFromJob(job)));
   EXPECT_EQ(jobDigest(job), jobDigest(jobFromGoal(goalFromJob(job))));
   const Machine m = machine();
-  JobPlan plan = planJob(job, m, m.park, {goal.first_tooth, goal.first_pass});
+  JobPlan plan = planJob(job, m, {m.park, {goal.first_tooth, goal.first_pass}});
   EXPECT_EQ(plan.good(), plan.reasons.empty());
   EXPECT_TRUE(validate(job).empty() || plan.fault == PlanFault::kInvalidJob);
   const flute_grinder::PathStatistics message = toMessage(plan.statistics);

@@ -19,7 +19,7 @@ namespace test_plan_shapes {
 using namespace test_support;
 
 JobPlan planOfAllSetpoints(const Work& work, const ToothPass& first = {}) {
-  return planJob(work.job, work.machine, work.start, first, [](const Setpoint&) {});
+  return planJob(work.job, work.machine, {work.start, first}, [](const Setpoint&) {});
 }
 
 /// Some teeth in some passes, in a stroke of some hundred cycles.
@@ -99,7 +99,7 @@ RC_GTEST_PROP(PlanShapes, AreRefusedAsAllSetpointsAre, ()) {
   const int axis = *whole(0, kAxisCount - 1);
   const double factor = *rc::gen::element(0.7, 0.999, 1.0, 1.001);
   Axes lowest = work.start, highest = work.start;
-  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
+  planJob(work.job, work.machine, work.start, [&](const Setpoint& p) {
     lowest = lowest.min(p.position);
     highest = highest.max(p.position);
   });
@@ -119,13 +119,13 @@ RC_GTEST_PROP(PlanShapes, BeginWithAnyPass, ()) {
   const Work work = *wholeTool();
   const std::vector<ToothPass> order = passOrder(work.job);
   const ToothPass first = order[static_cast<std::size_t>(*whole(0, static_cast<int>(order.size()) - 1))];
-  requireSame(planJob(work.job, work.machine, work.start, first), planOfAllSetpoints(work, first));
+  requireSame(planJob(work.job, work.machine, {work.start, first}), planOfAllSetpoints(work, first));
 }
 
 /// How often a planner asks its watch, which it does after every so many setpoints.
 int looksAt(const Work& work, const std::function<void(const Setpoint&)>& visit) {
   int looks = 0;
-  planJob(work.job, work.machine, work.start, {}, visit, [&](double) { return ++looks > 0; });
+  planJob(work.job, work.machine, work.start, visit, [&](double) { return ++looks > 0; });
   return looks;
 }
 
@@ -154,7 +154,7 @@ TEST_P(PlanShapesGivenUp, Are) {
   work.start[kX] = work.machine.limits.min_position[kX] = GetParam();
   work.machine.max_job_duration = 1e9;
   int looks = 0;
-  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, {}, [&](double) { return ++looks < 2; });
+  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, [&](double) { return ++looks < 2; });
   EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
   EXPECT_EQ(looks, 2);
   EXPECT_EQ(textOf(plan), "given up while it was planned\n");

@@ -116,7 +116,7 @@ RC_GTEST_PROP(ZLawProperty, AfterARetractItIsTheSameCurveWithinTheLimits, ()) {
 RC_GTEST_PROP(ZLawProperty, ThePlanSeesTheStreamsBits, ()) {
   const Work work = *correctedWork(kCycles / 3);
   std::vector<Setpoint> planned;
-  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) { planned.push_back(p); });
+  planJob(work.job, work.machine, work.start, [&](const Setpoint& p) { planned.push_back(p); });
   RC_PRE(!planned.empty());  // the numbers of some are not allowed
   const auto streamed = all(work);
   RC_ASSERT(planned.size() == streamed.size());

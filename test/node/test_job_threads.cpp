@@ -73,7 +73,7 @@ class JobThreads : public ::testing::Test {
     std::promise<std::unique_ptr<Preview>> promise;
     auto answer = promise.get_future();
     Planner::Request request{JobWithDigest(job_)};
-    request.start = Eigen::Map<const Axes>(before.command.data());
+    request.run.at = Eigen::Map<const Axes>(before.command.data());
     request.for_goal = true;
     request.control = control;
     request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
@@ -154,7 +154,7 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     std::promise<void> done;
     Planner::Request request{JobWithDigest(job_)};
-    request.start = machineConfig().machine.park;
+    request.run.at = machineConfig().machine.park;
     request.control = std::make_shared<PlanControl>();
     request.done = [&](const std::unique_ptr<Preview>&) { done.set_value(); };
     if (planner_.submit(std::move(request))) done.get_future().wait();

@@ -46,7 +46,7 @@ JobWithDigest changed(const std::function<void(GrindProcess&)>& change) {
 /// A request with its outcome.
 struct Asked {
   explicit Asked(const GrindJob& job) : request{JobWithDigest(job)} {
-    request.start = machine().park;
+    request.run.at = machine().park;
     request.control = std::make_shared<PlanControl>();
     request.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
   }
@@ -92,15 +92,15 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
   const std::vector<std::function<void(Planner::Request&)>> changes{
       [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.feed *= 0.9; }); },
       [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.spark_out = 1; }); },
-      [](Planner::Request& r) { r.start[kX] += 1e-9; },
-      [](Planner::Request& r) { r.offset[kA] += 1e-9; },
+      [](Planner::Request& r) { r.run.at[kX] += 1e-9; },
+      [](Planner::Request& r) { r.run.offset[kA] += 1e-9; },
   };
   for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
   const JobWithDigest two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
   const auto withFirstPass = [&](int pass) {
     return programOf([&](Planner::Request& r) {
       r.job = two_passes;
-      r.first = {0, pass};
+      r.run.first = {0, pass};
     });
   };
   EXPECT_NE(withFirstPass(1), withFirstPass(0));
@@ -115,7 +115,7 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   const auto preview = asked.wait();
   ASSERT_TRUE(preview->plan->good()) << text(preview->plan->reasons, UnitSystem::kShop);
   std::vector<Axes> expected;
-  planJob(withZLaw(job), machine(), machine().park, {}, [&](const Setpoint& p) { expected.push_back(p.position); });
+  planJob(withZLaw(job), machine(), machine().park, [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
   for (Setpoint p; preview->stream->next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;
   EXPECT_EQ(i, expected.size());

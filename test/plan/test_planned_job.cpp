@@ -25,7 +25,7 @@ Machine machine() {
 }
 
 PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const PlanWatch& watch = {}) {
-  return planWholeJob(JobWithDigest(job), on, MachineShapes(shippedUrdf()), on.park, {}, {}, watch);
+  return planWholeJob(JobWithDigest(job), on, MachineShapes(shippedUrdf()), on.park, {}, watch);
 }
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }

@@ -16,7 +16,7 @@ namespace grinder {
 /// A job to start.
 struct JobStart {
   SetpointStream* stream = nullptr;
-  Axes offset = Axes::Zero();  ///< for which it was planned, see Machine::work_offset [m], A [rad]
+  Axes offset = Axes::Zero();  ///< for which it was planned, see RunStart [m], A [rad]
   Wheel wheel;                 ///< for this job
   double swivel = 0;           ///< that this job needs [rad]
   bool in_journal = true;      ///< otherwise confirmed later

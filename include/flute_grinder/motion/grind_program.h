@@ -15,6 +15,21 @@ namespace grinder {
 
 struct GrindJob;
 
+/// From where, with which work offset, and with which pass the run of a job begins.
+struct RunStart {
+  /// @param at machine position of the axes [m], A [rad].
+  RunStart(const Axes& at = Axes::Zero(), const ToothPass& first = {}, const Axes& offset = Axes::Zero())
+      : at(at), first(first), offset(offset) {}
+
+  Axes at;          ///< machine position of the axes [m], A [rad]
+  ToothPass first;  ///< to grind
+  Axes offset;      ///< machine position - work position, see WorkOffsets [m], A [rad]
+
+  bool operator==(const RunStart& other) const {
+    return (at == other.at).all() && first == other.first && (offset == other.offset).all();
+  }
+};
+
 /// One move of a job, from the end of the previous move.
 struct Move {
   MoveKind kind = MoveKind::kLift;
@@ -46,20 +61,18 @@ struct Helix {
 class GrindProgram {
  public:
   /// @param job a job that validate() accepts.
-  /// @param machine the machine that runs the job, with the job's work offset.
-  /// @param start the position of the axes at the start, in work coordinates [m], A [rad].
-  /// @param first first pass to grind.
-  /// @throw std::invalid_argument if `first` is not a pass of the job, if the machine's data or `start` are out of
-  ///        range, if the park position is in the work, if the machine does not swivel as far as the job's set-up, if
+  /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
+  /// the park position is in the work, if the machine does not swivel as far as the job's set-up, if
   ///        the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
-  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
+  GrindProgram(const GrindJob& job, const Machine& machine, const RunStart& run);
 
   const GrindJob& job() const noexcept { return *job_; }
   const Machine& machine() const noexcept { return machine_; }
+  const RunStart& run() const noexcept { return run_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
   const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
-  double swivel() const noexcept;  ///< of the job's set-up [rad]
-  const Axes& start() const noexcept { return start_; }
+  double swivel() const noexcept;                                ///< of the job's set-up [rad]
+  Axes start() const noexcept { return run_.at - run_.offset; }  ///< in work coordinates [m], A [rad]
   const std::vector<Move>& moves() const noexcept { return moves_; }
 
   /// The path of a tooth's strokes; teeth with the same spiral angle have the same.
@@ -80,7 +93,7 @@ class GrindProgram {
 
   std::shared_ptr<const GrindJob> job_;
   Machine machine_;
-  Axes start_;
+  RunStart run_;
   FeedSchedule::Stroke stroke_;
   std::vector<Helix> helices_;
   std::vector<std::size_t> helix_of_tooth_;

@@ -61,12 +61,9 @@ struct JobPlan {
 /// as a whole only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
 /// differ from those of all setpoints by rounding; nothing else differs.
 /// @param job the job; its numbers are checked too.
-/// @param machine the machine that runs the job, with the job's work offset.
-/// @param start the position of the axes at the start, in work coordinates [m], A [rad].
-/// @param first first pass to grind.
 /// @param visit if given, every setpoint is generated, and this is called with it; all of them are finite.
 /// @param watch if given, may make the planner give up.
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
+JobPlan planJob(const GrindJob& job, const Machine& machine, const RunStart& run,
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
 }  // namespace grinder

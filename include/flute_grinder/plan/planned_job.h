@@ -25,11 +25,9 @@ class JobWithDigest {
   std::string digest_;
 };
 
-/// A job's complete plan. Its program holds the job with its law of Z, the machine with the
-/// work offset, and the start.
+/// A job's complete plan. Its program holds the job with its law of Z, the machine, and where the run begins.
 struct PlannedJob : JobPlan {
   std::string digest;                   ///< see jobDigest()
-  ToothPass first;                      ///< to grind
   std::optional<Range> complete;        ///< where the flutes would be complete, if that was checked
   CutterFigures figures;                ///< of the tool that it grinds, if that was checked
   std::vector<GroundEdge> edges;        ///< of its teeth, if that was checked
@@ -40,9 +38,9 @@ struct PlannedJob : JobPlan {
 /// checkGroundCutter() and checkCollision(). For any job and machine, the result is either good or has reasons. Cutter
 /// and collisions are checked, too, of a job whose setpoints are refused; a law of Z that does not exist leaves the
 /// result without a program.
-/// @param shapes of the machine. @param start, first, visit, watch as for planJob().
+/// @param shapes of the machine. @param run, visit, watch as for planJob().
 PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
-                        const Axes& start, const ToothPass& first = {},
-                        const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
+                        const RunStart& run, const std::function<void(const Setpoint&)>& visit = {},
+                        const PlanWatch& watch = {});
 
 }  // namespace grinder

@@ -58,7 +58,6 @@ class JobRecord {
   std::shared_ptr<const GrindProgram> program_;
   PathStatistics planned_;
   std::string digest_;
-  ToothPass first_;
   std::string name_;
   WorkOffsets offsets_;
   bool offsets_said_right_ = false;

@@ -14,7 +14,7 @@ namespace {
 /// rule, whose even points drift.
 double overrideFactor(const GrindProgram& program) {
   double factor = 1;
-  if (program.job().interpolation.even_step != EvenStepRule::kPublished) return factor;
+  if (program.job()->interpolation.even_step != EvenStepRule::kPublished) return factor;
   for (const Helix& helix : program.helices()) {
     factor = std::max(factor, std::pow(helix.schedule.limits().velocity / helix.schedule.feedSpeed(), 2));
   }
@@ -37,7 +37,7 @@ PlanChecks::PlanChecks(JobPlan& plan)
   plan.move_ends.assign(program_.moves().size(), 0);
   deviation_.kind = ReasonKind::kTolerance;
   deviation_.unit = Unit::kDeviationMetre;
-  deviation_.limit = program_.job().interpolation.tolerance;
+  deviation_.limit = program_.job()->interpolation.tolerance;
   deviation_.has_place = true;
 }
 

@@ -1,12 +1,12 @@
 #include "node/goal_server.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "node/plain_name.h"
 
 #include <utility>
@@ -130,14 +130,23 @@ void GoalServer::onGoal(GoalHandle handle) {
   if (!isPlainName(goal->wheel_name)) {
     return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
   }
-  const JobWithDigest job(jobFromGoal(*goal));
-  if (!goal->dry_run) {
-    const std::string text = refusal(*goal, job.digest());
-    if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
-    if (const auto reason = swivelRefusal(job.job()))
-      return reject(handle, result(flute_grinder::GrindResult::NOT_READY, {*reason}));
+  try {
+    const ValidJob job(jobFromGoal(*goal));
+    const std::string digest = jobDigest(*job);
+    if (!goal->dry_run) {
+      const std::string text = refusal(*goal, digest);
+      if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
+      // The loop checks it once more when the job starts: the swivel may be turned meanwhile.
+      const Swivel swivel = loop_.status().swivel;
+      if (!swivel.isAt(job->process.setup_swivel)) {
+        return reject(handle,
+                      result(flute_grinder::GrindResult::NOT_READY, {reasonOf(swivel, job->process.setup_swivel)}));
+      }
+    }
+    startPlanning(handle, job, digest);
+  } catch (const InvalidJob& invalid) {
+    reject(handle, result(errorCode(PlanFault::kInvalidJob), invalid.reasons()));
   }
-  startPlanning(handle, job);
 }
 
 std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const {
@@ -148,14 +157,6 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
   }
   if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
   return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
-}
-
-/// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
-std::optional<Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
-  const Swivel swivel = loop_.status().swivel;
-  // What is wrong with a job that cannot be ground at any swivel, the planner reports.
-  if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
-  return reasonOf(swivel, job.process.setup_swivel);
 }
 
 std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
@@ -172,7 +173,7 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   return mismatch.empty() ? "" : mismatch + "; set them for this job, or start it with --ignore-offset-check";
 }
 
-void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& job) {
+void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
@@ -184,7 +185,7 @@ void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& jo
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request{job};
   const WorkOffsets offsets = offsets_.offsets();
-  const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
+  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);

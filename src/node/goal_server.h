@@ -57,10 +57,9 @@ class GoalServer {
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
-  std::optional<Reason> swivelRefusal(const GrindJob& job) const;
   std::string offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
                             const WorkOffsets& offsets) const;
-  void startPlanning(const GoalHandle& handle, const JobWithDigest& job);
+  void startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest);
   void onPlanned(std::shared_ptr<Preview> preview);
   void poll();
   void publishFeedback();

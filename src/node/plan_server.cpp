@@ -1,6 +1,5 @@
 #include "node/plan_server.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
@@ -36,6 +35,16 @@ PlanServer::~PlanServer() {
   spinner_.stop();
 }
 
+/// @return null if another job is being planned. @throw InvalidJob
+std::shared_ptr<const Preview> PlanServer::planned(const flute_grinder::GrindGoal& goal, const Axes& offset) {
+  std::promise<std::unique_ptr<Preview>> promise;
+  Planner::Request request{jobFromGoal(goal)};
+  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), {goal.first_tooth, goal.first_pass}, offset};
+  request.control = control_;
+  request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+  return planner_.submit(std::move(request)) ? promise.get_future().get() : nullptr;
+}
+
 bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response) {
   response.valid = 0;
   const std::string unknown = offsets_.unknown();
@@ -43,21 +52,20 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
     response.reasons.push_back(unknown);
     return true;
   }
-  std::promise<std::unique_ptr<Preview>> promise;
-  auto answer = promise.get_future();
-  Planner::Request plan_request{JobWithDigest(jobFromGoal(request.goal))};
   const WorkOffsets offsets = offsets_.offsets();
-  plan_request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
-                      {request.goal.first_tooth, request.goal.first_pass},
-                      offsets.values()};
-  plan_request.control = control_;
-  plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
-  const bool taken = planner_.submit(std::move(plan_request));
-  if (!taken) {
+  std::shared_ptr<const Preview> preview;
+  try {
+    preview = planned(request.goal, offsets.values());
+  } catch (const InvalidJob& invalid) {
+    auto plan = std::make_shared<PlannedJob>();
+    plan->fault = PlanFault::kInvalidJob;
+    plan->reasons = invalid.reasons();
+    preview = std::make_shared<Preview>(Preview{std::move(plan)});
+  }
+  if (!preview) {
     response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
     return true;
   }
-  const std::shared_ptr<Preview> preview = answer.get();
   const PlannedJob& plan = *preview->plan;
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);

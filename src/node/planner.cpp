@@ -1,5 +1,7 @@
 #include "node/planner.h"
 
+#include "flute_grinder/plan/job_digest.h"
+
 #include <utility>
 
 namespace grinder {
@@ -60,7 +62,7 @@ std::unique_ptr<Preview> Planner::plan(const Request& request) {
 }
 
 bool Planner::isKept(const Request& request) const {
-  return kept_ && kept_->digest == request.job.digest() && kept_->program->run() == request.run;
+  return kept_ && kept_->digest == jobDigest(*request.job) && kept_->program->run() == request.run;
 }
 
 PlannedJob Planner::makePlan(const Request& request) const {

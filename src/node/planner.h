@@ -33,7 +33,7 @@ struct PlanControl {
 class Planner {
  public:
   struct Request {
-    JobWithDigest job;
+    ValidJob job;
     RunStart run{};
     bool for_goal = false;
     std::shared_ptr<PlanControl> control{};

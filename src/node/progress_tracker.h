@@ -52,11 +52,11 @@ class ProgressTracker {
   void updatePlace(const LoopStatus& status);
 
   JournalWriter& writer_;
-  Progress progress_;              ///< last entry
-  Progress before_;                ///< last entry of the previous job
-  std::vector<Move> moves_;        ///< of the job's program
-  std::vector<ToothPass> passes_;  ///< in order
-  std::uint64_t number_ = 0;       ///< of the job
+  Progress progress_;            ///< last entry
+  Progress before_;              ///< last entry of the previous job
+  std::vector<Move> moves_;      ///< of the job's program
+  std::vector<JobPass> passes_;  ///< in order
+  std::uint64_t number_ = 0;     ///< of the job
   std::uint32_t strokes_ended_at_ = 0;
   bool running_ = false;
   std::uint64_t request_ = 0;

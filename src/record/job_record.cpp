@@ -59,7 +59,7 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleRecord& record)
 }
 
 Json JobRecord::jobJson() const {
-  const GrindJob& job = program_->job();
+  const GrindJob& job = *program_->job();
   return {{"name", name_}, {"digest", digest_}, {"file", grinder::toJson(job)}};
 }
 

@@ -42,7 +42,8 @@ TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
       {"aligned_alloc", [] { std::free(kept = std::aligned_alloc(64, 128)); }, 1},
       {"new", [] { delete static_cast<double*>(kept = new double(1)); }, 1},
       {"new of what is over-aligned", [] { delete static_cast<Wide*>(kept = new Wide); }, 1},
-      {"the core library: the moves of a program", [&] { GrindProgram(job, config.machine, config.machine.park); }, 1},
+      {"the core library: the moves of a program",
+       [&] { GrindProgram(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park); }, 1},
       {"the drive library: a long text", [&] { fault.text(); }, 1},
       {"the simulated drive: its handles", [] { SimulatedDrive().init(driveModel(), equipment()); }, 1}};
   for (const Row& row : rows) {
@@ -79,9 +80,8 @@ class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
     bow.pieces = ZCorrection::kMaxPieces;
     bow.piece = 3e-3;
     for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
-    job.z_corrections = {bow};
     const LoopConfig config = machineConfig();
-    return GrindProgram(job, config.machine, config.machine.park);
+    return GrindProgram(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park);
   }
 
   SetpointStream stream_;

@@ -28,19 +28,6 @@ TEST(JobPlan, OfThePapersJobIsGoodAndHasNoReasons) {
   EXPECT_NEAR(plan.statistics.max_feed, 0.01, 1e-8);
 }
 
-TEST(JobPlan, RefusesAnInvalidJobWithAllReasons) {
-  GrindJob job = paperJob();
-  job.cutter.end_diameter = -1;
-  job.process.feed = std::numeric_limits<double>::quiet_NaN();
-  const JobPlan plan = planOf(job);
-  EXPECT_FALSE(plan.good());
-  EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
-  EXPECT_EQ(plan.program, nullptr);
-  ASSERT_EQ(plan.reasons.size(), 2u);
-  EXPECT_TRUE(contains(textOf(plan), "cutter.end_diameter = -1 m; allowed: "));
-  EXPECT_TRUE(contains(textOf(plan), "process.feed = nan m/s; allowed: "));
-}
-
 TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
   Machine machine = plainMachine();
   machine.swivel = {-0.5, 0.75};
@@ -274,7 +261,7 @@ TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
 /// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.
 RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
   const Work work = *test_support::work(2000);
-  const JobPlan plan = planJob(work.job, work.machine, work.start);
+  const JobPlan plan = planJob(work.valid(), work.machine, work.start);
   RC_ASSERT(reasonsWith(plan, "axis_").empty());
   RC_ASSERT(plan.good() == plan.reasons.empty());
   RC_ASSERT(plan.good() || plan.fault == PlanFault::kTolerance);
@@ -284,7 +271,7 @@ RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
 RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
   Work work = *test_support::work(2000);
   work.job.interpolation.even_step = EvenStepRule::kExact;
-  const JobPlan plan = planJob(work.job, work.machine, work.start);
+  const JobPlan plan = planJob(work.valid(), work.machine, work.start);
   RC_ASSERT(plan.fault != PlanFault::kTolerance);
   RC_ASSERT(plan.statistics.max_deviation <= work.job.interpolation.tolerance);
 }

@@ -72,7 +72,7 @@ class JobThreads : public ::testing::Test {
     newest_ = number;
     std::promise<std::unique_ptr<Preview>> promise;
     auto answer = promise.get_future();
-    Planner::Request request{JobWithDigest(job_)};
+    Planner::Request request{job_};
     request.run.at = Eigen::Map<const Axes>(before.command.data());
     request.for_goal = true;
     request.control = control;
@@ -153,7 +153,7 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     // As the plan service does; a goal goes first.
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     std::promise<void> done;
-    Planner::Request request{JobWithDigest(job_)};
+    Planner::Request request{job_};
     request.run.at = machineConfig().machine.park;
     request.control = std::make_shared<PlanControl>();
     request.done = [&](const std::unique_ptr<Preview>&) { done.set_value(); };

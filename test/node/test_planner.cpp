@@ -37,15 +37,15 @@ GrindJob endless() {
   return job;
 }
 
-JobWithDigest changed(const std::function<void(GrindProcess&)>& change) {
+GrindJob changed(const std::function<void(GrindProcess&)>& change) {
   GrindJob job = paper();
   change(job.process);
-  return JobWithDigest(job);
+  return job;
 }
 
 /// A request with its outcome.
 struct Asked {
-  explicit Asked(const GrindJob& job) : request{JobWithDigest(job)} {
+  explicit Asked(const GrindJob& job) : request{job} {
     request.run.at = machine().park;
     request.control = std::make_shared<PlanControl>();
     request.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
@@ -96,7 +96,7 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
       [](Planner::Request& r) { r.run.offset[kA] += 1e-9; },
   };
   for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
-  const JobWithDigest two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
+  const GrindJob two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
   const auto withFirstPass = [&](int pass) {
     return programOf([&](Planner::Request& r) {
       r.job = two_passes;
@@ -135,14 +135,14 @@ TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
 
 TEST(Planner, ReportsWhyAJobCannotBeGround) {
   Planner planner(machine(), kShapes);
-  GrindJob job = paper();
-  job.process.feed = -1;
-  Asked asked(job);
+  Asked asked(paper());
+  asked.request.run.first = {0, 1};
   ASSERT_TRUE(planner.submit(asked.request));
   const auto preview = asked.wait();
   EXPECT_EQ(preview->plan->fault, PlanFault::kInvalidJob);
   ASSERT_EQ(preview->plan->reasons.size(), 1U);
-  EXPECT_NE(text(preview->plan->reasons[0], UnitSystem::kSi).find("process.feed"), std::string::npos);
+  EXPECT_NE(text(preview->plan->reasons[0], UnitSystem::kSi).find("first_pass = 1; allowed: 0 to 0"),
+            std::string::npos);
   EXPECT_FALSE(preview->stream);
 }
 

@@ -86,7 +86,7 @@ TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
        {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
     SCOPED_TRACE(toolText(job.cutter, job.tooth_angles.size()) + " " + toString(job.process.z_law));
     const GroundCutter planned = groundCutterOf(job),
-                       done = groundSoFar(job, {passOrder(job).back(), PassPhase::kAfter, 0});
+                       done = groundSoFar(job, {ValidJob(job).passes().back().place, PassPhase::kAfter, 0});
     for (const double part : {0.1, 0.5, 0.9}) {
       const GroundSection a = planned.section(part * job.cutter.flute_length);
       const GroundSection b = done.section(part * job.cutter.flute_length);
@@ -172,7 +172,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     const auto roughed = coloured({{1, last - 1}, PassPhase::kAfter, 0});
     const auto begun = coloured({{0, last}, PassPhase::kBefore, 0});
     EXPECT_GT(begun.first, begun.second) << "a flute that is only roughed has the rake of no tool";
-    if (passOrder(job)[1].tooth == 1) {
+    if (ValidJob(job).passes()[1].place.tooth == 1) {
       EXPECT_GT(roughed.first, roughed.second);
     }
     const auto in_stroke = coloured({{0, last}, PassPhase::kStroke, half});
@@ -183,7 +183,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     } else {
       EXPECT_GT(in_stroke.first, half - facet);
     }
-    const auto done = coloured({passOrder(job).back(), PassPhase::kAfter, 0});
+    const auto done = coloured({ValidJob(job).passes().back().place, PassPhase::kAfter, 0});
     EXPECT_LT(done.first, facet);
     EXPECT_GT(done.second, job.cutter.flute_length - facet);
   }
@@ -215,7 +215,7 @@ std::size_t cornersOfShank(const std::vector<Marker>& solid, const GrindJob& job
 TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
   for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
     const GrindJob job = jobOf(name);
-    const Reached reached{passOrder(job).front(), PassPhase::kBefore, 0};
+    const Reached reached{ValidJob(job).passes().front().place, PassPhase::kBefore, 0};
     const std::vector<Marker> solid =
         solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
     ASSERT_EQ(solid.size(), 1U);

@@ -3,17 +3,14 @@
 #include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/z_correction.h"
-#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/feed_schedule.h"
 #include "flute_grinder/motion/setpoint.h"
 
-#include <memory>
 #include <vector>
 
 namespace grinder {
-
-struct GrindJob;
 
 /// From where, with which work offset, and with which pass the run of a job begins.
 struct RunStart {
@@ -60,13 +57,12 @@ struct Helix {
 /// in work coordinates.
 class GrindProgram {
  public:
-  /// @param job a job that validate() accepts.
   /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
   /// the park position is in the work, if the machine does not swivel as far as the job's set-up, if
-  ///        the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
-  GrindProgram(const GrindJob& job, const Machine& machine, const RunStart& run);
+  ///        the feed would have to be reduced below kMinFeed, or as ValidJob::zCorrectionOf().
+  GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run);
 
-  const GrindJob& job() const noexcept { return *job_; }
+  const ValidJob& job() const noexcept { return job_; }
   const Machine& machine() const noexcept { return machine_; }
   const RunStart& run() const noexcept { return run_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
@@ -89,9 +85,9 @@ class GrindProgram {
 
  private:
   void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
-  void appendPass(const ToothPass& pass, double depth, double wear, Axes& at);
+  void appendPass(const JobPass& pass, Axes& at);
 
-  std::shared_ptr<const GrindJob> job_;
+  ValidJob job_;
   Machine machine_;
   RunStart run_;
   FeedSchedule::Stroke stroke_;

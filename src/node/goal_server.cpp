@@ -195,8 +195,8 @@ void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, co
                  offsets.values()};
   request.for_goal = true;
   request.control = control;
-  request.done = [this](std::unique_ptr<Preview> preview) {
-    thread_.post([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
+  request.done = [this](std::shared_ptr<const PlannedJob> planned) {
+    thread_.post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
   if (!planner_.submit(std::move(request))) {
     gate_.close();
@@ -214,9 +214,9 @@ void GoalServer::onCancel(const GoalHandle& handle) {
   if (gate_.cancel(handle.getGoalID())) loop_.postStop(MachineEvent::kCancel);
 }
 
-void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
+void GoalServer::onPlanned(std::shared_ptr<const PlannedJob> planned) {
   GoalHandle handle = goal_->handle;
-  const PlannedJob& plan = *preview->plan;
+  const PlannedJob& plan = *planned;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
   if (recalled || gate_.canceled()) return cancelBeforeStart();
   if (!plan.good()) {
@@ -227,31 +227,32 @@ void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
     const std::vector<std::string> warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
     handle.setAccepted();
     release();
-    telemetry_.show(preview);
+    telemetry_.show(planned);
     flute_grinder::GrindResult checked =
         result(flute_grinder::GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
     checked.warnings = warnings;
     return handle.setSucceeded(checked);
   }
-  preview->offsets = goal_->offsets;
-  preview->ignore_offset_check = handle.getGoal()->ignore_offset_check != 0;
-  startJob(std::move(preview));
+  goal_->plan = std::move(planned);
+  startJob();
 }
 
-void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
+void GoalServer::startJob() {
   GoalHandle handle = goal_->handle;
-  const std::string& name = handle.getGoal()->job_name;
+  const flute_grinder::GrindGoal& asked = *handle.getGoal();
   goal_->phase = Phase::kStarting;
   thread_.setPeriod(kStartPollPeriod);
-  goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
-  const PlannedJob& plan = *goal_->preview->plan;
-  tracker_.begin(*plan.program, plan.digest, name, goal_->number);
-  telemetry_.announceJob(goal_->number, handle.getGoalID().id, goal_->preview, name);
+  const PlannedJob& plan = *goal_->plan;
+  goal_->stream = std::make_unique<SetpointStream>(plan.program);
+  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number);
+  telemetry_.announceJob(
+      goal_->number, handle.getGoalID().id, goal_->plan,
+      std::make_shared<JobRecord>(plan, asked.job_name, goal_->offsets, asked.ignore_offset_check != 0));
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    posted = loop_.startJob(goal_->preview->stream.get(), false);
+    posted = loop_.startJob(goal_->stream.get(), false);
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   if (!started) return cancelBeforeStart();
@@ -380,7 +381,7 @@ void GoalServer::endJob() {
 }
 
 flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
-  const PlannedJob& plan = *goal_->preview->plan;
+  const PlannedJob& plan = *goal_->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
     at.tooth = static_cast<std::uint16_t>(plan.program->run().first.tooth);

@@ -36,12 +36,12 @@ PlanServer::~PlanServer() {
 }
 
 /// @return null if another job is being planned. @throw InvalidJob
-std::shared_ptr<const Preview> PlanServer::planned(const flute_grinder::GrindGoal& goal, const Axes& offset) {
-  std::promise<std::unique_ptr<Preview>> promise;
+std::shared_ptr<const PlannedJob> PlanServer::planOf(const flute_grinder::GrindGoal& goal, const Axes& offset) {
+  std::promise<std::shared_ptr<const PlannedJob>> promise;
   Planner::Request request{jobFromGoal(goal)};
   request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), {goal.first_tooth, goal.first_pass}, offset};
   request.control = control_;
-  request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+  request.done = [&](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
   return planner_.submit(std::move(request)) ? promise.get_future().get() : nullptr;
 }
 
@@ -53,20 +53,20 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
     return true;
   }
   const WorkOffsets offsets = offsets_.offsets();
-  std::shared_ptr<const Preview> preview;
+  std::shared_ptr<const PlannedJob> planned;
   try {
-    preview = planned(request.goal, offsets.values());
+    planned = planOf(request.goal, offsets.values());
   } catch (const InvalidJob& invalid) {
-    auto plan = std::make_shared<PlannedJob>();
-    plan->fault = PlanFault::kInvalidJob;
-    plan->reasons = invalid.reasons();
-    preview = std::make_shared<Preview>(Preview{std::move(plan)});
+    PlannedJob refused;
+    refused.fault = PlanFault::kInvalidJob;
+    refused.reasons = invalid.reasons();
+    planned = std::make_shared<const PlannedJob>(std::move(refused));
   }
-  if (!preview) {
+  if (!planned) {
     response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
     return true;
   }
-  const PlannedJob& plan = *preview->plan;
+  const PlannedJob& plan = *planned;
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);
   response.duration = plan.statistics.duration;
@@ -88,7 +88,7 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
   response.warnings = offsetWarnings(offsets, request.goal);
   response.violations = toMessage(plan.reasons);
   for (const Reason& reason : plan.reasons) response.reasons.push_back(text(reason, UnitSystem::kSi));
-  if (plan.good()) telemetry_.show(preview);
+  if (plan.good()) telemetry_.show(planned);
   return true;
 }
 

@@ -35,14 +35,14 @@ bool Planner::submit(Request request) {
 
 void Planner::run() {
   while (const std::optional<Request> request = next()) {
-    std::unique_ptr<Preview> preview = plan(*request);
+    std::shared_ptr<const PlannedJob> plan = this->plan(*request);
     {
       // Before `done`: it may submit the next job.
       const std::lock_guard<std::mutex> lock(mutex_);
       request_ = std::exchange(goal_, std::nullopt);
       goal_waits_ = false;
     }
-    request->done(std::move(preview));
+    request->done(std::move(plan));
   }
 }
 
@@ -52,13 +52,11 @@ std::optional<Planner::Request> Planner::next() {
   return request_;
 }
 
-std::unique_ptr<Preview> Planner::plan(const Request& request) {
-  auto preview = std::make_unique<Preview>();
-  preview->plan = isKept(request) ? kept_ : std::make_shared<const PlannedJob>(makePlan(request));
-  if (!preview->plan->good()) return preview;
-  preview->stream = std::make_unique<SetpointStream>(preview->plan->program);
-  kept_ = preview->plan;
-  return preview;
+std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
+  if (isKept(request)) return kept_;
+  auto plan = std::make_shared<const PlannedJob>(makePlan(request));
+  if (plan->good()) kept_ = plan;
+  return plan;
 }
 
 bool Planner::isKept(const Request& request) const {

@@ -28,11 +28,13 @@ Json plannedJson(const PathStatistics& planned) {
           {"feed_limits", toJson(planned.feed_limits)}};
 }
 
-JobRecord::JobRecord(const PlannedJob& plan, std::string name)
+JobRecord::JobRecord(const PlannedJob& plan, std::string name, const WorkOffsets& offsets, bool said_right)
     : program_(plan.program),
       planned_(plan.statistics),
       digest_(plan.digest),
       name_(std::move(name)),
+      offsets_(offsets),
+      offsets_said_right_(said_right),
       pass_(plan.program->run().first),
       strokes_(plan.program->job()) {
   conclusion_.reason = kNoEnd;
@@ -61,11 +63,6 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleRecord& record)
 Json JobRecord::jobJson() const {
   const GrindJob& job = *program_->job();
   return {{"name", name_}, {"digest", digest_}, {"file", grinder::toJson(job)}};
-}
-
-void JobRecord::setZeroPoints(const WorkOffsets& offsets, bool said_right) {
-  offsets_ = offsets;
-  offsets_said_right_ = said_right;
 }
 
 Json JobRecord::zeroPointsJson() const {

@@ -40,7 +40,7 @@ GrindProgram programOf(const ValidJob& job, const Axes& offset = Axes::Zero()) {
   return {job, machine, {machine.park, {}, offset}};
 }
 
-CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),
+CollisionResult checked(const ValidJob& job, const std::string& urdf = shippedUrdf(),
                         const Axes& offset = Axes::Zero()) {
   return checkCollision(programOf(job, offset), MachineShapes(urdf));
 }
@@ -156,9 +156,10 @@ TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
 }
 
 TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
-  GrindJob job = bentJob();
-  job.process.wheel_diameter = 0.5;
-  job.cutter.flute_length = 0.16;
+  GrindJob longer = *bentJob();
+  longer.process.wheel_diameter = 0.5;
+  longer.cutter.flute_length = 0.16;
+  const ValidJob job = ValidJob(longer).withZCorrections({bentJob().zCorrectionOf(0)});
   const CollisionResult result = checked(job);
   ASSERT_TRUE(result.reason);
   EXPECT_EQ(result.reason->move, programOf(job).moves().at(result.closest->leg).kind);

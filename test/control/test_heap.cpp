@@ -42,8 +42,7 @@ TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
       {"aligned_alloc", [] { std::free(kept = std::aligned_alloc(64, 128)); }, 1},
       {"new", [] { delete static_cast<double*>(kept = new double(1)); }, 1},
       {"new of what is over-aligned", [] { delete static_cast<Wide*>(kept = new Wide); }, 1},
-      {"the core library: the moves of a program",
-       [&] { GrindProgram(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park); }, 1},
+      {"the core library: the moves of a program", [&] { GrindProgram(job, config.machine, config.machine.park); }, 1},
       {"the drive library: a long text", [&] { fault.text(); }, 1},
       {"the simulated drive: its handles", [] { SimulatedDrive().init(driveModel(), equipment()); }, 1}};
   for (const Row& row : rows) {

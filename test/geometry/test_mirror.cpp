@@ -129,7 +129,7 @@ void expectMirrored(const GroundCutter& right, const GroundCutter& left) {
   }
 }
 
-std::vector<Setpoint> setpointsOf(const GrindJob& job, JobPlan& plan) {
+std::vector<Setpoint> setpointsOf(const ValidJob& job, JobPlan& plan) {
   const Machine machine = test_support::plainMachine();
   std::vector<Setpoint> setpoints;
   plan = planJob(withZLaw(job), machine, machine.park, [&](const Setpoint& s) { setpoints.push_back(s); });

@@ -35,10 +35,10 @@ struct Ball {
   Eigen::Vector3d centre() const { return {x, from_axis * std::cos(angle), from_axis * std::sin(angle)}; }
 };
 
-double touch(const GrindJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
+double touch(const ValidJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
 
 /// Why a ball is refused.
-std::optional<Reason> refusal(const GrindJob& job, const Ball& ball) {
+std::optional<Reason> refusal(const ValidJob& job, const Ball& ball) {
   try {
     touch(job, ball);
     return std::nullopt;
@@ -149,9 +149,9 @@ class Groove {
 };
 
 /// Expects that the ball is free a little before A, and in the cutter a little beyond.
-void expectTouch(const GrindJob& job, const Ball& ball, double a, int rows = 16) {
+void expectTouch(const ValidJob& job, const Ball& ball, double a, int rows = 16) {
   const Groove groove(job);
-  const double side = job.cutter.cut == CutDirection::kRightHand ? 1 : -1;
+  const double side = job->cutter.cut == CutDirection::kRightHand ? 1 : -1;
   EXPECT_GT(groove.room(ball, a - side * kNearly, rows), 0);
   EXPECT_LT(groove.room(ball, a + side * kNearly, rows), 0);
 }
@@ -241,10 +241,10 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
 }
 
 TEST(RakeTouch, FollowsTheLawOfZ) {
-  GrindJob job = jobOf("taper_d6_t6");
-  job.process.wheel_wear_per_pass = 0;
-  job.process.z_law = ZLaw::kConstantRake;
-  job = withZLaw(job);
+  GrindJob asked = jobOf("taper_d6_t6");
+  asked.process.wheel_wear_per_pass = 0;
+  asked.process.z_law = ZLaw::kConstantRake;
+  const ValidJob job = withZLaw(asked);
   const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
   expectTouch(job, ball, touch(job, ball));
 }

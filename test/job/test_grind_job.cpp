@@ -298,9 +298,9 @@ INSTANTIATE_TEST_SUITE_P(ByHand, PassDepths,
                          [](const auto& info) { return std::string(info.param.name); });
 
 /// The passes as "tooth/pass".
-std::vector<std::string> orderOf(const GrindJob& job) {
+std::vector<std::string> orderOf(const ValidJob& job) {
   std::vector<std::string> order;
-  for (const JobPass& pass : ValidJob(job).passes()) {
+  for (const JobPass& pass : job.passes()) {
     order.push_back(std::to_string(pass.place.tooth) + "/" + std::to_string(pass.place.pass));
   }
   return order;

@@ -68,7 +68,7 @@ TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
   for (int i = 0; i < kMaxTeeth; ++i) many.tooth_angles.push_back(2 * units::kPi * i / kMaxTeeth);
   expectFit(many);
   GrindJob steep = jobOf("roughing_d10_t4");
-  steep.cutter.spiral_angle = 70 * kDegree;
+  steep.cutter.spiral_angle = 60 * kDegree;
   steep.cutter.flute_length = 100 * kMillimetre;
   expectFit(steep);
 }
@@ -82,14 +82,14 @@ TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;
-  for (const GrindJob& job :
-       {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
-    SCOPED_TRACE(toolText(job.cutter, job.tooth_angles.size()) + " " + toString(job.process.z_law));
+  for (const ValidJob& job : std::vector<ValidJob>{jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"),
+                                                   jobOf("unequal_d12_t4"), withZLaw(even)}) {
+    SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process.z_law));
     const GroundCutter planned = groundCutterOf(job),
-                       done = groundSoFar(job, {ValidJob(job).passes().back().place, PassPhase::kAfter, 0});
+                       done = groundSoFar(job, {job.passes().back().place, PassPhase::kAfter, 0});
     for (const double part : {0.1, 0.5, 0.9}) {
-      const GroundSection a = planned.section(part * job.cutter.flute_length);
-      const GroundSection b = done.section(part * job.cutter.flute_length);
+      const GroundSection a = planned.section(part * job->cutter.flute_length);
+      const GroundSection b = done.section(part * job->cutter.flute_length);
       EXPECT_NEAR(a.core_radius, b.core_radius, 1e-7);
       for (std::size_t i = 0; i < a.teeth.size(); ++i) {
         ASSERT_EQ(a.teeth[i].rake.has_value(), b.teeth[i].rake.has_value());
@@ -246,6 +246,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
     for (const double neck : {4.0, 13.0}) {
       SCOPED_TRACE(::testing::Message() << shank << " " << neck);
       job.cutter.end_diameter = 0.2 * kMillimetre;
+      job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
       job.process.depth = 0.04 * kMillimetre;
       job.process.depth_end = job.process.setup_lead = 0;
       job.cutter.shank_diameter = shank * kMillimetre;
@@ -280,7 +281,7 @@ TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   GrindJob job = jobOf("roughing_d10_t4");
-  job.process.depth = job.process.infeed = 0.6 * job.cutter.end_diameter;
+  job.process.depth = job.process.infeed = 0.49999 * job.cutter.end_diameter;
   job.process.setup_height = 0;
   const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
   EXPECT_TRUE(solidOf(array, "planned").empty());

@@ -111,7 +111,7 @@ TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
 TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
   const GrindProgram job = program();
   const ConicalCutter& cutter = job.cutter();
-  const double length = job.job().cutter.flute_length, tolerance = job.job().interpolation.tolerance;
+  const double length = job.job()->cutter.flute_length, tolerance = job.job()->interpolation.tolerance;
   ToolPath flutes(job, {GroundEdge({{0, 0, 0}, {length, length, 0}})});
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) {
@@ -167,7 +167,7 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
     const GrindProgram job = program();
-    PathErrorMarkers errors(job.job(), edgesOf(job));
+    PathErrorMarkers errors(*job.job(), edgesOf(job));
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
       if (p.cycle % 7 == 0) p.path_error = value;
@@ -196,7 +196,7 @@ TEST(PathMarkers, AreLinesOfAWidth) {
   expectLinesOfAWidth(shown.flutes);
   expectLinesOfAWidth(shown.executed);
   const GrindProgram job = program();
-  PathErrorMarkers errors(job.job(), edgesOf(job));
+  PathErrorMarkers errors(*job.job(), edgesOf(job));
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) errors.add(p);
   expectLinesOfAWidth(errors.markers());
@@ -279,7 +279,11 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
   for (const Shape& shape : {Shape{0, 45}, Shape{5, -60}, Shape{20, 8}}) {
     SCOPED_TRACE(shape.cone);
     GrindJob job = readJobFile("test/jobs/paper.yaml");
-    job.cutter = {6e-3, shape.cone * units::kDegree, shape.spiral * units::kDegree, 0, 30e-3};
+    job.cutter.end_diameter = 6e-3;
+    job.cutter.core_diameter = job.cutter.core_diameter_end = 4e-3;
+    job.cutter.cone_angle = shape.cone * units::kDegree;
+    job.cutter.spiral_angle = shape.spiral * units::kDegree;
+    job.cutter.flute_length = 30e-3;
     const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
     // An edge under the wheel's centre is the helix.
     const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
@@ -298,9 +302,9 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
 TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
   const GrindProgram job = program();
   const ConicalCutter& cutter = job.cutter();
-  const double length = job.job().cutter.flute_length;
+  const double length = job.job()->cutter.flute_length;
   // An edge under the wheel's centre: the arrows begin on the commanded points.
-  PathErrorMarkers errors(job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  PathErrorMarkers errors(*job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
   std::map<double, Setpoint> commanded;
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {

@@ -332,7 +332,11 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
-  job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
+  job.cutter.end_diameter = 0.1e-3;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = 0.08e-3;
+  job.cutter.cone_angle = 0;
+  job.cutter.spiral_angle = 1;
+  job.cutter.flute_length = 500e-3;
   job.process.depth = job.process.infeed = 0.01e-3;
   const GrindProgram program(job, test_support::plainMachine(), test_support::plainMachine().park);
   const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});

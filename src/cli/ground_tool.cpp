@@ -22,13 +22,13 @@ constexpr double kBadGouge = 10e-6;           ///< above that it is not the foll
 
 /// A tooth in a section.
 struct Place {
-  const GrindJob& job;
+  const ValidJob& job;
   const MeasuredSection& section;
   std::size_t number;
 
   const ToothSection& tooth() const { return section.ground.teeth[number]; }
-  CutterGeometry cutter() const { return cutterOf(job, static_cast<int>(number)); }
-  double askedDepth() const { return grinder::askedDepth(job, section.ground.x); }
+  const CutterGeometry& cutter() const { return job.cutterOf(static_cast<int>(number)); }
+  double askedDepth() const { return grinder::askedDepth(*job, section.ground.x); }
 };
 
 using Value = std::optional<double>;
@@ -58,14 +58,14 @@ constexpr Figure kFigures[]{
     {"edge_deg", "", "", kDegree, false, [](const Place& p) { return p.tooth().edge; }, notAsked},
     {"rake_deg", "radial rake, deg", "rake deg", kDegree, false,
      [](const Place& p) { return ifComplete(p, p.tooth().rake); },
-     [](const Place& p) { return Value(p.job.cutter.rake_angle); }},
+     [](const Place& p) { return Value(p.job->cutter.rake_angle); }},
     {"chordal_rake_deg", "chordal rake, deg", "chordal deg", kDegree, false,
      [](const Place& p) { return ifComplete(p, p.tooth().chordal_rake); },
-     [](const Place& p) { return Value(p.job.cutter.rake_angle); }},
+     [](const Place& p) { return Value(p.job->cutter.rake_angle); }},
     {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
      [](const Place& p) { return ifComplete(p, p.tooth().normal_rake); },
      [](const Place& p) {
-       return Value(std::atan(std::tan(p.job.cutter.rake_angle) * std::cos(p.cutter().spiral_angle)));
+       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(p.cutter().spiral_angle)));
      }},
     {"core_diameter_mm", "core diameter, mm", "core mm", kMillimetre, true,
      [](const Place& p) { return Value(2 * p.section.ground.core_radius); },
@@ -114,7 +114,7 @@ std::string rowOf(const Place& place) {
 }
 
 /// Neighbouring teeth with the same figures share a line.
-void printSection(const GrindJob& job, const MeasuredSection& section) {
+void printSection(const ValidJob& job, const MeasuredSection& section) {
   const std::size_t teeth = section.ground.teeth.size();
   std::string row;
   for (std::size_t first = 0, next; first < teeth; first = next) {
@@ -182,7 +182,7 @@ std::string text(const Range& range) {
 
 /// Of a run, the strokes of each tooth; that there are none is printed as well. Passes as long share a line.
 void printStrokes(const GroundTool& tool) {
-  for (std::size_t i = 0; i < tool.job.tooth_angles.size(); ++i) {
+  for (std::size_t i = 0; i < tool.job->tooth_angles.size(); ++i) {
     std::vector<RunStroke> strokes;
     for (const RunStroke& stroke : tool.strokes) {
       if (stroke.move == MoveKind::kStroke && stroke.place.tooth == static_cast<int>(i)) strokes.push_back(stroke);
@@ -273,11 +273,9 @@ Json outline(const GroundTool& tool, double x) {
 }
 
 /// The radial depth of every pass at the small end.
-Json passDepths(const GrindJob& job) {
+Json passDepths(const ValidJob& job) {
   Json depths = Json::array();
-  for (const double depth : grinder::passDepths(job.process)) {
-    depths.push_back(depthLaw(job, depth).at_end / kMillimetre);
-  }
+  for (const double depth : job.depths()) depths.push_back(job.depthLaw(depth).at_end / kMillimetre);
   return depths;
 }
 
@@ -302,30 +300,29 @@ std::vector<double> evenSections(const GrindJob& job, int count) {
   return at;
 }
 
-GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
+GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
   GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}, {}};
   tool.check = checkGroundCutter(job, tool.cutter);
   for (const double x : at) {
     const GroundSection section = tool.cutter.section(x);
     tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
   }
-  tool.volume_removed = tool.cutter.volumeRemoved(0, job.cutter.flute_length, kVolumeSections);
+  tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
   return tool;
 }
 
-GroundTool measure(const GrindJob& job, const std::string& source, const RunStrokes& strokes,
-                   const std::vector<double>& at) {
-  GroundTool tool = measure(job, source, strokes.cutter(), at);
+GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
+  GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
   tool.of_run = true;
   tool.strokes = strokes.strokes();
-  tool.gouges = gougesOf(job, strokes, kMinGouge);
+  tool.gouges = gougesOf(strokes, kMinGouge);
   if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
   return tool;
 }
 
 void printText(const GroundTool& tool) {
   std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),
-              toolText(tool.job.cutter, tool.job.tooth_angles.size()).c_str(), "X mm", "tooth");
+              toolText(tool.job->cutter, tool.job->tooth_angles.size()).c_str(), "X mm", "tooth");
   for (const Figure& figure : kFigures) {
     if (isShown(figure)) std::printf("  %s", figure.head);
   }
@@ -340,7 +337,7 @@ void printText(const GroundTool& tool) {
   }
   std::printf("%-18s  %.3f mm^3, X 0 to %.3f mm\n", "volume removed",
               tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre),
-              tool.job.cutter.flute_length / kMillimetre);
+              tool.job->cutter.flute_length / kMillimetre);
   if (!tool.of_run) return;
   printStrokes(tool);
   printGouges(tool);
@@ -353,17 +350,17 @@ Json toJson(const GroundTool& tool) {
   for (const MeasuredSection& section : tool.sections) sections.push_back(toJson(tool, section));
   const auto& complete = tool.check.complete;
   return {{"source", tool.source},
-          {"tool", toolText(tool.job.cutter, tool.job.tooth_angles.size())},
-          {"cut", toString(tool.job.cutter.cut)},
-          {"job", toJson(tool.job)},
+          {"tool", toolText(tool.job->cutter, tool.job->tooth_angles.size())},
+          {"cut", toString(tool.job->cutter.cut)},
+          {"job", toJson(*tool.job)},
           {"pass_depths_mm", passDepths(tool.job)},
           {"valid", tool.check.reasons.empty()},
           {"reasons", reasons},
-          {"teeth", tool.job.tooth_angles.size()},
+          {"teeth", tool.job->tooth_angles.size()},
           {"volume_mm3", tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre)},
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
-          {"rake_tolerance_deg", tool.job.cutter.rake_tolerance / kDegree},
+          {"rake_tolerance_deg", tool.job->cutter.rake_tolerance / kDegree},
           {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
           {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},
           {"sections", sections}};

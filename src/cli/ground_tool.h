@@ -5,7 +5,6 @@
 #include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/run_strokes.h"
-#include "flute_grinder/job/grind_job.h"
 
 #include <optional>
 #include <string>
@@ -21,7 +20,7 @@ struct MeasuredSection {
 
 /// A ground cutter as `grind simulate` shows it.
 struct GroundTool {
-  GrindJob job;
+  ValidJob job;
   std::string source;  ///< where it comes from, for the reader
   GroundCutter cutter;
   CutterCheck check;
@@ -36,11 +35,10 @@ struct GroundTool {
 std::vector<double> evenSections(const GrindJob& job, int count);
 
 /// Measures a cutter. @param at X of the sections [m].
-GroundTool measure(const GrindJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
+GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at);
 
 /// Measures the cutter of a run; gouges are among the reasons why it is unusable.
-GroundTool measure(const GrindJob& job, const std::string& source, const RunStrokes& strokes,
-                   const std::vector<double>& at);
+GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at);
 
 /// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.
 void printText(const GroundTool& tool);

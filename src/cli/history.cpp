@@ -42,10 +42,10 @@ struct Entry {
 };
 
 /// The passes of a job from a first one on, whose tooth and pass count from 1 here.
-std::size_t passesFrom(const GrindJob& job, const Json& first) {
-  const std::vector<ToothPass> passes = passOrder(job);
-  const auto is_first = [&](const ToothPass& p) {
-    return p.tooth + 1 == first.at("tooth") && p.pass + 1 == first.at("pass");
+std::size_t passesFrom(const ValidJob& job, const Json& first) {
+  const std::vector<JobPass>& passes = job.passes();
+  const auto is_first = [&](const JobPass& p) {
+    return p.place.tooth + 1 == first.at("tooth") && p.place.pass + 1 == first.at("pass");
   };
   const auto begin = std::find_if(passes.begin(), passes.end(), is_first);
   if (begin == passes.end()) throw std::runtime_error("first: no pass of the job");

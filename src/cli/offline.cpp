@@ -134,8 +134,7 @@ int runPlan(const PlanOptions& options) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  const PlannedJob plan =
-      planWholeJob(JobWithDigest(job), machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, {}, visit);
+  const PlannedJob plan = planWholeJob(job, machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, visit);
   if (csv) csv->close();
   if (options.json) {
     Json json = toJson(plan);

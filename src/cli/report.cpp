@@ -79,15 +79,11 @@ std::string reasonWhyNot(const Action& action) {
 
 /// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
 void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
-  GrindJob job;
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
-  const auto begin = [&] {
-    job = withZLaw(*run.job());
-    strokes.emplace(job);
-  };
   if (run.kind() == FileKind::kBag)
-    why = run.job() ? reasonWhyNot(begin) : "the bag does not have the goal of " + run.place();
+    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withZLaw(*run.job())); })
+                    : "the bag does not have the goal of " + run.place();
   run.visit([&](const RunRow& row) {
     survey.add(row);
     if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
@@ -95,7 +91,8 @@ void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
   if (!strokes || !why.empty()) return;
   why = reasonWhyNot([&] {
     strokes->finish();
-    context.tool = toJson(measure(job, context.file + ", " + run.place(), *strokes, evenSections(job, kSections)));
+    context.tool =
+        toJson(measure(context.file + ", " + run.place(), *strokes, evenSections(*strokes->job(), kSections)));
   });
 }
 
@@ -105,8 +102,8 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
     if (job != 0) throw FileError(path + ": job " + std::to_string(job) + ": only a bag has several jobs");
     const Json record = readRecord(path);
     context.no_tool = reasonWhyNot([&] {
-      const GrindJob asked = withZLaw(parseJob(record["job"]["file"].dump(), path));
-      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(asked, kSections)));
+      const ValidJob asked = withZLaw(parseJob(record["job"]["file"].dump(), path));
+      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(*asked, kSections)));
     });
     return findingsOfRecord(record, context);
   }

@@ -54,7 +54,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 
 /// The cutter as a solid, with as much of the shank as the flutes run out into and a diameter more.
 void writeStlFile(const GroundTool& tool, const std::string& path) {
-  const GrindJob& job = tool.job;
+  const GrindJob& job = *tool.job;
   const GrindProcess& p = job.process;
   const double length = job.cutter.flute_length;
   const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
@@ -69,7 +69,7 @@ void writeStlFile(const GroundTool& tool, const std::string& path) {
 
 /// What is simulated: the job alone, or a run of it.
 struct Source {
-  GrindJob job;
+  ValidJob job;
   std::string name;  ///< for the reader
   std::unique_ptr<RunFile> run;
 };
@@ -91,18 +91,18 @@ Source sourceOf(const SimulateOptions& options) {
     throw FileError(options.file + ": the bag does not have the goal of " + run->place() +
                     "; give its job file with --job");
   }
-  const GrindJob job = options.job.empty() ? *run->job() : readJobFile(options.job);
+  const ValidJob job = options.job.empty() ? *run->job() : readJobFile(options.job);
   return {job, name + (run->place().empty() ? "" : ", ") + run->place(), std::move(run)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
-  const GrindJob job = withZLaw(source.job);
+  const ValidJob job = withZLaw(source.job);
   if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
   RunStrokes strokes(job);
   source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
-  return measure(job, source.name, strokes, at);
+  return measure(source.name, strokes, at);
 }
 
 /// @return the exit status.
@@ -122,7 +122,7 @@ int show(const GroundTool& tool, bool json) {
 
 int runSimulate(const SimulateOptions& options) {
   const Source source = sourceOf(options);
-  const std::vector<double> at = sectionsOf(options, source.job);
+  const std::vector<double> at = sectionsOf(options, *source.job);
   std::optional<GroundToolCsv> csv;
   if (!options.csv.empty()) csv.emplace(options.csv);
   try {

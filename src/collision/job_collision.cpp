@@ -41,14 +41,14 @@ bool isUp(MoveKind kind) { return kind == MoveKind::kLift || kind == MoveKind::k
 /// Whether a move up leaves the work alone even if the wheel stands in it, as after a stroke: over the whole width of
 /// the wheel, whatever lies above its lower side lies within the wheel, because no work is higher than its spindle.
 bool risesOut(const GrindProgram& program, const WheelProfile& wheel, const Axes& from) {
-  const GrindJob& job = program.job();
+  const GrindJob& job = *program.job();
   const double spindle = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + from[kY];
   return spindle >= workRadiusNear(job, wheel, from[kX]);
 }
 
 /// Of every leg, whether the wheel has to keep off the work.
 std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& path) {
-  const WheelProfile wheel = wheelOf(program.job());
+  const WheelProfile wheel = wheelOf(*program.job());
   std::vector<bool> outside;
   outside.reserve(path.moves.size());
   for (std::size_t leg = 0; leg < path.moves.size(); ++leg) {
@@ -60,7 +60,7 @@ std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& pat
 
 /// See CollisionJob::work_clearance.
 double workClearance(const GrindProgram& program) {
-  return std::min(program.machine().collision_clearance, kWorkPart * program.job().process.clearance);
+  return std::min(program.machine().collision_clearance, kWorkPart * program.job()->process.clearance);
 }
 
 Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
@@ -84,7 +84,7 @@ Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
   Reason reason = reasonOf(place, program);
   if (isUp(reason.move)) return reason;  // another clearance would not change where it begins
   reason.field = "process.clearance";
-  reason.low = program.job().process.clearance;
+  reason.low = program.job()->process.clearance;
   reason.limit = workClearance(program);
   return reason;
 }
@@ -112,7 +112,7 @@ ProgramPath pathOf(const GrindProgram& program) {
 }
 
 CollisionJob collisionJobOf(const GrindProgram& program) {
-  const GrindJob& job = program.job();
+  const GrindJob& job = *program.job();
   const bool has_neck = job.cutter.neck_length > 0;
   return {wheelOf(job).worn(job.process.wheel_wear),
           job.process.wheel_diameter / 2,
@@ -122,7 +122,7 @@ CollisionJob collisionJobOf(const GrindProgram& program) {
           has_neck ? std::optional<double>(job.cutter.flute_length + job.cutter.neck_length) : std::nullopt,
           strokeEndOf(program),
           program.machine().collision_clearance,
-          program.machine().work_offset[kX],
+          program.run().offset[kX],
           workClearance(program)};
 }
 

@@ -11,7 +11,7 @@ void ControlLoop::executeRequests() {
   if (const auto angle = takeSwivel()) answerSwivel(answerTo(MachineEvent::kStart, setSwivel(*angle)));
   if (const auto job = takeJobStart()) {
     Answer answer = answerTo(MachineEvent::kStart, beginJob(*job));
-    answer.job_swivel = job->swivel;
+    answer.job_swivel = job->stream->program().swivel();
     answerJobStart(answer);
   }
   if (const auto event = takeRequest()) executeRequest(*event);
@@ -158,12 +158,12 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
   if (wheel_.wheel().in_work) return Refusal::kInWork;
   if (!sample_.drive.homed) return Refusal::kInterlock;
-  if (!sample_.swivel.isAt(job.swivel)) return Refusal::kSwivel;
-  // The same difference as the planner's, and therefore exact although it is rounded.
-  if (!(job.stream->program().start() == command_ - job.offset).all()) return Refusal::kMoved;
+  const GrindProgram& program = job.stream->program();
+  if (!sample_.swivel.isAt(program.swivel())) return Refusal::kSwivel;
+  if (!(program.run().at == command_).all()) return Refusal::kMoved;
   stream_ = job.stream;
-  job_swivel_ = job.swivel;
-  job_offset_ = job.offset;
+  job_swivel_ = program.swivel();
+  job_offset_ = program.run().offset;
   in_journal_ = job.in_journal;
   wheel_.startJob(job.wheel);
   limit_check_.restart();

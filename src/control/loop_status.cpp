@@ -9,8 +9,8 @@ Wheel wheelOf(const GrindProgram& program) {
   for (const Move& move : program.moves()) deepest = std::min(deepest, move.to[kY]);
   // The same sum as the command's, so that the wheel counts as clear exactly where the program leaves it. At the limit
   // of the axis the sum may be rounded up, but no lift may lead beyond.
-  const Machine& machine = program.machine();
-  const double clear_y = std::min(program.clearanceHeight() + machine.work_offset[kY], machine.limits.max_position[kY]);
+  const double clear_y =
+      std::min(program.clearanceHeight() + program.run().offset[kY], program.machine().limits.max_position[kY]);
   return {false, clear_y, program.clearanceHeight() - deepest};
 }
 

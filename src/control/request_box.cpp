@@ -85,8 +85,7 @@ std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint3
 }
 
 bool RequestBox::startJob(SetpointStream* stream, bool in_journal) noexcept {
-  const GrindProgram& program = stream->program();
-  return job_starts_.post({stream, program.machine().work_offset, wheelOf(program), program.swivel(), in_journal});
+  return job_starts_.post({stream, wheelOf(stream->program()), in_journal});
 }
 
 RequestReply RequestBox::jog(const JogRequest& jog) {

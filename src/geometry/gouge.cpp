@@ -100,13 +100,14 @@ struct Asked {
 
 }  // namespace
 
-std::vector<Gouge> gougesOf(const GrindJob& job, const RunStrokes& strokes, double min) {
+std::vector<Gouge> gougesOf(const RunStrokes& strokes, double min) {
+  const ValidJob& job = strokes.job();
   const GroundCutter asked = groundCutterOf(job);
-  const Range blank{0, job.cutter.flute_length + job.process.overtravel_shank};
+  const Range blank{0, job->cutter.flute_length + job->process.overtravel_shank};
   std::vector<Gouge> gouges;
   for (const RunStroke& stroke : strokes.strokes()) {
     const GroundTooth& tooth = asked.teeth()[static_cast<std::size_t>(stroke.place.tooth)];
-    const Asked flute{asked.flutes()[tooth.flute].front(), ConicalCutter(cutterOf(job, stroke.place.tooth))};
+    const Asked flute{asked.flutes()[tooth.flute].front(), ConicalCutter(job.cutterOf(stroke.place.tooth))};
     const WheelSweep sweep = strokes.sweep(stroke);
     Gouge worst{stroke.place, stroke.move, 0, 0};
     for (const double x : sectionsOf(stroke, blank)) {

@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,15 +22,12 @@ std::array<double, 2> cornerRadii(const GrindProcess& p) {
 }
 
 /// Of every tooth, the wheel's wear in its deepest pass: the first at full depth, for which the wheel is largest [m].
-std::vector<double> wearOfTeeth(const GrindJob& job) {
-  const std::vector<ToothPass> order = passOrder(job);
-  const std::vector<double> depths = passDepths(job.process);
+std::vector<double> wearOfTeeth(const ValidJob& job) {
+  const std::vector<double>& depths = job.depths();
   const auto deepest = std::max_element(depths.begin(), depths.end()) - depths.begin();
-  const std::vector<double> of_passes = wearOfPasses(job);
-  std::vector<double> wear(job.tooth_angles.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (order[i].pass != deepest) continue;
-    wear[static_cast<std::size_t>(order[i].tooth)] = of_passes[i];
+  std::vector<double> wear(job->tooth_angles.size());
+  for (const JobPass& pass : job.passes()) {
+    if (pass.place.pass == deepest) wear[static_cast<std::size_t>(pass.place.tooth)] = pass.wear;
   }
   return wear;
 }
@@ -62,8 +59,8 @@ void add(CutterFigures& figures, const GroundSection& section) {
 }
 
 /// As CutterFigures::edge, of one tooth.
-double edgeOff(const GrindJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
-  const LogCurve asked(ConicalCutter(cutterOf(job, static_cast<int>(tooth))));
+double edgeOff(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
+  const LogCurve asked(ConicalCutter(job.cutterOf(static_cast<int>(tooth))));
   Range off{CutterFigures::kNone, CutterFigures::kNone};
   for (const GroundSection& section : sections) {
     const ToothSection& measured = section.teeth[tooth];
@@ -73,15 +70,15 @@ double edgeOff(const GrindJob& job, std::size_t tooth, const std::vector<GroundS
 }
 
 /// The edge of a tooth, in the sections that have one.
-GroundEdge edgeOf(const GrindJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
-  const LogCurve curve(ConicalCutter(cutterOf(job, static_cast<int>(tooth))), job.process.setup_lead);
+GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
+  const LogCurve curve(ConicalCutter(job.cutterOf(static_cast<int>(tooth))), job->process.setup_lead);
   std::vector<GroundEdge::Place> places;
   for (const GroundSection& section : sections) {
     const ToothSection& at = section.teeth[tooth];
     if (!at.edge) continue;
     // Where the stroke's end forms several sections, their extrema are no more exact than that.
     const double wheel_x = places.empty() ? at.edge_wheel_x : std::max(at.edge_wheel_x, places.back().wheel_x);
-    places.push_back({section.x, wheel_x, *at.edge - job.tooth_angles[tooth] - curve.a(wheel_x)});
+    places.push_back({section.x, wheel_x, *at.edge - job->tooth_angles[tooth] - curve.a(wheel_x)});
   }
   return GroundEdge(std::move(places));
 }
@@ -89,7 +86,7 @@ GroundEdge edgeOf(const GrindJob& job, std::size_t tooth, const std::vector<Grou
 /// Collects what is wrong with a cutter.
 class Checker {
  public:
-  explicit Checker(const GrindJob& job) : job_(job) {}
+  explicit Checker(const ValidJob& job) : job_(job) {}
 
   void check(const GroundSection& section) {
     if (!(section.core_radius > kMinCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
@@ -111,22 +108,22 @@ class Checker {
     for (std::size_t i = 0; i < to.teeth.size(); ++i) {
       if (!from.teeth[i].complete || !to.teeth[i].complete) continue;
       const double turn = *to.teeth[i].edge - *from.teeth[i].edge;
-      checkSpiral((from.x + to.x) / 2, i, meanSpiral(ConicalCutter(job_.cutter), from.x, to.x, turn));
+      checkSpiral((from.x + to.x) / 2, i, meanSpiral(ConicalCutter(job_->cutter), from.x, to.x, turn));
     }
   }
 
   void checkRange(const std::optional<Range>& complete) {
-    const double length = job_.cutter.flute_length;
-    if (job_.process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
+    const double length = job_->cutter.flute_length;
+    if (job_->process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
     const Range range = complete.value_or(Range{});
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
   }
 
   /// The stroke may not go so near to the cone's apex that it spoils the flute.
   void checkOvertravel(const GroundCutter& cutter) {
-    if (job_.process.incomplete_ok) return;
+    if (job_->process.incomplete_ok) return;
     const bool opens = cutter.cutter().tanCone() >= 0;
-    const double nearest = opens ? 0 : job_.cutter.flute_length;
+    const double nearest = opens ? 0 : job_->cutter.flute_length;
     for (const Flute& flute : cutter.flutes()) {
       for (const WheelSweep& sweep : flute) {
         const auto spoils = sectionSpoilsFrom(sweep, nearest, cutter.cutter().radius(nearest));
@@ -135,7 +132,7 @@ class Checker {
         reason.kind = ReasonKind::kNotBelow;
         reason.field = opens ? "process.overtravel_end" : "process.overtravel_shank";
         reason.unit = Unit::kMetre;
-        reason.value = opens ? job_.process.overtravel_end : job_.process.overtravel_shank;
+        reason.value = opens ? job_->process.overtravel_end : job_->process.overtravel_shank;
         reason.limit = std::abs(*spoils - nearest);
         reason.detail = "where the wheel, near the cone's apex, grinds into the flute again";
         if (!(reason.value < reason.limit)) return reasons_.push_back(std::move(reason));
@@ -148,7 +145,7 @@ class Checker {
 
  private:
   void checkRake(double x, int number, const ToothSection& tooth) {
-    const CutterGeometry& c = job_.cutter;
+    const CutterGeometry& c = job_->cutter;
     if (!(std::abs(*tooth.rake - c.rake_angle) <= c.rake_tolerance)) {
       add(ReasonKind::kRake, x, number, Unit::kRadian, *tooth.rake, c.rake_angle, c.rake_tolerance);
     }
@@ -159,16 +156,16 @@ class Checker {
   }
 
   void checkSpiral(double x, std::size_t tooth, const std::optional<double>& spiral) {
-    const double tolerance = job_.cutter.spiral_tolerance;
+    const double tolerance = job_->cutter.spiral_tolerance;
     const int number = static_cast<int>(tooth);
-    const double asked = cutterOf(job_, number).spiral_angle;
+    const double asked = job_.cutterOf(number).spiral_angle;
     if (!spiral || std::abs(*spiral - asked) <= tolerance) return;
     add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
   }
 
   /// Asked between the ends is what lies on a straight line between the diameters there.
   void checkCore(const GroundSection& section) {
-    const CutterGeometry& c = job_.cutter;
+    const CutterGeometry& c = job_->cutter;
     const double asked = c.core_diameter + (c.core_diameter_end - c.core_diameter) * section.x / c.flute_length;
     const double core = 2 * section.core_radius;
     if (std::abs(core - asked) <= c.core_tolerance) return;
@@ -177,9 +174,9 @@ class Checker {
 
   /// From a tooth to the one whose flute bounds its land [rad].
   double pitch(std::size_t tooth) const {
-    const std::vector<double>& angles = job_.tooth_angles;
+    const std::vector<double>& angles = job_->tooth_angles;
     const std::size_t before =
-        job_.cutter.cut == CutDirection::kRightHand ? tooth : (tooth + angles.size() - 1) % angles.size();
+        job_->cutter.cut == CutDirection::kRightHand ? tooth : (tooth + angles.size() - 1) % angles.size();
     return (before + 1 < angles.size() ? angles[before + 1] : 2 * units::kPi) - angles[before];
   }
 
@@ -197,25 +194,25 @@ class Checker {
     reasons_.push_back(std::move(reason));
   }
 
-  const GrindJob& job_;
+  const ValidJob& job_;
   std::vector<Reason> reasons_;
 };
 
 /// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
-GroundCutter groundCutterOf(const GrindJob& job, double same_wear) {
+GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
   const std::vector<double> wear = wearOfTeeth(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
-  const auto spiral = [&](std::size_t i) { return cutterOf(job, static_cast<int>(i)).spiral_angle; };
-  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) {
+  const auto spiral = [&](std::size_t i) { return job.cutterOf(static_cast<int>(i)).spiral_angle; };
+  for (std::size_t i = 0; i < job->tooth_angles.size(); ++i) {
     std::size_t same = 0;
     while (same < i && !(std::abs(wear[same] - wear[i]) <= same_wear && spiral(same) == spiral(i))) ++same;
-    teeth.push_back({job.tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
+    teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
     if (same < i) continue;
     const int tooth = static_cast<int>(i);
-    flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job.process.deepest(), wear[i]))});
+    flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job->process.deepest(), wear[i]))});
   }
-  return GroundCutter(ConicalCutter(job.cutter), std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job->cutter), std::move(flutes), std::move(teeth));
 }
 
 }  // namespace
@@ -237,28 +234,28 @@ WheelSetup setupOf(const GrindJob& job) {
   return {job.process.setup_swivel, job.process.setup_height, job.process.setup_lead};
 }
 
-GrindStroke strokeOf(const GrindJob& job, int tooth, double depth, double wear) {
-  const GrindProcess& p = job.process;
-  const DepthLaw law = depthLaw(job, depth);
+GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear) {
+  const GrindProcess& p = job->process;
+  const DepthLaw law = job.depthLaw(depth);
   GrindStroke stroke;
   stroke.from = -p.overtravel_end;
-  stroke.to = job.cutter.flute_length + p.overtravel_shank;
+  stroke.to = job->cutter.flute_length + p.overtravel_shank;
   if (p.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
   stroke.y = -law.at_end - wear;
   stroke.y_per_x = law.taper;
-  stroke.z_correction = zCorrectionOf(job, tooth);
+  stroke.z_correction = job.zCorrectionOf(tooth);
   return stroke;
 }
 
-WheelSweep sweepOf(const GrindJob& job, int tooth, double wear, const GrindStroke& stroke) {
-  return {ConicalCutter(cutterOf(job, tooth)), wheelOf(job).worn(wear), job.process.wheel_diameter / 2, setupOf(job),
+WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStroke& stroke) {
+  return {ConicalCutter(job.cutterOf(tooth)), wheelOf(*job).worn(wear), job->process.wheel_diameter / 2, setupOf(*job),
           stroke};
 }
 
-GroundCutter groundCutterOf(const GrindJob& job) { return groundCutterOf(job, 0); }
+GroundCutter groundCutterOf(const ValidJob& job) { return groundCutterOf(job, 0); }
 
-CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
-  const double length = job.cutter.flute_length;
+CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
+  const double length = job->cutter.flute_length;
   Checker checker(job);
   CutterFigures figures;
   std::vector<GroundSection> sections;
@@ -281,7 +278,7 @@ CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter) {
   return {range, checker.take(), figures, std::move(edges)};
 }
 
-CutterCheck checkGroundCutter(const GrindJob& job) {
+CutterCheck checkGroundCutter(const ValidJob& job) {
   try {
     return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {

@@ -186,7 +186,7 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   setup.margin = solved.margin;
 }
 
-bool hasZLaw(const GrindJob& job) {
+bool hasZLaw(const ValidJob& job) {
   try {
     withZLaw(job);
     return true;
@@ -236,17 +236,18 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
     setup.job = job;
     take(std::get<SolvedSetup>(result), keep, setup);
     for (int i = 0;; ++i) {
-      const std::vector<Reason> reasons = validate(setup.job);
-      if (!reasons.empty()) return "the set-up does not suit the job: " + text(reasons);
-      if (i == 0 && !hasZLaw(setup.job)) {
+      const ValidJob valid(setup.job);
+      if (i == 0 && !hasZLaw(valid)) {
         giveRoom(setup);
         continue;
       }
-      setup.check = checkGroundCutter(withZLaw(setup.job));
+      setup.check = checkGroundCutter(withZLaw(valid));
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
   } catch (const ReasonError& error) {
     return text(error.reason());
+  } catch (const InvalidJob& error) {
+    return "the set-up does not suit the job: " + text(error.reasons());
   } catch (const std::invalid_argument& error) {
     return std::string(error.what());
   }

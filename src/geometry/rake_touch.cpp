@@ -2,8 +2,8 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <boost/math/tools/minima.hpp>
 
@@ -248,15 +248,15 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
 
 }  // namespace
 
-double rakeTouchAngle(const GrindJob& job, const Eigen::Vector3d& ball, double ball_diameter) {
-  const double length = job.cutter.flute_length, radius = ball_diameter / 2;
+double rakeTouchAngle(const ValidJob& job, const Eigen::Vector3d& ball, double ball_diameter) {
+  const double length = job->cutter.flute_length, radius = ball_diameter / 2;
   if (!(ball_diameter >= kRounding && ball_diameter <= length))
     refuse("ball diameter", ball_diameter, {kRounding, length}, "no longer than the flute");
   if (!(ball.x() >= radius && ball.x() <= length - radius))
     refuse("ball's X", ball.x(), {radius, length - radius}, "with the whole ball within the flute's length");
   const double from_axis = std::hypot(ball.y(), ball.z());
   if (!std::isfinite(from_axis))
-    refuse("ball's distance from the axis", from_axis, {0, ConicalCutter(job.cutter).radius(ball.x()) + radius},
+    refuse("ball's distance from the axis", from_axis, {0, ConicalCutter(job->cutter).radius(ball.x()) + radius},
            "a finite number");
   const GroundCutter cutter = groundCutterOf(job);
   const TurningBall::Result result = TurningBall(cutter, ball.x(), from_axis, radius).turn();

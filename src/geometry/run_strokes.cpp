@@ -40,32 +40,27 @@ bool holds(const Range& range, double x) {
   return x >= range.from - RunStrokes::kSame && x <= range.to + RunStrokes::kSame;
 }
 
-double maxRadius(const GrindJob& job) {
-  const ConicalCutter cutter(job.cutter);
-  return std::max(cutter.radius(0), cutter.radius(job.cutter.flute_length + job.process.overtravel_shank));
+double maxRadius(const ValidJob& job) {
+  const ConicalCutter cutter(job->cutter);
+  return std::max(cutter.radius(0), cutter.radius(job->cutter.flute_length + job->process.overtravel_shank));
 }
 
 }  // namespace
 
-RunStrokes::RunStrokes(const GrindJob& job)
-    : job_(job),
-      order_(passOrder(job)),
-      wear_(wearOfPasses(job)),
-      depths_(passDepths(job.process)),
-      radius_(maxRadius(job)) {}
+RunStrokes::RunStrokes(const ValidJob& job) : job_(job), radius_(maxRadius(job)) {}
 
 double RunStrokes::wearOf(const ToothPass& place) const {
-  return wear_[static_cast<std::size_t>(std::find(order_.begin(), order_.end(), place) - order_.begin())];
+  const std::vector<JobPass>& passes = job_.passes();
+  return std::find_if(passes.begin(), passes.end(), [&](const JobPass& pass) { return pass.place == place; })->wear;
 }
 
 void RunStrokes::add(const Setpoint& setpoint, const Axes& actual) {
   const Part part{{setpoint.tooth, setpoint.pass}, setpoint.move, setpoint.cycle};
-  if (!(part.place.tooth < static_cast<int>(job_.tooth_angles.size()) &&
-        part.place.pass < static_cast<int>(depths_.size()))) {
+  if (!(part.place.tooth < job_.teeth() && part.place.pass < static_cast<int>(job_.depths().size()))) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + " grinds tooth " +
                                 std::to_string(part.place.tooth + 1) + ", pass " + std::to_string(part.place.pass + 1) +
-                                "; the job has " + std::to_string(job_.tooth_angles.size()) + " teeth and " +
-                                std::to_string(depths_.size()) + " passes");
+                                "; the job has " + std::to_string(job_.teeth()) + " teeth and " +
+                                std::to_string(job_.depths().size()) + " passes");
   }
   if (!actual.isFinite().all()) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + ": the position read is not finite");
@@ -154,11 +149,11 @@ void RunStrokes::endStroke() {
   if (range_.to > range_.from) strokes_.push_back({reading_->place, MoveKind::kStroke, range_, deviations()});
 }
 
-RunStrokes::Path::Path(const GrindJob& job, int tooth, double wear)
-    : cutter(cutterOf(job, tooth)),
-      curve(cutter, job.process.setup_lead),
-      stroke(grinder::strokeOf(job, tooth, job.process.deepest(), wear)),
-      angle(job.tooth_angles[static_cast<std::size_t>(tooth)]) {}
+RunStrokes::Path::Path(const ValidJob& job, int tooth, double wear)
+    : cutter(job.cutterOf(tooth)),
+      curve(cutter, job->process.setup_lead),
+      stroke(grinder::strokeOf(job, tooth, job->process.deepest(), wear)),
+      angle(job->tooth_angles[static_cast<std::size_t>(tooth)]) {}
 
 PathDeviation RunStrokes::Path::deviation(double x, const Axes& at) const {
   return {at[kY] - (stroke.y + cutter.y(x) + x * stroke.y_per_x), at[kZ] - (cutter.z(x) + stroke.z_correction.at(x).z),
@@ -168,7 +163,7 @@ PathDeviation RunStrokes::Path::deviation(double x, const Axes& at) const {
 void RunStrokes::addPose(const Part& part, const Axes& actual) {
   const bool goes_on =
       in_blank_ && reading_->place == part.place && reading_->move == part.move && reading_->cycle + 1 == part.cycle;
-  in_blank_ = job_.cutter.end_diameter / 2 + actual[kY] < radius_;
+  in_blank_ = job_->cutter.end_diameter / 2 + actual[kY] < radius_;
   if (!in_blank_) return;
   if (!goes_on) poses_.push_back({part.place, part.move, {}});
   std::vector<Axes>& at = poses_.back().at;
@@ -185,7 +180,7 @@ bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double 
   const PathDeviation own = deviationAt(stroke, x);
   // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
   const double wear = wearOf(stroke.place);
-  const double smaller = std::max(0.0, wear - wearOf(place)) / (job_.process.wheel_diameter / 2 - wear);
+  const double smaller = std::max(0.0, wear - wearOf(place)) / (job_->process.wheel_diameter / 2 - wear);
   // Along the wheel's radius it only has to be as deep: what the other one removes above is removed as well.
   return off.y - own.y >= 2 * radius_ * smaller - kSame &&
          std::abs(off.z - own.z) + radius_ * std::abs(off.a - own.a) <= kSame;
@@ -241,7 +236,7 @@ RunStroke RunStrokes::strokeOf(const Poses& poses, std::size_t from, std::size_t
 WheelSweep RunStrokes::sweep(const RunStroke& run) const {
   const int tooth = run.place.tooth;
   const double wear = wearOf(run.place);
-  GrindStroke stroke = grinder::strokeOf(job_, tooth, job_.process.deepest(), wear);
+  GrindStroke stroke = grinder::strokeOf(job_, tooth, job_->process.deepest(), wear);
   stroke.from = run.range.from;
   stroke.to = run.range.to;
   stroke.deviations = run.deviations;
@@ -258,15 +253,15 @@ GroundCutter RunStrokes::cutter() const {
     const auto covering = [&](const RunStroke* other) { return covers(*other, *stroke); };
     if (std::none_of(kept.begin(), kept.end(), covering)) kept.push_back(stroke);
   }
-  std::vector<Flute> flutes(job_.tooth_angles.size());
+  std::vector<Flute> flutes(job_->tooth_angles.size());
   for (const RunStroke* stroke : kept) flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
   std::vector<GroundTooth> teeth;
   for (std::size_t i = 0; i < flutes.size(); ++i) {
     // A stroke without a length removes nothing.
     if (flutes[i].empty()) flutes[i].push_back(sweepOf(job_, static_cast<int>(i), 0, GrindStroke{}));
-    teeth.push_back({job_.tooth_angles[i], i});
+    teeth.push_back({job_->tooth_angles[i], i});
   }
-  return GroundCutter(ConicalCutter(job_.cutter), std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job_->cutter), std::move(flutes), std::move(teeth));
 }
 
 }  // namespace grinder

@@ -2,23 +2,24 @@
 
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_correction.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace grinder {
 
 namespace {
 
 /// @param job with the published law.
-ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch) {
-  const GrindProcess& p = job.process;
-  const double rake = job.cutter.rake_angle;
+ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch) {
+  const GrindProcess& p = job->process;
+  const double rake = job->cutter.rake_angle;
   const auto found =
-      correctRake(ConicalCutter(cutterOf(job, tooth)), wheelOf(job).worn(p.wheel_wear), p.wheel_diameter / 2,
-                  setupOf(job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
+      correctRake(ConicalCutter(job.cutterOf(tooth)), wheelOf(*job).worn(p.wheel_wear), p.wheel_diameter / 2,
+                  setupOf(*job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
   if (found && std::abs(found->min_rake - rake) <= kEvenRake && std::abs(found->max_rake - rake) <= kEvenRake) {
     return found->z;
   }
@@ -35,18 +36,17 @@ ZCorrection correctionOf(const GrindJob& job, int tooth, const PlanWatch& watch)
 
 }  // namespace
 
-GrindJob withZLaw(GrindJob job, const PlanWatch& watch) {
-  job.z_corrections.clear();
-  if (job.process.z_law == ZLaw::kPublished) return job;
-  GrindJob published = job;
-  published.process.z_law = ZLaw::kPublished;
+ValidJob withZLaw(const ValidJob& job, const PlanWatch& watch) {
+  if (job->process.z_law == ZLaw::kPublished) return job;
+  const ValidJob published = job.withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
   std::map<double, ZCorrection> by_spiral;
-  for (int tooth = 0; tooth < static_cast<int>(job.tooth_angles.size()); ++tooth) {
-    const auto [place, is_new] = by_spiral.try_emplace(cutterOf(job, tooth).spiral_angle);
+  std::vector<ZCorrection> corrections;
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+    const auto [place, is_new] = by_spiral.try_emplace(job.cutterOf(tooth).spiral_angle);
     if (is_new) place->second = correctionOf(published, tooth, watch);
-    job.z_corrections.push_back(place->second);
+    corrections.push_back(place->second);
   }
-  return job;
+  return job.withZCorrections(std::move(corrections));
 }
 
 }  // namespace grinder

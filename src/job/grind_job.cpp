@@ -201,27 +201,11 @@ void checkTogether(Checker& checker, const GrindJob& job) {
 
 }  // namespace
 
-CutterGeometry cutterOf(const GrindJob& job, int tooth) {
-  CutterGeometry cutter = job.cutter;
-  if (!job.spiral_angles.empty()) cutter.spiral_angle = job.spiral_angles[static_cast<std::size_t>(tooth)];
-  return cutter;
-}
-
 Range askedSpiral(const GrindJob& job) {
   const std::vector<double>& angles = job.spiral_angles;
   if (angles.empty()) return {job.cutter.spiral_angle, job.cutter.spiral_angle};
   const auto [min, max] = std::minmax_element(angles.begin(), angles.end());
   return {*min, *max};
-}
-
-ZCorrection zCorrectionOf(const GrindJob& job, int tooth) {
-  if (job.process.z_law == ZLaw::kPublished) return {};
-  if (job.z_corrections.size() != job.tooth_angles.size()) {
-    throw std::invalid_argument("process.z_law = constant_rake: the job has " +
-                                std::to_string(job.z_corrections.size()) +
-                                " corrections of Z; allowed: one for each tooth, from withZLaw()");
-  }
-  return job.z_corrections[static_cast<std::size_t>(tooth)];
 }
 
 std::vector<Reason> validate(const GrindJob& job) {
@@ -267,38 +251,11 @@ double shankCut(const CutterGeometry& cutter) {
   return std::max(0.0, cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length));
 }
 
-std::vector<ToothPass> passOrder(const GrindJob& job) {
-  const int teeth = static_cast<int>(job.tooth_angles.size());
-  const int passes = static_cast<int>(passDepths(job.process).size());
-  const bool tooth_major = job.process.order == GrindOrder::kToothMajor;
-  std::vector<ToothPass> order;
-  order.reserve(static_cast<std::size_t>(teeth) * static_cast<std::size_t>(passes));
-  for (int i = 0; i < teeth * passes; ++i) {
-    order.push_back(tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth});
-  }
-  return order;
-}
-
-std::vector<double> wearOfPasses(const GrindJob& job) {
-  std::vector<double> wear(passOrder(job).size());
-  for (std::size_t i = 0; i < wear.size(); ++i) {
-    wear[i] = job.process.wheel_wear + static_cast<double>(i) * job.process.wheel_wear_per_pass;
-  }
-  return wear;
-}
-
 double askedDepth(const GrindJob& job, double x) {
   const CutterGeometry& c = job.cutter;
   const double at_end = (c.end_diameter - c.core_diameter) / 2;
   const double radius = c.end_diameter / 2 + c.flute_length * std::tan(c.cone_angle);  // at the flute's end
   return at_end + (radius - c.core_diameter_end / 2 - at_end) * x / c.flute_length;
-}
-
-DepthLaw depthLaw(const GrindJob& job, double depth) {
-  const GrindProcess& p = job.process;
-  const double deepest = p.deepest();
-  const double taper = (p.depth - p.depthEnd()) / job.cutter.flute_length;
-  return {depth * (p.depth / deepest), depth / deepest * taper};
 }
 
 }  // namespace grinder

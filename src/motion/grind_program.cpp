@@ -1,6 +1,5 @@
 #include "flute_grinder/motion/grind_program.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/motion/work_offsets.h"
 
@@ -15,21 +14,22 @@ namespace {
 
 constexpr double kMinPeriod = 1e-6;  ///< of the control cycle [s]
 
-FeedSchedule::Stroke strokeOf(const GrindJob& job) {
+FeedSchedule::Stroke strokeOf(const ValidJob& job) {
   FeedSchedule::Stroke stroke;
-  stroke.from = -job.process.overtravel_end;
-  stroke.to = job.cutter.flute_length + job.process.overtravel_shank;
-  if (job.process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
-  stroke.lead = job.process.setup_lead;
-  stroke.taper = depthLaw(job, job.process.deepest()).taper;
-  stroke.surface_feed = job.process.feed;
+  stroke.from = -job->process.overtravel_end;
+  stroke.to = job->cutter.flute_length + job->process.overtravel_shank;
+  if (job->process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
+  stroke.lead = job->process.setup_lead;
+  stroke.taper = job.depthLaw(job->process.deepest()).taper;
+  stroke.surface_feed = job->process.feed;
   // With the published rule, the even points of steep cutters drift by up to the same amount again.
-  stroke.tolerance = job.interpolation.tolerance * (job.interpolation.even_step == EvenStepRule::kPublished ? 0.5 : 1);
+  stroke.tolerance =
+      job->interpolation.tolerance * (job->interpolation.even_step == EvenStepRule::kPublished ? 0.5 : 1);
   return stroke;
 }
 
-/// @throw std::invalid_argument unless the machine's data and the start position are valid for motion.
-const Machine& checked(const Machine& machine, const Axes& start) {
+/// @throw std::invalid_argument unless the machine's data, the start position and the offset are valid for motion.
+const Machine& checked(const Machine& machine, const RunStart& run) {
   const AxisLimits& l = machine.limits;
   const auto require = [](bool good, const char* what) {
     if (!good) throw std::invalid_argument(std::string("machine: ") + what);
@@ -41,8 +41,8 @@ const Machine& checked(const Machine& machine, const Axes& start) {
           "velocity, acceleration and jerk limits must be 1e-9 to 1e9, in SI units");
   require(place(l.min_position) && place(l.max_position) && (l.min_position < l.max_position).all(),
           "position limits must be within -1e9 to 1e9, the lower below the upper");
-  require(place(start) && place(machine.park), "start and park position must be within -1e9 to 1e9");
-  require((machine.work_offset.abs() <= kMaxOffset).all(), "work offsets must be within -1000 to 1000 m or rad");
+  require(place(run.at) && place(machine.park), "start and park position must be within -1e9 to 1e9");
+  require((run.offset.abs() <= kMaxOffset).all(), "work offsets must be within -1000 to 1000 m or rad");
   require(machine.max_job_duration > 0 && machine.max_job_duration <= kMaxFigure,
           "max_job_duration must be more than 0, up to 1e9 s");
   return machine;
@@ -62,8 +62,8 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
   throw ReasonError(reason);
 }
 
-void requireSwivel(const Machine& machine, const GrindJob& job) {
-  const double swivel = job.process.setup_swivel;
+void requireSwivel(const Machine& machine, const ValidJob& job) {
+  const double swivel = job->process.setup_swivel;
   if (swivel >= machine.swivel.from && swivel <= machine.swivel.to) return;
   Reason reason;
   reason.kind = ReasonKind::kOutOfRange;
@@ -76,15 +76,15 @@ void requireSwivel(const Machine& machine, const GrindJob& job) {
   throw ReasonError(reason);
 }
 
-/// @param park position [m], A [rad]. @param clearance_y [m]; both in work coordinates.
-void requireParkClear(const Machine& machine, const Axes& park, double clearance_y) {
-  if (park[kY] >= clearance_y) return;
+/// @param clearance_y in work coordinates. @param park, offset of Y; see RunStart [m].
+void requireParkClear(double clearance_y, double park, double offset) {
+  if (park - offset >= clearance_y) return;
   Reason reason;
   reason.kind = ReasonKind::kParkInWork;
   reason.axis = kY;
   reason.unit = Unit::kMetre;
-  reason.value = machine.park[kY];
-  reason.limit = clearance_y + machine.work_offset[kY];
+  reason.value = park;
+  reason.limit = clearance_y + offset;
   throw ReasonError(reason);
 }
 
@@ -93,13 +93,13 @@ std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
   return static_cast<std::size_t>(std::find_if(helices.begin(), helices.end(), same) - helices.begin());
 }
 
-std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, const Machine& machine) {
+std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, const Machine& machine) {
   std::vector<Helix> helices;
-  for (std::size_t tooth = 0; tooth < job.tooth_angles.size(); ++tooth) {
-    const CutterGeometry geometry = cutterOf(job, static_cast<int>(tooth));
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+    const CutterGeometry& geometry = job.cutterOf(tooth);
     if (indexOf(helices, geometry.spiral_angle) < helices.size()) continue;
     const ConicalCutter cutter(geometry);
-    stroke.z_correction = zCorrectionOf(job, static_cast<int>(tooth));
+    stroke.z_correction = job.zCorrectionOf(tooth);
     helices.push_back({{cutter, stroke.lead},
                        LogCurve(cutter, stroke.lead),
                        stroke.z_correction,
@@ -110,46 +110,43 @@ std::vector<Helix> helicesOf(const GrindJob& job, FeedSchedule::Stroke stroke, c
 
 }  // namespace
 
-GrindProgram::GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first)
-    : job_(std::make_shared<const GrindJob>(job)),
-      machine_(checked(machine, start)),
-      start_(start),
+GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run)
+    : job_(job),
+      machine_(checked(machine, run)),
+      run_(run),
       stroke_(strokeOf(job)),
       helices_(helicesOf(job, stroke_, machine)),
-      helix_of_tooth_(job.tooth_angles.size()),
-      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job.process.clearance) {
+      helix_of_tooth_(job->tooth_angles.size()),
+      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process.clearance) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
-    helix_of_tooth_[tooth] = indexOf(helices_, cutterOf(job, static_cast<int>(tooth)).spiral_angle);
+    helix_of_tooth_[tooth] = indexOf(helices_, job.cutterOf(static_cast<int>(tooth)).spiral_angle);
   }
   for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.edge.cutter);
   requireSwivel(machine, job);
-  const Axes park = machine.park - machine.work_offset;
-  requireParkClear(machine, park, clearance_y_);
-  const std::vector<ToothPass> order = passOrder(job);
-  const auto begin = std::find(order.begin(), order.end(), first);
-  if (begin == order.end()) {
+  requireParkClear(clearance_y_, machine.park[kY], run.offset[kY]);
+  const std::vector<JobPass>& passes = job.passes();
+  const auto begin =
+      std::find_if(passes.begin(), passes.end(), [&](const JobPass& pass) { return pass.place == run.first; });
+  if (begin == passes.end()) {
+    const ToothPass& last = passes.back().place;
     std::ostringstream text;
-    text << "first_tooth = " << first.tooth << ", first_pass = " << first.pass << "; allowed: 0 to "
-         << order.back().tooth << " and 0 to " << order.back().pass;
+    text << "first_tooth = " << run.first.tooth << ", first_pass = " << run.first.pass << "; allowed: 0 to "
+         << last.tooth << " and 0 to " << last.pass;
     throw std::invalid_argument(text.str());
   }
 
-  const std::vector<double> depths = passDepths(job.process);
-  const std::vector<double> wear = wearOfPasses(job);
   constexpr std::ptrdiff_t moves_per_pass = 6;
-  moves_.reserve(static_cast<std::size_t>((order.end() - begin) * moves_per_pass + 2));
-  Axes at = start;
+  moves_.reserve(static_cast<std::size_t>((passes.end() - begin) * moves_per_pass + 2));
+  const Axes park = machine.park - run.offset;
+  Axes at = start();
   // After a job that did not finish, the wheel may be in a flute of a different cutter: only the park position is clear
   // of every cutter.
   if (at[kY] < park[kY]) {
     at[kY] = park[kY];
-    append(MoveKind::kLift, first, at);
+    append(MoveKind::kLift, run.first, at);
   }
-  for (auto pass = begin; pass != order.end(); ++pass) {
-    const double depth = depths[static_cast<std::size_t>(pass->pass)];
-    appendPass(*pass, depth, wear[static_cast<std::size_t>(pass - order.begin())], at);
-  }
-  append(MoveKind::kReturn, order.back(), park);
+  for (auto pass = begin; pass != passes.end(); ++pass) appendPass(*pass, at);
+  append(MoveKind::kReturn, passes.back().place, park);
 }
 
 double GrindProgram::swivel() const noexcept { return job_->process.setup_swivel; }
@@ -159,15 +156,15 @@ void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, 
       {kind, static_cast<std::uint16_t>(pass.tooth), static_cast<std::uint16_t>(pass.pass), to, wear, taper});
 }
 
-void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, Axes& at) {
-  const Helix& helix = this->helix(pass.tooth);
+void GrindProgram::appendPass(const JobPass& pass, Axes& at) {
+  const Helix& helix = this->helix(pass.place.tooth);
   const ConicalCutter& cutter = helix.edge.cutter;
   const LogCurve& curve = helix.curve;
-  const DepthLaw law = depthLaw(*job_, depth);
-  const double at_end = law.at_end + wear;
+  const DepthLaw law = job_.depthLaw(pass.depth);
+  const double at_end = law.at_end + pass.wear;
   const auto y = [&](double x) { return cutter.y(x) + x * law.taper - at_end; };
-  const double tooth_angle = job_->tooth_angles[static_cast<std::size_t>(pass.tooth)];
-  const auto go = [&](MoveKind kind) { append(kind, pass, at); };
+  const double tooth_angle = job_->tooth_angles[static_cast<std::size_t>(pass.place.tooth)];
+  const auto go = [&](MoveKind kind) { append(kind, pass.place, at); };
   at[kA] = tooth_angle + curve.a(stroke_.from);
   go(MoveKind::kIndex);
   at[kX] = stroke_.from;
@@ -176,9 +173,9 @@ void GrindProgram::appendPass(const ToothPass& pass, double depth, double wear, 
   at[kY] = cutter.y(stroke_.from) + job_->process.clearance;
   go(MoveKind::kApproach);
   at[kY] = y(stroke_.from);
-  append(MoveKind::kInfeed, pass, at, wear, law.taper);
+  append(MoveKind::kInfeed, pass.place, at, pass.wear, law.taper);
   at << stroke_.to, y(stroke_.to), helix.z(stroke_.to), tooth_angle + curve.a(stroke_.to);
-  append(MoveKind::kStroke, pass, at, wear, law.taper);
+  append(MoveKind::kStroke, pass.place, at, pass.wear, law.taper);
   at[kY] = clearance_y_;
   go(MoveKind::kRetract);
 }

@@ -1,6 +1,5 @@
 #include "flute_grinder/motion/job_plan.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "motion/plan_checks.h"
 
 #include <algorithm>
@@ -19,29 +18,29 @@ void refuse(JobPlan& plan, PlanFault fault, Reason reason) {
 }
 
 /// @param min lower bound of the duration [s]; 0 if it is unknown.
-void refuseAsTooLong(JobPlan& plan, const GrindJob& job, const Machine& machine, double min) {
+void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine, double min) {
   Reason reason;
   reason.kind = ReasonKind::kTooLong;
   reason.unit = Unit::kSecond;
   reason.value = min;
   reason.limit = machine.max_job_duration;
-  reason.count = job.tooth_angles.size() * passDepths(job.process).size();
+  reason.count = job.passes().size();
   refuse(plan, PlanFault::kTooLong, std::move(reason));
 }
 
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
-double minDuration(const GrindJob& job, const ToothPass& first) {
-  const double travel = job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank;
-  const auto teeth = static_cast<double>(job.tooth_angles.size());
+double minDuration(const ValidJob& job, const ToothPass& first) {
+  const double travel = job->cutter.flute_length + job->process.overtravel_end + job->process.overtravel_shank;
+  const auto teeth = static_cast<double>(job.teeth());
   double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
-  for (int i = 0; i < static_cast<int>(job.tooth_angles.size()); ++i) {
-    edge = std::min(edge, ConicalCutter(cutterOf(job, i)).edgePerTravel());
+  for (int i = 0; i < job.teeth(); ++i) {
+    edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
   }
-  const double way = job.process.clearance + travel * edge;
-  const auto passes = static_cast<double>(passDepths(job.process).size());
-  const double before = job.process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
-                                                                     : first.pass * teeth + first.tooth;
-  return std::max(0.0, teeth * passes - before) * way / job.process.feed;
+  const double way = job->process.clearance + travel * edge;
+  const auto passes = static_cast<double>(job.depths().size());
+  const double before = job->process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
+                                                                      : first.pass * teeth + first.tooth;
+  return std::max(0.0, teeth * passes - before) * way / job->process.feed;
 }
 
 /// Checks periodically whether the job is too long and whether the plan is still wanted.
@@ -201,21 +200,16 @@ void planSetpoints(JobPlan& plan, const PlanWatch& watch) {
 
 }  // namespace
 
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+JobPlan planJob(const ValidJob& job, const Machine& machine, const RunStart& run,
                 const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   JobPlan plan;
-  plan.reasons = validate(job);
-  if (!plan.reasons.empty()) {
-    plan.fault = PlanFault::kInvalidJob;
-    return plan;
-  }
-  const double min = minDuration(job, first);
+  const double min = minDuration(job, run.first);
   if (min > machine.max_job_duration) {
     refuseAsTooLong(plan, job, machine, min);
     return plan;
   }
   try {
-    plan.program = std::make_shared<const GrindProgram>(job, machine, start, first);
+    plan.program = std::make_shared<const GrindProgram>(job, machine, run);
   } catch (const ReasonError& error) {
     refuse(plan, PlanFault::kInvalidJob, error.reason());
     return plan;

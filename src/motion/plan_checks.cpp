@@ -14,7 +14,7 @@ namespace {
 /// rule, whose even points drift.
 double overrideFactor(const GrindProgram& program) {
   double factor = 1;
-  if (program.job().interpolation.even_step != EvenStepRule::kPublished) return factor;
+  if (program.job()->interpolation.even_step != EvenStepRule::kPublished) return factor;
   for (const Helix& helix : program.helices()) {
     factor = std::max(factor, std::pow(helix.schedule.limits().velocity / helix.schedule.feedSpeed(), 2));
   }
@@ -37,12 +37,12 @@ PlanChecks::PlanChecks(JobPlan& plan)
   plan.move_ends.assign(program_.moves().size(), 0);
   deviation_.kind = ReasonKind::kTolerance;
   deviation_.unit = Unit::kDeviationMetre;
-  deviation_.limit = program_.job().interpolation.tolerance;
+  deviation_.limit = program_.job()->interpolation.tolerance;
   deviation_.has_place = true;
 }
 
 bool PlanChecks::add(const Setpoint& p) {
-  if (check_.check(p, program_.machine().work_offset)) {
+  if (check_.check(p, program_.run().offset)) {
     std::for_each(check_.begin(), check_.end(), [&](const auto& v) { addViolation(v); });
     if (!p.position.isFinite().all()) return false;
   }
@@ -53,7 +53,7 @@ bool PlanChecks::add(const Setpoint& p) {
 }
 
 void PlanChecks::recall(const Setpoint& p) {
-  check_.check(p, program_.machine().work_offset);
+  check_.check(p, program_.run().offset);
   count(p);
   last_velocity_ = check_.velocity();
   if (p.cycle % 2 == 0) end_x_ = p.position[kX];

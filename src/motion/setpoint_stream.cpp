@@ -36,8 +36,8 @@ SetpointStream::SetpointStream(std::shared_ptr<const GrindProgram> program)
     : program_(std::move(program)),
       helix_(&program_->helix(program_->moves().front().tooth)),
       period_(program_->machine().period),
-      interpolator_(helix_->curve, program_->job().interpolation.rotary_scale, program_->job().interpolation.even_step,
-                    program_->strokeFrom()) {
+      interpolator_(helix_->curve, program_->job()->interpolation.rotary_scale,
+                    program_->job()->interpolation.even_step, program_->strokeFrom()) {
   const Move& first = program_->moves().front();
   current_.position = program_->start();
   current_.move = first.kind;
@@ -205,7 +205,7 @@ void SetpointStream::beginMove(const Move& move) noexcept {
   taper_ = move.taper;
   y_offset_ = 0;
   y_offset_ = current_.position[kY] - strokeY(program_->strokeFrom());
-  a_offset_ = program_->job().tooth_angles[move.tooth];
+  a_offset_ = program_->job()->tooth_angles[move.tooth];
   beginStroke(0);
 }
 
@@ -247,14 +247,14 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   MotionLimits limits = limitsAlong(way_, program_->machine().limits);
   double speed = limits.velocity;
   if (isAtFeed(kind)) {
-    speed = std::min(speed, program_->job().process.feed / linear_way_);
+    speed = std::min(speed, program_->job()->process.feed / linear_way_);
     limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
   }
   beginLaw(limits, 1, speed);
 }
 
 void SetpointStream::beginStroke(double s) noexcept {
-  const GrindInterpolation& settings = program_->job().interpolation;
+  const GrindInterpolation& settings = program_->job()->interpolation;
   current_.move = MoveKind::kStroke;
   stroke_from_ = s;
   interpolator_ = OddEvenInterpolator(helix_->curve, settings.rotary_scale, settings.even_step, helix_->schedule.x(s));

@@ -1,12 +1,12 @@
 #include "node/goal_server.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "node/plain_name.h"
 
 #include <utility>
@@ -130,14 +130,23 @@ void GoalServer::onGoal(GoalHandle handle) {
   if (!isPlainName(goal->wheel_name)) {
     return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
   }
-  const JobWithDigest job(jobFromGoal(*goal));
-  if (!goal->dry_run) {
-    const std::string text = refusal(*goal, job.digest());
-    if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
-    if (const auto reason = swivelRefusal(job.job()))
-      return reject(handle, result(flute_grinder::GrindResult::NOT_READY, {*reason}));
+  try {
+    const ValidJob job(jobFromGoal(*goal));
+    const std::string digest = jobDigest(*job);
+    if (!goal->dry_run) {
+      const std::string text = refusal(*goal, digest);
+      if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
+      // The loop checks it once more when the job starts: the swivel may be turned meanwhile.
+      const Swivel swivel = loop_.status().swivel;
+      if (!swivel.isAt(job->process.setup_swivel)) {
+        return reject(handle,
+                      result(flute_grinder::GrindResult::NOT_READY, {reasonOf(swivel, job->process.setup_swivel)}));
+      }
+    }
+    startPlanning(handle, job, digest);
+  } catch (const InvalidJob& invalid) {
+    reject(handle, result(errorCode(PlanFault::kInvalidJob), invalid.reasons()));
   }
-  startPlanning(handle, job);
 }
 
 std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const {
@@ -148,14 +157,6 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
   }
   if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
   return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
-}
-
-/// The loop checks it once more when the job starts: the swivel may be turned meanwhile.
-std::optional<Reason> GoalServer::swivelRefusal(const GrindJob& job) const {
-  const Swivel swivel = loop_.status().swivel;
-  // What is wrong with a job that cannot be ground at any swivel, the planner reports.
-  if (swivel.isAt(job.process.setup_swivel) || !validate(job).empty()) return std::nullopt;
-  return reasonOf(swivel, job.process.setup_swivel);
 }
 
 std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
@@ -172,7 +173,7 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   return mismatch.empty() ? "" : mismatch + "; set them for this job, or start it with --ignore-offset-check";
 }
 
-void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& job) {
+void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
@@ -184,18 +185,18 @@ void GoalServer::startPlanning(const GoalHandle& handle, const JobWithDigest& jo
   // From here on to the end of the goal the offsets cannot change.
   Planner::Request request{job};
   const WorkOffsets offsets = offsets_.offsets();
-  request.offset = offsets.values();
-  const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
+  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);
   }
-  request.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  request.first = {handle.getGoal()->first_tooth, handle.getGoal()->first_pass};
+  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
+                 {handle.getGoal()->first_tooth, handle.getGoal()->first_pass},
+                 offsets.values()};
   request.for_goal = true;
   request.control = control;
-  request.done = [this](std::unique_ptr<Preview> preview) {
-    thread_.post([this, preview = std::shared_ptr<Preview>(std::move(preview))] { onPlanned(preview); });
+  request.done = [this](std::shared_ptr<const PlannedJob> planned) {
+    thread_.post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
   if (!planner_.submit(std::move(request))) {
     gate_.close();
@@ -213,9 +214,9 @@ void GoalServer::onCancel(const GoalHandle& handle) {
   if (gate_.cancel(handle.getGoalID())) loop_.postStop(MachineEvent::kCancel);
 }
 
-void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
+void GoalServer::onPlanned(std::shared_ptr<const PlannedJob> planned) {
   GoalHandle handle = goal_->handle;
-  const PlannedJob& plan = *preview->plan;
+  const PlannedJob& plan = *planned;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
   if (recalled || gate_.canceled()) return cancelBeforeStart();
   if (!plan.good()) {
@@ -226,31 +227,32 @@ void GoalServer::onPlanned(std::shared_ptr<Preview> preview) {
     const std::vector<std::string> warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
     handle.setAccepted();
     release();
-    telemetry_.show(preview);
+    telemetry_.show(planned);
     flute_grinder::GrindResult checked =
         result(flute_grinder::GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
     checked.warnings = warnings;
     return handle.setSucceeded(checked);
   }
-  preview->offsets = goal_->offsets;
-  preview->ignore_offset_check = handle.getGoal()->ignore_offset_check != 0;
-  startJob(std::move(preview));
+  goal_->plan = std::move(planned);
+  startJob();
 }
 
-void GoalServer::startJob(std::shared_ptr<const Preview> preview) {
+void GoalServer::startJob() {
   GoalHandle handle = goal_->handle;
-  const std::string& name = handle.getGoal()->job_name;
+  const flute_grinder::GrindGoal& asked = *handle.getGoal();
   goal_->phase = Phase::kStarting;
   thread_.setPeriod(kStartPollPeriod);
-  goal_->preview = std::move(preview);
   goal_->number = loop_.status().jobs_started + 1;
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
-  const PlannedJob& plan = *goal_->preview->plan;
-  tracker_.begin(*plan.program, plan.digest, name, plan.first, goal_->number);
-  telemetry_.announceJob(goal_->number, handle.getGoalID().id, goal_->preview, name);
+  const PlannedJob& plan = *goal_->plan;
+  goal_->stream = std::make_unique<SetpointStream>(plan.program);
+  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number);
+  telemetry_.announceJob(
+      goal_->number, handle.getGoalID().id, goal_->plan,
+      std::make_shared<JobRecord>(plan, asked.job_name, goal_->offsets, asked.ignore_offset_check != 0));
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    posted = loop_.startJob(goal_->preview->stream.get(), false);
+    posted = loop_.startJob(goal_->stream.get(), false);
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   if (!started) return cancelBeforeStart();
@@ -379,11 +381,11 @@ void GoalServer::endJob() {
 }
 
 flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
-  const PlannedJob& plan = *goal_->preview->plan;
+  const PlannedJob& plan = *goal_->plan;
   Place at = status.place;
   if (status.setpoints_written == 0) {  // no setpoint reached the axes
-    at.tooth = static_cast<std::uint16_t>(plan.first.tooth);
-    at.pass = static_cast<std::uint16_t>(plan.first.pass);
+    at.tooth = static_cast<std::uint16_t>(plan.program->run().first.tooth);
+    at.pass = static_cast<std::uint16_t>(plan.program->run().first.pass);
     at.x = plan.program->start()[kX];
   }
   flute_grinder::GrindResult r = result(flute_grinder::GrindResult::SUCCESSFUL, "", plan.statistics);

@@ -45,11 +45,12 @@ class GoalServer {
     WorkOffsets offsets;
     std::shared_ptr<PlanControl> control;
     Phase phase = Phase::kPlanning;
-    std::shared_ptr<const Preview> preview{};
-    std::uint64_t number = 0;         ///< of its job, as counted by the loop
-    std::string journal_error{};      ///< why its job could not be entered
-    ros::SteadyTime ended{};          ///< when the loop was seen to have finished the job
-    ros::SteadyTime last_feedback{};  ///< while planning
+    std::shared_ptr<const PlannedJob> plan{};
+    std::unique_ptr<SetpointStream> stream{};  ///< of its job
+    std::uint64_t number = 0;                  ///< of its job, as counted by the loop
+    std::string journal_error{};               ///< why its job could not be entered
+    ros::SteadyTime ended{};                   ///< when the loop was seen to have finished the job
+    ros::SteadyTime last_feedback{};           ///< while planning
   };
 
   /// Answers a goal that was dropped for its length; in roscpp's network thread.
@@ -57,15 +58,14 @@ class GoalServer {
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
-  std::optional<Reason> swivelRefusal(const GrindJob& job) const;
   std::string offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
                             const WorkOffsets& offsets) const;
-  void startPlanning(const GoalHandle& handle, const JobWithDigest& job);
-  void onPlanned(std::shared_ptr<Preview> preview);
+  void startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest);
+  void onPlanned(std::shared_ptr<const PlannedJob> planned);
   void poll();
   void publishFeedback();
   void publishPlanningFeedback();
-  void startJob(std::shared_ptr<const Preview> preview);
+  void startJob();
   void publishJob();
   void checkStartReply();
   void releaseWhenJournaled();

@@ -13,12 +13,6 @@ JobRecorder::~JobRecorder() {
   for (const auto& entry : jobs_) keep(entry.second.record);
 }
 
-void JobRecorder::announce(std::uint64_t number, const Preview& job, const std::string& name) {
-  const auto record = std::make_shared<JobRecord>(*job.plan, name);
-  record->setZeroPoints(job.offsets, job.ignore_offset_check);
-  jobs_[number].record = record;
-}
-
 void JobRecorder::end(std::uint64_t number) {
   jobs_.at(number).ended = true;
   keepIfComplete(number);

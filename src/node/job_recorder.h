@@ -2,7 +2,6 @@
 
 #include "flute_grinder/record/job_record.h"
 #include "node/history.h"
-#include "node/planner.h"
 
 #include <cstdint>
 #include <map>
@@ -22,8 +21,8 @@ class JobRecorder {
   /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
   ~JobRecorder();
 
-  /// @param number the loop's number for the job. @param name as for JobRecord.
-  void announce(std::uint64_t number, const Preview& job, const std::string& name);
+  /// @param number the loop's number for the job.
+  void announce(std::uint64_t number, std::shared_ptr<JobRecord> record) { jobs_[number].record = std::move(record); }
   /// The job will not start.
   void withdraw(std::uint64_t number) { jobs_.erase(number); }
   /// The record of a job that was announced and has not ended.

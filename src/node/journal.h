@@ -32,7 +32,7 @@ struct Progress {
   std::string end;             ///< how it ended, for display; empty while it runs, and if this process ended first
   double feed_override = 1;    ///< at which it was left, fraction
   Wheel wheel;                 ///< as it was left
-  Axes offset = Axes::Zero();  ///< with which the job began, see Machine::work_offset [m], A [rad]
+  Axes offset = Axes::Zero();  ///< with which the job began, see RunStart [m], A [rad]
 };
 
 /// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.

@@ -1,6 +1,5 @@
 #include "node/plan_server.h"
 
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
@@ -36,6 +35,16 @@ PlanServer::~PlanServer() {
   spinner_.stop();
 }
 
+/// @return null if another job is being planned. @throw InvalidJob
+std::shared_ptr<const PlannedJob> PlanServer::planOf(const flute_grinder::GrindGoal& goal, const Axes& offset) {
+  std::promise<std::shared_ptr<const PlannedJob>> promise;
+  Planner::Request request{jobFromGoal(goal)};
+  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), {goal.first_tooth, goal.first_pass}, offset};
+  request.control = control_;
+  request.done = [&](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
+  return planner_.submit(std::move(request)) ? promise.get_future().get() : nullptr;
+}
+
 bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response) {
   response.valid = 0;
   const std::string unknown = offsets_.unknown();
@@ -43,22 +52,21 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
     response.reasons.push_back(unknown);
     return true;
   }
-  std::promise<std::unique_ptr<Preview>> promise;
-  auto answer = promise.get_future();
-  Planner::Request plan_request{JobWithDigest(jobFromGoal(request.goal))};
   const WorkOffsets offsets = offsets_.offsets();
-  plan_request.offset = offsets.values();
-  plan_request.start = Eigen::Map<const Axes>(loop_.status().command.data());
-  plan_request.first = {request.goal.first_tooth, request.goal.first_pass};
-  plan_request.control = control_;
-  plan_request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
-  const bool taken = planner_.submit(std::move(plan_request));
-  if (!taken) {
+  std::shared_ptr<const PlannedJob> planned;
+  try {
+    planned = planOf(request.goal, offsets.values());
+  } catch (const InvalidJob& invalid) {
+    PlannedJob refused;
+    refused.fault = PlanFault::kInvalidJob;
+    refused.reasons = invalid.reasons();
+    planned = std::make_shared<const PlannedJob>(std::move(refused));
+  }
+  if (!planned) {
     response.reasons.emplace_back("busy: another job is being planned; ask again when it is done");
     return true;
   }
-  const std::shared_ptr<Preview> preview = answer.get();
-  const PlannedJob& plan = *preview->plan;
+  const PlannedJob& plan = *planned;
   response.valid = static_cast<std::uint8_t>(plan.good());
   response.statistics = toMessage(plan.statistics);
   response.duration = plan.statistics.duration;
@@ -80,7 +88,7 @@ bool PlanServer::onPlan(flute_grinder::Plan::Request& request, flute_grinder::Pl
   response.warnings = offsetWarnings(offsets, request.goal);
   response.violations = toMessage(plan.reasons);
   for (const Reason& reason : plan.reasons) response.reasons.push_back(text(reason));
-  if (plan.good()) telemetry_.show(preview);
+  if (plan.good()) telemetry_.show(planned);
   return true;
 }
 

@@ -23,6 +23,7 @@ class PlanServer {
   ~PlanServer();
 
  private:
+  std::shared_ptr<const PlannedJob> planOf(const flute_grinder::GrindGoal& goal, const Axes& offset);
   bool onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response);
 
   const ControlLoop& loop_;

@@ -1,5 +1,7 @@
 #include "node/planner.h"
 
+#include "flute_grinder/plan/job_digest.h"
+
 #include <utility>
 
 namespace grinder {
@@ -33,14 +35,14 @@ bool Planner::submit(Request request) {
 
 void Planner::run() {
   while (const std::optional<Request> request = next()) {
-    std::unique_ptr<Preview> preview = plan(*request);
+    std::shared_ptr<const PlannedJob> plan = this->plan(*request);
     {
       // Before `done`: it may submit the next job.
       const std::lock_guard<std::mutex> lock(mutex_);
       request_ = std::exchange(goal_, std::nullopt);
       goal_waits_ = false;
     }
-    request->done(std::move(preview));
+    request->done(std::move(plan));
   }
 }
 
@@ -50,19 +52,15 @@ std::optional<Planner::Request> Planner::next() {
   return request_;
 }
 
-std::unique_ptr<Preview> Planner::plan(const Request& request) {
-  auto preview = std::make_unique<Preview>();
-  preview->plan = isKept(request) ? kept_ : std::make_shared<const PlannedJob>(makePlan(request));
-  if (!preview->plan->good()) return preview;
-  preview->stream = std::make_unique<SetpointStream>(preview->plan->program);
-  kept_ = preview->plan;
-  return preview;
+std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
+  if (isKept(request)) return kept_;
+  auto plan = std::make_shared<const PlannedJob>(makePlan(request));
+  if (plan->good()) kept_ = plan;
+  return plan;
 }
 
 bool Planner::isKept(const Request& request) const {
-  return kept_ && kept_->digest == request.job.digest() && kept_->first.tooth == request.first.tooth &&
-         kept_->first.pass == request.first.pass && (kept_->program->machine().work_offset == request.offset).all() &&
-         (kept_->program->start() == request.start - request.offset).all();
+  return kept_ && kept_->digest == jobDigest(*request.job) && kept_->program->run() == request.run;
 }
 
 PlannedJob Planner::makePlan(const Request& request) const {
@@ -70,10 +68,7 @@ PlannedJob Planner::makePlan(const Request& request) const {
     request.control->done = done;
     return !request.control->give_up && !goal_waits_;
   };
-  Machine machine = machine_;
-  machine.work_offset = request.offset;
-  PlannedJob plan =
-      planWholeJob(request.job, machine, shapes_, request.start - request.offset, request.first, {}, watch);
+  PlannedJob plan = planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
   if (plan.fault == PlanFault::kGivenUp && goal_waits_)
     plan.reasons.back().detail = "a goal came first; plan again after it";
   return plan;

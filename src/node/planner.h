@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/plan/planned_job.h"
 
 #include <atomic>
@@ -12,14 +11,6 @@
 #include <thread>
 
 namespace grinder {
-
-/// A plan with what is needed to run its job and to show it.
-struct Preview {
-  std::shared_ptr<const PlannedJob> plan;
-  std::unique_ptr<SetpointStream> stream;  ///< absent unless the plan is good
-  WorkOffsets offsets;                     ///< of a goal's job, whose values are the program's
-  bool ignore_offset_check = false;        ///< the goal says so
-};
 
 /// Shared between the planner and whoever waits for the plan. Thread safe.
 struct PlanControl {
@@ -33,13 +24,12 @@ struct PlanControl {
 class Planner {
  public:
   struct Request {
-    JobWithDigest job;
-    Axes start = Axes::Zero();   ///< current machine position of the axes [m], A [rad]
-    Axes offset = Axes::Zero();  ///< see Machine::work_offset [m], A [rad]
-    ToothPass first;             ///< to grind
+    ValidJob job;
+    RunStart run{};
     bool for_goal = false;
-    std::shared_ptr<PlanControl> control;
-    std::function<void(std::unique_ptr<Preview>)> done;  ///< called once, in the planner's thread; must not block
+    std::shared_ptr<PlanControl> control{};
+    /// Called once, in the planner's thread; must not block.
+    std::function<void(std::shared_ptr<const PlannedJob>)> done{};
   };
 
   Planner(const Machine& machine, const MachineShapes& shapes);
@@ -56,7 +46,7 @@ class Planner {
  private:
   void run();
   std::optional<Request> next();
-  std::unique_ptr<Preview> plan(const Request& request);
+  std::shared_ptr<const PlannedJob> plan(const Request& request);
   bool isKept(const Request& request) const;
   PlannedJob makePlan(const Request& request) const;
 

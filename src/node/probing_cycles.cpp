@@ -96,13 +96,13 @@ double tooth(const Cycle& cycle) {
   if (!cycle.offsets.axes[kX].wasSet()) {
     throw ProbingError("the work offset of X was never set; probe the end face first");
   }
-  const GrindJob job = withZLaw(jobFromGoal(cycle.goal.job));
+  const ValidJob job = withZLaw(jobFromGoal(cycle.goal.job));
   // The rake face of a right-hand tooth comes down to the ball as A grows.
-  const double toward = job.cutter.cut == CutDirection::kLeftHand ? -1 : 1;
+  const double toward = job->cutter.cut == CutDirection::kLeftHand ? -1 : 1;
   const Prober::Touch touch = cycle.prober.touch(kA, toward * cycle.goal.within);
   cycle.add("tooth 1", touch.axes[kA], touch.spread, true);
   Eigen::Vector3d ball = cycle.ballFromAxis(touch);
-  ball.x() -= cycle.offsets.axes[kX].value + wheelCentre(cycle.geometry, job.process, cycle.goal.flange).x();
+  ball.x() -= cycle.offsets.axes[kX].value + wheelCentre(cycle.geometry, job->process, cycle.goal.flange).x();
   return touch.axes[kA] - rakeTouchAngle(job, ball, cycle.geometry.probe->diameter);
 }
 

@@ -65,25 +65,25 @@ std::string ProgressTracker::offsetChanges(const Axes& offset) const {
 }
 
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                            const ToothPass& first, std::uint64_t number) {
+                            std::uint64_t number) {
   before_ = progress_;
   number_ = number;
   moves_ = program.moves();
-  passes_ = passOrder(program.job());
+  passes_ = program.job().passes();
   strokes_ended_at_ = 0;
   running_ = true;
   progress_ = Progress();
   progress_.feed_override = before_.feed_override;
   progress_.job_digest = digest;
   progress_.job_name = name;
-  progress_.cutter = program.job().cutter;
-  progress_.tooth_angles = program.job().tooth_angles;
-  progress_.next = first;
+  progress_.cutter = program.job()->cutter;
+  progress_.tooth_angles = program.job()->tooth_angles;
+  progress_.next = program.run().first;
   progress_.x = program.strokeFrom();
   // Assumed until the job has ended: after a crash nothing but the drive's positions could prove the wheel clear.
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
-  progress_.offset = program.machine().work_offset;
+  progress_.offset = program.run().offset;
   write();
 }
 
@@ -121,10 +121,11 @@ void ProgressTracker::updatePlace(const LoopStatus& status) {
   if (status.strokes_ended_at > strokes_ended_at_) {
     strokes_ended_at_ = status.strokes_ended_at;
     const Move& ended = moves_[strokes_ended_at_ - 1];
-    const auto next = std::find(passes_.begin(), passes_.end(), ToothPass{ended.tooth, ended.pass}) + 1;
+    const auto has_ended = [&](const JobPass& pass) { return pass.place == ToothPass{ended.tooth, ended.pass}; };
+    const auto next = std::find_if(passes_.begin(), passes_.end(), has_ended) + 1;
     progress_.x = ended.to[kX];
     progress_.finished = next == passes_.end();
-    if (!progress_.finished) progress_.next = *next;
+    if (!progress_.finished) progress_.next = next->place;
     write();
   }
   const Place& place = status.place;

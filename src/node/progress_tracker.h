@@ -25,7 +25,7 @@ class ProgressTracker {
   std::string refusal(const std::string& digest, const ToothPass& first) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
   /// them (0.1 um, A 1e-6 rad). Empty if it may, or if it is another job.
-  /// @param offset see Machine::work_offset [m], A [rad].
+  /// @param offset see RunStart [m], A [rad].
   std::string offsetRefusal(const std::string& digest, const Axes& offset) const;
 
   /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
@@ -33,8 +33,7 @@ class ProgressTracker {
 
   /// Enters a job before it starts.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
-  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, const ToothPass& first,
-             std::uint64_t number);
+  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, std::uint64_t number);
   /// The job was not started: restores the previous entry.
   void revert();
   /// The job has ended. @param how for display, not empty.
@@ -53,11 +52,11 @@ class ProgressTracker {
   void updatePlace(const LoopStatus& status);
 
   JournalWriter& writer_;
-  Progress progress_;              ///< last entry
-  Progress before_;                ///< last entry of the previous job
-  std::vector<Move> moves_;        ///< of the job's program
-  std::vector<ToothPass> passes_;  ///< in order
-  std::uint64_t number_ = 0;       ///< of the job
+  Progress progress_;            ///< last entry
+  Progress before_;              ///< last entry of the previous job
+  std::vector<Move> moves_;      ///< of the job's program
+  std::vector<JobPass> passes_;  ///< in order
+  std::uint64_t number_ = 0;     ///< of the job
   std::uint32_t strokes_ended_at_ = 0;
   bool running_ = false;
   std::uint64_t request_ = 0;

@@ -84,18 +84,18 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
   batch_.period = loop.config().machine.period;
 }
 
-void Telemetry::show(std::shared_ptr<const Preview> preview) {
-  thread_.post([this, preview = std::move(preview)] {
+void Telemetry::show(std::shared_ptr<const PlannedJob> plan) {
+  thread_.post([this, plan = std::move(plan)] {
     // While a job runs, that job is shown.
-    if (jobs_.empty() && !scene_cleared_) showJob(*preview);
+    if (jobs_.empty() && !scene_cleared_) showJob(*plan);
   });
 }
 
-void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const Preview> preview,
-                            const std::string& name) {
-  thread_.post([this, number, goal_id, preview = std::move(preview), name] {
-    jobs_.push_back({number, goal_id, preview});
-    recorder_.announce(number, *preview, name);
+void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const PlannedJob> plan,
+                            std::shared_ptr<JobRecord> record) {
+  thread_.post([this, number, goal_id, plan = std::move(plan), record = std::move(record)] {
+    jobs_.push_back({number, goal_id, plan});
+    recorder_.announce(number, record);
   });
 }
 
@@ -119,11 +119,10 @@ void Telemetry::clearScene() {
   });
 }
 
-void Telemetry::showJob(const Preview& preview) {
+void Telemetry::showJob(const PlannedJob& plan) {
   last_change_ = ros::SteadyTime::now();
-  const PlannedJob& plan = *preview.plan;
   frames_.show(plan.program, plan.edges);
-  scene_.show(plan.program, plan.edges, plan.digest, plan.first);
+  scene_.show(plan.program, plan.edges, plan.digest, plan.program->run().first);
 }
 
 void Telemetry::tick() {
@@ -131,7 +130,7 @@ void Telemetry::tick() {
   if (samples_read_ == 0) return;
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
-    showJob(*job->preview);
+    showJob(*job->plan);
     job->shown = true;
   }
   const bool begins = setPace();
@@ -234,9 +233,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
 }
 
 /// The position read, in the job's work coordinates.
-Axes Telemetry::workPosition(const Job& job) const {
-  return sample_.position - job.preview->plan->program->machine().work_offset;
-}
+Axes Telemetry::workPosition(const Job& job) const { return sample_.position - job.plan->program->run().offset; }
 
 void Telemetry::endJob(Job& job) {
   // Written, but never reached the axes.
@@ -318,7 +315,7 @@ void Telemetry::makeFeedback() {
   Job* job = running();
   if (!job) return;
   const Setpoint& p = job->last;
-  const PlannedJob& plan = *job->preview->plan;
+  const PlannedJob& plan = *job->plan;
   const double done = plannedCycles(p, plan.move_ends);
   const auto all = static_cast<double>(plan.move_ends.back());
   flute_grinder::GrindFeedback feedback;

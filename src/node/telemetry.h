@@ -10,7 +10,6 @@
 #include "node/job_recorder.h"
 #include "node/journal_writer.h"
 #include "node/offset_store.h"
-#include "node/planner.h"
 #include "node/served_queue.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -44,12 +43,11 @@ class Telemetry {
   void start() { thread_.start(); }
 
   /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
-  void show(std::shared_ptr<const Preview> preview);
+  void show(std::shared_ptr<const PlannedJob> plan);
   /// Announces a job before it starts. Thread safe; never blocks.
-  /// @param number the loop's number for this job. @param goal_id of its goal. @param name of the job as its goal gives
-  /// it.
-  void announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const Preview> preview,
-                   const std::string& name);
+  /// @param number the loop's number for this job. @param goal_id of its goal. @param record new.
+  void announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const PlannedJob> plan,
+                   std::shared_ptr<JobRecord> record);
   /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
   std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number);
   /// The job announced last will not start. Thread safe; never blocks.
@@ -73,7 +71,7 @@ class Telemetry {
   struct Job {
     std::uint64_t number;
     std::string goal_id;
-    std::shared_ptr<const Preview> preview;
+    std::shared_ptr<const PlannedJob> plan;
     bool shown = false;
     Setpoint last{};                  ///< that reached the axes
     double max_error = 0;             ///< since the last feedback [rad]
@@ -81,7 +79,7 @@ class Telemetry {
     std::deque<Buffered> buffered{};  ///< written, not yet published
   };
 
-  void showJob(const Preview& preview);
+  void showJob(const PlannedJob& plan);
   void tick();
   bool setPace();
   flute_grinder::GrinderState stateMessage() const;

@@ -1,7 +1,7 @@
 #include "panel/cutter_section.h"
 
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 #include "panel/text_view.h"
 
 #include <QStringList>
@@ -114,21 +114,19 @@ bool CutterSection::chordIsWithin(const ToothSection& tooth) const {
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }
 
-CutterSection cutterSection(const GrindJob& job, double x) {
+CutterSection cutterSection(const ValidJob& job, double x) {
   const GroundCutter cutter = groundCutterOf(job);
   CutterSection made;
   made.ground = cutter.section(x);
-  made.cut = job.cutter.cut;
-  made.asked_rake = job.cutter.rake_angle;
-  made.rake_tolerance = job.cutter.rake_tolerance;
-  made.chordal_rake_tolerance = job.cutter.chordal_rake_tolerance;
-  made.asked_core = std::max(0.0, made.ground.radius - askedDepth(job, x));
-  made.core_tolerance = job.cutter.core_tolerance;
-  made.spiral_tolerance = job.cutter.spiral_tolerance;
-  const std::size_t teeth = job.tooth_angles.size();
-  for (std::size_t i = 0; i < teeth; ++i) {
-    made.asked_spirals.push_back(cutterOf(job, static_cast<int>(i)).spiral_angle);
-  }
+  made.cut = job->cutter.cut;
+  made.asked_rake = job->cutter.rake_angle;
+  made.rake_tolerance = job->cutter.rake_tolerance;
+  made.chordal_rake_tolerance = job->cutter.chordal_rake_tolerance;
+  made.asked_core = std::max(0.0, made.ground.radius - askedDepth(*job, x));
+  made.core_tolerance = job->cutter.core_tolerance;
+  made.spiral_tolerance = job->cutter.spiral_tolerance;
+  const std::size_t teeth = job->tooth_angles.size();
+  for (int i = 0; i < job.teeth(); ++i) made.asked_spirals.push_back(job.cutterOf(i).spiral_angle);
   if (!(made.ground.core_radius >= kMinCore)) return made;
   made.outline = sectionOutline(cutter, x, made.ground.radius, {teeth, kRings, kColumns / teeth + 1});
   return made;

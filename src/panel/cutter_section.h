@@ -8,7 +8,7 @@
 
 namespace grinder {
 
-struct GrindJob;
+class ValidJob;
 
 /// A section of the cutter that a job grinds, with what is asked of it there.
 struct CutterSection {
@@ -31,9 +31,9 @@ struct CutterSection {
 };
 
 /// Takes milliseconds for each tooth with a flute of its own.
-/// @param job a job that validate() accepts, from withZLaw(). @param x within its flute's length [m].
+/// @param job from withZLaw(). @param x within its flute's length [m].
 /// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.
-CutterSection cutterSection(const GrindJob& job, double x);
+CutterSection cutterSection(const ValidJob& job, double x);
 
 /// The figures of all teeth against those asked, in mm and deg: rich text, with what is wrong in red.
 QString figuresText(const CutterSection& section);

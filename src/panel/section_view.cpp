@@ -84,14 +84,14 @@ void SectionView::take(const Computed& computed) {
 
 SectionView::Computed SectionView::computed(const Wanted& wanted) {
   const auto begin = Clock::now();
-  Job job = wanted.with_law;
+  std::optional<ValidJob> job = wanted.with_law;
   const auto failed = [&](const std::string& text) -> Computed {
     return {wanted.job, nullptr, QString::fromStdString(text).toHtmlEscaped(), Clock::now() - begin, job};
   };
   try {
-    if (!job) job = std::make_shared<const GrindJob>(withZLaw(*wanted.job));
+    if (!job) job = withZLaw(*wanted.job);
     // The length may have more decimals than the choice.
-    const double x = std::min(wanted.x * kMillimetre, job->cutter.flute_length);
+    const double x = std::min(wanted.x * kMillimetre, (*job)->cutter.flute_length);
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));
     return {wanted.job, section, figuresText(*section), Clock::now() - begin, job};
   } catch (const ReasonError& error) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/job/valid_job.h"
 #include "panel/grinder_link.h"
 #include "panel/number_box.h"
 #include "panel/section_drawing.h"
@@ -33,8 +34,8 @@ class SectionView : public QWidget {
   using Job = std::shared_ptr<const GrindJob>;
   struct Wanted {
     Job job;
-    double x = 0;  ///< [mm]
-    Job with_law;  ///< the job from withZLaw(); null if that is not computed yet
+    double x = 0;                      ///< [mm]
+    std::optional<ValidJob> with_law;  ///< from withZLaw(); nothing if that is not computed yet
     bool operator==(const Wanted& o) const { return job == o.job && x == o.x; }
   };
   struct Computed {
@@ -42,7 +43,7 @@ class SectionView : public QWidget {
     std::shared_ptr<const CutterSection> section;  ///< null if it cannot be computed
     QString text;                                  ///< its figures, or why not
     Clock::duration took{};
-    Job with_law;  ///< as in Wanted
+    std::optional<ValidJob> with_law;  ///< as in Wanted
   };
 
   static Computed computed(const Wanted& wanted);
@@ -53,8 +54,8 @@ class SectionView : public QWidget {
   void show(const std::shared_ptr<const CutterSection>& section, const QString& text);
 
   Job job_;
-  Job with_law_;        ///< as in Wanted
-  std::string digest_;  ///< of the job
+  std::optional<ValidJob> with_law_;  ///< as in Wanted
+  std::string digest_;                ///< of the job
   std::optional<Wanted> wanted_;
   NumberBox* x_;
   QCheckBox* follow_;

@@ -1,7 +1,6 @@
 #include "flute_grinder/plan/planned_job.h"
 
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/plan/job_digest.h"
 
 #include <stdexcept>
@@ -19,11 +18,9 @@ JobPlan refused(Reason reason) {
   return plan;
 }
 
-JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first,
+JobPlan planWithLaw(const ValidJob& job, const Machine& machine, const RunStart& run,
                     const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
-  // Of an invalid job, planJob() finds what is wrong.
-  if (!validate(job).empty()) return planJob(job, machine, start, first, visit, watch);
-  GrindJob with_law;
+  std::optional<ValidJob> with_law;
   try {
     with_law = withZLaw(job, watch);
   } catch (const ReasonError& error) {
@@ -31,7 +28,7 @@ JobPlan planWithLaw(const GrindJob& job, const Machine& machine, const Axes& sta
   } catch (const std::invalid_argument& error) {
     return refused(otherReason(error.what()));
   }
-  return planJob(with_law, machine, start, first, visit, watch);
+  return planJob(*with_law, machine, run, visit, watch);
 }
 
 void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) {
@@ -41,13 +38,9 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) 
 
 }  // namespace
 
-JobWithDigest::JobWithDigest(GrindJob job)
-    : job_(std::make_shared<const GrindJob>(std::move(job))), digest_(jobDigest(*job_)) {}
-
-PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
-                        const Axes& start, const ToothPass& first, const std::function<void(const Setpoint&)>& visit,
-                        const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job.job(), machine, start, first, visit, watch), job.digest(), first, {}, {}, {}, {}};
+PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const MachineShapes& shapes, const RunStart& run,
+                        const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), jobDigest(*job), {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
   CutterCheck cutter = checkGroundCutter(planned.program->job());
   planned.complete = cutter.complete;

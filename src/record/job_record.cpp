@@ -28,13 +28,14 @@ Json plannedJson(const PathStatistics& planned) {
           {"feed_limits", toJson(planned.feed_limits)}};
 }
 
-JobRecord::JobRecord(const PlannedJob& plan, std::string name)
+JobRecord::JobRecord(const PlannedJob& plan, std::string name, const WorkOffsets& offsets, bool said_right)
     : program_(plan.program),
       planned_(plan.statistics),
       digest_(plan.digest),
-      first_(plan.first),
       name_(std::move(name)),
-      pass_(plan.first),
+      offsets_(offsets),
+      offsets_said_right_(said_right),
+      pass_(plan.program->run().first),
       strokes_(plan.program->job()) {
   conclusion_.reason = kNoEnd;
 }
@@ -60,13 +61,8 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleSample& sample)
 }
 
 Json JobRecord::jobJson() const {
-  const GrindJob& job = program_->job();
+  const GrindJob& job = *program_->job();
   return {{"name", name_}, {"digest", digest_}, {"file", grinder::toJson(job)}};
-}
-
-void JobRecord::setZeroPoints(const WorkOffsets& offsets, bool said_right) {
-  offsets_ = offsets;
-  offsets_said_right_ = said_right;
 }
 
 Json JobRecord::zeroPointsJson() const {
@@ -89,6 +85,7 @@ Json JobRecord::strokesJson() const {
 
 Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) const {
   const std::uint64_t written = std::max(conclusion_.setpoints_written, setpoints_ + lost_);
+  const ToothPass& first = program_->run().first;
   Json record{{"record", 1},
               {"grinder", grinder},
               {"machine", toJson(machine)},
@@ -97,8 +94,8 @@ Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) con
               {"ended", utcText(ended_)},
               {"outcome", conclusion_.outcome},
               {"reason", conclusion_.reason},
-              {"first", {{"tooth", first_.tooth + 1}, {"pass", first_.pass + 1}}},
-              {"work_offsets", grinder::toJson(program_->machine().work_offset, "")},
+              {"first", {{"tooth", first.tooth + 1}, {"pass", first.pass + 1}}},
+              {"work_offsets", grinder::toJson(program_->run().offset, "")},
               {"zero_points", zeroPointsJson()},
               {"planned", plannedJson(planned_)},
               {"setpoints", {{"written", written}, {"lost", lost_}}},

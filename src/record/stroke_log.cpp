@@ -1,7 +1,6 @@
 #include "flute_grinder/record/stroke_log.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/record/cycle_figures.h"
 
 #include <cmath>
@@ -23,11 +22,11 @@ Json followingJson(const Axes& error) {
 
 }  // namespace
 
-StrokeLog::StrokeLog(const GrindJob& job) {
-  for (int tooth = 0; tooth < static_cast<int>(job.tooth_angles.size()); ++tooth) {
-    edges_.push_back({ConicalCutter(cutterOf(job, tooth)), job.process.setup_lead});
+StrokeLog::StrokeLog(const ValidJob& job) {
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+    edges_.push_back({ConicalCutter(job.cutterOf(tooth)), job->process.setup_lead});
   }
-  for (const double depth : passDepths(job.process)) depths_.push_back(depthLaw(job, depth).at_end);
+  for (const double depth : job.depths()) depths_.push_back(job.depthLaw(depth).at_end);
 }
 
 void StrokeLog::add(const Setpoint& setpoint, double time) {

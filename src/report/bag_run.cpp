@@ -82,7 +82,11 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   finish();
   const std::size_t number = asked_ == 0 ? goals_.size() : static_cast<std::size_t>(asked_);
   place_ = "job " + std::to_string(number) + " of " + std::to_string(goals_.size());
-  job_ = jobs_[goal_];
+  try {
+    if (const auto job = jobs_.find(goal_); job != jobs_.end()) job_ = job->second;
+  } catch (const InvalidJob&) {
+    // Of another version: reported as if the bag did not have it.
+  }
   selectStates();
   for (const auto& [name, status] : worst_) diagnostics_.emplace_back(name, status);
   Json head{{"grinder", (node_.front() == '/' ? "" : "/") + node_.substr(0, node_.size() - 1)},
@@ -176,7 +180,7 @@ void BagRun::visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisi
 void BagRun::takeHead(const rosbag::MessageInstance& message) {
   if (const auto goal = message.instantiate<flute_grinder::GrindActionGoal>()) {
     heads_[goal->goal_id.id]["job_name"] = goal->goal.job_name;
-    jobs_[goal->goal_id.id] = std::make_shared<const GrindJob>(jobFromGoal(goal->goal));
+    jobs_[goal->goal_id.id] = jobFromGoal(goal->goal);
   } else if (const auto result = message.instantiate<flute_grinder::GrindActionResult>()) {
     Json& head = heads_[result->status.goal_id.id];
     head["outcome"] = outcomeOf(result->status.status);

@@ -34,14 +34,14 @@ class BagRun : public RunFile {
   bool isAsked() const { return asked_ == 0 || static_cast<std::size_t>(asked_) == goals_.size(); }
   void visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const;
 
-  const int asked_;                    ///< which of the jobs
-  std::string node_;                   ///< the grinder's name, as in the topics, with a slash at its end
-  std::vector<std::string> topics_;    ///< that are read; first that of the setpoints
-  std::vector<std::string> goals_;     ///< of the jobs found so far
-  std::string goal_;                   ///< of the job
-  double start_ = 0, end_ = 0;         ///< cycle 0 and the last one, since the epoch [s]
-  std::map<std::string, Json> heads_;  ///< what goals and results say, by goal
-  std::map<std::string, std::shared_ptr<const GrindJob>> jobs_;  ///< by goal
+  const int asked_;                       ///< which of the jobs
+  std::string node_;                      ///< the grinder's name, as in the topics, with a slash at its end
+  std::vector<std::string> topics_;       ///< that are read; first that of the setpoints
+  std::vector<std::string> goals_;        ///< of the jobs found so far
+  std::string goal_;                      ///< of the job
+  double start_ = 0, end_ = 0;            ///< cycle 0 and the last one, since the epoch [s]
+  std::map<std::string, Json> heads_;     ///< what goals and results say, by goal
+  std::map<std::string, GrindJob> jobs_;  ///< by goal
   std::map<std::string, WorstStatus> worst_;
   std::vector<std::pair<double, Json>> offsets_;  ///< with the time from which they were in force, since the epoch [s]
   std::vector<StateChange> changes_;              ///< of the whole bag, since the epoch

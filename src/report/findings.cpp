@@ -1,7 +1,6 @@
 #include "flute_grinder/report/findings.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
@@ -65,11 +64,6 @@ Json leftOut(const RunFile& run, const Json& data, const std::string& no_tool) {
   return reasons;
 }
 
-/// A job that a file has, if it can be one.
-const GrindJob* usableJob(const RunFile& run) {
-  return run.job() && validate(*run.job()).empty() ? run.job().get() : nullptr;
-}
-
 }  // namespace
 
 void Survey::MaxOfAxes::add(bool in_stroke, const Axes& values) {
@@ -81,7 +75,7 @@ Survey::Survey(const RunFile& run, bool draws)
     : run_(run),
       motion_(std::make_unique<MotionOfRows>(run)),
       plots_(draws ? std::make_unique<Plots>(run) : nullptr),
-      strokes_(usableJob(run) ? StrokeLog(*usableJob(run)) : StrokeLog()) {}
+      strokes_(run.job() ? StrokeLog(*run.job()) : StrokeLog()) {}
 
 Survey::~Survey() = default;
 
@@ -106,8 +100,8 @@ Json Survey::plots() const { return plots_->json(); }
 Json Survey::findings(const ReportContext& context) const {
   Json data = headOf(run_.kind(), context);
   data.update(run_.head());
-  if (const GrindJob* job = usableJob(run_)) {
-    data["job"] = {{"name", data.value("job_name", "")}, {"file", toJson(*job)}};
+  if (run_.job()) {
+    data["job"] = {{"name", data.value("job_name", "")}, {"file", toJson(**run_.job())}};
     data.erase("job_name");
   }
   if (!context.tool.is_null()) data["tool"] = context.tool;

@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <algorithm>
 #include <array>
@@ -27,31 +27,29 @@ constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
 
 /// The strokes of each tooth: the deepest that is done, if any, and the one that runs.
-std::vector<std::vector<GrindStroke>> strokesSoFar(const GrindJob& job, const Reached& reached) {
-  const std::vector<double> depths = passDepths(job.process);
-  std::vector<double> deepest(job.tooth_angles.size(), 0);
-  std::vector<std::vector<GrindStroke>> strokes(job.tooth_angles.size());
+std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Reached& reached) {
+  std::vector<double> deepest(job->tooth_angles.size(), 0);
+  std::vector<std::vector<GrindStroke>> strokes(job->tooth_angles.size());
   const auto at = [&](std::size_t tooth, double depth) {
-    return strokeOf(job, static_cast<int>(tooth), depth, job.process.wheel_wear);
+    return strokeOf(job, static_cast<int>(tooth), depth, job->process.wheel_wear);
   };
-  for (const ToothPass& pass : passOrder(job)) {
-    const auto tooth = static_cast<std::size_t>(pass.tooth);
-    const double depth = depths[static_cast<std::size_t>(pass.pass)];
-    const bool runs = pass == reached.pass;
+  for (const JobPass& pass : job.passes()) {
+    const auto tooth = static_cast<std::size_t>(pass.place.tooth);
+    const bool runs = pass.place == reached.pass;
     if (runs && reached.phase == PassPhase::kBefore) break;
     if (runs && reached.phase == PassPhase::kStroke) {
-      GrindStroke stroke = at(tooth, depth);
+      GrindStroke stroke = at(tooth, pass.depth);
       stroke.to = std::clamp(reached.x, std::min(stroke.from, stroke.to), std::max(stroke.from, stroke.to));
       strokes[tooth].push_back(stroke);
       break;
     }
-    deepest[tooth] = std::max(deepest[tooth], depth);
+    deepest[tooth] = std::max(deepest[tooth], pass.depth);
     if (runs) break;
   }
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     if (deepest[i] > 0) strokes[i].push_back(at(i, deepest[i]));
     // One in the air removes nothing.
-    if (strokes[i].empty()) strokes[i].push_back(at(i, -job.process.clearance));
+    if (strokes[i].empty()) strokes[i].push_back(at(i, -job->process.clearance));
   }
   return strokes;
 }
@@ -68,24 +66,24 @@ std::optional<double> shankOf(const CutterGeometry& cutter) {
 }
 
 /// Of what the wheel may touch. What is behind it is round.
-SolidExtent extentOf(const GrindJob& job) {
-  const auto& p = job.process;
-  const double stroke_end = job.cutter.flute_length + p.overtravel_shank;
-  const auto shank = shankOf(job.cutter);
-  const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job.cutter)));
-  if (!shank) return {0, stroke_end, job.cutter.shank_diameter, stroke_end + run_out};
-  return {0, std::min(*shank, stroke_end + run_out), job.cutter.shank_diameter, 0};
+SolidExtent extentOf(const ValidJob& job) {
+  const auto& p = job->process;
+  const double stroke_end = job->cutter.flute_length + p.overtravel_shank;
+  const auto shank = shankOf(job->cutter);
+  const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job->cutter)));
+  if (!shank) return {0, stroke_end, job->cutter.shank_diameter, stroke_end + run_out};
+  return {0, std::min(*shank, stroke_end + run_out), job->cutter.shank_diameter, 0};
 }
 
 /// As fine as fits a message.
-SolidResolution resolutionOf(const GrindJob& job) {
+SolidResolution resolutionOf(const ValidJob& job) {
   const SolidExtent extent = extentOf(job);
   double turns = 0;
-  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) {
-    const LogCurve curve{ConicalCutter(cutterOf(job, static_cast<int>(i)))};
+  for (std::size_t i = 0; i < job->tooth_angles.size(); ++i) {
+    const LogCurve curve{ConicalCutter(job.cutterOf(static_cast<int>(i)))};
     turns = std::max(turns, std::abs(curve.a(extent.to)) / (2 * units::kPi));
   }
-  const auto teeth = static_cast<double>(job.tooth_angles.size());
+  const auto teeth = static_cast<double>(job->tooth_angles.size());
   // Rings are where flutes are; the facets around show on lands, neck and shank, which are round.
   SolidResolution r{40, 16, 120};
   const auto triangles = [&] {
@@ -109,11 +107,11 @@ SolidResolution resolutionOf(const GrindJob& job) {
 class LastPasses {
  public:
   /// @param reached nothing for a job that is done.
-  LastPasses(const GrindJob& job, const std::optional<Reached>& reached)
-      : from_end_(job.process.direction == StrokeDirection::kFromEnd) {
-    const int last = static_cast<int>(passDepths(job.process).size()) - 1;
-    teeth_.resize(job.tooth_angles.size());
-    for (const ToothPass& pass : passOrder(job)) {
+  LastPasses(const ValidJob& job, const std::optional<Reached>& reached)
+      : from_end_(job->process.direction == StrokeDirection::kFromEnd) {
+    const int last = static_cast<int>(job.depths().size()) - 1;
+    teeth_.resize(job->tooth_angles.size());
+    for (const auto& [pass, depth, wear] : job.passes()) {
       const bool runs = reached && pass == reached->pass;
       if (runs && reached->phase != PassPhase::kStroke && reached->phase != PassPhase::kAfter) break;
       const bool all = !runs || reached->phase == PassPhase::kAfter;
@@ -141,13 +139,13 @@ class LastPasses {
 /// How far the rake faces are from the asked rake, as a part of the tolerance.
 class RakeDeviation {
  public:
-  RakeDeviation(const GroundCutter& cutter, const GrindJob& job) : length_(job.cutter.flute_length) {
+  RakeDeviation(const GroundCutter& cutter, const ValidJob& job) : length_(job->cutter.flute_length) {
     for (std::size_t i = 0; i < kRakePlaces; ++i) {
       std::vector<std::optional<double>>& of_teeth = parts_.emplace_back();
       for (const ToothSection& tooth : cutter.section(length_ * static_cast<double>(i) / (kRakePlaces - 1)).teeth) {
         of_teeth.emplace_back();
         if (tooth.rake && tooth.complete) {
-          of_teeth.back() = std::abs(*tooth.rake - job.cutter.rake_angle) / job.cutter.rake_tolerance;
+          of_teeth.back() = std::abs(*tooth.rake - job->cutter.rake_angle) / job->cutter.rake_tolerance;
         }
       }
     }
@@ -178,12 +176,12 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
 }
 
 /// The neck, if there is one, and the shank, as far as they are behind extentOf().
-void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
-  const ConicalCutter cutter(job.cutter);
+void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
+  const ConicalCutter cutter(job->cutter);
   const SolidExtent extent = extentOf(job);
-  const auto neck_end = shankOf(job.cutter);
+  const auto neck_end = shankOf(job->cutter);
   const double from = neck_end ? extent.to : extent.shank_to, shank = neck_end.value_or(from);
-  const double end = std::max(kEnd, shank), radius = job.cutter.shank_diameter / 2;
+  const double end = std::max(kEnd, shank), radius = job->cutter.shank_diameter / 2;
   std::vector<OutlinePoint> outline{{from, 0}};
   if (neck_end) outline.insert(outline.end(), {{from, cutter.radius(from)}, {shank, cutter.radius(shank)}});
   outline.insert(outline.end(), {{shank, radius}, {end, radius}, {end, 0}});
@@ -193,10 +191,10 @@ void appendShank(MarkerArray& array, const GrindJob& job, const char* ns) {
 constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;
 
 /// The blank before the first stroke.
-void appendBlank(MarkerArray& array, const GrindJob& job, const char* ns) {
-  const ConicalCutter cutter(job.cutter);
-  const double shank = shankOf(job.cutter).value_or(extentOf(job).to), end = std::max(kEnd, shank);
-  const double radius = job.cutter.shank_diameter / 2;
+void appendBlank(MarkerArray& array, const ValidJob& job, const char* ns) {
+  const ConicalCutter cutter(job->cutter);
+  const double shank = shankOf(job->cutter).value_or(extentOf(job).to), end = std::max(kEnd, shank);
+  const double radius = job->cutter.shank_diameter / 2;
   appendSolid(array, ns, "cutter",
               {{0, 0}, {0, cutter.radius(0)}, {shank, cutter.radius(shank)}, {shank, radius}, {end, radius}, {end, 0}},
               colourOf(SurfaceKind::kShank));
@@ -230,30 +228,30 @@ void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviati
 
 }  // namespace
 
-GroundCutter groundSoFar(const GrindJob& job, const Reached& reached) {
+GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
   const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const auto spiral = [&](std::size_t k) { return cutterOf(job, static_cast<int>(k)).spiral_angle; };
+    const auto spiral = [&](std::size_t k) { return job.cutterOf(static_cast<int>(k)).spiral_angle; };
     const auto is_same = [&](std::size_t k) { return spiral(k) == spiral(i) && isSame(strokes[k], strokes[i]); };
     std::size_t same = 0;
     while (same < i && !is_same(same)) ++same;
-    teeth.push_back({job.tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
+    teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
     if (same < i) continue;
     Flute& flute = flutes.emplace_back();
     for (const GrindStroke& stroke : strokes[i]) {
-      flute.push_back(sweepOf(job, static_cast<int>(i), job.process.wheel_wear, stroke));
+      flute.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
     }
   }
-  return {ConicalCutter(job.cutter), std::move(flutes), std::move(teeth)};
+  return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth)};
 }
 
-MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns,
+MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const char* ns,
                           const std::optional<Reached>& reached) {
   MarkerArray array = clearedArray();
   try {
-    if (reached && reached->pass == passOrder(job).front() && reached->phase == PassPhase::kBefore) {
+    if (reached && reached->pass == job.passes().front().place && reached->phase == PassPhase::kBefore) {
       appendBlank(array, job, ns);
       return array;
     }
@@ -263,8 +261,8 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const
   } catch (const std::invalid_argument& error) {
     array = clearedArray();
     Marker& label = append(array, "label", Marker::TEXT_VIEW_FACING, "cutter");
-    label.pose.position = point(job.cutter.flute_length / 2, 0, 0);
-    label.scale.z = kLabelHeight * job.cutter.flute_length;
+    label.pose.position = point(job->cutter.flute_length / 2, 0, 0);
+    label.scale.z = kLabelHeight * job->cutter.flute_length;
     label.text = error.what();
   }
   return array;

@@ -1,7 +1,5 @@
 #include "flute_grinder/scene/ground_view.h"
 
-#include "flute_grinder/job/grind_job.h"
-
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -28,8 +26,8 @@ std::chrono::duration<double> worked() {
   return std::chrono::duration<double>(static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec));
 }
 
-visualization_msgs::MarkerArray markersOf(const GrindJob& job, const std::optional<Reached>& reached) {
-  const Reached end{passOrder(job).back(), PassPhase::kAfter, 0};
+visualization_msgs::MarkerArray markersOf(const ValidJob& job, const std::optional<Reached>& reached) {
+  const Reached end{job.passes().back().place, PassPhase::kAfter, 0};
   return groundMarkers(groundSoFar(job, reached.value_or(end)), job, reached ? "ground" : "planned", reached);
 }
 
@@ -51,10 +49,10 @@ GroundView::~GroundView() {
   thread_.join();
 }
 
-void GroundView::show(std::shared_ptr<const GrindJob> job, const std::optional<Reached>& reached) {
+void GroundView::show(const std::optional<ValidJob>& job, const std::optional<Reached>& reached) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    request_ = {std::move(job), reached};
+    request_ = Request{job, reached};
   }
   changed_.notify_one();
 }

@@ -63,12 +63,12 @@ double roundDown(double value) {
 
 ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges)
     : formed_(program.helix(0).edge),
-      tolerance_(program.job().interpolation.tolerance),
+      tolerance_(program.job()->interpolation.tolerance),
       steps_(std::min(kMostSteps,
-                      static_cast<std::size_t>(std::ceil(program.job().cutter.flute_length / pathStep(program))))),
+                      static_cast<std::size_t>(std::ceil(program.job()->cutter.flute_length / pathStep(program))))),
       measured_(steps_ + 1, -1) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    flutes_.push_back({program.job().tooth_angles[i], program.helix(static_cast<int>(i)).curve, edges[i], {}});
+    flutes_.push_back({program.job()->tooth_angles[i], program.helix(static_cast<int>(i)).curve, edges[i], {}});
   }
 }
 

@@ -20,7 +20,7 @@ const ros::WallDuration kGreeting(1);              ///< within which a viewer th
 /// All strokes of a job have the same errors.
 PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& program,
                                      const std::vector<GroundEdge>& edges) {
-  PathErrorMarkers errors(program->job(), edges);
+  PathErrorMarkers errors(*program->job(), edges);
   SetpointStream stream(program);
   bool in_stroke = false;
   for (Setpoint p; stream.next(p) && !(in_stroke && p.move != MoveKind::kStroke);) {
@@ -59,10 +59,10 @@ void Scene::publishCleared() {
 
 void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::vector<GroundEdge>& edges,
                  const std::string& digest, const ToothPass& first) {
-  const GrindJob& job = program->job();
+  const GrindJob& job = *program->job();
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
   ToolPath path = continued ? shown_->tool_path : ToolPath(*program, edges);
-  shown_.emplace(Shown{std::make_shared<GrindJob>(job), digest, std::move(path), ExecutedPath(*program, edges),
+  shown_.emplace(Shown{program->job(), digest, std::move(path), ExecutedPath(*program, edges),
                        errorsOfFirstStroke(program, edges), flute_grinder::Legend()});
   shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
   shown_->legend.tolerance = job.interpolation.tolerance;

@@ -34,14 +34,13 @@ GrindJob cylinderJob(double shank_diameter) {
   return job;
 }
 
-GrindProgram programOf(const GrindJob& job, const Axes& offset = Axes::Zero()) {
+GrindProgram programOf(const ValidJob& job, const Axes& offset = Axes::Zero()) {
   Machine machine = plainMachine();
   machine.collision_clearance = 1e-3;
-  machine.work_offset = offset;
-  return {job, machine, machine.park - offset};
+  return {job, machine, {machine.park, {}, offset}};
 }
 
-CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),
+CollisionResult checked(const ValidJob& job, const std::string& urdf = shippedUrdf(),
                         const Axes& offset = Axes::Zero()) {
   return checkCollision(programOf(job, offset), MachineShapes(urdf));
 }
@@ -115,7 +114,7 @@ TEST(JobCollision, ALeadTurnsTheCutterAndMovesNothingElse) {
 }
 
 /// A job with a bow of Z of some tenths of a millimetre.
-GrindJob bentJob() {
+ValidJob bentJob() {
   GrindJob job = paperJob();
   job.process.infeed = job.process.depth / 2;
   job.process.z_law = ZLaw::kConstantRake;
@@ -126,8 +125,7 @@ GrindJob bentJob() {
   for (int i = 0; i < bow.coefficientCount(); ++i) {
     bow.coefficients[static_cast<std::size_t>(i)] = 0.3e-3 * std::sin(1.1 * i);
   }
-  job.z_corrections.assign(job.tooth_angles.size(), bow);
-  return job;
+  return ValidJob(job).withZCorrections({bow});
 }
 
 TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
@@ -145,7 +143,7 @@ TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
     for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Axes at = (1 - part) * from + part * to;
       const double z = at[kX] * std::tan(5 * units::kDegree) * std::sin(8 * units::kDegree) +
-                       static_cast<double>(test_support::referenceCorrection(bentJob().z_corrections[0], at[kX]));
+                       static_cast<double>(test_support::referenceCorrection(bentJob().zCorrectionOf(0), at[kX]));
       EXPECT_NEAR(at[kZ], z, 1.001e-6);
       EXPECT_NEAR(at[kY],
                   program.moves().at(path.moves[leg] - 1).to[kY] +
@@ -158,9 +156,10 @@ TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
 }
 
 TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
-  GrindJob job = bentJob();
-  job.process.wheel_diameter = 0.5;
-  job.cutter.flute_length = 0.16;
+  GrindJob longer = *bentJob();
+  longer.process.wheel_diameter = 0.5;
+  longer.cutter.flute_length = 0.16;
+  const ValidJob job = ValidJob(longer).withZCorrections({bentJob().zCorrectionOf(0)});
   const CollisionResult result = checked(job);
   ASSERT_TRUE(result.reason);
   EXPECT_EQ(result.reason->move, programOf(job).moves().at(result.closest->leg).kind);

@@ -5,9 +5,9 @@
 
 namespace grinder::test_support {
 
-SetpointStream paperStream(const Machine& machine, const Axes& start) {
+SetpointStream paperStream(const Machine& machine, const RunStart& run) {
   static const GrindJob job = readJobFile("test/jobs/paper.yaml");
-  return SetpointStream(GrindProgram(job, machine, start));
+  return SetpointStream(GrindProgram(job, machine, run));
 }
 
 }  // namespace grinder::test_support

@@ -4,7 +4,7 @@
 
 namespace grinder::test_support {
 
-/// The paper's job. @param start in work coordinates [m], A [rad].
-SetpointStream paperStream(const Machine& machine, const Axes& start);
+/// The paper's job.
+SetpointStream paperStream(const Machine& machine, const RunStart& run);
 
 }  // namespace grinder::test_support

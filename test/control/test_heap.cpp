@@ -79,9 +79,8 @@ class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
     bow.pieces = ZCorrection::kMaxPieces;
     bow.piece = 3e-3;
     for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
-    job.z_corrections = {bow};
     const LoopConfig config = machineConfig();
-    return GrindProgram(job, config.machine, config.machine.park);
+    return GrindProgram(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park);
   }
 
   SetpointStream stream_;

@@ -19,15 +19,9 @@ constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
-Machine machineAt(const Axes& offset, const LoopConfig& config = machineConfig()) {
-  Machine machine = config.machine;
-  machine.work_offset = offset;
-  return machine;
-}
-
 /// The paper's job from where the axes stand.
 SetpointStream streamAt(const Axes& offset, const Axes& command, const LoopConfig& config = machineConfig()) {
-  return paperStream(machineAt(offset, config), command - offset);
+  return paperStream(config.machine, {command, {}, offset});
 }
 
 double between(double low, double high) {
@@ -95,7 +89,7 @@ RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
   Rig<FakeDrive> rig(config);
   rig.cycle();
   rig.enable();
-  const JobPlan plan = planJob(paper(), machineAt(offset, config), rig.last().command - offset);
+  const JobPlan plan = planJob(paper(), config.machine, {rig.last().command, {}, offset});
   RC_ASSERT(plan.good());
   SetpointStream stream(plan.program);
   rig.start(stream);
@@ -115,8 +109,8 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
   const double beyond = between(1e-9, 0.037);
   Axes offset = anyOffset();
   offset[kX] = 0.3 - kStrokeTo + beyond;
-  const Machine machine = machineAt(offset);
-  const JobPlan plan = planJob(paper(), machine, machine.park - offset);
+  const Machine machine = machineConfig().machine;
+  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset});
   RC_ASSERT(plan.fault == PlanFault::kLimit);
   const Reason& reason = plan.reasons.at(0);
   RC_ASSERT(reason.kind == ReasonKind::kPosition);
@@ -126,7 +120,7 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
   RC_ASSERT(std::abs(reason.x - kStrokeTo) < 1e-12);
 
   offset[kX] -= 2 * beyond;
-  RC_ASSERT(planJob(paper(), machineAt(offset), machine.park - offset).good());
+  RC_ASSERT(planJob(paper(), machine, {machine.park, {}, offset}).good());
 }
 
 TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
@@ -147,8 +141,8 @@ TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
 
 TEST(WorkOffsets, TheParkPositionIsTheMachines) {
   const Axes offset(0, 0.045, 0, 0);
-  const Machine machine = machineAt(offset);
-  const JobPlan plan = planJob(paper(), machine, machine.park - offset);
+  const Machine machine = machineConfig().machine;
+  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset});
   ASSERT_EQ(plan.reasons.size(), 1u);
   EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kParkInWork);
   EXPECT_EQ(plan.reasons[0].value, 0.05);
@@ -159,7 +153,7 @@ TEST(WorkOffsets, UnknownOnesAreNoJobs) {
   for (const double value :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1001.0}) {
     const Axes offset(0, 0, value, 0);
-    EXPECT_FALSE(planJob(paper(), machineAt(offset), machineConfig().machine.park).good()) << value;
+    EXPECT_FALSE(planJob(paper(), machineConfig().machine, {machineConfig().machine.park, {}, offset}).good()) << value;
   }
 }
 

@@ -110,7 +110,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     if (!job) continue;
     SCOPED_TRACE(testing::Message() << i << ": " << toolText(job->cutter, 1) << ", depth " << s.depth << ", wheel "
                                     << s.wheel << " x " << s.width);
-    GrindJob with_law;
+    std::optional<ValidJob> with_law;
     try {
       with_law = withZLaw(*job);
     } catch (const ReasonError& error) {
@@ -119,10 +119,10 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     }
     ++solved;
     if (publishedRakeError(*job) > 0.005) ++bent;
-    EXPECT_LE(rakeError(groundCutterOf(with_law), *job), 0.005);
+    EXPECT_LE(rakeError(groundCutterOf(*with_law), *job), 0.005);
     const SetupRequest request = requestFor(s);
-    brute::Bench bench{request, job->process.setup_swivel,   job->process.setup_height, job->process.depth, 800,
-                       100,     with_law.z_corrections.at(0)};
+    brute::Bench bench{request, job->process.setup_swivel, job->process.setup_height, job->process.depth, 800,
+                       100,     with_law->zCorrectionOf(0)};
     for (const double part : {0.13, 0.5, 0.83}) {
       EXPECT_NEAR(bench.rake(part * job->cutter.flute_length) / kDegree, s.rake, 0.005) << part;
     }
@@ -138,7 +138,7 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
   for (const double lead : {-1e-3, 1e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
-    const GrindJob with_law = withZLaw(job);
+    const ValidJob with_law = withZLaw(job);
     EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
     const brute::Bench bench{request,
                              job.process.setup_swivel,
@@ -146,7 +146,7 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
                              job.process.depth,
                              800,
                              100,
-                             with_law.z_corrections.at(0),
+                             with_law.zCorrectionOf(0),
                              lead};
     for (const double part : {0.1, 0.9}) {
       EXPECT_NEAR(bench.rake(part * job.cutter.flute_length) / kDegree, shop.rake, 0.005) << part;
@@ -159,10 +159,9 @@ TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
   job.tooth_angles = {0, 1.5, 3.1, 4.6};
   job.spiral_angles = {20 * kDegree, 20.2 * kDegree, 20 * kDegree, 20.2 * kDegree};
   job.process.z_law = ZLaw::kConstantRake;
-  const GrindJob with_law = withZLaw(job);
-  ASSERT_EQ(with_law.z_corrections.size(), 4u);
-  const auto same = [&](std::size_t i, std::size_t k) {
-    return with_law.z_corrections[i].coefficients == with_law.z_corrections[k].coefficients;
+  const ValidJob with_law = withZLaw(job);
+  const auto same = [&](int i, int k) {
+    return with_law.zCorrectionOf(i).coefficients == with_law.zCorrectionOf(k).coefficients;
   };
   EXPECT_TRUE(same(0, 2) && same(1, 3));
   EXPECT_FALSE(same(0, 1));
@@ -170,21 +169,23 @@ TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
 }
 
 TEST(ConstantRake, TheSameJobGivesTheSameBits) {
-  GrindJob again = withZLaw(steepJob());
-  const GrindJob once = again;
-  again.z_corrections[0].coefficients[2] += 1e-6;  // of a job that was computed before nothing is taken
-  again = withZLaw(again);
-  EXPECT_EQ(std::memcmp(&again.z_corrections[0], &once.z_corrections[0], sizeof(ZCorrection)), 0);
-  GrindJob published = again;
+  const ValidJob once = withZLaw(steepJob());
+  // Of a job that was computed before nothing is taken.
+  ZCorrection other = once.zCorrectionOf(0);
+  other.coefficients[2] += 1e-6;
+  const ValidJob again = withZLaw(once.withZCorrections({other}));
+  EXPECT_EQ(std::memcmp(&again.zCorrectionOf(0), &once.zCorrectionOf(0), sizeof(ZCorrection)), 0);
+  GrindJob published = steepJob();
   published.process.z_law = ZLaw::kPublished;
-  EXPECT_TRUE(withZLaw(published).z_corrections.empty());
+  EXPECT_EQ(withZLaw(published).zCorrectionOf(0).pieces, 0);
 }
 
 TEST(ConstantRake, ACylinderNeedsNoCorrection) {
   GrindJob job = jobFor({10, 0, 30, 8, 30, 1.6, 100, 3}).value();
   job.tooth_angles = {0, 3};
-  const GrindJob with_law = withZLaw(job);
-  for (const ZCorrection& c : with_law.z_corrections) {
+  const ValidJob with_law = withZLaw(job);
+  for (const int tooth : {0, 1}) {
+    const ZCorrection& c = with_law.zCorrectionOf(tooth);
     for (double x = -0.01; x < 0.04; x += 0.001) EXPECT_LT(std::abs(c.at(x).z), 1e-9);
   }
 }
@@ -197,9 +198,9 @@ TEST(ConstantRake, TheWheelIsThatOfTheJobsStart) {
 
 TEST(ConstantRake, EitherWayOfTheStrokeTheCorrectionIsTheSame) {
   GrindJob job = steepJob();
-  const GrindJob there = withZLaw(job);
+  const ValidJob there = withZLaw(job);
   job.process.direction = StrokeDirection::kToEnd;
-  EXPECT_EQ(withZLaw(job).z_corrections[0].coefficients, there.z_corrections[0].coefficients);
+  EXPECT_EQ(withZLaw(job).zCorrectionOf(0).coefficients, there.zCorrectionOf(0).coefficients);
 }
 
 TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
@@ -242,14 +243,14 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   const GrindJob job = steepJob();
   RunStrokes strokes(withZLaw(job));
   Axes actual = test_support::roomyMachine().park;
-  const JobPlan plan = planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, {},
-                               [&](const Setpoint& p) {
-                                 strokes.add(p, actual);
-                                 actual = p.position;
-                               });
+  const JobPlan plan =
+      planJob(withZLaw(job), test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
+        strokes.add(p, actual);
+        actual = p.position;
+      });
   strokes.finish();
   ASSERT_TRUE(plan.good()) << text(plan.reasons);
-  const GrindJob& with_law = plan.program->job();
+  const ValidJob& with_law = plan.program->job();
   const ConicalCutter cutter(job.cutter);
   SetpointStream stream(plan.program);
   Setpoint p;
@@ -257,7 +258,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   while (stream.next(p)) {
     if (p.step == StepKind::kNone) continue;
     const double x = p.position[kX];
-    const double z = cutter.z(x) + static_cast<double>(test_support::referenceCorrection(with_law.z_corrections[0], x));
+    const double z = cutter.z(x) + static_cast<double>(test_support::referenceCorrection(with_law.zCorrectionOf(0), x));
     EXPECT_NEAR(p.position[kZ], z, 1e-17);
     ++points;
   }

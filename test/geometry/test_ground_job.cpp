@@ -92,8 +92,8 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
 /// [m].
 /// @param angle of the point in the machine.
 double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, double x, double angle) {
-  const GrindJob& job = program.job();
-  const DepthLaw depth = depthLaw(job, job.process.deepest());
+  const GrindJob& job = *program.job();
+  const DepthLaw depth = program.job().depthLaw(job.process.deepest());
   const double y = wheel_x * (std::tan(job.cutter.cone_angle) + depth.taper) - depth.at_end;
   const double r = program.cutter().radius(x), swivel = job.process.setup_swivel;
   const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + y,

@@ -129,15 +129,15 @@ void expectMirrored(const GroundCutter& right, const GroundCutter& left) {
   }
 }
 
-std::vector<Setpoint> setpointsOf(const GrindJob& job, JobPlan& plan) {
+std::vector<Setpoint> setpointsOf(const ValidJob& job, JobPlan& plan) {
   const Machine machine = test_support::plainMachine();
   std::vector<Setpoint> setpoints;
-  plan = planJob(withZLaw(job), machine, machine.park, {}, [&](const Setpoint& s) { setpoints.push_back(s); });
+  plan = planJob(withZLaw(job), machine, machine.park, [&](const Setpoint& s) { setpoints.push_back(s); });
   return setpoints;
 }
 
 /// The same path with Z and A negated, the same verdict.
-void expectMirroredPlans(const GrindJob& right, const GrindJob& left) {
+void expectMirroredPlans(const ValidJob& right, const ValidJob& left) {
   JobPlan one, other;
   const std::vector<Setpoint> a = setpointsOf(right, one), b = setpointsOf(left, other);
   ASSERT_FALSE(a.empty());
@@ -185,9 +185,9 @@ TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
   for (const double lead : {0.0, 0.5e-3, -2e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
-    const GrindJob right = withZLaw(job), left = withZLaw(mirrored(job));
-    for (std::size_t i = 0; i < right.z_corrections[0].coefficients.size(); ++i) {
-      EXPECT_NEAR(left.z_corrections[0].coefficients[i], -right.z_corrections[0].coefficients[i], kRounding) << i;
+    const ValidJob right = withZLaw(job), left = withZLaw(mirrored(job));
+    for (std::size_t i = 0; i < right.zCorrectionOf(0).coefficients.size(); ++i) {
+      EXPECT_NEAR(left.zCorrectionOf(0).coefficients[i], -right.zCorrectionOf(0).coefficients[i], kRounding) << i;
     }
     expectMirrored(groundCutterOf(right), groundCutterOf(left));
     expectMirroredPlans(right, left);

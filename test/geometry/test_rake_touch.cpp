@@ -35,10 +35,10 @@ struct Ball {
   Eigen::Vector3d centre() const { return {x, from_axis * std::cos(angle), from_axis * std::sin(angle)}; }
 };
 
-double touch(const GrindJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
+double touch(const ValidJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
 
 /// Why a ball is refused.
-std::optional<Reason> refusal(const GrindJob& job, const Ball& ball) {
+std::optional<Reason> refusal(const ValidJob& job, const Ball& ball) {
   try {
     touch(job, ball);
     return std::nullopt;
@@ -64,8 +64,8 @@ GrindJob straight(CutDirection cut) {
 /// places of the stroke. Shares no code with the sweep but the wheel's profile and the correction of Z.
 class Groove {
  public:
-  explicit Groove(const GrindJob& job)
-      : job_(job), wheel_(wheelOf(job).worn(job.process.wheel_wear)), z_correction_(zCorrectionOf(job, 0)) {}
+  explicit Groove(const ValidJob& job)
+      : job_(job), wheel_(wheelOf(*job).worn(job->process.wheel_wear)), z_correction_(job.zCorrectionOf(0)) {}
 
   /// The minimum depth in the wheel's way of the ball's points within the blank, while A is as given; negative if the
   /// ball is in the cutter [m].
@@ -88,7 +88,7 @@ class Groove {
     return best;
   }
 
-  double radius(double x) const { return job_.cutter.end_diameter / 2 + x * std::tan(job_.cutter.cone_angle); }
+  double radius(double x) const { return job_->cutter.end_diameter / 2 + x * std::tan(job_->cutter.cone_angle); }
 
  private:
   double roomAt(const Ball& ball, double a, double up, double around) const {
@@ -103,8 +103,8 @@ class Groove {
 
   /// How deep a point of the cutter comes to lie in the wheel along the stroke.
   double depthInWay(double x, double from_axis, double angle) const {
-    const GrindProcess& p = job_.process;
-    const double step = (job_.cutter.flute_length + p.overtravel_shank + p.overtravel_end) / kPlaces;
+    const GrindProcess& p = job_->process;
+    const double step = (job_->cutter.flute_length + p.overtravel_shank + p.overtravel_end) / kPlaces;
     const auto depth = [&](double i) { return depthAt(x, from_axis, angle, i * step - p.overtravel_end); };
     double best = -std::numeric_limits<double>::infinity(), best_at = 0;
     for (int i = 0; i <= kPlaces; ++i) {
@@ -123,8 +123,8 @@ class Groove {
   }
 
   double depthAt(double x, double from_axis, double angle, double s) const {
-    const GrindProcess& p = job_.process;
-    const CutterGeometry& c = job_.cutter;
+    const GrindProcess& p = job_->process;
+    const CutterGeometry& c = job_->cutter;
     const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
     const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
     const double along = s - p.setup_lead;
@@ -143,15 +143,15 @@ class Groove {
   }
 
   static constexpr int kPlaces = 120;
-  const GrindJob& job_;
+  const ValidJob job_;
   WheelProfile wheel_;
   ZCorrection z_correction_;
 };
 
 /// Expects that the ball is free a little before A, and in the cutter a little beyond.
-void expectTouch(const GrindJob& job, const Ball& ball, double a, int rows = 16) {
+void expectTouch(const ValidJob& job, const Ball& ball, double a, int rows = 16) {
   const Groove groove(job);
-  const double side = job.cutter.cut == CutDirection::kRightHand ? 1 : -1;
+  const double side = job->cutter.cut == CutDirection::kRightHand ? 1 : -1;
   EXPECT_GT(groove.room(ball, a - side * kNearly, rows), 0);
   EXPECT_LT(groove.room(ball, a + side * kNearly, rows), 0);
 }
@@ -241,10 +241,10 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
 }
 
 TEST(RakeTouch, FollowsTheLawOfZ) {
-  GrindJob job = jobOf("taper_d6_t6");
-  job.process.wheel_wear_per_pass = 0;
-  job.process.z_law = ZLaw::kConstantRake;
-  job = withZLaw(job);
+  GrindJob asked = jobOf("taper_d6_t6");
+  asked.process.wheel_wear_per_pass = 0;
+  asked.process.z_law = ZLaw::kConstantRake;
+  const ValidJob job = withZLaw(asked);
   const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
   expectTouch(job, ball, touch(job, ball));
 }

@@ -142,7 +142,7 @@ TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
     EXPECT_NEAR(one.rake.value(), other.rake.value(), 4e-5);
     EXPECT_EQ(one.complete, other.complete);
   }
-  EXPECT_TRUE(gougesOf(job, strokes, 1e-6).empty());
+  EXPECT_TRUE(gougesOf(strokes, 1e-6).empty());
 }
 
 // The wheel wears, errors of the axes are other in every move, and some are small enough for strokes to be left out.
@@ -203,7 +203,7 @@ TEST(RunStrokes, AStrokeIsLeftOutOnlyIfAnotherCoversIt) {
 }
 
 Gouge onlyGouge(const GrindJob& job, const Error& error) {
-  const std::vector<Gouge> gouges = gougesOf(job, runOf(job, error), 2e-6);
+  const std::vector<Gouge> gouges = gougesOf(runOf(job, error), 2e-6);
   EXPECT_EQ(gouges.size(), 1u);
   return gouges.empty() ? Gouge{} : gouges.front();
 }
@@ -225,7 +225,7 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
 TEST(Gouges, AShallowerPassIsNone) {
   GrindJob job = readJobFile("jobs/left_hand_d8_t3.yaml");
   job.tooth_angles = {0};
-  EXPECT_TRUE(gougesOf(job, runOf(job, kExact), 1e-6).empty());
+  EXPECT_TRUE(gougesOf(runOf(job, kExact), 1e-6).empty());
   EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);
 }
 
@@ -255,8 +255,7 @@ TEST(Gouges, OfInfeedAndRetractAreFound) {
 TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
   const GrindJob job = straight();
   // Y hangs after the third pass; A turns by a quarter meanwhile.
-  const std::vector<Gouge> gouges = gougesOf(job,
-                                             runOf(job,
+  const std::vector<Gouge> gouges = gougesOf(runOf(job,
                                                    [&](const Setpoint& p) {
                                                      Axes off = Axes::Zero();
                                                      if (p.pass == 2 && p.move == MoveKind::kRetract) {

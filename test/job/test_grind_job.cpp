@@ -1,4 +1,4 @@
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include "motion/generators.h"
 
@@ -275,9 +275,11 @@ INSTANTIATE_TEST_SUITE_P(ByHand, PassDepths,
                          [](const auto& info) { return std::string(info.param.name); });
 
 /// The passes as "tooth/pass".
-std::vector<std::string> orderOf(const GrindJob& job) {
+std::vector<std::string> orderOf(const ValidJob& job) {
   std::vector<std::string> order;
-  for (const ToothPass& p : passOrder(job)) order.push_back(std::to_string(p.tooth) + "/" + std::to_string(p.pass));
+  for (const JobPass& pass : job.passes()) {
+    order.push_back(std::to_string(pass.place.tooth) + "/" + std::to_string(pass.place.pass));
+  }
   return order;
 }
 
@@ -289,6 +291,39 @@ TEST(PassOrder, IsThatOfTeethOrOfPasses) {
   EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "0/1", "1/0", "1/1", "2/0", "2/1"}));
   job.process.order = GrindOrder::kPassMajor;
   EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
+}
+
+TEST(ValidJob, RefusesAnInvalidJobWithAllReasons) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = -1;
+  job.process.feed = std::numeric_limits<double>::quiet_NaN();
+  try {
+    const ValidJob valid(job);
+    FAIL();
+  } catch (const InvalidJob& invalid) {
+    ASSERT_EQ(invalid.reasons().size(), 2u);
+    EXPECT_EQ(invalid.reasons()[0].field, "cutter.end_diameter");
+    EXPECT_EQ(invalid.reasons()[1].field, "process.feed");
+    EXPECT_STREQ(invalid.what(), text(invalid.reasons()).c_str());
+  }
+}
+
+TEST(ValidJob, HasThePlaceDepthAndWearOfEveryPassInOrder) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 3};
+  job.process.depth = 1.5e-3;
+  job.process.infeed = 1e-3;
+  job.process.wheel_wear = 0.25e-3;
+  job.process.wheel_wear_per_pass = 1e-6;
+  job.process.order = GrindOrder::kPassMajor;
+  const ValidJob valid = ValidJob(job);
+  ASSERT_EQ(valid.passes().size(), 4u);
+  for (const int i : {0, 1, 2, 3}) {
+    const JobPass& pass = valid.passes()[static_cast<std::size_t>(i)];
+    EXPECT_TRUE((pass.place == ToothPass{i % 2, i / 2})) << i;
+    EXPECT_EQ(pass.depth, i < 2 ? 1e-3 : 1.5e-3);
+    EXPECT_NEAR(pass.wear, 0.25e-3 + i * 1e-6, 1e-18);
+  }
 }
 
 TEST(ShankCut, IsByHowMuchTheShankStandsOut) {

@@ -190,7 +190,7 @@ TEST(JobFile, ReadsASpiralAnglePerTooth) {
   const GrindJob job = parseJob(with("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]"), "job.yaml");
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
   ASSERT_EQ(job.spiral_angles.size(), 4u);
-  for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(cutterOf(job, i).spiral_angle, (i - 45) * kPi / 180);
+  for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(ValidJob(job).cutterOf(i).spiral_angle, (i - 45) * kPi / 180);
 }
 
 TEST(JobFile, ReadsAWheelOfPoints) {

@@ -98,7 +98,6 @@ void spoilChoices(Dice& dice, GrindJob& job) {
   if (dice.once(8)) job.process.order = static_cast<GrindOrder>(whole());
   if (dice.once(8)) job.process.direction = static_cast<StrokeDirection>(whole());
   if (dice.once(16)) job.process.z_law = static_cast<ZLaw>(whole());
-  if (dice.once(16)) job.z_corrections.resize(static_cast<std::size_t>(dice.below(3)));
   if (dice.once(4)) job.interpolation.even_step = static_cast<EvenStepRule>(whole());
   if (dice.once(16)) job.cutter.cut = static_cast<CutDirection>(whole());
   if (dice.once(16)) job.process.wheel_profile = static_cast<WheelShape>(whole());
@@ -202,7 +201,14 @@ struct Case {
   ToothPass first;
 
   JobPlan plan(const std::function<void(const Setpoint&)>& visit = {}) const {
-    return planJob(job, machine, start, first, visit);
+    try {
+      return planJob(job, machine, {start, first}, visit);
+    } catch (const InvalidJob& invalid) {
+      JobPlan refused;
+      refused.fault = PlanFault::kInvalidJob;
+      refused.reasons = invalid.reasons();
+      return refused;
+    }
   }
 };
 

@@ -86,9 +86,14 @@ bool answer(const flute_grinder::GrindGoal& goal) {
   expectSame(job, jobFromGoal(goalFromJob(job)));
   EXPECT_EQ(jobDigest(job), jobDigest(jobFromGoal(goalFromJob(job))));
   const Machine m = machine();
-  JobPlan plan = planJob(job, m, m.park, {goal.first_tooth, goal.first_pass});
+  JobPlan plan;
+  try {
+    plan = planJob(job, m, {m.park, {goal.first_tooth, goal.first_pass}});
+  } catch (const InvalidJob& invalid) {
+    plan.fault = PlanFault::kInvalidJob;
+    plan.reasons = invalid.reasons();
+  }
   EXPECT_EQ(plan.good(), plan.reasons.empty());
-  EXPECT_TRUE(validate(job).empty() || plan.fault == PlanFault::kInvalidJob);
   const flute_grinder::PathStatistics message = toMessage(plan.statistics);
   EXPECT_EQ(fromMessage(message).setpoints, plan.statistics.setpoints);
   for (const Reason& reason : plan.reasons) EXPECT_GT(text(reason).size(), 10u);
@@ -101,14 +106,9 @@ TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
   flute_grinder::GrindGoal goal = goodGoal();
   const std::string published = jobDigest(jobFromGoal(goal));
   goal.process.z_law = flute_grinder::Process::CONSTANT_RAKE;
-  GrindJob job = jobFromGoal(goal);
+  const GrindJob job = jobFromGoal(goal);
   EXPECT_EQ(job.process.z_law, ZLaw::kConstantRake);
-  const std::string digest = jobDigest(job);
-  EXPECT_NE(digest, published);
-  // What is computed for it is not part of what is asked.
-  job.z_corrections.resize(1);
-  job.z_corrections[0].pieces = 3;
-  EXPECT_EQ(jobDigest(job), digest);
+  EXPECT_NE(jobDigest(job), published);
   goal.process.z_law = 2;
   EXPECT_EQ(validate(jobFromGoal(goal)).at(0).field, "process.z_law");
 }

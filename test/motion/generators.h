@@ -90,8 +90,14 @@ struct Work {
   GrindJob job;
   Machine machine;
   Axes start = Axes::Zero();
+  ZCorrection z_correction{};  ///< of all teeth, for kConstantRake
 
-  GrindProgram program() const { return GrindProgram(job, machine, start); }
+  ValidJob valid() const {
+    const ValidJob valid(job);
+    if (job.process.z_law == ZLaw::kPublished) return valid;
+    return valid.withZCorrections(std::vector<ZCorrection>(job.tooth_angles.size(), z_correction));
+  }
+  GrindProgram program() const { return GrindProgram(valid(), machine, start); }
 };
 
 /// Work whose stroke takes at most `cycles` control cycles, or not many more.
@@ -133,8 +139,9 @@ inline rc::Gen<Work> correctedWork(double cycles) {
   return rc::gen::exec([=] {
     Work w = *toothedWork(cycles);
     w.job.process.z_law = ZLaw::kConstantRake;
-    w.job.z_corrections.assign(w.job.tooth_angles.size(), *zCorrection(w.job));
-    const ZCorrection::Bounds bend = w.job.z_corrections[0].bounds();
+    RC_PRE(validate(w.job).empty());
+    w.z_correction = *zCorrection(w.job);
+    const ZCorrection::Bounds bend = w.z_correction.bounds();
     const double speed = w.job.process.feed / edgePerTravel(w.job.cutter);
     const auto keep = [&](double& limit, double taken, double min) {
       limit = std::clamp(taken / *uniform(0.1, 1), min, limit);
@@ -146,7 +153,7 @@ inline rc::Gen<Work> correctedWork(double cycles) {
                                       w.job.process.feed,
                                       w.job.interpolation.tolerance,
                                       0,
-                                      w.job.z_corrections[0],
+                                      w.z_correction,
                                       w.job.process.setup_lead};
     // A much bent one may be too slow for a test, or for a job.
     const FeedSchedule schedule(ConicalCutter(w.job.cutter), stroke, w.machine);

@@ -237,7 +237,7 @@ inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& wor
     }
     RC_ASSERT(direction * (to - x) >= -rounding[kX]);
     RC_ASSERT(std::abs(p.position[kY] - (x * growth - work.job.process.depth)) <= 2 * rounding[kY]);
-    const Real correction = referenceCorrection(zCorrectionOf(work.job, p.tooth), x);
+    const Real correction = referenceCorrection(work.z_correction, x);
     RC_ASSERT(std::abs(p.position[kZ] - (x * growth * z_per_y + correction)) <= 2 * rounding[kZ] + 1e-18);
     const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
     if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);

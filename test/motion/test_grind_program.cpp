@@ -24,7 +24,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 GrindProgram programOf(const GrindJob& job, const ToothPass& first = {}) {
-  return GrindProgram(job, plainMachine(), plainMachine().park, first);
+  return GrindProgram(job, plainMachine(), {plainMachine().park, first});
 }
 
 std::vector<MoveKind> kindsOf(const GrindProgram& program) {

@@ -19,7 +19,7 @@ namespace test_plan_shapes {
 using namespace test_support;
 
 JobPlan planOfAllSetpoints(const Work& work, const ToothPass& first = {}) {
-  return planJob(work.job, work.machine, work.start, first, [](const Setpoint&) {});
+  return planJob(work.valid(), work.machine, {work.start, first}, [](const Setpoint&) {});
 }
 
 /// Some teeth in some passes, in a stroke of some hundred cycles.
@@ -39,9 +39,10 @@ rc::Gen<Work> wholeTool() {
     j.process.finish_infeed = *whole(0, 1) * j.process.depth * 0.1;
     j.process.wheel_wear_per_pass = *whole(0, 1) * 1e-6;
     if (*whole(0, 3) == 0) j.process.depth_end = j.process.depth * *uniform(0.6, 1.2);
+    RC_PRE(validate(j).empty());
     if (*whole(0, 3) == 0) {
       j.process.z_law = ZLaw::kConstantRake;
-      j.z_corrections.assign(j.tooth_angles.size(), *zCorrection(j));
+      w.z_correction = *zCorrection(j);
     }
     return w;
   });
@@ -88,7 +89,7 @@ RC_GTEST_PROP(PlanShapes, GiveWhatAllSetpointsGive, ()) {
   const Work work = *wholeTool();
   const JobPlan all = planOfAllSetpoints(work);
   RC_CLASSIFY(all.good());
-  requireSame(planJob(work.job, work.machine, work.start), all);
+  requireSame(planJob(work.valid(), work.machine, work.start), all);
 }
 
 /// One limit is moved to somewhere about what the job asks for: a little less, a little more, or just that.
@@ -99,7 +100,7 @@ RC_GTEST_PROP(PlanShapes, AreRefusedAsAllSetpointsAre, ()) {
   const int axis = *whole(0, kAxisCount - 1);
   const double factor = *rc::gen::element(0.7, 0.999, 1.0, 1.001);
   Axes lowest = work.start, highest = work.start;
-  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) {
+  planJob(work.valid(), work.machine, work.start, [&](const Setpoint& p) {
     lowest = lowest.min(p.position);
     highest = highest.max(p.position);
   });
@@ -112,20 +113,20 @@ RC_GTEST_PROP(PlanShapes, AreRefusedAsAllSetpointsAre, ()) {
   RC_PRE((work.machine.limits.min_position < work.machine.limits.max_position).all());
   const JobPlan all = planOfAllSetpoints(work);
   RC_CLASSIFY(all.good());
-  requireSame(planJob(work.job, work.machine, work.start), all);
+  requireSame(planJob(work.valid(), work.machine, work.start), all);
 }
 
 RC_GTEST_PROP(PlanShapes, BeginWithAnyPass, ()) {
   const Work work = *wholeTool();
-  const std::vector<ToothPass> order = passOrder(work.job);
-  const ToothPass first = order[static_cast<std::size_t>(*whole(0, static_cast<int>(order.size()) - 1))];
-  requireSame(planJob(work.job, work.machine, work.start, first), planOfAllSetpoints(work, first));
+  const std::vector<JobPass> passes = work.valid().passes();
+  const ToothPass first = passes[static_cast<std::size_t>(*whole(0, static_cast<int>(passes.size()) - 1))].place;
+  requireSame(planJob(work.valid(), work.machine, {work.start, first}), planOfAllSetpoints(work, first));
 }
 
 /// How often a planner asks its watch, which it does after every so many setpoints.
 int looksAt(const Work& work, const std::function<void(const Setpoint&)>& visit) {
   int looks = 0;
-  planJob(work.job, work.machine, work.start, {}, visit, [&](double) { return ++looks > 0; });
+  planJob(work.valid(), work.machine, work.start, visit, [&](double) { return ++looks > 0; });
   return looks;
 }
 
@@ -140,7 +141,7 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
     work.job.process.spark_out = 20;
     const JobPlan all = planOfAllSetpoints(work);
     ASSERT_TRUE(all.good()) << textOf(all);
-    requireSame(planJob(work.job, work.machine, work.start), all);
+    requireSame(planJob(work.valid(), work.machine, work.start), all);
     EXPECT_LE(looksAt(work, {}) * 10, looksAt(work, [](const Setpoint&) {}));
   }
 }
@@ -154,7 +155,7 @@ TEST_P(PlanShapesGivenUp, Are) {
   work.start[kX] = work.machine.limits.min_position[kX] = GetParam();
   work.machine.max_job_duration = 1e9;
   int looks = 0;
-  const JobPlan plan = planJob(work.job, work.machine, work.start, {}, {}, [&](double) { return ++looks < 2; });
+  const JobPlan plan = planJob(work.valid(), work.machine, work.start, {}, [&](double) { return ++looks < 2; });
   EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
   EXPECT_EQ(looks, 2);
   EXPECT_EQ(textOf(plan), "given up while it was planned\n");

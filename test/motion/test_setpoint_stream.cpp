@@ -1,7 +1,5 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
-#include "flute_grinder/motion/limit_check.h"
-
 #include "stream_checks.h"
 
 #include <gtest/gtest.h>
@@ -216,28 +214,6 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
-}
-
-// planJob() refuses every program that comes to this: a tooth that is nowhere.
-TEST(SetpointStream, ThatCannotGoOnGivesWhatEveryCheckRefuses) {
-  GrindJob job = paperJob();
-  job.tooth_angles = {std::numeric_limits<double>::quiet_NaN()};
-  const Machine machine = plainMachine();
-  SetpointStream stream(GrindProgram(job, machine, machine.park));
-  LimitCheck check(machine.limits, machine.period);
-  Setpoint p;
-  ASSERT_TRUE(stream.next(p));
-  EXPECT_FALSE(check.check(p));
-  for (int i = 0; i < 100; ++i) {
-    ASSERT_TRUE(stream.next(p));
-    stream.hold();
-    stream.retract();
-    stream.resume();
-    const auto violation = check.check(p);
-    ASSERT_TRUE(violation);
-    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
-    ASSERT_FALSE(stream.finished());
-  }
 }
 
 TEST(SetpointStream, SharesItsProgram) {

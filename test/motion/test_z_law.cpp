@@ -16,9 +16,10 @@ namespace test_z_law {
 using namespace test_support;
 
 /// By the paper and the recursion of de Boor. [m]
-double zOf(const GrindJob& job, double x) {
-  const Real slope = std::tan(Real(job.cutter.cone_angle)) * zPerY(job.cutter);
-  return static_cast<double>(x * slope + referenceCorrection(job.z_corrections.at(0), x));
+double zOf(const Work& work, double x) {
+  const CutterGeometry& cutter = work.job.cutter;
+  const Real slope = std::tan(Real(cutter.cone_angle)) * zPerY(cutter);
+  return static_cast<double>(x * slope + referenceCorrection(work.z_correction, x));
 }
 
 double maxCoefficient(const ZCorrection& c) {
@@ -27,10 +28,14 @@ double maxCoefficient(const ZCorrection& c) {
   return max;
 }
 
-/// The paper's job with a bow of Z, in coefficients of `height`.
-GrindJob bentJob(double height) {
+GrindJob constantRakeJob() {
   GrindJob job = paperJob();
   job.process.z_law = ZLaw::kConstantRake;
+  return job;
+}
+
+/// The paper's job with a bow of Z, in coefficients of `height`.
+ValidJob bentJob(double height) {
   ZCorrection c;
   c.from = -1e-3;
   c.pieces = 8;
@@ -38,8 +43,7 @@ GrindJob bentJob(double height) {
   for (int i = 0; i < c.coefficientCount(); ++i) {
     c.coefficients[static_cast<std::size_t>(i)] = height * std::cos(0.7 * i);
   }
-  job.z_corrections = {c};
-  return job;
+  return ValidJob(constantRakeJob()).withZCorrections({c});
 }
 
 RC_GTEST_PROP(ZCorrectionProperty, IsTheSplineOfItsCoefficients, ()) {
@@ -78,8 +82,8 @@ RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrection, ()) {
     const bool to_end = move.kind == MoveKind::kStroke || move.kind == MoveKind::kRetract;
     if (!to_end && move.kind != MoveKind::kPosition && move.kind != MoveKind::kInfeed) continue;
     const double x = to_end ? program.strokeTo() : program.strokeFrom();
-    const double rounding = 1e-14 * maxCoefficient(work.job.z_corrections[0]) + roundingOf(setpoints)[kZ];
-    RC_ASSERT(std::abs(move.to[kZ] - zOf(work.job, x)) <= rounding);
+    const double rounding = 1e-14 * maxCoefficient(work.z_correction) + roundingOf(setpoints)[kZ];
+    RC_ASSERT(std::abs(move.to[kZ] - zOf(work, x)) <= rounding);
   }
 }
 
@@ -109,26 +113,23 @@ RC_GTEST_PROP(ZLawProperty, AfterARetractItIsTheSameCurveWithinTheLimits, ()) {
     const Setpoint &p = ride.given[i].p, &before = ride.given[i - 1].p;
     if (p.step == StepKind::kNone || before.step != StepKind::kNone || ride.given[i - 1].on_path) continue;
     const double rounding = 4 * roundingOf(ride.setpoints())[kZ];
-    RC_ASSERT(std::abs(before.position[kZ] - zOf(work.job, before.position[kX])) <= rounding);
+    RC_ASSERT(std::abs(before.position[kZ] - zOf(work, before.position[kX])) <= rounding);
   }
 }
 
 RC_GTEST_PROP(ZLawProperty, ThePlanSeesTheStreamsBits, ()) {
   const Work work = *correctedWork(kCycles / 3);
   std::vector<Setpoint> planned;
-  planJob(work.job, work.machine, work.start, {}, [&](const Setpoint& p) { planned.push_back(p); });
-  RC_PRE(!planned.empty());  // the numbers of some are not allowed
+  planJob(work.valid(), work.machine, work.start, [&](const Setpoint& p) { planned.push_back(p); });
+  RC_PRE(!planned.empty());  // some are refused
   const auto streamed = all(work);
   RC_ASSERT(planned.size() == streamed.size());
   for (std::size_t i = 0; i < planned.size(); ++i) RC_ASSERT((planned[i].position == streamed[i].position).all());
 }
 
 TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {
-  GrindJob job = paperJob();
-  job.process.z_law = ZLaw::kConstantRake;
-  job.z_corrections = {ZCorrection{}};
   const auto expected = all({paperJob(), plainMachine(), plainMachine().park});
-  const auto setpoints = all({job, plainMachine(), plainMachine().park});
+  const auto setpoints = all({constantRakeJob(), plainMachine(), plainMachine().park});
   ASSERT_EQ(setpoints.size(), expected.size());
   for (std::size_t i = 0; i < setpoints.size(); ++i) {
     EXPECT_TRUE((setpoints[i].position == expected[i].position).all()) << i;
@@ -136,17 +137,14 @@ TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {
 }
 
 TEST(ZLaw, AJobWithoutItsCorrectionsIsRefused) {
-  GrindJob job = bentJob(1e-5);
-  job.z_corrections.clear();
+  const ValidJob job = constantRakeJob();
   EXPECT_THROW(GrindProgram(job, plainMachine(), plainMachine().park), std::invalid_argument);
   const JobPlan plan = planJob(job, plainMachine(), plainMachine().park);
   EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
   ASSERT_EQ(plan.reasons.size(), 1u);
   EXPECT_NE(plan.reasons[0].detail.find("withZLaw()"), std::string::npos);
-  // And no correction is taken that was not asked for.
-  GrindJob published = bentJob(1e-3);
-  published.process.z_law = ZLaw::kPublished;
-  EXPECT_EQ(zCorrectionOf(published, 0).pieces, 0);
+  EXPECT_EQ(ValidJob(paperJob()).zCorrectionOf(0).pieces, 0);
+  EXPECT_THROW(job.withZCorrections(std::vector<ZCorrection>(2)), std::invalid_argument);
 }
 
 TEST(ZLaw, ASlightBowCostsNoFeed) {

@@ -70,27 +70,28 @@ class JobThreads : public ::testing::Test {
     auto control = std::make_shared<PlanControl>();
     ASSERT_TRUE(gate_.open(id(number), [control] { control->give_up = true; }));
     newest_ = number;
-    std::promise<std::unique_ptr<Preview>> promise;
+    std::promise<std::shared_ptr<const PlannedJob>> promise;
     auto answer = promise.get_future();
-    Planner::Request request{JobWithDigest(job_)};
-    request.start = Eigen::Map<const Axes>(before.command.data());
+    Planner::Request request{job_};
+    request.run.at = Eigen::Map<const Axes>(before.command.data());
     request.for_goal = true;
     request.control = control;
-    request.done = [&](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+    request.done = [&](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
     ASSERT_TRUE(planner_.submit(std::move(request)));
     ASSERT_EQ(answer.wait_for(kPatience), std::future_status::ready);
-    const std::unique_ptr<Preview> preview = answer.get();
-    start(number, *preview, before.jobs_started);
+    const std::shared_ptr<const PlannedJob> plan = answer.get();
+    start(number, *plan, before.jobs_started);
     gate_.close();
   }
 
-  void start(int number, const Preview& preview, std::uint64_t jobs_before) {
-    if (!preview.plan->good()) {
+  void start(int number, const PlannedJob& plan, std::uint64_t jobs_before) {
+    if (!plan.good()) {
       EXPECT_TRUE(gate_.canceled());
       return;
     }
+    SetpointStream stream(plan.program);
     const bool started = gate_.start([&](bool held) {
-      ASSERT_TRUE(loop_->startJob(preview.stream.get()));
+      ASSERT_TRUE(loop_->startJob(&stream));
       if (held) loop_->postStop(E::kHold);
     });
     if (!started) {
@@ -153,10 +154,10 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     // As the plan service does; a goal goes first.
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     std::promise<void> done;
-    Planner::Request request{JobWithDigest(job_)};
-    request.start = machineConfig().machine.park;
+    Planner::Request request{job_};
+    request.run.at = machineConfig().machine.park;
     request.control = std::make_shared<PlanControl>();
-    request.done = [&](const std::unique_ptr<Preview>&) { done.set_value(); };
+    request.done = [&](const std::shared_ptr<const PlannedJob>&) { done.set_value(); };
     if (planner_.submit(std::move(request))) done.get_future().wait();
   });
   spawn(4, [this](std::mt19937& random) {

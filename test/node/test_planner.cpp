@@ -37,41 +37,42 @@ GrindJob endless() {
   return job;
 }
 
-JobWithDigest changed(const std::function<void(GrindProcess&)>& change) {
+GrindJob changed(const std::function<void(GrindProcess&)>& change) {
   GrindJob job = paper();
   change(job.process);
-  return JobWithDigest(job);
+  return job;
 }
 
 /// A request with its outcome.
 struct Asked {
-  explicit Asked(const GrindJob& job) : request{JobWithDigest(job)} {
-    request.start = machine().park;
+  explicit Asked(const GrindJob& job) : request{job} {
+    request.run.at = machine().park;
     request.control = std::make_shared<PlanControl>();
-    request.done = [this](std::unique_ptr<Preview> preview) { promise.set_value(std::move(preview)); };
+    request.done = [this](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
   }
-  std::unique_ptr<Preview> wait() {
+  std::shared_ptr<const PlannedJob> wait() {
     if (answer.wait_for(kPatience) != std::future_status::ready) throw std::runtime_error("no plan");
     return answer.get();
   }
   bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
   Planner::Request request;
-  std::promise<std::unique_ptr<Preview>> promise;
-  std::future<std::unique_ptr<Preview>> answer = promise.get_future();
+  std::promise<std::shared_ptr<const PlannedJob>> promise;
+  std::future<std::shared_ptr<const PlannedJob>> answer = promise.get_future();
 };
 
 TEST(Planner, PlansWhatPlanJobPlans) {
   Planner planner(machine(), kShapes);
   Asked asked(paper());
   ASSERT_TRUE(planner.submit(asked.request));
-  const auto preview = asked.wait();
-  ASSERT_TRUE(preview->plan->good());
+  const auto plan = asked.wait();
+  ASSERT_TRUE(plan->good());
   const JobPlan expected = planJob(paper(), machine(), machine().park);
-  EXPECT_EQ(preview->plan->statistics.setpoints, expected.statistics.setpoints);
-  EXPECT_EQ(preview->plan->move_ends, expected.move_ends);
+  EXPECT_EQ(plan->statistics.setpoints, expected.statistics.setpoints);
+  EXPECT_EQ(plan->move_ends, expected.move_ends);
   std::uint64_t streamed = 0;
-  for (Setpoint p; preview->stream->next(p);) ++streamed;
+  SetpointStream stream(plan->program);
+  for (Setpoint p; stream.next(p);) ++streamed;
   EXPECT_EQ(streamed, expected.statistics.setpoints);
 }
 
@@ -81,10 +82,9 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
     Asked asked(paper());
     change(asked.request);
     EXPECT_TRUE(planner.submit(asked.request));
-    const auto preview = asked.wait();
-    EXPECT_TRUE(preview->plan->good());
-    EXPECT_TRUE(preview->stream && !preview->stream->finished());
-    return preview->plan->program;
+    const auto plan = asked.wait();
+    EXPECT_TRUE(plan->good());
+    return plan->program;
   };
   const auto unchanged = [](Planner::Request&) {};
   const auto program = programOf(unchanged);
@@ -92,15 +92,15 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
   const std::vector<std::function<void(Planner::Request&)>> changes{
       [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.feed *= 0.9; }); },
       [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.spark_out = 1; }); },
-      [](Planner::Request& r) { r.start[kX] += 1e-9; },
-      [](Planner::Request& r) { r.offset[kA] += 1e-9; },
+      [](Planner::Request& r) { r.run.at[kX] += 1e-9; },
+      [](Planner::Request& r) { r.run.offset[kA] += 1e-9; },
   };
   for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
-  const JobWithDigest two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
+  const GrindJob two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
   const auto withFirstPass = [&](int pass) {
     return programOf([&](Planner::Request& r) {
       r.job = two_passes;
-      r.first = {0, pass};
+      r.run.first = {0, pass};
     });
   };
   EXPECT_NE(withFirstPass(1), withFirstPass(0));
@@ -112,12 +112,13 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   job.process.z_law = ZLaw::kConstantRake;
   Asked asked(job);
   ASSERT_TRUE(planner.submit(asked.request));
-  const auto preview = asked.wait();
-  ASSERT_TRUE(preview->plan->good()) << text(preview->plan->reasons);
+  const auto plan = asked.wait();
+  ASSERT_TRUE(plan->good()) << text(plan->reasons);
   std::vector<Axes> expected;
-  planJob(withZLaw(job), machine(), machine().park, {}, [&](const Setpoint& p) { expected.push_back(p.position); });
+  planJob(withZLaw(job), machine(), machine().park, [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
-  for (Setpoint p; preview->stream->next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;
+  SetpointStream stream(plan->program);
+  for (Setpoint p; stream.next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;
   EXPECT_EQ(i, expected.size());
 }
 
@@ -128,22 +129,20 @@ TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
   Asked asked(job);
   asked.request.control->give_up = true;
   ASSERT_TRUE(planner.submit(asked.request));
-  const auto preview = asked.wait();
-  EXPECT_EQ(preview->plan->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(preview->plan->program, nullptr);
+  const auto plan = asked.wait();
+  EXPECT_EQ(plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(plan->program, nullptr);
 }
 
 TEST(Planner, ReportsWhyAJobCannotBeGround) {
   Planner planner(machine(), kShapes);
-  GrindJob job = paper();
-  job.process.feed = -1;
-  Asked asked(job);
+  Asked asked(paper());
+  asked.request.run.first = {0, 1};
   ASSERT_TRUE(planner.submit(asked.request));
-  const auto preview = asked.wait();
-  EXPECT_EQ(preview->plan->fault, PlanFault::kInvalidJob);
-  ASSERT_EQ(preview->plan->reasons.size(), 1U);
-  EXPECT_NE(text(preview->plan->reasons[0]).find("process.feed"), std::string::npos);
-  EXPECT_FALSE(preview->stream);
+  const auto plan = asked.wait();
+  EXPECT_EQ(plan->fault, PlanFault::kInvalidJob);
+  ASSERT_EQ(plan->reasons.size(), 1U);
+  EXPECT_NE(text(plan->reasons[0]).find("first_pass = 1; allowed: 0 to 0"), std::string::npos);
 }
 
 TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
@@ -156,9 +155,9 @@ TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
   EXPECT_FALSE(planner.submit(second.request));
   EXPECT_FALSE(first.isDone());
   first.request.control->give_up = true;
-  EXPECT_EQ(first.wait()->plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(first.wait()->fault, PlanFault::kGivenUp);
   ASSERT_TRUE(planner.submit(third.request)) << "who has the answer may ask for the next";
-  EXPECT_TRUE(third.wait()->plan->good());
+  EXPECT_TRUE(third.wait()->good());
   EXPECT_FALSE(second.isDone());
 }
 
@@ -171,17 +170,17 @@ TEST(Planner, AGoalGoesFirst) {
   EXPECT_FALSE(planner.submit(other_goal.request));
   EXPECT_FALSE(planner.submit(late.request));
   const auto given_up = plan.wait();
-  ASSERT_EQ(given_up->plan->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(text(given_up->plan->reasons), "given up: a goal came first; plan again after it");
+  ASSERT_EQ(given_up->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(text(given_up->reasons), "given up: a goal came first; plan again after it");
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
   EXPECT_GT(goal.request.control->done, 0);
   EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
   EXPECT_FALSE(planner.submit(late.request));
   goal.request.control->give_up = true;
-  EXPECT_EQ(text(goal.wait()->plan->reasons).find("a goal came first"), std::string::npos);
+  EXPECT_EQ(text(goal.wait()->reasons).find("a goal came first"), std::string::npos);
   ASSERT_TRUE(planner.submit(next.request));
-  EXPECT_TRUE(next.wait()->plan->good());
+  EXPECT_TRUE(next.wait()->good());
 }
 
 TEST(Planner, ItsEndGivesUpTheGoalThatWaitsToo) {
@@ -200,7 +199,7 @@ TEST(Planner, ItsEndGivesUpAndAnswers) {
   ASSERT_TRUE(planner.submit(asked.request));
   planner.end();
   ASSERT_TRUE(asked.isDone());
-  EXPECT_FALSE(asked.wait()->plan->good());
+  EXPECT_FALSE(asked.wait()->good());
   EXPECT_FALSE(planner.submit(late.request));
 }
 

@@ -46,7 +46,7 @@ class ProgressTrackerTest : public ::testing::Test {
   }
 
   void begin(const GrindProgram& program, const std::string& digest) {
-    tracker_.begin(program, digest, digest + ".yaml", kFirst, ++status_.jobs_started);
+    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started);
     status_.strokes_ended_at = 0;
     status_.place = {};
   }
@@ -100,7 +100,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
-  tracker_.begin(one, "short", "short.yaml", kFirst, status_.jobs_started + 1);
+  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1);
   tracker_.update(status_);
   const Progress entered = onDisk();
   EXPECT_EQ(entered.job_digest, "short");
@@ -114,7 +114,7 @@ TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   endStroke(two, 0);
   tracker_.end(status_, "canceled");
   const Progress before = onDisk();
-  tracker_.begin(two, "refused", "refused.yaml", kFirst, status_.jobs_started + 1);
+  tracker_.begin(two, "refused", "refused.yaml", status_.jobs_started + 1);
   EXPECT_EQ(onDisk().job_digest, "refused");
   tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);
@@ -148,14 +148,14 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
 TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.process.infeed = job.process.depth / 2;
-  Machine machine = test_support::machineConfig().machine;
-  machine.work_offset << 0.1, 0.03, 0, 0.5;
-  const GrindProgram two(job, machine, machine.park - machine.work_offset);
+  const Machine machine = test_support::machineConfig().machine;
+  const Axes offset(0.1, 0.03, 0, 0.5);
+  const GrindProgram two(job, machine, {machine.park, {}, offset});
   begin(two, "job");
-  EXPECT_TRUE((onDisk().offset == machine.work_offset).all());
+  EXPECT_TRUE((onDisk().offset == offset).all());
   endStroke(two, 0);
   tracker_.end(status_, "canceled");
-  EXPECT_EQ(tracker_.offsetRefusal("job", machine.work_offset), "");
+  EXPECT_EQ(tracker_.offsetRefusal("job", offset), "");
   EXPECT_EQ(tracker_.offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
   EXPECT_EQ(tracker_.offsetRefusal("job", {0.1, 0.03125, 0, 0}),
             "the job is not finished, and it began with other work offsets; that of axis Y was 30 mm and is 31.25 mm; "

@@ -25,7 +25,7 @@ Machine machine() {
 }
 
 PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const PlanWatch& watch = {}) {
-  return planWholeJob(JobWithDigest(job), on, MachineShapes(shippedUrdf()), on.park, {}, {}, watch);
+  return planWholeJob(job, on, MachineShapes(shippedUrdf()), on.park, {}, watch);
 }
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
@@ -41,25 +41,14 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   const PlannedJob whole = planned(job);
   ASSERT_TRUE(whole.good()) << text(whole.reasons);
   EXPECT_EQ(whole.digest, jobDigest(job));
-  const GrindJob with_law = withZLaw(job);
-  ASSERT_EQ(whole.program->job().z_corrections.size(), 1u);
-  EXPECT_EQ(whole.program->job().z_corrections[0].coefficients, with_law.z_corrections[0].coefficients);
+  const ValidJob with_law = withZLaw(job);
+  EXPECT_EQ(whole.program->job().zCorrectionOf(0).coefficients, with_law.zCorrectionOf(0).coefficients);
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
   EXPECT_EQ(whole.complete->to, job.cutter.flute_length);
   EXPECT_EQ(whole.figures.rake.to, checkGroundCutter(with_law).figures.rake.to);
   const auto closest = checkCollision(*whole.program, MachineShapes(shippedUrdf())).closest;
   EXPECT_EQ(whole.closest->distance, closest->distance);
   EXPECT_EQ(whole.closest->leg, closest->leg);
-}
-
-TEST(PlannedJob, AnInvalidJobIsRefusedByItsNumbersAlone) {
-  GrindJob job = withConstantRake();
-  job.process.depth = 0;
-  const PlannedJob whole = planned(job);
-  EXPECT_EQ(whole.fault, PlanFault::kInvalidJob);
-  EXPECT_EQ(whole.reasons.at(0).field, "process.depth");
-  EXPECT_EQ(whole.digest, jobDigest(job));
-  EXPECT_FALSE(whole.complete || whole.closest);
 }
 
 TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {

@@ -82,19 +82,17 @@ class JobRecordTest : public ::testing::Test {
     return cycles_.back();
   }
 
-  /// A hold of some cycles, which retracts as may be. @return the number of its cycles.
   /// Of a job whose X was probed, and whose other offsets were never set.
-  Preview preview() const {
-    Preview job;
-    job.plan = std::make_shared<const PlannedJob>(plan_);
-    job.offsets.axes[kX] = {0.012, "anna@grinder", 1.7e9};
-    job.offsets.axes[kX].basis.method = OffsetMethod::kProbe;
-    job.offsets.axes[kX].basis.wheel_digest = "a";
-    job.offsets.axes[kX].basis.swivel = units::kPi / 6;
-    job.ignore_offset_check = true;
-    return job;
+  std::shared_ptr<JobRecord> newRecord() const {
+    WorkOffsets offsets;
+    offsets.axes[kX] = {0.012, "anna@grinder", 1.7e9};
+    offsets.axes[kX].basis.method = OffsetMethod::kProbe;
+    offsets.axes[kX].basis.wheel_digest = "a";
+    offsets.axes[kX].basis.swivel = units::kPi / 6;
+    return std::make_shared<JobRecord>(plan_, "short.yaml", offsets, true);
   }
 
+  /// A hold of some cycles, which retracts as may be. @return the number of its cycles.
   void hold(Interlock interlock) {
     for (const MachineState state : {MachineState::kHolding, MachineState::kHeld, MachineState::kRetracting,
                                      MachineState::kRetracted, MachineState::kJoggingRetracted}) {
@@ -122,7 +120,7 @@ class JobRecordTest : public ::testing::Test {
   }
 
   Json recorded() {
-    JobRecord record(plan_, "short.yaml");
+    JobRecord record(plan_, "short.yaml", {}, false);
     for (const Cycle& c : cycles_) {
       record.addCycle(c.sample);
       if (c.has_setpoint) record.addSetpoint(c.setpoint, c.sample);
@@ -284,7 +282,7 @@ TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
 }
 
 TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {
-  JobRecord record(plan_, "");
+  JobRecord record(plan_, "", {}, false);
   for (int i = 0; i < 10004; ++i) {
     override_ = i % 2 == 0 ? 0.5 : 1;
     record.addCycle(cycle(MachineState::kRunning).sample);
@@ -307,8 +305,8 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
   {
     History history(folder, 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
-    recorder.announce(7, preview(), "short.yaml");
-    recorder.announce(8, preview(), "has not moved.yaml");
+    recorder.announce(7, newRecord());
+    recorder.announce(8, newRecord());
     for (const Cycle& c : cycles_) {
       recorder.of(7).addCycle(c.sample);
       if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.sample);
@@ -340,7 +338,7 @@ TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
   for (const bool result_first : {true, false}) {
     History history(folder, 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
-    recorder.announce(1, preview(), "");
+    recorder.announce(1, newRecord());
     for (Cycle& c : cycles_) {
       c.sample.time += result_first ? 0 : 100;
       recorder.of(1).addCycle(c.sample);

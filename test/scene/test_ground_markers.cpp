@@ -68,7 +68,7 @@ TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
   for (int i = 0; i < kMaxTeeth; ++i) many.tooth_angles.push_back(2 * units::kPi * i / kMaxTeeth);
   expectFit(many);
   GrindJob steep = jobOf("roughing_d10_t4");
-  steep.cutter.spiral_angle = 70 * kDegree;
+  steep.cutter.spiral_angle = 60 * kDegree;
   steep.cutter.flute_length = 100 * kMillimetre;
   expectFit(steep);
 }
@@ -82,14 +82,14 @@ TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;
-  for (const GrindJob& job :
-       {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), withZLaw(even)}) {
-    SCOPED_TRACE(toolText(job.cutter, job.tooth_angles.size()) + " " + toString(job.process.z_law));
+  for (const ValidJob& job : std::vector<ValidJob>{jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"),
+                                                   jobOf("unequal_d12_t4"), withZLaw(even)}) {
+    SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process.z_law));
     const GroundCutter planned = groundCutterOf(job),
-                       done = groundSoFar(job, {passOrder(job).back(), PassPhase::kAfter, 0});
+                       done = groundSoFar(job, {job.passes().back().place, PassPhase::kAfter, 0});
     for (const double part : {0.1, 0.5, 0.9}) {
-      const GroundSection a = planned.section(part * job.cutter.flute_length);
-      const GroundSection b = done.section(part * job.cutter.flute_length);
+      const GroundSection a = planned.section(part * job->cutter.flute_length);
+      const GroundSection b = done.section(part * job->cutter.flute_length);
       EXPECT_NEAR(a.core_radius, b.core_radius, 1e-7);
       for (std::size_t i = 0; i < a.teeth.size(); ++i) {
         ASSERT_EQ(a.teeth[i].rake.has_value(), b.teeth[i].rake.has_value());
@@ -172,7 +172,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     const auto roughed = coloured({{1, last - 1}, PassPhase::kAfter, 0});
     const auto begun = coloured({{0, last}, PassPhase::kBefore, 0});
     EXPECT_GT(begun.first, begun.second) << "a flute that is only roughed has the rake of no tool";
-    if (passOrder(job)[1].tooth == 1) {
+    if (ValidJob(job).passes()[1].place.tooth == 1) {
       EXPECT_GT(roughed.first, roughed.second);
     }
     const auto in_stroke = coloured({{0, last}, PassPhase::kStroke, half});
@@ -183,7 +183,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     } else {
       EXPECT_GT(in_stroke.first, half - facet);
     }
-    const auto done = coloured({passOrder(job).back(), PassPhase::kAfter, 0});
+    const auto done = coloured({ValidJob(job).passes().back().place, PassPhase::kAfter, 0});
     EXPECT_LT(done.first, facet);
     EXPECT_GT(done.second, job.cutter.flute_length - facet);
   }
@@ -215,7 +215,7 @@ std::size_t cornersOfShank(const std::vector<Marker>& solid, const GrindJob& job
 TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
   for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
     const GrindJob job = jobOf(name);
-    const Reached reached{passOrder(job).front(), PassPhase::kBefore, 0};
+    const Reached reached{ValidJob(job).passes().front().place, PassPhase::kBefore, 0};
     const std::vector<Marker> solid =
         solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
     ASSERT_EQ(solid.size(), 1U);
@@ -246,6 +246,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
     for (const double neck : {4.0, 13.0}) {
       SCOPED_TRACE(::testing::Message() << shank << " " << neck);
       job.cutter.end_diameter = 0.2 * kMillimetre;
+      job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
       job.process.depth = 0.04 * kMillimetre;
       job.process.depth_end = job.process.setup_lead = 0;
       job.cutter.shank_diameter = shank * kMillimetre;
@@ -280,7 +281,7 @@ TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   GrindJob job = jobOf("roughing_d10_t4");
-  job.process.depth = job.process.infeed = 0.6 * job.cutter.end_diameter;
+  job.process.depth = job.process.infeed = 0.49999 * job.cutter.end_diameter;
   job.process.setup_height = 0;
   const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
   EXPECT_TRUE(solidOf(array, "planned").empty());

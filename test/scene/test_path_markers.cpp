@@ -111,7 +111,7 @@ TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
 TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
   const GrindProgram job = program();
   const ConicalCutter& cutter = job.cutter();
-  const double length = job.job().cutter.flute_length, tolerance = job.job().interpolation.tolerance;
+  const double length = job.job()->cutter.flute_length, tolerance = job.job()->interpolation.tolerance;
   ToolPath flutes(job, {GroundEdge({{0, 0, 0}, {length, length, 0}})});
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) {
@@ -167,7 +167,7 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
     const GrindProgram job = program();
-    PathErrorMarkers errors(job.job(), edgesOf(job));
+    PathErrorMarkers errors(*job.job(), edgesOf(job));
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
       if (p.cycle % 7 == 0) p.path_error = value;
@@ -196,7 +196,7 @@ TEST(PathMarkers, AreLinesOfAWidth) {
   expectLinesOfAWidth(shown.flutes);
   expectLinesOfAWidth(shown.executed);
   const GrindProgram job = program();
-  PathErrorMarkers errors(job.job(), edgesOf(job));
+  PathErrorMarkers errors(*job.job(), edgesOf(job));
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) errors.add(p);
   expectLinesOfAWidth(errors.markers());
@@ -259,7 +259,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     executed.append(path);
     ASSERT_EQ(path.markers.size(), 1u);
     EXPECT_LE(path.markers[0].points.size(), 2001u) << "thinned out as it grows";
-    const DepthLaw depth = depthLaw(job, passDepths(job.process)[0]);
+    const DepthLaw depth = of_job.job().depthLaw(of_job.job().depths()[0]);
     int on_cutter = 0;
     for (const geometry_msgs::Point& p : path.markers[0].points) {
       if (p.x < 0 || p.x > job.cutter.flute_length) continue;
@@ -279,7 +279,11 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
   for (const Shape& shape : {Shape{0, 45}, Shape{5, -60}, Shape{20, 8}}) {
     SCOPED_TRACE(shape.cone);
     GrindJob job = readJobFile("test/jobs/paper.yaml");
-    job.cutter = {6e-3, shape.cone * units::kDegree, shape.spiral * units::kDegree, 0, 30e-3};
+    job.cutter.end_diameter = 6e-3;
+    job.cutter.core_diameter = job.cutter.core_diameter_end = 4e-3;
+    job.cutter.cone_angle = shape.cone * units::kDegree;
+    job.cutter.spiral_angle = shape.spiral * units::kDegree;
+    job.cutter.flute_length = 30e-3;
     const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
     // An edge under the wheel's centre is the helix.
     const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
@@ -298,9 +302,9 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
 TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
   const GrindProgram job = program();
   const ConicalCutter& cutter = job.cutter();
-  const double length = job.job().cutter.flute_length;
+  const double length = job.job()->cutter.flute_length;
   // An edge under the wheel's centre: the arrows begin on the commanded points.
-  PathErrorMarkers errors(job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  PathErrorMarkers errors(*job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
   std::map<double, Setpoint> commanded;
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
@@ -328,7 +332,11 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
-  job.cutter = {0.1e-3, 0, 1, 0, 500e-3};
+  job.cutter.end_diameter = 0.1e-3;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = 0.08e-3;
+  job.cutter.cone_angle = 0;
+  job.cutter.spiral_angle = 1;
+  job.cutter.flute_length = 500e-3;
   job.process.depth = job.process.infeed = 0.01e-3;
   const GrindProgram program(job, test_support::plainMachine(), test_support::plainMachine().park);
   const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});

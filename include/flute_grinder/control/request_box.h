@@ -16,10 +16,8 @@ namespace grinder {
 /// A job to start.
 struct JobStart {
   SetpointStream* stream = nullptr;
-  Axes offset = Axes::Zero();  ///< for which it was planned, see Machine::work_offset [m], A [rad]
-  Wheel wheel;                 ///< for this job
-  double swivel = 0;           ///< that this job needs [rad]
-  bool in_journal = true;      ///< otherwise confirmed later
+  Wheel wheel;             ///< for this job
+  bool in_journal = true;  ///< otherwise confirmed later
 };
 
 /// Holds other threads' requests to the control loop, and the answers. Stops, job starts, jogs, confirmations of the

@@ -16,7 +16,7 @@ struct Gouge {
 
 /// The gouges of a run, each the deepest of its move, in the order of RunStrokes::strokes(). Looks at sections
 /// where the axes were farthest off the path and at some in between, from the small end up to the overtravel.
-/// @param min depth that counts [m]. @param job as for RunStrokes. @param strokes finished.
-std::vector<Gouge> gougesOf(const GrindJob& job, const RunStrokes& strokes, double min);
+/// @param strokes finished. @param min depth that counts [m].
+std::vector<Gouge> gougesOf(const RunStrokes& strokes, double min);
 
 }  // namespace grinder

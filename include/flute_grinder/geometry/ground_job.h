@@ -10,6 +10,7 @@
 
 namespace grinder {
 
+class ValidJob;
 struct GrindJob;
 
 /// The wheel of a job, when new.
@@ -22,16 +23,16 @@ WheelSetup setupOf(const GrindJob& job);
 
 /// The stroke of a pass of a tooth, as if the tooth were at angle 0.
 /// @param tooth from 0. @param depth of the pass where the flute is deepest [m]. @param wear of the wheel, taken up by
-///        Y [m]. @throw as zCorrectionOf().
-GrindStroke strokeOf(const GrindJob& job, int tooth, double depth, double wear);
+///        Y [m]. @throw as ValidJob::zCorrectionOf().
+GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear);
 
 /// What the wheel removes in a stroke of a tooth.
-/// @param job as for wheelOf(). @param tooth from 0. @param wear of the wheel [m]. @throw as wheelOf().
-WheelSweep sweepOf(const GrindJob& job, int tooth, double wear, const GrindStroke& stroke);
+/// @param tooth from 0. @param wear of the wheel [m]. @throw as wheelOf().
+WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStroke& stroke);
 
 /// The cutter that a job grinds: each tooth's deepest pass with the wheel as worn by then. The passes before remove
-/// nothing more. @param job as for wheelOf(). @throw as wheelOf() and zCorrectionOf().
-GroundCutter groundCutterOf(const GrindJob& job);
+/// nothing more. @throw as wheelOf() and ValidJob::zCorrectionOf().
+GroundCutter groundCutterOf(const ValidJob& job);
 
 /// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
 struct CutterFigures {
@@ -59,11 +60,10 @@ struct CutterCheck {
 /// section and for how far it turns from each to the next, so that the edge departs from the asked helix by no more
 /// than the tolerance makes over the travel. The core is asked along the straight line between the diameters at the
 /// ends. Takes some milliseconds.
-CutterCheck checkGroundCutter(const GrindJob& job, const GroundCutter& cutter);
+CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter);
 
 /// The same of the cutter that a job grinds; teeth share a flute where the wheel's wear between them does not count. A
 /// wheel whose corner radii do not fit its profile is a reason too.
-/// @param job as for groundCutterOf(), with its law of Z.
-CutterCheck checkGroundCutter(const GrindJob& job);
+CutterCheck checkGroundCutter(const ValidJob& job);
 
 }  // namespace grinder

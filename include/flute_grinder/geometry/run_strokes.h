@@ -4,7 +4,7 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/setpoint.h"
 
 #include <cstdint>
@@ -33,8 +33,8 @@ class RunStrokes {
   /// thinner than twice that [m].
   static constexpr double kSame = 0.5e-6;
 
-  /// @param job a job that validate() accepts, from withZLaw().
-  explicit RunStrokes(const GrindJob& job);
+  /// @param job from withZLaw().
+  explicit RunStrokes(const ValidJob& job);
 
   /// Takes the setpoints of a job in order. Those that do not belong to a stroke are needed as well.
   /// @param actual position that was read one cycle before [m], A [rad].
@@ -45,6 +45,7 @@ class RunStrokes {
   /// To be called after the last setpoint.
   void finish();
 
+  const ValidJob& job() const noexcept { return job_; }
   /// All strokes in the order of the run; one that was broken off by a lift and went on is there twice, up to the
   /// lift and as a whole. Behind them, the parts of other moves.
   const std::vector<RunStroke>& strokes() const noexcept { return strokes_; }
@@ -77,7 +78,7 @@ class RunStrokes {
   };
   /// The job's deepest path of a tooth.
   struct Path {
-    Path(const GrindJob& job, int tooth, double wear);
+    Path(const ValidJob& job, int tooth, double wear);
     PathDeviation deviation(double x, const Axes& at) const;
 
     ConicalCutter cutter;
@@ -88,7 +89,7 @@ class RunStrokes {
 
   Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
   double wearOf(const ToothPass& place) const;
-  double depthOf(const RunStroke& s) const { return depths_[static_cast<std::size_t>(s.place.pass)]; }
+  double depthOf(const RunStroke& s) const { return job_.depths()[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
   void beginStroke(const ToothPass& place, double x);
   /// Whether a stroke begins at the last position: where its infeed ended, which is the end of its path.
@@ -104,17 +105,14 @@ class RunStrokes {
   void addOutside(const Poses& poses, std::size_t strokes);
   RunStroke strokeOf(const Poses& poses, std::size_t from, std::size_t to) const;
 
-  const GrindJob job_;
-  const std::vector<ToothPass> order_;
-  const std::vector<double> wear_;    ///< in that order [m]
-  const std::vector<double> depths_;  ///< of the passes [m]
-  const double radius_;               ///< the largest of the blank [m]
-  std::optional<Part> last_;          ///< of the last setpoint
-  std::optional<Part> reading_;       ///< what the last position belongs to
-  Axes read_ = Axes::Zero();          ///< that position
-  std::optional<Path> path_;          ///< of the stroke that is being read
-  std::map<long, Sample> samples_;    ///< of the last stroke, by its place on X
-  Range range_;                       ///< of that stroke
+  const ValidJob job_;
+  const double radius_;             ///< the largest of the blank [m]
+  std::optional<Part> last_;        ///< of the last setpoint
+  std::optional<Part> reading_;     ///< what the last position belongs to
+  Axes read_ = Axes::Zero();        ///< that position
+  std::optional<Path> path_;        ///< of the stroke that is being read
+  std::map<long, Sample> samples_;  ///< of the last stroke, by its place on X
+  Range range_;                     ///< of that stroke
   std::vector<Poses> poses_;
   bool in_blank_ = false;  ///< whether the last position is in the last of these
   std::vector<RunStroke> strokes_;

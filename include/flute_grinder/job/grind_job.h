@@ -82,19 +82,10 @@ struct GrindJob {
   std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
   GrindProcess process;
   GrindInterpolation interpolation;
-  /// Of every tooth, what kConstantRake adds to Z; computed from the rest by withZLaw(). Empty for kPublished.
-  std::vector<ZCorrection> z_corrections;
 };
-
-/// The cutter with the spiral angle of one of its teeth.
-CutterGeometry cutterOf(const GrindJob& job, int tooth);
 
 /// The minimum and maximum spiral angle of the teeth [rad].
 Range askedSpiral(const GrindJob& job);
-
-/// What the strokes of a tooth add to the published law of Z.
-/// @throw std::invalid_argument if the job asks for kConstantRake, and withZLaw() has not been called.
-ZCorrection zCorrectionOf(const GrindJob& job, int tooth);
 
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< how well kConstantRake keeps the rake [rad]
 constexpr int kMaxWheelPoints = 100;                  ///< of a wheel's profile
@@ -109,14 +100,8 @@ std::vector<Reason> validate(const GrindJob& job);
 /// Checks those of the wheel alone: `wheel_points`, and the members of `process` that begin with wheel_.
 std::vector<Reason> validateWheel(const GrindJob& job);
 
-/// The depth of every pass in order, where the flute is deepest: infeed steps, the finishing pass, spark-out. [m]
+/// As ValidJob::depths(), of numbers that are each within their range.
 std::vector<double> passDepths(const GrindProcess& process);
-
-/// The passes of all teeth, in grinding order.
-std::vector<ToothPass> passOrder(const GrindJob& job);
-
-/// The wheel's wear when each pass begins, as foreseen by the job, in the order of passOrder() [m].
-std::vector<double> wearOfPasses(const GrindJob& job);
 
 /// The depth of the flute that a job asks for at `x`, radial: at each end that of the core it asks for there, or else
 /// by its depths [m]. @param x from the small end [m].
@@ -125,15 +110,5 @@ double askedDepth(const GrindJob& job, double x);
 /// How much more than its infeed the first pass of a flute cuts out of the shank: by how much the shank stands out from
 /// the cone into whose flutes it is ground. 0 if it does not, and behind a neck, where no wheel reaches it [m].
 double shankCut(const CutterGeometry& cutter);
-
-/// The depth of a pass over X.
-struct DepthLaw {
-  double at_end = 0;  ///< at the small end, radial [m]
-  double taper = 0;   ///< added to the cone's dY/dX
-};
-
-/// Every pass has the same part of its depth everywhere, so that no infeed is larger than the job's.
-/// @param depth of the pass where the flute is deepest, as from passDepths() [m].
-DepthLaw depthLaw(const GrindJob& job, double depth);
 
 }  // namespace grinder

@@ -26,8 +26,6 @@ struct Machine {
   double max_job_duration = 86400;                ///< longest job accepted [s]
   double collision_clearance = 0;                 ///< minimum distance of what moves with the wheel from all else [m]
   Range swivel{-units::kPi / 2, units::kPi / 2};  ///< to which the wheel's plane can be set [rad]
-  /// Of the job that is planned: machine position - work position. See WorkOffsets. [m], A [rad]
-  Axes work_offset = Axes::Zero();
 };
 
 }  // namespace grinder

@@ -3,17 +3,29 @@
 #include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/z_correction.h"
-#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/feed_schedule.h"
 #include "flute_grinder/motion/setpoint.h"
 
-#include <memory>
 #include <vector>
 
 namespace grinder {
 
-struct GrindJob;
+/// From where, with which work offset, and with which pass the run of a job begins.
+struct RunStart {
+  /// @param at machine position of the axes [m], A [rad].
+  RunStart(const Axes& at = Axes::Zero(), const ToothPass& first = {}, const Axes& offset = Axes::Zero())
+      : at(at), first(first), offset(offset) {}
+
+  Axes at;          ///< machine position of the axes [m], A [rad]
+  ToothPass first;  ///< to grind
+  Axes offset;      ///< machine position - work position, see WorkOffsets [m], A [rad]
+
+  bool operator==(const RunStart& other) const {
+    return (at == other.at).all() && first == other.first && (offset == other.offset).all();
+  }
+};
 
 /// One move of a job, from the end of the previous move.
 struct Move {
@@ -45,21 +57,18 @@ struct Helix {
 /// in work coordinates.
 class GrindProgram {
  public:
-  /// @param job a job that validate() accepts.
-  /// @param machine the machine that runs the job, with the job's work offset.
-  /// @param start the position of the axes at the start, in work coordinates [m], A [rad].
-  /// @param first first pass to grind.
-  /// @throw std::invalid_argument if `first` is not a pass of the job, if the machine's data or `start` are out of
-  ///        range, if the park position is in the work, if the machine does not swivel as far as the job's set-up, if
-  ///        the feed would have to be reduced below kMinFeed, or as zCorrectionOf().
-  GrindProgram(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {});
+  /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
+  /// the park position is in the work, if the machine does not swivel as far as the job's set-up, if
+  ///        the feed would have to be reduced below kMinFeed, or as ValidJob::zCorrectionOf().
+  GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run);
 
-  const GrindJob& job() const noexcept { return *job_; }
+  const ValidJob& job() const noexcept { return job_; }
   const Machine& machine() const noexcept { return machine_; }
+  const RunStart& run() const noexcept { return run_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
   const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
-  double swivel() const noexcept;  ///< of the job's set-up [rad]
-  const Axes& start() const noexcept { return start_; }
+  double swivel() const noexcept;                                ///< of the job's set-up [rad]
+  Axes start() const noexcept { return run_.at - run_.offset; }  ///< in work coordinates [m], A [rad]
   const std::vector<Move>& moves() const noexcept { return moves_; }
 
   /// The path of a tooth's strokes; teeth with the same spiral angle have the same.
@@ -76,11 +85,11 @@ class GrindProgram {
 
  private:
   void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
-  void appendPass(const ToothPass& pass, double depth, double wear, Axes& at);
+  void appendPass(const JobPass& pass, Axes& at);
 
-  std::shared_ptr<const GrindJob> job_;
+  ValidJob job_;
   Machine machine_;
-  Axes start_;
+  RunStart run_;
   FeedSchedule::Stroke stroke_;
   std::vector<Helix> helices_;
   std::vector<std::size_t> helix_of_tooth_;

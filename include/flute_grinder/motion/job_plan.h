@@ -49,7 +49,7 @@ struct JobPlan {
   std::vector<Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
   PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
-  std::shared_ptr<const GrindProgram> program;  ///< null if the job's numbers or its law of Z were refused
+  std::shared_ptr<const GrindProgram> program;  ///< null if the job or its law of Z was refused
 
   bool good() const { return fault == PlanFault::kNone; }
 };
@@ -60,13 +60,9 @@ struct JobPlan {
 /// Moves that differ only by constant offsets of their axes, as the strokes of all teeth and passes do, are generated
 /// as a whole only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
 /// differ from those of all setpoints by rounding; nothing else differs.
-/// @param job the job; its numbers are checked too.
-/// @param machine the machine that runs the job, with the job's work offset.
-/// @param start the position of the axes at the start, in work coordinates [m], A [rad].
-/// @param first first pass to grind.
 /// @param visit if given, every setpoint is generated, and this is called with it; all of them are finite.
 /// @param watch if given, may make the planner give up.
-JobPlan planJob(const GrindJob& job, const Machine& machine, const Axes& start, const ToothPass& first = {},
+JobPlan planJob(const ValidJob& job, const Machine& machine, const RunStart& run,
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
 }  // namespace grinder

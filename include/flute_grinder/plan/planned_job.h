@@ -12,24 +12,9 @@
 
 namespace grinder {
 
-/// A job with its digest, which is computed once.
-class JobWithDigest {
- public:
-  explicit JobWithDigest(GrindJob job);
-
-  const GrindJob& job() const noexcept { return *job_; }
-  const std::string& digest() const noexcept { return digest_; }
-
- private:
-  std::shared_ptr<const GrindJob> job_;
-  std::string digest_;
-};
-
-/// A job's complete plan. Its program holds the job with its law of Z, the machine with the
-/// work offset, and the start.
+/// A job's complete plan. Its program holds the job with its law of Z, the machine, and where the run begins.
 struct PlannedJob : JobPlan {
   std::string digest;                   ///< see jobDigest()
-  ToothPass first;                      ///< to grind
   std::optional<Range> complete;        ///< where the flutes would be complete, if that was checked
   CutterFigures figures;                ///< of the tool that it grinds, if that was checked
   std::vector<GroundEdge> edges;        ///< of its teeth, if that was checked
@@ -40,9 +25,8 @@ struct PlannedJob : JobPlan {
 /// checkGroundCutter() and checkCollision(). For any job and machine, the result is either good or has reasons. Cutter
 /// and collisions are checked, too, of a job whose setpoints are refused; a law of Z that does not exist leaves the
 /// result without a program.
-/// @param shapes of the machine. @param start, first, visit, watch as for planJob().
-PlannedJob planWholeJob(const JobWithDigest& job, const Machine& machine, const MachineShapes& shapes,
-                        const Axes& start, const ToothPass& first = {},
+/// @param shapes of the machine. @param run, visit, watch as for planJob().
+PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const MachineShapes& shapes, const RunStart& run,
                         const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 
 }  // namespace grinder

@@ -28,7 +28,8 @@ class JobRecord {
  public:
   /// @param plan of the job, which is good.
   /// @param name of the job as its goal gives it.
-  JobRecord(const PlannedJob& plan, std::string name);
+  /// @param offsets with which it was planned. @param said_right the goal says that they are right.
+  JobRecord(const PlannedJob& plan, std::string name, const WorkOffsets& offsets, bool said_right);
 
   /// Adds a cycle. To be called for every cycle from the job's start to its end, in order.
   void addCycle(const CycleSample& sample);
@@ -36,8 +37,6 @@ class JobRecord {
   void addSetpoint(const Setpoint& setpoint, const CycleSample& sample);
   /// Adds setpoints that were written, but are not known.
   void addLost(std::uint64_t setpoints) { lost_ += setpoints; }
-  /// For what, and by whom, the work offsets were set. @param said_right the goal says that they are right.
-  void setZeroPoints(const WorkOffsets& offsets, bool said_right);
   void conclude(const JobConclusion& conclusion) { conclusion_ = conclusion; }
 
   /// Whether anything moved.
@@ -58,10 +57,9 @@ class JobRecord {
   std::shared_ptr<const GrindProgram> program_;
   PathStatistics planned_;
   std::string digest_;
-  ToothPass first_;
   std::string name_;
   WorkOffsets offsets_;
-  bool offsets_said_right_ = false;
+  bool offsets_said_right_;
 
   std::uint64_t cycles_ = 0;
   double started_ = 0, ended_ = 0;  ///< since the epoch [s]

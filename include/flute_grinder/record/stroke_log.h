@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/formed_edge.h"
-#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/setpoint.h"
 
@@ -28,8 +28,7 @@ class StrokeLog {
  public:
   /// Of a job that is not known: depth and deviation are missing, and the overtravel counts as flute.
   StrokeLog() = default;
-  /// @param job a job that validate() accepts.
-  explicit StrokeLog(const GrindJob& job);
+  explicit StrokeLog(const ValidJob& job);
 
   /// Adds a setpoint of a stroke. @param time since the start [s].
   void add(const Setpoint& setpoint, double time);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/setpoint.h"
 
@@ -87,7 +87,7 @@ class RunFile {
   double period() const noexcept { return period_; }
   const RowSummary& summary() const noexcept { return summary_; }
   /// The job, if the file has it.
-  const std::shared_ptr<const GrindJob>& job() const noexcept { return job_; }
+  const std::optional<ValidJob>& job() const noexcept { return job_; }
   /// Which of a bag's jobs, for the reader; else empty.
   const std::string& place() const noexcept { return place_; }
   /// What else the file says of the job, in the keys of a record.
@@ -110,7 +110,7 @@ class RunFile {
 
   const std::string path_;
   double period_ = 0;
-  std::shared_ptr<const GrindJob> job_;
+  std::optional<ValidJob> job_;
   std::string place_;
   Json head_ = Json::object();
   std::vector<StateChange> states_;

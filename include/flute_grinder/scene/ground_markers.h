@@ -9,7 +9,7 @@
 
 namespace grinder {
 
-struct GrindJob;
+class ValidJob;
 
 /// How far a job has come: the pass that runs, and the X that its stroke has reached.
 struct Reached {
@@ -22,8 +22,8 @@ struct Reached {
 
 /// The cutter as a part of a job leaves it: of each tooth the deepest pass that is done, and the stroke that runs up to
 /// where it is. The wheel counts as worn as at the job's begin, since Y takes up what it wears on the way.
-/// @param job as for groundCutterOf(). @throw as groundCutterOf().
-GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
+/// @throw as groundCutterOf().
+GroundCutter groundSoFar(const ValidJob& job, const Reached& reached);
 
 /// The ground cutter with its neck and shank as a solid that is cut open, in the frame `cutter`, its rake faces
 /// coloured by how far they are from the rake that is asked, where the last pass has been. Before the first stroke the
@@ -32,7 +32,7 @@ GroundCutter groundSoFar(const GrindJob& job, const Reached& reached);
 /// @param ns namespace of the markers.
 /// @return markers; the first deletes what was shown before. Instead of a cutter that cannot be shown, as one with its
 ///         core cut through, there is only the reason, as a label.
-visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const GrindJob& job, const char* ns,
+visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const char* ns,
                                               const std::optional<Reached>& reached = std::nullopt);
 
 }  // namespace grinder

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/scene/ground_markers.h"
 
 #include <ros/ros.h>
@@ -11,8 +12,6 @@
 #include <thread>
 
 namespace grinder {
-
-struct GrindJob;
 
 /// Shows the ground cutter in rviz on `~ground_cutter`, latched. It is computed in a thread of its own, at low
 /// priority: a plan at once, what is being ground at most once a second and in a twentieth of a core. Of several
@@ -26,14 +25,14 @@ class GroundView {
   GroundView& operator=(const GroundView&) = delete;
 
   /// @param reached how far the job is ground; nothing for what it will be.
-  void show(std::shared_ptr<const GrindJob> job, const std::optional<Reached>& reached);
+  void show(const std::optional<ValidJob>& job, const std::optional<Reached>& reached);
 
   /// Takes back what is shown.
-  void clear() { show(nullptr, std::nullopt); }
+  void clear() { show(std::nullopt, std::nullopt); }
 
  private:
   struct Request {
-    std::shared_ptr<const GrindJob> job;  ///< null to show nothing
+    std::optional<ValidJob> job;  ///< nothing to show nothing
     std::optional<Reached> reached;
   };
 

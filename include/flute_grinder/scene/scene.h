@@ -50,7 +50,7 @@ class Scene {
 
  private:
   struct Shown {
-    std::shared_ptr<const GrindJob> job;
+    ValidJob job;
     std::string digest;
     ToolPath tool_path;
     ExecutedPath executed;

@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/relief_setup.h"
+#include "geometry/relief_setup.h"
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"

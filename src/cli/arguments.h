@@ -24,6 +24,8 @@ inline auto within(double min, double max, const char* unit) {
 }
 
 /// The job file, required.
+/// Which of a job file's operations: `--operation`.
+void addOperation(CLI::App& command, std::string& operation);
 void addJob(CLI::App& command, std::string& job);
 
 /// `--csv`, a file to write.

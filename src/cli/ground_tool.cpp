@@ -84,6 +84,33 @@ constexpr Figure kFigures[]{
      [](const Place& p) { return Value(p.section.area_removed); }, notAsked},
 };
 
+template <typename Get>
+Value ofRelief(const Place& p, const Get& get) {
+  return p.tooth().relief ? get(*p.tooth().relief) : std::nullopt;
+}
+
+/// Of a job with a relief.
+constexpr Figure kReliefFigures[]{
+    {"clearance_deg", "clearance, deg", "clear. deg", kDegree, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.clearance; }); },
+     [](const Place& p) { return Value(p.job->cutter.clearance); }},
+    {"land_end_clearance_deg", "at the land's end", "end deg", kDegree, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land_end_clearance; }); }, notAsked},
+    {"primary_mm", "primary relief, mm", "primary mm", kMillimetre, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land; }); }, notAsked},
+    {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.heel; }); }, notAsked},
+    {"radius_mm", "edge's radius, mm", "edge mm", kMillimetre, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return Value(r.edge_radius); }); },
+     [](const Place& p) { return Value(p.section.ground.radius); }},
+};
+
+std::vector<Figure> figuresOf(const ValidJob& job) {
+  std::vector<Figure> figures(std::begin(kFigures), std::end(kFigures));
+  if (job.relief(0) != nullptr) figures.insert(figures.end(), std::begin(kReliefFigures), std::end(kReliefFigures));
+  return figures;
+}
+
 bool isShown(const Figure& figure) { return *figure.head != '\0'; }
 bool isAsked(const Figure& figure) { return figure.asked != notAsked; }
 
@@ -106,7 +133,7 @@ std::string cell(int width, Value value, const char* plus = "") {
 
 std::string rowOf(const Place& place) {
   std::string row;
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : figuresOf(place.job)) {
     if (!isShown(figure)) continue;
     row += cell(static_cast<int>(std::string(figure.head).size()), shown(figure, figure.value(place)));
   }
@@ -168,7 +195,7 @@ std::string text(const std::optional<std::pair<double, double>>& range, const ch
 void printExtremes(const GroundTool& tool) {
   std::printf("\n%-18s  %9s  %8s  %5s  %9s  %8s  %5s  %20s  %20s\n", "", "min", "at X mm", "tooth", "max", "at X mm",
               "tooth", "asked", "difference");
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : figuresOf(tool.job)) {
     if (!isShown(figure)) continue;
     const Extremes e(tool, figure);
     std::printf("%-18s%s%s%s%s\n", figure.title, text(e.min).c_str(), text(e.max).c_str(), text(e.asked).c_str(),
@@ -249,7 +276,7 @@ Json number(Value value) { return value ? Json(*value) : Json(nullptr); }
 
 /// The figures of the section, or of the tooth.
 void append(Json& json, const Place& place, bool of_section) {
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : figuresOf(place.job)) {
     if (figure.of_section != of_section) continue;
     json[figure.key] = number(shown(figure, figure.value(place)));
     if (isAsked(figure)) json[std::string("asked_") + figure.key] = number(shown(figure, figure.asked(place)));
@@ -275,7 +302,7 @@ Json outline(const GroundTool& tool, double x) {
 /// The radial depth of every pass at the small end.
 Json passDepths(const ValidJob& job) {
   Json depths = Json::array();
-  for (const double depth : job.depths()) depths.push_back(job.depthLaw(depth).at_end / kMillimetre);
+  for (const double depth : job.depths()) depths.push_back(job.depthAtEnd(depth) / kMillimetre);
   return depths;
 }
 
@@ -323,7 +350,7 @@ GroundTool measure(const std::string& source, const RunStrokes& strokes, const s
 void printText(const GroundTool& tool) {
   std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),
               toolText(tool.job->cutter, tool.job->tooth_angles.size()).c_str(), "X mm", "tooth");
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : figuresOf(tool.job)) {
     if (isShown(figure)) std::printf("  %s", figure.head);
   }
   std::printf("\n");
@@ -368,9 +395,9 @@ Json toJson(const GroundTool& tool) {
 
 namespace {
 
-std::string csvHeader() {
+std::string csvHeader(const ValidJob& job) {
   std::string header = "x_mm,tooth";
-  for (const Figure& figure : kFigures) {
+  for (const Figure& figure : figuresOf(job)) {
     header += std::string(",") + figure.key;
     if (isAsked(figure)) header += std::string(",asked_") + figure.key;
   }
@@ -379,13 +406,13 @@ std::string csvHeader() {
 
 }  // namespace
 
-GroundToolCsv::GroundToolCsv(const std::string& path) : CsvFile(path, csvHeader()) {}
+GroundToolCsv::GroundToolCsv(const std::string& path, const ValidJob& job) : CsvFile(path, csvHeader(job)) {}
 
 void GroundToolCsv::write(const GroundTool& tool) {
   const auto field = [&](Value value) { value ? print(",%.17g", *value) : print(","); };
   forEachTooth(tool, [&](const Place& place) {
     print("%.17g,%zu", place.section.ground.x / kMillimetre, place.number);
-    for (const Figure& figure : kFigures) {
+    for (const Figure& figure : figuresOf(tool.job)) {
       field(shown(figure, figure.value(place)));
       if (isAsked(figure)) field(shown(figure, figure.asked(place)));
     }

@@ -49,7 +49,7 @@ Json toJson(const GroundTool& tool);
 /// A line for each section and tooth, which count from 0. What does not exist is an empty field.
 class GroundToolCsv : public CsvFile {
  public:
-  explicit GroundToolCsv(const std::string& path);
+  GroundToolCsv(const std::string& path, const ValidJob& job);
   void write(const GroundTool& tool);
 };
 

@@ -34,6 +34,7 @@ void addPlan(Commands& commands) {
   auto& command = commands.add("plan", "generate and check every setpoint of the job, from the park position",
                                "jobs/paper.yaml --csv setpoints.csv", [options] { return runPlan(*options); });
   addJob(command, options->job);
+  addOperation(command, options->operation);
   addCsv(command, options->csv, "write the setpoints to this file");
   addMachine(command, options->parameters, options->urdf);
   addJson(command, options->json);
@@ -68,6 +69,7 @@ void addSimulate(Commands& commands) {
   command.add_option("--svg", options->svg, "draw the sections at both ends and in the middle, and the figures over X")
       ->type_name(kAnyFile);
   command.add_option("--job", options->job, "job file of a record that does not have its job")->type_name(kYamlFile);
+  addOperation(command, options->operation);
   addCountedJob(command, "--run", options->run);
   addJson(command, options->json);
 }
@@ -78,6 +80,7 @@ void addRun(Commands& commands) {
                                "jobs/paper.yaml --csv streamed.csv",
                                commands.online([&commands, options] { return runJob(commands.node, *options); }));
   addJob(command, options->job);
+  addOperation(command, options->operation);
   command.add_flag("--dry-run", options->dry_run, "plan, check and show the path, but move nothing");
   auto* go_on =
       command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
@@ -91,11 +94,12 @@ void addRun(Commands& commands) {
 }
 
 void addGoal(Commands& commands) {
-  const auto job = std::make_shared<std::string>();
+  const auto job = std::make_shared<std::string>(), operation = std::make_shared<std::string>();
   auto& command =
       commands.add("goal", "write the goal that run sends for the job: a serialized flute_grinder/GrindGoal",
-                   "jobs/paper.yaml > goal", [job] { return writeGoal(*job); });
+                   "jobs/paper.yaml > goal", [job, operation] { return writeGoal(*job, *operation); });
   addJob(command, *job);
+  addOperation(command, *operation);
 }
 
 void addTolerances(CLI::App& command, std::string& path) {

@@ -126,7 +126,7 @@ void printChecks(const GrindJob& job, const CutterFigures& ground, const std::op
 }
 
 int runPlan(const PlanOptions& options) {
-  const GrindJob job = readJobFile(options.job);
+  const GrindJob job = readJobFile(options.job, {}, options.operation);
   const Machine machine = readMachineFiles(options.parameters, options.urdf).machine;
   std::optional<SetpointCsv> csv;
   std::function<void(const Setpoint&)> visit;

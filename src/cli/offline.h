@@ -22,6 +22,7 @@ struct TableOptions {
 /// Arguments of `grind plan`.
 struct PlanOptions {
   std::string job;
+  std::string operation;   ///< which of several; empty for the only one
   std::string csv;         ///< file, or empty
   std::string parameters;  ///< YAML of the machine
   std::string urdf;

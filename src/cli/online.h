@@ -11,6 +11,7 @@ namespace grinder {
 /// Arguments of `grind run`.
 struct RunOptions {
   std::string job;
+  std::string operation;  ///< which of several; empty for the only one
   bool dry_run = false;
   bool go_on = false;                ///< from the first unfinished pass
   bool discard = false;              ///< even if the journal holds another, unfinished job

@@ -82,7 +82,7 @@ void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
   if (run.kind() == FileKind::kBag)
-    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withZLaw(*run.job())); })
+    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withLaws(*run.job())); })
                     : "the bag does not have the goal of " + run.place();
   run.visit([&](const RunRow& row) {
     survey.add(row);
@@ -102,7 +102,7 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
     if (job != 0) throw FileError(path + ": job " + std::to_string(job) + ": only a bag has several jobs");
     const Json record = readRecord(path);
     context.no_tool = reasonWhyNot([&] {
-      const ValidJob asked = withZLaw(parseJob(record["job"]["file"].dump(), path));
+      const ValidJob asked = withLaws(parseJob(record["job"]["file"].dump(), path));
       context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(*asked, kSections)));
     });
     return findingsOfRecord(record, context);

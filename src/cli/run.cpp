@@ -186,7 +186,7 @@ int closeStream(StreamWatch& stream, const std::string& csv, int status) {
 }
 
 flute_grinder::GrindGoal goalFor(const RunOptions& options) {
-  flute_grinder::GrindGoal goal = goalFromFile(options.job);
+  flute_grinder::GrindGoal goal = goalFromFile(options.job, options.operation);
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;
   goal.ignore_offset_check = options.ignore_offset_check;
@@ -197,7 +197,7 @@ flute_grinder::GrindGoal goalFor(const RunOptions& options) {
 
 int runJob(const std::string& node, const RunOptions& options) {
   flute_grinder::GrindGoal goal = goalFor(options);
-  const GrindJob job = jobFromGoal(goal);
+  const ValidJob job = jobFromGoal(goal);
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
   const StateWatch watch(nh);
@@ -209,11 +209,11 @@ int runJob(const std::string& node, const RunOptions& options) {
     return noGrinder(nh);
   }
   if (options.go_on) {
-    const std::string refusal = continueFrom(watch.newest().progress, job, goal);
+    const std::string refusal = continueFrom(watch.newest().progress, *job, goal);
     if (!refusal.empty()) return fail(refusal);
   }
 
-  ProgressBar bar(static_cast<int>(job.tooth_angles.size()), static_cast<int>(passDepths(job.process).size()));
+  ProgressBar bar(job.teeth(), static_cast<int>(job.depths().size()));
   catchInterrupts();
   catchHolds();
   Client::GoalHandle running = client.sendGoal(
@@ -229,7 +229,7 @@ int runJob(const std::string& node, const RunOptions& options) {
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
   int status = printOutcome(watched, connected, stream);
-  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal, job);
+  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal, *job);
   return closeStream(stream, options.csv, status);
 }
 

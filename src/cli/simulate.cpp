@@ -78,7 +78,8 @@ struct Source {
 Source sourceOf(const SimulateOptions& options) {
   const std::string name = std::filesystem::path(options.file).filename();
   const FileKind kind = kindOf(options.file);
-  if (kind == FileKind::kOther || kind == FileKind::kRecord) return {readJobFile(options.file), name, nullptr};
+  if (kind == FileKind::kOther || kind == FileKind::kRecord)
+    return {readJobFile(options.file, {}, options.operation), name, nullptr};
   if (kind == FileKind::kTable || kind == FileKind::kPlan) {
     throw FileError(options.file +
                     ": is no file of 'grind run --csv'; without the positions that the drive read there is "
@@ -91,13 +92,13 @@ Source sourceOf(const SimulateOptions& options) {
     throw FileError(options.file + ": the bag does not have the goal of " + run->place() +
                     "; give its job file with --job");
   }
-  const ValidJob job = options.job.empty() ? *run->job() : readJobFile(options.job);
+  const ValidJob job = options.job.empty() ? *run->job() : readJobFile(options.job, {}, options.operation);
   return {job, name + (run->place().empty() ? "" : ", ") + run->place(), std::move(run)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
-  const ValidJob job = withZLaw(source.job);
+  const ValidJob job = withLaws(source.job);
   if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
   RunStrokes strokes(job);
   source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
@@ -124,7 +125,7 @@ int runSimulate(const SimulateOptions& options) {
   const Source source = sourceOf(options);
   const std::vector<double> at = sectionsOf(options, *source.job);
   std::optional<GroundToolCsv> csv;
-  if (!options.csv.empty()) csv.emplace(options.csv);
+  if (!options.csv.empty()) csv.emplace(options.csv, source.job);
   try {
     const GroundTool tool = simulate(source, at);
     if (csv) csv->write(tool);

@@ -9,6 +9,7 @@ namespace grinder {
 struct SimulateOptions {
   std::string file;           ///< a job, or the record of a run
   std::string job;            ///< of a record; empty for the one in the record
+  std::string operation;      ///< of a job file, up to which the cutter is ground; empty for the only one
   int run = 0;                ///< which of a bag's jobs, from 1; 0 for the last
   std::vector<double> at_mm;  ///< X of the sections; empty: `sections` over the flute's length
   int sections = 9;

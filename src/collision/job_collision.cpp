@@ -116,7 +116,7 @@ CollisionJob collisionJobOf(const GrindProgram& program) {
   const bool has_neck = job.cutter.neck_length > 0;
   return {wheelOf(job).worn(job.process.wheel_wear),
           job.process.wheel_diameter / 2,
-          setupOf(job),
+          setupOf(program.job(), 0),
           job.cutter,
           job.cutter.shank_diameter,
           has_neck ? std::optional<double>(job.cutter.flute_length + job.cutter.neck_length) : std::nullopt,

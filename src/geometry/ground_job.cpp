@@ -13,9 +13,10 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSections = 8;         ///< of the flute's length, between those that are measured
-constexpr int kRingsToSpoil = 6;     ///< of a section, at which a stroke may spoil it
-constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
+constexpr int kSections = 8;            ///< of the flute's length, between those that are measured
+constexpr int kRingsToSpoil = 6;        ///< of a section, at which a stroke may spoil it
+constexpr double kMostUndercut = 3e-6;  ///< of an edge's radius by a relief [m]
+constexpr double kSameWear = 20e-6;     ///< whose change of the wheel's curvature a check does not see [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
@@ -55,6 +56,9 @@ void add(CutterFigures& figures, const GroundSection& section) {
     widen(figures.rake, *tooth.rake);
     if (tooth.chordal_rake) widen(figures.chordal_rake, *tooth.chordal_rake);
     if (tooth.spiral) widen(figures.spiral, *tooth.spiral);
+    if (!tooth.relief) continue;
+    if (tooth.relief->clearance) widen(figures.clearance, *tooth.relief->clearance);
+    if (tooth.relief->land) widen(figures.relief, *tooth.relief->land);
   }
 }
 
@@ -71,11 +75,17 @@ double edgeOff(const ValidJob& job, std::size_t tooth, const std::vector<GroundS
 
 /// The edge of a tooth, in the sections that have one.
 GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
-  const LogCurve curve(ConicalCutter(job.cutterOf(static_cast<int>(tooth))), job->process.setup_lead);
+  const StrokeLaw& law = job.strokeLaw(static_cast<int>(tooth));
+  const LogCurve curve(ConicalCutter(law.cutter), law.lead);
   std::vector<GroundEdge::Place> places;
   for (const GroundSection& section : sections) {
     const ToothSection& at = section.teeth[tooth];
     if (!at.edge) continue;
+    if (job.relief(0) != nullptr) {
+      const double wheel_x = section.x + law.lead;
+      places.push_back({section.x, wheel_x, *at.edge - law.a - curve.a(wheel_x)});
+      continue;
+    }
     // Where the stroke's end forms several sections, their extrema are no more exact than that.
     const double wheel_x = places.empty() ? at.edge_wheel_x : std::max(at.edge_wheel_x, places.back().wheel_x);
     places.push_back({section.x, wheel_x, *at.edge - job->tooth_angles[tooth] - curve.a(wheel_x)});
@@ -89,6 +99,10 @@ class Checker {
   explicit Checker(const ValidJob& job) : job_(job) {}
 
   void check(const GroundSection& section) {
+    if (job_.relief(0) != nullptr) {
+      for (std::size_t i = 0; i < section.teeth.size(); ++i) checkRelief(section, i);
+      return;
+    }
     if (!(section.core_radius > kMinCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
       const ToothSection& tooth = section.teeth[i];
@@ -103,8 +117,31 @@ class Checker {
     if (std::all_of(section.teeth.begin(), section.teeth.end(), complete)) checkCore(section);
   }
 
+  /// A primary relief may end on the land where a secondary one follows.
+  void checkRelief(const GroundSection& section, std::size_t i) {
+    const CutterGeometry& c = job_->cutter;
+    const int number = static_cast<int>(i);
+    const ReliefSection relief = section.teeth[i].relief.value_or(ReliefSection{});
+    const double clearance = relief.clearance.value_or(CutterFigures::kNone);
+    if (!(std::abs(clearance - c.clearance) <= c.clearance_tolerance)) {
+      add(ReasonKind::kClearance, section.x, number, Unit::kRadian, clearance, c.clearance, c.clearance_tolerance);
+    }
+    const double taken = section.radius - relief.edge_radius;
+    if (!(taken <= kMostUndercut)) {
+      add(ReasonKind::kUndercut, section.x, number, Unit::kDeviationMetre, taken, kMostUndercut);
+    }
+    if (!(relief.next_edge > 0)) {
+      add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
+    }
+    const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
+    if ((last && !relief.heel) || (job_->operation > 1 && !relief.land)) {
+      add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
+    }
+  }
+
   /// How far the edges turn between two sections. Where each is within the tolerance everywhere, so is this.
   void checkTurn(const GroundSection& from, const GroundSection& to) {
+    if (job_.relief(0) != nullptr) return;
     for (std::size_t i = 0; i < to.teeth.size(); ++i) {
       if (!from.teeth[i].complete || !to.teeth[i].complete) continue;
       const double turn = *to.teeth[i].edge - *from.teeth[i].edge;
@@ -113,6 +150,7 @@ class Checker {
   }
 
   void checkRange(const std::optional<Range>& complete) {
+    if (job_.relief(0) != nullptr) return;
     const double length = job_->cutter.flute_length;
     if (job_->process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
     const Range range = complete.value_or(Range{});
@@ -121,7 +159,7 @@ class Checker {
 
   /// The stroke may not go so near to the cone's apex that it spoils the flute.
   void checkOvertravel(const GroundCutter& cutter) {
-    if (job_->process.incomplete_ok) return;
+    if (job_.relief(0) != nullptr || job_->process.incomplete_ok) return;
     const bool opens = cutter.cutter().tanCone() >= 0;
     const double nearest = opens ? 0 : job_->cutter.flute_length;
     for (const Flute& flute : cutter.flutes()) {
@@ -198,8 +236,26 @@ class Checker {
   std::vector<Reason> reasons_;
 };
 
+/// The reliefs of a job up to its own, on flutes. @param flutes the cutter with them.
+GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes) {
+  std::vector<Reliefs> reliefs(flutes.flutes().size());
+  for (int i = 1; i <= job->operation; ++i) {
+    const ValidJob relief =
+        i == job->operation ? job : ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
+    const std::vector<double> wear = wearOfTeeth(relief);
+    for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
+      Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
+      if (own.size() >= static_cast<std::size_t>(i)) continue;  // of a tooth that shares the flute
+      const int number = static_cast<int>(tooth);
+      own.push_back(sweepOf(relief, number, wear[tooth], strokeOf(relief, number, relief.deepest(), wear[tooth])));
+    }
+  }
+  return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs));
+}
+
 /// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
 GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
+  if (job.relief(0) != nullptr) return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear));
   const std::vector<double> wear = wearOfTeeth(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
@@ -210,7 +266,7 @@ GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
     teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
     if (same < i) continue;
     const int tooth = static_cast<int>(i);
-    flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job->process.deepest(), wear[i]))});
+    flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job.deepest(), wear[i]))});
   }
   return GroundCutter(ConicalCutter(job->cutter), std::move(flutes), std::move(teeth));
 }
@@ -230,26 +286,26 @@ WheelProfile wheelOf(const GrindJob& job) {
   return WheelProfile::angled(p.wheel_diameter, p.wheel_width, angle, cornerRadii(p));
 }
 
-WheelSetup setupOf(const GrindJob& job) {
-  return {job.process.setup_swivel, job.process.setup_height, job.process.setup_lead};
+WheelSetup setupOf(const ValidJob& job, int tooth) {
+  return {job->process.setup_swivel, job->process.setup_height, job.strokeLaw(tooth).lead};
 }
 
 GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear) {
-  const GrindProcess& p = job->process;
-  const DepthLaw law = job.depthLaw(depth);
+  const StrokeLaw& along = job.strokeLaw(tooth);
+  const DepthLaw law = job.depthLaw(tooth, depth, wear);
   GrindStroke stroke;
-  stroke.from = -p.overtravel_end;
-  stroke.to = job->cutter.flute_length + p.overtravel_shank;
-  if (p.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
-  stroke.y = -law.at_end - wear;
+  stroke.from = along.from;
+  stroke.to = along.to;
+  stroke.y = -law.at_end;
   stroke.y_per_x = law.taper;
+  stroke.a = along.a - job->tooth_angles[static_cast<std::size_t>(tooth)];
   stroke.z_correction = job.zCorrectionOf(tooth);
   return stroke;
 }
 
 WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStroke& stroke) {
-  return {ConicalCutter(job.cutterOf(tooth)), wheelOf(*job).worn(wear), job->process.wheel_diameter / 2, setupOf(*job),
-          stroke};
+  return {ConicalCutter(job.strokeLaw(tooth).cutter), wheelOf(*job).worn(wear), job->process.wheel_diameter / 2,
+          setupOf(job, tooth), stroke};
 }
 
 GroundCutter groundCutterOf(const ValidJob& job) { return groundCutterOf(job, 0); }

@@ -186,9 +186,9 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   setup.margin = solved.margin;
 }
 
-bool hasZLaw(const ValidJob& job) {
+bool hasLaws(const ValidJob& job) {
   try {
-    withZLaw(job);
+    withLaws(job);
     return true;
   } catch (const ReasonError&) {
     return false;
@@ -237,11 +237,11 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
     take(std::get<SolvedSetup>(result), keep, setup);
     for (int i = 0;; ++i) {
       const ValidJob valid(setup.job);
-      if (i == 0 && !hasZLaw(valid)) {
+      if (i == 0 && !hasLaws(valid)) {
         giveRoom(setup);
         continue;
       }
-      setup.check = checkGroundCutter(withZLaw(valid));
+      setup.check = checkGroundCutter(withLaws(valid));
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
   } catch (const ReasonError& error) {

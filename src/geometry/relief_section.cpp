@@ -15,7 +15,7 @@ namespace {
 constexpr int kRadiusSteps = 20;           ///< of a search among radii
 constexpr double kRadiusAccuracy = 10e-9;  ///< of that [m]
 constexpr int kNextEdgeRings = 4;          ///< on which the next tooth is looked at
-constexpr double kBelowTheEdge = 1e-4;     ///< of the radius, where a relief is looked at first
+constexpr double kBelowTheEdge = 1e-5;     ///< of the radius, where a relief is looked at first
 
 /// From the edge, at the blank's radius, in a straight line across the section.
 double distance(double radius, double r, double behind) {

@@ -150,10 +150,10 @@ void RunStrokes::endStroke() {
 }
 
 RunStrokes::Path::Path(const ValidJob& job, int tooth, double wear)
-    : cutter(job.cutterOf(tooth)),
-      curve(cutter, job->process.setup_lead),
-      stroke(grinder::strokeOf(job, tooth, job->process.deepest(), wear)),
-      angle(job->tooth_angles[static_cast<std::size_t>(tooth)]) {}
+    : cutter(job.strokeLaw(tooth).cutter),
+      curve(cutter, job.strokeLaw(tooth).lead),
+      stroke(grinder::strokeOf(job, tooth, job.deepest(), wear)),
+      angle(job.strokeLaw(tooth).a) {}
 
 PathDeviation RunStrokes::Path::deviation(double x, const Axes& at) const {
   return {at[kY] - (stroke.y + cutter.y(x) + x * stroke.y_per_x), at[kZ] - (cutter.z(x) + stroke.z_correction.at(x).z),
@@ -236,11 +236,26 @@ RunStroke RunStrokes::strokeOf(const Poses& poses, std::size_t from, std::size_t
 WheelSweep RunStrokes::sweep(const RunStroke& run) const {
   const int tooth = run.place.tooth;
   const double wear = wearOf(run.place);
-  GrindStroke stroke = grinder::strokeOf(job_, tooth, job_->process.deepest(), wear);
+  GrindStroke stroke = grinder::strokeOf(job_, tooth, job_.deepest(), wear);
   stroke.from = run.range.from;
   stroke.to = run.range.to;
   stroke.deviations = run.deviations;
   return sweepOf(job_, tooth, wear, stroke);
+}
+
+GroundCutter RunStrokes::relieved(const std::vector<const RunStroke*>& kept) const {
+  const GroundCutter planned = groundCutterOf(job_);
+  std::vector<Flute> flutes;
+  std::vector<GroundTooth> teeth;
+  std::vector<Reliefs> reliefs;
+  for (std::size_t i = 0; i < planned.teeth().size(); ++i) {
+    flutes.push_back(planned.flutes()[planned.teeth()[i].flute]);
+    teeth.push_back({planned.teeth()[i].angle, i});
+    reliefs.push_back(planned.reliefs(i));
+    reliefs.back().pop_back();
+  }
+  for (const RunStroke* stroke : kept) reliefs[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
+  return GroundCutter(planned.cutter(), std::move(flutes), std::move(teeth), std::move(reliefs));
 }
 
 GroundCutter RunStrokes::cutter() const {
@@ -253,6 +268,7 @@ GroundCutter RunStrokes::cutter() const {
     const auto covering = [&](const RunStroke* other) { return covers(*other, *stroke); };
     if (std::none_of(kept.begin(), kept.end(), covering)) kept.push_back(stroke);
   }
+  if (job_.relief(0) != nullptr) return relieved(kept);
   std::vector<Flute> flutes(job_->tooth_angles.size());
   for (const RunStroke* stroke : kept) flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
   std::vector<GroundTooth> teeth;

@@ -144,6 +144,14 @@ std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigu
   }
   if (!std::isnan(ground.edge)) all.push_back({"edge", format("within %.3f deg of the asked helix", deg(ground.edge))});
   if (!std::isnan(ground.core_diameter[0])) all.push_back({"core", coreText(ground.core_diameter, c)});
+  if (!std::isnan(ground.clearance.from)) {
+    all.push_back({"clearance", angleText(ground.clearance, {c.clearance, c.clearance}, c.clearance_tolerance)});
+  }
+  if (!std::isnan(ground.relief.from)) {
+    const std::string asked = c.land > 0 ? format("; asked %g mm at X = 0", mm(c.land)) : "";
+    all.push_back(
+        {"primary relief", format("%.3f to %.3f mm wide", mm(ground.relief.from), mm(ground.relief.to)) + asked});
+  }
   return all;
 }
 

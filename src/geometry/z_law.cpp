@@ -4,8 +4,10 @@
 #include "flute_grinder/geometry/rake_correction.h"
 #include "flute_grinder/job/valid_job.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,13 +15,15 @@ namespace grinder {
 
 namespace {
 
+constexpr int kEdgeSections = 9;  ///< of the flute
+
 /// @param job with the published law.
 ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch) {
   const GrindProcess& p = job->process;
   const double rake = job->cutter.rake_angle;
   const auto found =
       correctRake(ConicalCutter(job.cutterOf(tooth)), wheelOf(*job).worn(p.wheel_wear), p.wheel_diameter / 2,
-                  setupOf(*job), strokeOf(job, tooth, p.deepest(), p.wheel_wear), rake, watch);
+                  setupOf(job, tooth), strokeOf(job, tooth, job.deepest(), p.wheel_wear), rake, watch);
   if (found && std::abs(found->min_rake - rake) <= kEvenRake && std::abs(found->max_rake - rake) <= kEvenRake) {
     return found->z;
   }
@@ -34,9 +38,34 @@ ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch)
   throw ReasonError(reason);
 }
 
+/// By how much each tooth's edge is ahead of its asked helix, between the extremes.
+std::vector<double> edgesOf(const ValidJob& flutes) {
+  const GroundCutter cutter = groundCutterOf(flutes);
+  std::vector<Range> off(cutter.teeth().size());
+  for (int i = 0; i < kEdgeSections; ++i) {
+    const GroundSection section = cutter.section(flutes->cutter.flute_length * i / (kEdgeSections - 1));
+    for (std::size_t tooth = 0; tooth < off.size(); ++tooth) {
+      if (!section.teeth[tooth].edge) {
+        throw ReasonError(otherReason("tooth " + std::to_string(tooth + 1) + " has no edge at X = " +
+                                      text(Quantity{section.x, Unit::kMetre}) + ": a relief has nothing to follow"));
+      }
+      const LogCurve asked(ConicalCutter(flutes.cutterOf(static_cast<int>(tooth))));
+      const double here = *section.teeth[tooth].edge - cutter.teeth()[tooth].angle - asked.a(section.x);
+      off[tooth] = i == 0 ? Range{here, here} : Range{std::min(off[tooth].from, here), std::max(off[tooth].to, here)};
+    }
+  }
+  std::vector<double> edges;
+  for (const Range& range : off) edges.push_back((range.from + range.to) / 2);
+  return edges;
+}
+
 }  // namespace
 
-ValidJob withZLaw(const ValidJob& job, const PlanWatch& watch) {
+ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
+  if (job.relief(0) != nullptr) {
+    const ValidJob flutes = withLaws(job->ofOperation(0), watch);
+    return job.withEdges(flutes, edgesOf(flutes));
+  }
   if (job->process.z_law == ZLaw::kPublished) return job;
   const ValidJob published = job.withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
   std::map<double, ZCorrection> by_spiral;

@@ -18,6 +18,12 @@ bool decode(const YAML::Node& node, T& value) {
   return node.IsScalar() && YAML::convert<T>::decode(node, value);
 }
 
+/// The key of the list that an element is of, e.g. "points_mm" of "points_mm[2][0]"; others as they are.
+std::string listOf(std::string key) {
+  while (!key.empty() && key.back() == ']') key.erase(key.rfind('['));
+  return key;
+}
+
 /// Whether a text is a decimal number, of whatever size.
 bool isNumber(const std::string& text) {
   char* end = nullptr;
@@ -86,7 +92,7 @@ void FlatFile::drop(const std::string& key) {
 }
 
 bool FlatFile::mentionsPart(const std::string& key) const {
-  const std::string stem = key.substr(0, key.find('['));
+  const std::string stem = listOf(key);
   return mentions(stem) || mentions(element(stem, 1));
 }
 
@@ -113,13 +119,25 @@ void FlatFile::refuseBeside(const std::string& key, const std::string& section, 
   std::set<std::string> refused;
   for (auto it = entries_.lower_bound(section);
        it != entries_.end() && it->first.compare(0, section.size(), section) == 0;) {
-    refused.insert(it->first.substr(0, it->first.find('[')));
+    refused.insert(listOf(it->first));
     it = entries_.erase(it);
   }
   for (const std::string& other : refused) {
     std::string text = other;
     text.append(" stands beside ").append(key).append("; allowed beside it: ").append(allowed);
     fail(line(other), text);
+  }
+}
+
+bool FlatFile::mentionsSection(const std::string& section) const {
+  const auto it = lines_.lower_bound(section);
+  return it != lines_.end() && it->first.compare(0, section.size(), section) == 0;
+}
+
+void FlatFile::dropSection(const std::string& section) {
+  for (auto it = entries_.lower_bound(section);
+       it != entries_.end() && it->first.compare(0, section.size(), section) == 0;) {
+    it = entries_.erase(it);
   }
 }
 

@@ -147,6 +147,43 @@ void checkWheel(Checker& checker, const GrindProcess& p) {
   }
 }
 
+/// Whether the operations follow one another as they must, and the cutter has what the reliefs grind.
+void checkOperations(Checker& checker, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const int count = static_cast<int>(job.operations.size());
+  const auto ask = [&](const char* path, double value, Unit unit, const char* what) {
+    if (!(value > 0)) checker.refuse(ReasonKind::kNotAllowed, path, {value, unit}, what);
+  };
+  checker.whole("operation", job.operation, std::max(0, count - 1));
+  checker.whole("operations", count, countOf<OperationKind>());
+  for (int i = 0; i < count && checker.good(); ++i) {
+    checker.whole("process.kind", static_cast<int>(job.operations[static_cast<std::size_t>(i)].process.kind), i, i);
+  }
+  if (!checker.good()) return;
+  if (count == 0) return checker.whole("process.kind", static_cast<int>(job.process.kind), 0);
+  const GrindJob own = job.ofOperation(job.operation);
+  visitJobFields([&](const JobField& field, auto of) {
+    if (of(job) == of(own)) return;
+    checker.refuse(ReasonKind::kNotAllowed, field.path, {of(job), field.unit}, "as in its operation,", of(own));
+  });
+  visitJobChoices([&](const char* path, int, auto of) {
+    checker.whole(path, static_cast<int>(of(job)), static_cast<int>(of(own)), static_cast<int>(of(own)));
+  });
+  if (count < 2) return;
+  ask("cutter.clearance", c.clearance, Unit::kRadian, "more than 0 with a relief");
+  ask("cutter.clearance_tolerance", c.clearance_tolerance, Unit::kRadian, "more than 0 with a relief");
+  if (count < 3) return;
+  ask("cutter.land", c.land, Unit::kMetre, "more than 0 with a secondary relief");
+  ask("cutter.second_clearance", c.second_clearance, Unit::kRadian, "more than 0 with a secondary relief");
+}
+
+/// A relief is ground by the rim of a straight wheel.
+void checkReliefWheel(Checker& checker, const GrindProcess& p) {
+  if (p.wheel_profile == WheelShape::kStraight) return;
+  checker.refuse(ReasonKind::kNotAllowed, "process.wheel_profile", {static_cast<double>(p.wheel_profile), Unit::kNone},
+                 "0, straight, for a relief: its cylinder is what grinds it");
+}
+
 /// Checks numbers that are each within their range against each other.
 void checkTogether(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
@@ -170,6 +207,10 @@ void checkTogether(Checker& checker, const GrindJob& job) {
     if (!checker.good()) return;
     checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_lead),
                   "where the cone closes");
+  }
+  if (isRelief(p.kind)) {
+    checkReliefWheel(checker, p);
+    return checkWheel(checker, p);
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");
   checker.below(p.depth_end > 0 ? "process.depth_end" : "process.depth", p.depthEnd(), radius(c.flute_length),
@@ -210,13 +251,28 @@ Range askedSpiral(const GrindJob& job) {
 
 std::vector<Reason> validate(const GrindJob& job) {
   Checker checker;
-  visitJobFields([&](const JobField& field, auto of) { checker.range(field, of(job)); });
+  visitJobFields([&](const JobField& field, auto of) {
+    if (field.isOf(job.process.kind)) return checker.range(field, of(job));
+    if (of(job) == 0) return;
+    checker.refuse(ReasonKind::kNotAllowed, field.path, {of(job), field.unit}, "0 for this operation");
+  });
   checkTeeth(checker, job.tooth_angles);
   checkSpirals(checker, job);
   checkWheelPoints(checker, job);
   visitJobChoices([&](const char* path, int max, auto of) { checker.whole(path, static_cast<int>(of(job)), max); });
+  if (checker.good()) checkOperations(checker, job);
   if (checker.good()) checkTogether(checker, job);
   return checker.take();
+}
+
+GrindJob GrindJob::ofOperation(int index) const {
+  GrindJob job = *this;
+  if (operations.empty()) return job;
+  const GrindOperation& other = operations.at(static_cast<std::size_t>(index));
+  job.process = other.process;
+  job.wheel_points = other.wheel_points;
+  job.operation = index;
+  return job;
 }
 
 std::vector<Reason> validateWheel(const GrindJob& job) {
@@ -233,16 +289,17 @@ std::vector<Reason> validateWheel(const GrindJob& job) {
   return checker.take();
 }
 
-std::vector<double> passDepths(const GrindProcess& process) {
+std::vector<double> passDepths(const GrindProcess& process) { return passDepths(process, process.deepest()); }
+
+std::vector<double> passDepths(const GrindProcess& process, double deepest) {
   // A depth that is a multiple of the infeed, except for rounding, needs no extra pass for the remainder.
   constexpr double rounding = 1e-9;
-  const double depth = process.deepest();
-  const double rough = depth - process.finish_infeed;
+  const double rough = deepest - process.finish_infeed;
   const int rough_passes = static_cast<int>(std::ceil(rough / process.infeed - rounding));
   std::vector<double> depths;
   for (int i = 1; i <= rough_passes; ++i) depths.push_back(i == rough_passes ? rough : i * process.infeed);
-  if (process.finish_infeed > 0 || depths.empty()) depths.push_back(depth);
-  depths.insert(depths.end(), static_cast<std::size_t>(process.spark_out), depth);
+  if (process.finish_infeed > 0 || depths.empty()) depths.push_back(deepest);
+  depths.insert(depths.end(), static_cast<std::size_t>(process.spark_out), deepest);
   return depths;
 }
 

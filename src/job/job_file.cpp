@@ -40,16 +40,42 @@ void takeSpirals(FlatFile& file, GrindJob& job) {
 }
 
 constexpr const char* kKind = "job file";
-constexpr const char* kContent = "cutter, process and interpolation";
-constexpr const char* kWheel = "process.wheel.";
+constexpr const char* kContent = "cutter, process or operations, and interpolation";
+constexpr const char* kProcess = "process.";
+constexpr const char* kOperations = "operations";
+constexpr const char* kOperation = "operation";
+constexpr const char* kDepth = "process.depth";
+
+bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
+
+/// The keys of one process of a file: that of a single operation, or one of the list.
+class ProcessKeys {
+ public:
+  /// @param section with its point, e.g. "process." or "operations[1].".
+  explicit ProcessKeys(std::string section) : section_(std::move(section)) {}
+
+  bool single() const { return section_ == kProcess; }
+  /// @param key of a file with a single operation.
+  std::string operator()(std::string_view key) const {
+    return begins(key, kProcess) ? section_ + std::string(key.substr(std::string_view(kProcess).size()))
+                                 : std::string(key);
+  }
+  /// A text with keys of a single operation. Only they begin with its section's name.
+  std::string in(std::string text) const {
+    for (std::size_t at = 0; (at = text.find(kProcess, at)) != std::string::npos; at += section_.size()) {
+      text.replace(at, std::string_view(kProcess).size(), section_);
+    }
+    return text;
+  }
+
+ private:
+  std::string section_;
+};
 
 /// Whether a wheel's own file has the number, or it follows from it; the wear per pass is the process's.
 bool isOfWheelFile(const JobField& field) {
-  return std::string_view(field.file_key).substr(0, std::string_view(kWheel).size()) == kWheel &&
-         std::string_view(field.path) != "process.wheel_wear_per_pass";
+  return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
-
-constexpr const char* kWheelFile = "process.wheel.file";
 
 /// @param job the path of the job file.
 std::string wheelPath(const std::string& job, const std::string& wheel) {
@@ -58,8 +84,8 @@ std::string wheelPath(const std::string& job, const std::string& wheel) {
 
 /// Refuses a text where the wheel's keys belong, which is most likely the path of a wheel file. @return whether it is
 /// so.
-bool refuseWheelPath(FlatFile& file) {
-  const std::string key = "process.wheel";
+bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
+  const std::string key = keys("process.wheel");
   const std::string allowed = "keys of a wheel below it, as file: PATH for a wheel file";
   std::string path;
   if (!file.has(key)) return false;
@@ -68,8 +94,8 @@ bool refuseWheelPath(FlatFile& file) {
 }
 
 /// @param path_of_job as its messages name it.
-void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job) {
-  const std::string key = kWheelFile;
+void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, GrindJob& job) {
+  const std::string key = keys("process.wheel.file");
   const std::string allowed = "the path of a wheel file";
   std::string name;
   const bool named = file.has(key) && file.take(key, allowed, name);
@@ -77,7 +103,7 @@ void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job
     file.fail(file.line(key), key + " is a list; allowed: " + allowed);
     file.drop(key);
   }
-  file.refuseBeside(key, kWheel, "process.wheel.wear_per_pass_mm");
+  file.refuseBeside(key, keys("process.wheel."), keys("process.wheel.wear_per_pass_mm"));
   if (!named) return;
   const std::string path = wheelPath(path_of_job, name);
   std::string text;
@@ -96,11 +122,10 @@ void takeWheelFile(FlatFile& file, const std::string& path_of_job, GrindJob& job
   }
 }
 
-constexpr const char* kDepth = "process.depth";
-
 /// Whether a file omits a figure that is yet to be found.
-bool isToBeFound(const FlatFile& file, const JobField& field, const std::vector<std::string>& unsolved) {
-  return !file.has(field.file_key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
+bool isToBeFound(const FlatFile& file, const std::string& key, const JobField& field,
+                 const std::vector<std::string>& unsolved) {
+  return !file.has(key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
 }
 
 /// How a missing figure is found; nothing for most.
@@ -109,70 +134,196 @@ std::string remedy(std::string_view path) {
 }
 
 /// Whether a file omits a number that it may omit. The elements of a pair are omitted together.
-bool omits(const FlatFile& file, const JobField& field) {
-  const std::string key = field.file_key;
+bool omits(const FlatFile& file, const std::string& key, const JobField& field) {
   if (key == "cutter.spiral_angle_deg" && file.mentions("cutter.spiral_angles_deg")) return !file.has(key);
   return field.optional && !file.mentionsPart(key);
 }
 
-}  // namespace
+/// Reads one operation, and all that the file has but operations.
+class OperationReader {
+ public:
+  /// @param before the operation ahead, from which a relief takes what it leaves out; null for the first.
+  OperationReader(FlatFile& file, ProcessKeys keys, const GrindProcess* before)
+      : file_(file), keys_(std::move(keys)), before_(before) {}
 
-GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved) {
-  FlatFile file(text, name, kKind, kContent);
-  GrindJob job;
-  takeSpirals(file, job);
-  const bool has_wheel_path = refuseWheelPath(file);
-  const bool has_wheel_file = has_wheel_path || file.mentions(kWheelFile);
-  visitJobFields([&](const JobField& field, auto of) {
+  GrindJob read(const std::string& name, const std::vector<std::string>& unsolved) {
+    if (!keys_.single()) takeKind();
+    takeSpirals(file_, job_);
+    const bool has_wheel_path = refuseWheelPath(file_, keys_);
+    const bool has_wheel_file = has_wheel_path || file_.mentions(keys_("process.wheel.file"));
+    visitJobFields([&](const JobField& field, auto of) {
+      if (!(has_wheel_file && isOfWheelFile(field))) takeNumber(field, of, unsolved);
+    });
+    takeTeeth(file_, job_);
+    if (has_wheel_file) {
+      if (!has_wheel_path) takeWheelFile(file_, keys_, name, job_);
+    } else {
+      file_.know(keys_("process.wheel.file"));
+      takeWheelShape(file_, keys_("process.wheel."), job_);
+    }
+    takeChoices();
+    return std::move(job_);
+  }
+
+ private:
+  void takeKind() {
+    const std::string kind = keys_("process.kind"), relief = keys_("process.relief");
+    std::string word;
+    if (!file_.take(kind, "flute, relief", word)) return;
+    if (word == "flute") return;
+    if (word != "relief") return file_.fail(file_.line(kind), kind + " = " + word + "; allowed: flute, relief");
+    if (!file_.take(relief, "primary, secondary", word)) return;
+    const auto which = valueOf<OperationKind>(word);
+    if (!which || !isRelief(*which)) {
+      return file_.fail(file_.line(relief), relief + " = " + word + "; allowed: primary, secondary");
+    }
+    job_.process.kind = *which;
+  }
+
+  /// Whether a relief takes a key from the operation ahead. @param key of a single operation.
+  bool inherits(const char* key) const { return before_ != nullptr && !file_.has(keys_(key)); }
+
+  template <typename Of>
+  void takeNumber(const JobField& field, const Of& of, const std::vector<std::string>& unsolved) {
+    const std::string key = keys_(field.file_key);
     double value = 0;
-    if (has_wheel_file && isOfWheelFile(field)) return;
-    if (omits(file, field)) return file.know(field.file_key);
-    if (isToBeFound(file, field, unsolved)) {
-      if (field.path == std::string_view(kDepth)) of(job) = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
-      return file.know(field.file_key);
+    if (!field.isOf(job_.process.kind)) return;
+    if (std::string_view(field.path) == "process.clearance" && inherits(field.file_key)) {
+      job_.process.clearance = before_->clearance;
+      return file_.know(key);
+    }
+    if (omits(file_, key, field)) return file_.know(key);
+    if (isToBeFound(file_, key, field, unsolved)) {
+      if (field.path == std::string_view(kDepth)) of(job_) = (job_.cutter.end_diameter - job_.cutter.core_diameter) / 2;
+      return file_.know(key);
     }
     std::string allowed = grinder::text(field.low(), field.high());
-    if (!file.has(field.file_key)) allowed += remedy(field.path);
-    file.take(field.file_key, allowed, value);
-    of(job) = value * shopScale(field.unit);
-  });
-  takeTeeth(file, job);
-  if (has_wheel_file) {
-    if (!has_wheel_path) takeWheelFile(file, name, job);
-  } else {
-    file.know(kWheelFile);
-    takeWheelShape(file, kWheel, job);
+    if (!file_.has(key)) allowed += remedy(field.path);
+    file_.take(key, allowed, value);
+    of(job_) = value * shopScale(field.unit);
   }
-  file.takeChoice("cutter.cut", job.cutter.cut);
-  file.takeOptionalChoice("process.z_law", job.process.z_law);
-  const std::string incomplete_ok = "process.incomplete_ok";
-  if (file.has(incomplete_ok)) {
-    file.take(incomplete_ok, "true, false", job.process.incomplete_ok);
-  } else {
-    file.know(incomplete_ok);
+
+  void takeChoices() {
+    GrindProcess& p = job_.process;
+    file_.takeChoice("cutter.cut", job_.cutter.cut);
+    file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
+    takeOrInherit("process.order", p.order, [&](const std::string& key) { file_.takeChoice(key, p.order); });
+    takeOrInherit("process.direction", p.direction,
+                  [&](const std::string& key) { file_.takeChoice(key, p.direction); });
+    takeOrInherit("process.spark_out", p.spark_out, [&](const std::string& key) {
+      file_.take(key, "0 to " + std::to_string(kMaxSparkOut), p.spark_out);
+    });
+    if (isRelief(p.kind)) return;
+    file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
+    const std::string incomplete_ok = keys_("process.incomplete_ok");
+    if (file_.has(incomplete_ok)) {
+      file_.take(incomplete_ok, "true, false", p.incomplete_ok);
+    } else {
+      file_.know(incomplete_ok);
+    }
   }
-  file.take("process.spark_out", "0 to " + std::to_string(kMaxSparkOut), job.process.spark_out);
-  file.takeChoice("process.order", job.process.order);
-  file.takeChoice("process.direction", job.process.direction);
-  file.takeChoice("interpolation.even_step", job.interpolation.even_step);
+
+  template <typename Value, typename Take>
+  void takeOrInherit(const char* key, Value& value, const Take& take) {
+    if (!inherits(key)) return take(keys_(key));
+    file_.know(keys_(key));
+    if (before_ == nullptr) return;
+    if constexpr (std::is_same_v<Value, GrindOrder>) value = before_->order;
+    if constexpr (std::is_same_v<Value, StrokeDirection>) value = before_->direction;
+    if constexpr (std::is_same_v<Value, int>) value = before_->spark_out;
+  }
+
+  FlatFile& file_;
+  ProcessKeys keys_;
+  const GrindProcess* before_;
+  GrindJob job_;
+};
+
+std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
+
+/// How many operations a file lists; 0 for a single process.
+std::size_t operationsIn(const FlatFile& file) {
+  std::size_t count = 0;
+  while (count < kMaxOperations && file.mentionsSection(element(kOperations, count))) ++count;
+  return count;
+}
+
+void failInvalid(FlatFile& file, const ProcessKeys& keys, const GrindJob& job) {
+  for (const Reason& reason : validate(job)) {
+    file.fail(file.line(keys(fieldName(reason.field))), keys.in(grinder::text(reason)));
+  }
+  file.throwErrors();
+}
+
+/// The index of an operation. @param named its number, from 1, or its kind; may be empty if there is one alone.
+std::size_t operationNamed(const std::string& named, const std::vector<GrindOperation>& operations,
+                           const std::string& name) {
+  std::string all;
+  for (std::size_t i = 0; i < operations.size(); ++i) {
+    const std::string kind = toString(operations[i].process.kind);
+    if (named == kind || named == std::to_string(i + 1) || (named.empty() && operations.size() == 1)) return i;
+    all += (all.empty() ? "" : ", ") + std::to_string(i + 1) + " or " + kind;
+  }
+  throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
+}
+
+/// One operation, with the rest of the file.
+GrindJob readOperation(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
+                       const std::string& section, const GrindProcess* before) {
+  FlatFile file(text, name, kKind, kContent);
+  const ProcessKeys keys(section);
+  if (!keys.single()) {
+    for (std::size_t i = 0; i < kMaxOperations; ++i) {
+      if (sectionOf(i) != section) file.dropSection(sectionOf(i));
+    }
+    // A record names its operation, and repeats it.
+    if (file.has(kOperation)) file.dropSection(kProcess);
+    file.drop(kOperation);
+  }
+  GrindJob job = OperationReader(file, keys, before).read(name, unsolved);
   file.refuseTheRest();
   file.throwErrors();
-
-  for (const Reason& reason : validate(job)) {
-    file.fail(file.line(fieldName(reason.field)), grinder::text(reason));
-  }
-  file.throwErrors();
+  if (keys.single()) failInvalid(file, keys, job);
   return job;
 }
 
-GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved) {
-  return parseJob(readTextFile(path), path, unsolved);
+}  // namespace
+
+GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
+                  const std::string& operation) {
+  FlatFile file(text, name, kKind, kContent);
+  const std::size_t count = operationsIn(file);
+  if (count == 0) {
+    if (!operation.empty() && operation != "1" && operation != toString(OperationKind::kFlute)) {
+      throw JobFileError(name + ": operation = " + operation + "; allowed: 1 or flute, its only one");
+    }
+    return readOperation(text, name, unsolved, kProcess, nullptr);
+  }
+  GrindJob job;
+  std::vector<GrindOperation> all;
+  for (std::size_t i = 0; i < count; ++i) {
+    job = readOperation(text, name, unsolved, sectionOf(i), i == 0 ? nullptr : &all.back().process);
+    all.push_back({job.process, job.wheel_points});
+  }
+  job.operations = std::move(all);
+  for (std::size_t i = 0; i < count; ++i) {
+    failInvalid(file, ProcessKeys(sectionOf(i)), job.ofOperation(static_cast<int>(i)));
+  }
+  std::string named = operation;
+  if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
+  return job.ofOperation(static_cast<int>(operationNamed(named, job.operations, name)));
 }
 
-std::string wheelFileOf(const std::string& path) {
+GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved, const std::string& operation) {
+  return parseJob(readTextFile(path), path, unsolved, operation);
+}
+
+std::string wheelFileOf(const std::string& path, int operation) {
   FlatFile file(readTextFile(path), path, kKind, kContent);
+  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(static_cast<std::size_t>(operation)));
+  const std::string key = keys("process.wheel.file");
   std::string name;
-  if (!file.has(kWheelFile) || !file.take(kWheelFile, "", name)) return "";
+  if (!file.has(key) || !file.take(key, "", name)) return "";
   return wheelPath(path, name);
 }
 

@@ -109,6 +109,9 @@ class Writer {
     if (name == "value") return value();
     if (name == "limit") return limit();
     if (name == "detail") return r_.detail;
+    if (name == "low") return low();
+    if (name == "tooth") return tooth();
+    if (name == "x") return x();
     if (name == "cycle") return std::to_string(r_.cycle);
     if (name == "number") return number();
     if (name == "excess") return excess();

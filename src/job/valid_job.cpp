@@ -1,5 +1,6 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,65 @@ std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& de
   return all;
 }
 
+ReliefWheel reliefWheelOf(const GrindProcess& p) {
+  return {p.wheel_diameter / 2, p.wheel_wear, p.wheel_width, p.setup_swivel, p.setup_height};
+}
+
+/// Where a relief begins behind the edge of one of the teeth: of a secondary one, at the end of the primary's land.
+ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& cutter) {
+  const CutterGeometry& c = job.cutter;
+  if (job.process.kind == OperationKind::kPrimaryRelief) {
+    return {c.clearance, 1, job.process.behind / cutter.radius(0)};
+  }
+  const GrindJob primary = job.ofOperation(1);
+  const ReliefPath path(cutter, reliefStartOf(primary, cutter), reliefWheelOf(primary.process));
+  const ReliefPath::Place end = path.surfaceAt(0, c.land);
+  if (!(end.radius > 0)) throw std::invalid_argument("the primary relief is not as wide as cutter.land_mm");
+  return {c.second_clearance, end.radius / cutter.radius(0), end.behind};
+}
+
+/// The paths of a relief behind all teeth. @throw InvalidJob
+std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters) {
+  try {
+    std::vector<ReliefPath> paths;
+    for (const CutterGeometry& geometry : cutters) {
+      const ConicalCutter cutter(geometry);
+      paths.emplace_back(cutter, reliefStartOf(job, cutter), reliefWheelOf(job.process));
+      if (cutter.radius(-paths.back().beyondEnd()) > 0 &&
+          cutter.radius(geometry.flute_length + paths.back().beyondShank()) > 0) {
+        continue;
+      }
+      throw std::invalid_argument("the stroke of the relief goes beyond where the cone closes");
+    }
+    return paths;
+  } catch (const std::invalid_argument& error) {
+    throw InvalidJob({otherReason(error.what())});
+  }
+}
+
+/// The laws of the strokes of all teeth; of reliefs, X goes as far in each as the farthest needs.
+/// @param edges of the teeth; none for flutes.
+std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters,
+                              const std::vector<ReliefPath>& reliefs, const std::vector<double>& edges) {
+  const GrindProcess& p = job.process;
+  const double length = job.cutter.flute_length;
+  std::vector<StrokeLaw> laws;
+  Range x{-p.overtravel_end, length + p.overtravel_shank};
+  for (std::size_t i = 0; i < reliefs.size(); ++i) {
+    const Range own{reliefs[i].lead() - reliefs[i].beyondEnd(), length + reliefs[i].lead() + reliefs[i].beyondShank()};
+    x = i == 0 ? own : Range{std::min(x.from, own.from), std::max(x.to, own.to)};
+  }
+  if (p.direction == StrokeDirection::kToEnd) std::swap(x.from, x.to);
+  for (std::size_t i = 0; i < cutters.size(); ++i) {
+    laws.push_back({cutters[i], x.from, x.to, p.setup_lead, job.tooth_angles[i]});
+    if (reliefs.empty()) continue;
+    laws[i].cutter = reliefs[i].cutter().geometry();
+    laws[i].lead = reliefs[i].lead();
+    laws[i].a += reliefs[i].a() + edges[i];
+  }
+  return laws;
+}
+
 }  // namespace
 
 InvalidJob::InvalidJob(std::vector<Reason> reasons)
@@ -32,23 +92,66 @@ ValidJob::ValidJob(GrindJob job) {
   Content content;
   content.cutters.assign(job.tooth_angles.size(), job.cutter);
   for (std::size_t i = 0; i < job.spiral_angles.size(); ++i) content.cutters[i].spiral_angle = job.spiral_angles[i];
-  content.depths = passDepths(job.process);
+  if (isRelief(job.process.kind)) {
+    content.reliefs = reliefsOf(job, content.cutters);
+    for (const ReliefPath& path : content.reliefs) content.deepest = std::max(content.deepest, path.depth());
+    const double passes = content.deepest / job.process.infeed + job.process.spark_out + 2;
+    if (!(passes * static_cast<double>(job.tooth_angles.size()) <= kMaxPassesOfAll)) {
+      throw InvalidJob({otherReason("process.infeed_mm is too small for a relief as deep as this: more than " +
+                                    std::to_string(kMaxPassesOfAll) + " passes of all teeth")});
+    }
+  } else {
+    content.deepest = job.process.deepest();
+    content.laws = lawsOf(job, content.cutters, {}, {});
+  }
+  content.depths = passDepths(job.process, content.deepest);
   content.passes = passesOf(job, content.depths);
   if (job.process.z_law == ZLaw::kPublished) content.z_corrections.resize(job.tooth_angles.size());
   content.job = std::move(job);
   content_ = std::make_shared<const Content>(std::move(content));
 }
 
-DepthLaw ValidJob::depthLaw(double depth) const noexcept {
+const StrokeLaw& ValidJob::strokeLaw(int tooth) const {
+  if (content_->laws.empty()) {
+    throw std::invalid_argument("the edges that the relief follows are not computed; see withLaws()");
+  }
+  return content_->laws.at(static_cast<std::size_t>(tooth));
+}
+
+DepthLaw ValidJob::depthLaw(int tooth, double depth, double wear) const noexcept {
   const GrindProcess& p = content_->job.process;
-  const double deepest = p.deepest();
+  if (const ReliefPath* path = relief(tooth)) {
+    return {-path->y() - (content_->deepest - depth) + (wear - p.wheel_wear) * path->yPerWear(), path->taper()};
+  }
   const double taper = (p.depth - p.depthEnd()) / content_->job.cutter.flute_length;
-  return {depth * (p.depth / deepest), depth / deepest * taper};
+  return {depthAtEnd(depth) + wear, depth / content_->deepest * taper};
+}
+
+double ValidJob::depthAtEnd(double depth) const noexcept {
+  return content_->reliefs.empty() ? depth * (content_->job.process.depth / content_->deepest) : depth;
+}
+
+const ReliefPath* ValidJob::relief(int tooth) const noexcept {
+  return content_->reliefs.empty() ? nullptr : &content_->reliefs[static_cast<std::size_t>(tooth)];
+}
+
+ValidJob ValidJob::withEdges(const ValidJob& flutes, std::vector<double> edges) const {
+  if (edges.size() != content_->cutters.size()) {
+    throw std::invalid_argument(std::to_string(edges.size()) + " edges; allowed: " + std::to_string(teeth()) +
+                                ", one for each tooth");
+  }
+  ValidJob job = *this;
+  Content content = *content_;
+  content.laws = lawsOf(content.job, content.cutters, content.reliefs, edges);
+  content.flutes = std::make_shared<const ValidJob>(flutes);
+  content.edges = std::move(edges);
+  job.content_ = std::make_shared<const Content>(std::move(content));
+  return job;
 }
 
 const ZCorrection& ValidJob::zCorrectionOf(int tooth) const {
   if (content_->z_corrections.empty()) {
-    throw std::invalid_argument("process.z_law = constant_rake: its corrections of Z are not computed; see withZLaw()");
+    throw std::invalid_argument("process.z_law = constant_rake: its corrections of Z are not computed; see withLaws()");
   }
   return content_->z_corrections.at(static_cast<std::size_t>(tooth));
 }

@@ -70,6 +70,13 @@ GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal) {
     const double radius = i + 1 < points.size() ? points[i + 1] : std::numeric_limits<double>::quiet_NaN();
     job.wheel_points.push_back({points[i], radius});
   }
+  for (const flute_grinder::Process& process : goal.operations) {
+    flute_grinder::GrindGoal alone;
+    alone.process = process;
+    GrindJob one = jobFromGoal(alone);
+    job.operations.push_back({one.process, std::move(one.wheel_points)});
+  }
+  job.operation = goal.operation;
   return job;
 }
 
@@ -81,6 +88,13 @@ flute_grinder::GrindGoal goalFromJob(const GrindJob& job) {
   for (const ProfilePoint& point : job.wheel_points) {
     goal.process.wheel_points.insert(goal.process.wheel_points.end(), {point.w, point.radius});
   }
+  for (const GrindOperation& operation : job.operations) {
+    GrindJob alone;
+    alone.process = operation.process;
+    alone.wheel_points = operation.wheel_points;
+    goal.operations.push_back(goalFromJob(alone).process);
+  }
+  goal.operation = static_cast<std::uint16_t>(job.operation);
   return goal;
 }
 

@@ -56,11 +56,35 @@ void addTeeth(Json& file, const GrindJob& job) {
   file["cutter"]["spiral_angles_deg"] = degrees(job.spiral_angles);
 }
 
-void addWheelPoints(Json& file, const GrindJob& job) {
+/// The numbers and choices of an operation, with those of the whole job.
+Json fieldsOf(const GrindJob& job) {
+  Json file = Json::object();
+  visitJobFields([&](const JobField& field, auto of) {
+    if (field.isOf(job.process.kind)) at(file, field.file_key) = shopNumber(of(job), field.unit);
+  });
+  visitJobChoices([&](const std::string& path, int, auto of) {
+    const std::string wheel = "process.wheel_";
+    const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
+    at(file, of_wheel ? "process.wheel." + path.substr(wheel.size()) : path) = choiceJson(of(job));
+  });
+  Json& process = file["process"];
+  process.erase("kind");
+  if (!isTapered(job.process.wheel_profile)) process["wheel"].erase("side");
   for (const ProfilePoint& point : job.wheel_points) {
-    file["process"]["wheel"]["points_mm"].push_back(
+    process["wheel"]["points_mm"].push_back(
         {shopNumber(point.w, Unit::kMetre), shopNumber(point.radius, Unit::kMetre)});
   }
+  return file;
+}
+
+/// As an element of a job file's list.
+Json operationOf(const GrindJob& job) {
+  Json process = fieldsOf(job)["process"];
+  process["kind"] = isRelief(job.process.kind) ? "relief" : "flute";
+  if (!isRelief(job.process.kind)) return process;
+  process["relief"] = toString(job.process.kind);
+  for (const char* key : {"z_law", "incomplete_ok"}) process.erase(key);
+  return process;
 }
 
 }  // namespace
@@ -82,16 +106,15 @@ Json toJson(const std::vector<FeedLimit>& limits) {
 }
 
 Json toJson(const GrindJob& job) {
-  Json file = Json::object();
-  visitJobFields([&](const JobField& field, auto of) { at(file, field.file_key) = shopNumber(of(job), field.unit); });
-  visitJobChoices([&](const std::string& path, int, auto of) {
-    const std::string wheel = "process.wheel_";
-    const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
-    at(file, of_wheel ? "process.wheel." + path.substr(wheel.size()) : path) = choiceJson(of(job));
-  });
-  if (!isTapered(job.process.wheel_profile)) file["process"]["wheel"].erase("side");
+  Json file = fieldsOf(job);
   addTeeth(file, job);
-  addWheelPoints(file, job);
+  if (job.operations.empty()) return file;
+  // Of a record: the operation that was ground, for its readers.
+  file["process"] = operationOf(job);
+  file["operation"] = toString(job.process.kind);
+  for (int i = 0; i < static_cast<int>(job.operations.size()); ++i) {
+    file["operations"].push_back(operationOf(job.ofOperation(i)));
+  }
   return file;
 }
 

@@ -31,10 +31,10 @@ To convertedBasis(const From& from) {
 
 }  // namespace
 
-flute_grinder::GrindGoal goalFromFile(const std::string& path) {
-  flute_grinder::GrindGoal goal = goalFromJob(readJobFile(path));
+flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation) {
+  flute_grinder::GrindGoal goal = goalFromJob(readJobFile(path, {}, operation));
   goal.job_name = nameOf(path);
-  goal.wheel_name = nameOf(wheelFileOf(path));
+  goal.wheel_name = nameOf(wheelFileOf(path, goal.operation));
   return goal;
 }
 

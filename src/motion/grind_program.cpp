@@ -16,11 +16,8 @@ constexpr double kMinPeriod = 1e-6;  ///< of the control cycle [s]
 
 FeedSchedule::Stroke strokeOf(const ValidJob& job) {
   FeedSchedule::Stroke stroke;
-  stroke.from = -job->process.overtravel_end;
-  stroke.to = job->cutter.flute_length + job->process.overtravel_shank;
-  if (job->process.direction == StrokeDirection::kToEnd) std::swap(stroke.from, stroke.to);
-  stroke.lead = job->process.setup_lead;
-  stroke.taper = job.depthLaw(job->process.deepest()).taper;
+  stroke.from = job.strokeLaw(0).from;
+  stroke.to = job.strokeLaw(0).to;
   stroke.surface_feed = job->process.feed;
   // With the published rule, the even points of steep cutters drift by up to the same amount again.
   stroke.tolerance =
@@ -96,9 +93,11 @@ std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
 std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, const Machine& machine) {
   std::vector<Helix> helices;
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    const CutterGeometry& geometry = job.cutterOf(tooth);
-    if (indexOf(helices, geometry.spiral_angle) < helices.size()) continue;
-    const ConicalCutter cutter(geometry);
+    const StrokeLaw& law = job.strokeLaw(tooth);
+    if (indexOf(helices, law.cutter.spiral_angle) < helices.size()) continue;
+    const ConicalCutter cutter(law.cutter);
+    stroke.lead = law.lead;
+    stroke.taper = job.depthLaw(tooth, job.deepest(), job->process.wheel_wear).taper;
     stroke.z_correction = job.zCorrectionOf(tooth);
     helices.push_back({{cutter, stroke.lead},
                        LogCurve(cutter, stroke.lead),
@@ -160,10 +159,9 @@ void GrindProgram::appendPass(const JobPass& pass, Axes& at) {
   const Helix& helix = this->helix(pass.place.tooth);
   const ConicalCutter& cutter = helix.edge.cutter;
   const LogCurve& curve = helix.curve;
-  const DepthLaw law = job_.depthLaw(pass.depth);
-  const double at_end = law.at_end + pass.wear;
-  const auto y = [&](double x) { return cutter.y(x) + x * law.taper - at_end; };
-  const double tooth_angle = job_->tooth_angles[static_cast<std::size_t>(pass.place.tooth)];
+  const DepthLaw law = job_.depthLaw(pass.place.tooth, pass.depth, pass.wear);
+  const auto y = [&](double x) { return cutter.y(x) + x * law.taper - law.at_end; };
+  const double tooth_angle = job_.strokeLaw(pass.place.tooth).a;
   const auto go = [&](MoveKind kind) { append(kind, pass.place, at); };
   at[kA] = tooth_angle + curve.a(stroke_.from);
   go(MoveKind::kIndex);

@@ -30,7 +30,7 @@ void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine,
 
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
 double minDuration(const ValidJob& job, const ToothPass& first) {
-  const double travel = job->cutter.flute_length + job->process.overtravel_end + job->process.overtravel_shank;
+  const double travel = std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
   const auto teeth = static_cast<double>(job.teeth());
   double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
   for (int i = 0; i < job.teeth(); ++i) {

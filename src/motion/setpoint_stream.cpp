@@ -205,7 +205,7 @@ void SetpointStream::beginMove(const Move& move) noexcept {
   taper_ = move.taper;
   y_offset_ = 0;
   y_offset_ = current_.position[kY] - strokeY(program_->strokeFrom());
-  a_offset_ = program_->job()->tooth_angles[move.tooth];
+  a_offset_ = program_->job().strokeLaw(move.tooth).a;
   beginStroke(0);
 }
 

@@ -31,7 +31,7 @@ struct CutterSection {
 };
 
 /// Takes milliseconds for each tooth with a flute of its own.
-/// @param job from withZLaw(). @param x within its flute's length [m].
+/// @param job from withLaws(). @param x within its flute's length [m].
 /// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.
 CutterSection cutterSection(const ValidJob& job, double x);
 

@@ -35,7 +35,7 @@ class SectionView : public QWidget {
   struct Wanted {
     Job job;
     double x = 0;                      ///< [mm]
-    std::optional<ValidJob> with_law;  ///< from withZLaw(); nothing if that is not computed yet
+    std::optional<ValidJob> with_law;  ///< from withLaws(); nothing if that is not computed yet
     bool operator==(const Wanted& o) const { return job == o.job && x == o.x; }
   };
   struct Computed {

@@ -15,6 +15,8 @@ bool isOfWheel(std::string_view path) {
   return begins("process.wheel_") && !begins("process.wheel_wear") && path != "process.wheel_width";
 }
 
+bool isOfProcess(std::string_view path) { return path.substr(0, 8) == "process."; }
+
 /// The figures and choices that are not 0, a line for each.
 /// @param wanted whether a path counts.
 template <typename Wanted>
@@ -35,6 +37,7 @@ std::string digestOf(const std::string& figures) { return sha256Hex(figures.data
 
 std::string jobDigest(const GrindJob& job) {
   std::string figures = figuresOf(job, [](const char*) { return true; });
+  for (int i = 0; i < job.operation; ++i) figures += figuresOf(job.ofOperation(i), isOfProcess);
   for (const double angle : job.tooth_angles) figures += format("tooth %a\n", angle);
   for (const double angle : job.spiral_angles) figures += format("spiral %a\n", angle);
   return digestOf(figures);

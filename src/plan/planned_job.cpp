@@ -22,7 +22,7 @@ JobPlan planWithLaw(const ValidJob& job, const Machine& machine, const RunStart&
                     const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   std::optional<ValidJob> with_law;
   try {
-    with_law = withZLaw(job, watch);
+    with_law = withLaws(job, watch);
   } catch (const ReasonError& error) {
     return refused(error.reason());
   } catch (const std::invalid_argument& error) {

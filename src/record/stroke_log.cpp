@@ -24,9 +24,9 @@ Json followingJson(const Axes& error) {
 
 StrokeLog::StrokeLog(const ValidJob& job) {
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    edges_.push_back({ConicalCutter(job.cutterOf(tooth)), job->process.setup_lead});
+    edges_.push_back({ConicalCutter(job.strokeLaw(tooth).cutter), job.strokeLaw(tooth).lead});
   }
-  for (const double depth : job.depths()) depths_.push_back(job.depthLaw(depth).at_end);
+  for (const double depth : job.depths()) depths_.push_back(job.depthAtEnd(depth));
 }
 
 void StrokeLog::add(const Setpoint& setpoint, double time) {

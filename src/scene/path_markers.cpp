@@ -175,10 +175,10 @@ void ExecutedPath::append(MarkerArray& array) const {
   m.points.push_back(last_);
 }
 
-PathErrorMarkers::PathErrorMarkers(const GrindJob& job, std::vector<GroundEdge> edges)
-    : formed_{ConicalCutter(job.cutter), job.process.setup_lead},
+PathErrorMarkers::PathErrorMarkers(const ValidJob& job, std::vector<GroundEdge> edges)
+    : formed_{ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).lead},
       edges_(std::move(edges)),
-      tolerance_(job.interpolation.tolerance) {}
+      tolerance_(job->interpolation.tolerance) {}
 
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone || edges_[p.tooth].empty()) return;

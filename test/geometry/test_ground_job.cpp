@@ -58,7 +58,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
   int jobs = 0;
   for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
     SCOPED_TRACE(entry.path());
-    const GrindJob job = readJobFile(entry.path());
+    const GrindJob job = readJobFile(entry.path(), {}, "flute");
     const CutterCheck check = checked(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
@@ -93,7 +93,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
 /// @param angle of the point in the machine.
 double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, double x, double angle) {
   const GrindJob& job = *program.job();
-  const DepthLaw depth = program.job().depthLaw(job.process.deepest());
+  const DepthLaw depth = program.job().depthLaw(0, job.process.deepest(), 0);
   const double y = wheel_x * (std::tan(job.cutter.cone_angle) + depth.taper) - depth.at_end;
   const double r = program.cutter().radius(x), swivel = job.process.setup_swivel;
   const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + y,
@@ -108,7 +108,7 @@ double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, doub
 TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   constexpr double kLinear = 5e-6;  // between the sections that are known
   for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    GrindJob job = readJobFile(entry.path());
+    GrindJob job = readJobFile(entry.path(), {}, "flute");
     job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
     const GrindProgram program(job, roomyMachine(), roomyMachine().park);
     const CutterCheck check = checkGroundCutter(job);

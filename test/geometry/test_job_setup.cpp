@@ -63,7 +63,7 @@ const JobEdit* editOf(const JobSetup& setup, const std::string& key) {
 // largest.
 TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
   for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    const GrindJob job = readJobFile(entry.path());
+    const GrindJob job = readJobFile(entry.path(), {}, "flute");
     const JobSetup setup = solved(job);
     const double asked = job.cutter.rake_angle / kDegree, length = job.cutter.flute_length;
     const double at_ends = rakeAt(setup.job, 0) - asked;
@@ -132,7 +132,7 @@ TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
     job.process.z_law = ZLaw::kConstantRake;
     const JobSetup setup = solved(job);
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-    const GroundCutter cutter = groundCutterOf(withZLaw(setup.job));
+    const GroundCutter cutter = groundCutterOf(withLaws(setup.job));
     for (int i = 0; i <= 20; ++i) {
       const double x = job.cutter.flute_length * i / 20;
       EXPECT_TRUE(cutter.section(x).teeth[0].complete) << x;

@@ -132,7 +132,7 @@ void expectMirrored(const GroundCutter& right, const GroundCutter& left) {
 std::vector<Setpoint> setpointsOf(const ValidJob& job, JobPlan& plan) {
   const Machine machine = test_support::plainMachine();
   std::vector<Setpoint> setpoints;
-  plan = planJob(withZLaw(job), machine, machine.park, [&](const Setpoint& s) { setpoints.push_back(s); });
+  plan = planJob(withLaws(job), machine, machine.park, [&](const Setpoint& s) { setpoints.push_back(s); });
   return setpoints;
 }
 
@@ -185,7 +185,7 @@ TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
   for (const double lead : {0.0, 0.5e-3, -2e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
-    const ValidJob right = withZLaw(job), left = withZLaw(mirrored(job));
+    const ValidJob right = withLaws(job), left = withLaws(mirrored(job));
     for (std::size_t i = 0; i < right.zCorrectionOf(0).coefficients.size(); ++i) {
       EXPECT_NEAR(left.zCorrectionOf(0).coefficients[i], -right.zCorrectionOf(0).coefficients[i], kRounding) << i;
     }

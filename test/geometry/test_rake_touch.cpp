@@ -244,7 +244,7 @@ TEST(RakeTouch, FollowsTheLawOfZ) {
   GrindJob asked = jobOf("taper_d6_t6");
   asked.process.wheel_wear_per_pass = 0;
   asked.process.z_law = ZLaw::kConstantRake;
-  const ValidJob job = withZLaw(asked);
+  const ValidJob job = withLaws(asked);
   const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
   expectTouch(job, ball, touch(job, ball));
 }

@@ -114,7 +114,9 @@ struct Number {
 
 std::vector<Number> numbers() {
   std::vector<Number> all;
-  visitJobFields([&](const JobField& f, auto of) { all.push_back({of, f.low().si, f.high().si}); });
+  visitJobFields([&](const JobField& f, auto of) {
+    if (f.isOf(OperationKind::kFlute)) all.push_back({of, f.low().si, f.high().si});
+  });
   return all;
 }
 

@@ -202,6 +202,35 @@ const Row kRows[]{
      },
      "cutter.rake_angle_deg = 10 deg: tooth 3 has a chordal rake of 45 deg at X = 12.3 mm; allowed: within 5 deg of "
      "it; change process.wheel.diameter_mm or process.wheel.width_mm"},
+    {Kind::kClearance, "Clearance", Unit::kRadian, kPi / 20, kPi / 18,
+     [](Reason& r) {
+       r.low = kPi / 360;
+       r.tooth = 2;
+       r.x = 0.0123;
+     },
+     "cutter.clearance_deg = 10 deg: tooth 3 is ground with 9 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
+     "change the height or the swivel of the relief's set-up"},
+    {Kind::kUndercut, "Undercut", Unit::kDeviationMetre, 5e-6, 3e-6,
+     [](Reason& r) {
+       r.tooth = 2;
+       r.x = 0.0123;
+     },
+     "the relief takes 5 um of the edge of tooth 3 at X = 12.3 mm; allowed: up to 3 um; grind the flutes with an edge "
+     "nearer to the asked helix"},
+    {Kind::kNextEdge, "NextEdge", Unit::kRadian, kPi / 60, 0,
+     [](Reason& r) {
+       r.tooth = 2;
+       r.x = 0.0123;
+     },
+     "the relief's wheel reaches 3 deg into the tooth behind tooth 3 at X = 12.3 mm; change the height of the "
+     "relief's set-up, or take a narrower wheel"},
+    {Kind::kHeel, "Heel", Unit::kMetre, 0, 0,
+     [](Reason& r) {
+       r.tooth = 2;
+       r.x = 0.0123;
+     },
+     "the relief of tooth 3 ends on the land at X = 12.3 mm; change the height of the relief's set-up, or take a wider "
+     "wheel"},
     {Kind::kCoreSize, "CoreSize", Unit::kMetre, 0.00713, 0.0068, [](Reason& r) { r.low = 2e-5; },
      "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 7.13 mm at X = 0 mm; allowed: within 0.02 mm "
      "of 6.8 mm; change process.depth_mm or process.depth_end_mm"},

@@ -113,11 +113,11 @@ TEST(GoalFuzz, AGoalAsksForALawOfZAndItsDigestSaysWhich) {
   EXPECT_EQ(validate(jobFromGoal(goal)).at(0).field, "process.z_law");
 }
 
-/// Where a goal's bytes say how many numbers an array has; no client writes a wrong count.
+/// Where a goal's bytes say how many elements an array has; no client writes a wrong count.
 template <typename Array>
 std::size_t countAt(Array array) {
   flute_grinder::GrindGoal longer = goodGoal();
-  array(longer).push_back(0);
+  array(longer).emplace_back();
   const std::vector<std::uint8_t> good = bytesOf(goodGoal());
   const std::vector<std::uint8_t> more = bytesOf(longer);
   return static_cast<std::size_t>(std::mismatch(good.begin(), good.end(), more.begin()).first - good.begin());
@@ -135,7 +135,8 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   static const std::size_t counts[] = {
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
-      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; })};
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; }),
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<flute_grinder::Process>& { return g.operations; })};
   const std::vector<std::uint8_t> whole = bytesOf(good);
   for (const std::size_t at : counts) std::copy_n(whole.begin() + at, 4, bytes.begin() + at);
   if (dice() % 16 == 0) bytes.resize(dice() % (bytes.size() + 1));

@@ -142,7 +142,7 @@ TEST(ZLaw, AJobWithoutItsCorrectionsIsRefused) {
   const JobPlan plan = planJob(job, plainMachine(), plainMachine().park);
   EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
   ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_NE(plan.reasons[0].detail.find("withZLaw()"), std::string::npos);
+  EXPECT_NE(plan.reasons[0].detail.find("withLaws()"), std::string::npos);
   EXPECT_EQ(ValidJob(paperJob()).zCorrectionOf(0).pieces, 0);
   EXPECT_THROW(job.withZCorrections(std::vector<ZCorrection>(2)), std::invalid_argument);
 }

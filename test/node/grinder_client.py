@@ -139,11 +139,11 @@ MOTION = dict(PAPER, **{
 
 
 def paper(**changes):
-    """The paper's job for tests of the motion, with other values: paper(feed=..., flute_length=...)."""
+    """The paper's job for tests of the motion, with other values: paper(feed=..., flute_length=...). A name of two is the process'."""
     job = dict(MOTION)
     for name, value in changes.items():
-        path, = [p for p in PAPER if p.endswith('.' + name)]
-        job[path] = value
+        paths = sorted((p for p in PAPER if p.endswith('.' + name)), key=lambda p: not p.startswith('process.'))
+        job[paths[0]] = value
     return job
 
 

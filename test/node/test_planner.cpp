@@ -115,7 +115,7 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   const auto plan = asked.wait();
   ASSERT_TRUE(plan->good()) << text(plan->reasons);
   std::vector<Axes> expected;
-  planJob(withZLaw(job), machine(), machine().park, [&](const Setpoint& p) { expected.push_back(p.position); });
+  planJob(withLaws(job), machine(), machine().park, [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
   SetpointStream stream(plan->program);
   for (Setpoint p; stream.next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;

@@ -58,7 +58,7 @@ void expectFit(const GrindJob& job) {
 TEST(GroundMarkers, OfEveryJobFitAMessage) {
   for (const auto& file : std::filesystem::directory_iterator("jobs")) {
     SCOPED_TRACE(file.path());
-    expectFit(readJobFile(file.path()));
+    expectFit(readJobFile(file.path(), {}, "flute"));
   }
 }
 
@@ -83,7 +83,7 @@ TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;
   for (const ValidJob& job : std::vector<ValidJob>{jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"),
-                                                   jobOf("unequal_d12_t4"), withZLaw(even)}) {
+                                                   jobOf("unequal_d12_t4"), withLaws(even)}) {
     SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process.z_law));
     const GroundCutter planned = groundCutterOf(job),
                        done = groundSoFar(job, {job.passes().back().place, PassPhase::kAfter, 0});

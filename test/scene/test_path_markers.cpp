@@ -259,7 +259,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     executed.append(path);
     ASSERT_EQ(path.markers.size(), 1u);
     EXPECT_LE(path.markers[0].points.size(), 2001u) << "thinned out as it grows";
-    const DepthLaw depth = of_job.job().depthLaw(of_job.job().depths()[0]);
+    const DepthLaw depth = of_job.job().depthLaw(0, of_job.job().depths()[0], 0);
     int on_cutter = 0;
     for (const geometry_msgs::Point& p : path.markers[0].points) {
       if (p.x < 0 || p.x > job.cutter.flute_length) continue;

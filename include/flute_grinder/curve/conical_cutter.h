@@ -32,6 +32,10 @@ struct CutterGeometry {
   double spiral_tolerance = 0;   ///< the same of the edge's spiral angle [rad]
   double chordal_rake_tolerance = 0;  ///< the same of the ground chordal rake from the asked rake [rad]
   double chordal_rake_depth = 0;      ///< below the edge, where the chord ends; 0: a tenth of the flute's depth [m]
+  double clearance = 0;               ///< asked of the primary relief at the edge, radial; 0 without reliefs [rad]
+  double clearance_tolerance = 0;     ///< maximum allowed difference of the ground clearances from the asked ones [rad]
+  double land = 0;                    ///< asked width of the primary relief at the small end; 0: up to the heel [m]
+  double second_clearance = 0;        ///< asked of the secondary relief where it begins; 0 without one [rad]
 };
 
 /// Of a figure: X [m], an angle [rad], as its user says.

@@ -18,8 +18,8 @@ struct GrindJob;
 /// @throw std::invalid_argument if the corner radii do not fit the profile, with the value and what is allowed.
 WheelProfile wheelOf(const GrindJob& job);
 
-/// How the machine is set for a job.
-WheelSetup setupOf(const GrindJob& job);
+/// How the machine is set for the strokes of a tooth. @throw as ValidJob::strokeLaw().
+WheelSetup setupOf(const ValidJob& job, int tooth);
 
 /// The stroke of a pass of a tooth, as if the tooth were at angle 0.
 /// @param tooth from 0. @param depth of the pass where the flute is deepest [m]. @param wear of the wheel, taken up by
@@ -43,6 +43,8 @@ struct CutterFigures {
   /// How far an edge departs from the asked helix, turned to where it departs the least either way [rad].
   double edge = kNone;
   std::array<double, 2> core_diameter{kNone, kNone};  ///< at X = 0 and at the flute's end [m]
+  Range clearance{kNone, kNone};                      ///< at the edges, of a relief [rad]
+  Range relief{kNone, kNone};                         ///< width of the primary relief [m]
   double land = kNone;                                ///< minimum, along the circle; 0 if a tooth has none [m]
 };
 

@@ -9,7 +9,7 @@ class ValidJob;
 /// The work A at which the rake face of a job's first tooth comes to a ball that stands in its flute, as a measuring
 /// probe does. A turns there from where the ball stands free: upward for a right-hand cutter, downward for a left-hand
 /// one. Takes some tens of milliseconds, a refusal some tenths of a second.
-/// @param job with its law of Z: withZLaw().
+/// @param job with its law of Z: withLaws().
 /// @param ball its centre in the frame of the work: from the small end along the axis, from the axis toward the wheel,
 ///        up [m].
 /// @param ball_diameter [m].

@@ -33,7 +33,7 @@ class RunStrokes {
   /// thinner than twice that [m].
   static constexpr double kSame = 0.5e-6;
 
-  /// @param job from withZLaw().
+  /// @param job from withLaws().
   explicit RunStrokes(const ValidJob& job);
 
   /// Takes the setpoints of a job in order. Those that do not belong to a stroke are needed as well.
@@ -87,6 +87,8 @@ class RunStrokes {
     double angle;
   };
 
+  /// With the strokes of a relief, on what was ground before as planned.
+  GroundCutter relieved(const std::vector<const RunStroke*>& kept) const;
   Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
   double wearOf(const ToothPass& place) const;
   double depthOf(const RunStroke& s) const { return job_.depths()[static_cast<std::size_t>(s.place.pass)]; }

@@ -6,12 +6,14 @@ namespace grinder {
 
 class ValidJob;
 
-/// A job with what it needs to know of Z: for kConstantRake, the correction of Z with which the rake is as asked within
-/// kEvenRake over the whole flute, for each tooth; for kPublished none. The wheel is that of the job's start, the
-/// stroke that of the full depth. Takes some tenths of a second for each distinct spiral angle. The same job gives the
-/// same bits.
+/// A job with what its strokes take from the ground cutter. For kConstantRake that is the correction of Z with which
+/// the rake is as asked within kEvenRake over the whole flute, for each tooth: with the wheel of the job's start and
+/// the stroke of the full depth. It takes some tenths of a second for each distinct spiral angle. For a relief it is
+/// the edge of every tooth as the flutes leave it, between its extremes along the flute. The same job gives the same
+/// bits.
 /// @param watch if given, may make it give up, within some milliseconds.
-/// @throw ReasonError if no correction keeps the rake, or if it has given up. @throw as wheelOf().
-ValidJob withZLaw(const ValidJob& job, const PlanWatch& watch = {});
+/// @throw ReasonError if no correction keeps the rake, if a tooth has no edge, or if it has given up. @throw as
+/// wheelOf().
+ValidJob withLaws(const ValidJob& job, const PlanWatch& watch = {});
 
 }  // namespace grinder

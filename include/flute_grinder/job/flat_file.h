@@ -85,6 +85,12 @@ class FlatFile {
   /// Whether it had a value, or for an element of a list, e.g. "corner_radius_mm[1]", any part of the list.
   bool mentionsPart(const std::string& key) const;
 
+  /// Whether the file has any key of a section. @param section without its point.
+  bool mentionsSection(const std::string& section) const;
+
+  /// Removes every key of a section that has not been taken. @param section with its point.
+  void dropSection(const std::string& section);
+
   bool has(const std::string& key) const { return entries_.count(key) != 0; }
 
   /// Whether there is a value, or the first of a list.

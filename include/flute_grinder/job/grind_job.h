@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,24 @@ inline constexpr EnumRow<StrokeDirection> kStrokeDirections[]{
 constexpr auto& rowsOf(GrindOrder) noexcept { return kGrindOrders; }
 constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
 
-/// How the flutes are ground.
+/// What an operation grinds.
+enum class OperationKind { kFlute, kPrimaryRelief, kSecondaryRelief };
+struct OperationRow : EnumRow<OperationKind> {
+  const char* words = "";  ///< for people
+};
+/// With the names used in job files and on the command line.
+inline constexpr OperationRow kOperationKinds[]{
+    {{OperationKind::kFlute, "flute"}, "flutes"},
+    {{OperationKind::kPrimaryRelief, "primary"}, "primary relief"},
+    {{OperationKind::kSecondaryRelief, "secondary"}, "secondary relief"},
+};
+constexpr auto& rowsOf(OperationKind) noexcept { return kOperationKinds; }
+constexpr bool isRelief(OperationKind kind) noexcept { return kind != OperationKind::kFlute; }
+
+/// How the flutes, or a relief behind the edge of every tooth, are ground. Of a relief, `depth`, `depth_end`, the
+/// overtravels, `setup_lead` and the law of Z follow from the rest, and are 0 here.
 struct GrindProcess {
+  OperationKind kind = OperationKind::kFlute;
   double feed = 0;              ///< along the cutting edge, and during infeed [m/s]
   double depth = 0;             ///< flute depth at the small end, radial [m]
   double depth_end = 0;         ///< the same at the flute's end, linear in between; 0: as `depth` [m]
@@ -60,6 +77,7 @@ struct GrindProcess {
   double wheel_wear_per_pass = 0;  ///< added to that by each pass of any tooth; compensated before the next [m]
   double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+  double behind = 0;        ///< of a primary relief: how far behind the edge it begins at the small end [m]
   double setup_lead = 0;    ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< at the flute's end [m]
@@ -73,6 +91,12 @@ struct GrindInterpolation {
   double rotary_scale = 0;  ///< step length equivalent to one radian of A [m/rad]
 };
 
+/// One of several operations on a cutter.
+struct GrindOperation {
+  GrindProcess process;
+  std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
+};
+
 /// The complete data of a job in SI units, the same for a job from a file or from a goal.
 struct GrindJob {
   CutterGeometry cutter;
@@ -82,6 +106,13 @@ struct GrindJob {
   std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
   GrindProcess process;
   GrindInterpolation interpolation;
+  /// All that is done to the cutter, in order: the flutes, a primary relief, a secondary one. Empty if the flutes are
+  /// all; else `process` and `wheel_points` are those of the operation of this job.
+  std::vector<GrindOperation> operations;
+  int operation = 0;  ///< which one, from 0
+
+  /// The job of another of its operations. @param index from 0; with a single one, 0.
+  GrindJob ofOperation(int index) const;
 };
 
 /// The minimum and maximum spiral angle of the teeth [rad].
@@ -90,6 +121,7 @@ Range askedSpiral(const GrindJob& job);
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< how well kConstantRake keeps the rake [rad]
 constexpr int kMaxWheelPoints = 100;                  ///< of a wheel's profile
 constexpr int kMaxSparkOut = 100;
+constexpr std::size_t kMaxOperations = std::size(kOperationKinds);
 constexpr int kMaxPassesOfAll = 20000;    ///< of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 
@@ -102,6 +134,8 @@ std::vector<Reason> validateWheel(const GrindJob& job);
 
 /// As ValidJob::depths(), of numbers that are each within their range.
 std::vector<double> passDepths(const GrindProcess& process);
+/// The same for another depth of the last pass [m].
+std::vector<double> passDepths(const GrindProcess& process, double deepest);
 
 /// The depth of the flute that a job asks for at `x`, radial: at each end that of the core it asks for there, or else
 /// by its depths [m]. @param x from the small end [m].

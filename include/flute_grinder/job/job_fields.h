@@ -15,7 +15,10 @@ struct JobField {
   Unit unit;
   double min, max;        ///< allowed range in shop units, inclusive
   bool optional = false;  ///< whether a job file may omit it, together with the other element of a pair; it is then 0
+  /// Of which operations it is a figure; of the others it is 0.
+  enum class Of { kAll, kFlute, kRelief } of = Of::kAll;
 
+  bool isOf(OperationKind kind) const { return of == Of::kAll || (of == Of::kRelief) == isRelief(kind); }
   Quantity low() const { return {min * shopScale(unit), unit}; }
   Quantity high() const { return {max * shopScale(unit), unit}; }
 };
@@ -44,14 +47,18 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
   visit(F{"cutter.chordal_rake_tolerance", "cutter.chordal_rake_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.chordal_rake_tolerance; });
   visit(F{"cutter.chordal_rake_depth", "cutter.chordal_rake_depth_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.chordal_rake_depth; });
+  visit(F{"cutter.clearance", "cutter.clearance_deg", deg, 0, 45, true}, [](auto& j) -> auto& { return j.cutter.clearance; });
+  visit(F{"cutter.clearance_tolerance", "cutter.clearance_tolerance_deg", deg, 0, 45, true}, [](auto& j) -> auto& { return j.cutter.clearance_tolerance; });
+  visit(F{"cutter.land", "cutter.land_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.land; });
+  visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, true}, [](auto& j) -> auto& { return j.cutter.second_clearance; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return j.process.feed; });
-  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50}, [](auto& j) -> auto& { return j.process.depth; });
-  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.depth_end; });
+  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.depth; });
+  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.depth_end; });
   visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50}, [](auto& j) -> auto& { return j.process.infeed; });
   visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10}, [](auto& j) -> auto& { return j.process.finish_infeed; });
   visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.process.clearance; });
-  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100}, [](auto& j) -> auto& { return j.process.overtravel_end; });
-  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100}, [](auto& j) -> auto& { return j.process.overtravel_shank; });
+  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.overtravel_end; });
+  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.overtravel_shank; });
   visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500}, [](auto& j) -> auto& { return j.process.wheel_diameter; });
   visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.process.wheel_width; });
   visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, true}, [](auto& j) -> auto& { return j.process.wheel_angle; });
@@ -61,7 +68,8 @@ void visitJobFields(const Visit& visit) {
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return j.process.wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return j.process.setup_swivel; });
   visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return j.process.setup_height; });
-  visit(F{"process.setup_lead", "process.setup.lead_mm", mm, -100, 100, true}, [](auto& j) -> auto& { return j.process.setup_lead; });
+  visit(F{"process.setup_lead", "process.setup.lead_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.setup_lead; });
+  visit(F{"process.behind", "process.behind_mm", mm, 0, 50, true, F::Of::kRelief}, [](auto& j) -> auto& { return j.process.behind; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000}, [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000}, [](auto& j) -> auto& { return j.interpolation.rotary_scale; });
   // clang-format on
@@ -73,6 +81,7 @@ template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off
   visit("cutter.cut", countOf<CutDirection>() - 1, [](auto& j) -> auto& { return j.cutter.cut; });
+  visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return j.process.kind; });
   visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return j.process.spark_out; });
   visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return j.process.order; });
   visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return j.process.direction; });

@@ -15,15 +15,19 @@ struct GrindJob;
 /// @param unsolved fields that the file may omit because they are yet to be found: process.setup_swivel,
 ///        process.setup_height, which are then 0, and process.depth, which is then what leaves the asked core under an
 ///        upright wheel.
+/// @param operation which of several operations the job is: its number, from 1, or its kind, e.g. "primary".
 /// @return the job in SI.
 /// @throw JobFileError if the file cannot be read, a key is missing, unknown or duplicated, or a value has the wrong
 ///        type, is not finite or is not allowed.
-GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved = {});
+GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved = {},
+                     const std::string& operation = "");
 
 /// The same from text; `name` is the file in messages, and a wheel file is relative to its folder.
-GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved = {});
+GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved = {},
+                  const std::string& operation = "");
 
-/// The path of the wheel file that a job file names; empty if it names none. @throw JobFileError
-std::string wheelFileOf(const std::string& path);
+/// The path of the wheel file that an operation of a job file names; empty if it names none. @param operation from 0.
+/// @throw JobFileError
+std::string wheelFileOf(const std::string& path, int operation = 0);
 
 }  // namespace grinder

@@ -56,12 +56,17 @@ enum class ReasonKind : std::uint8_t {
   kSpiral,       ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
   kChordalRake,  ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
+  kClearance,    ///< the clearance ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kUndercut,     ///< a relief takes `value` of the edge's radius, allowed `limit`; at `x` of `tooth`
+  kNextEdge,     ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
+  kHeel,         ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
 };
 
 /// The name is that of the message's constant, in small letters.
 struct ReasonRow : EnumRow<ReasonKind> {
-  /// In words, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}; {excess} is value and
-  /// limit and what lies between, {number} the value without its unit. Null if text() puts the words together.
+  /// In words, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}, {low}, {tooth}, {x};
+  /// {excess} is value and limit and what lies between, {number} the value without its unit. Null if text() puts the
+  /// words together.
   const char* text = nullptr;
 };
 
@@ -103,6 +108,20 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kSpiral, "spiral"}},
     {{ReasonKind::kCoreSize, "core_size"}},
     {{ReasonKind::kChordalRake, "chordal_rake"}},
+    {{ReasonKind::kClearance, "clearance"},
+     "cutter.clearance_deg = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of it; "
+     "change the height or the swivel of the relief's set-up"},
+    {{ReasonKind::kUndercut, "undercut"},
+     "the relief takes {value} of the edge of tooth {tooth} at X = {x}; allowed: up to {limit}; grind the flutes with "
+     "an "
+     "edge nearer to the asked helix"},
+    {{ReasonKind::kNextEdge, "next_edge"},
+     "the relief's wheel reaches {value} into the tooth behind tooth {tooth} at X = {x}; change the height of the "
+     "relief's set-up, or take a narrower wheel"},
+    {{ReasonKind::kHeel, "heel"},
+     "the relief of tooth {tooth} ends on the land at X = {x}; change the height of the relief's set-up, or take a "
+     "wider "
+     "wheel"},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();

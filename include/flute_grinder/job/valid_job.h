@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/curve/relief_path.h"
 #include "flute_grinder/job/grind_job.h"
 
 #include <memory>
@@ -19,10 +20,18 @@ class InvalidJob : public std::invalid_argument {
   std::vector<Reason> reasons_;
 };
 
-/// The depth of a pass over X.
+/// Y of a pass over X: that of the cone, the taper's, less the depth.
 struct DepthLaw {
-  double at_end = 0;  ///< at the small end, radial [m]
+  double at_end = 0;  ///< below the cone's at X = 0 [m]
   double taper = 0;   ///< added to the cone's dY/dX
+};
+
+/// The strokes of a tooth: where X goes, and by which laws A and Z follow it.
+struct StrokeLaw {
+  CutterGeometry cutter;    ///< whose helix A, and whose rake Z follows
+  double from = 0, to = 0;  ///< X of the ends, in the direction of the strokes [m]
+  double lead = 0;          ///< of A's curve [m]
+  double a = 0;             ///< added to A [rad]
 };
 
 /// A pass of a job.
@@ -50,15 +59,31 @@ class ValidJob {
   const std::vector<double>& depths() const noexcept { return content_->depths; }
   /// The passes of all teeth, in grinding order.
   const std::vector<JobPass>& passes() const noexcept { return content_->passes; }
-  /// Every pass has the same part of its depth everywhere, so that no infeed is larger than the job's.
-  /// @param depth of the pass where the flute is deepest, as in depths() [m].
-  DepthLaw depthLaw(double depth) const noexcept;
+  double deepest() const noexcept { return content_->deepest; }  ///< of depths() [m]
+
+  /// Of a tooth. @throw std::invalid_argument if the job is a relief, and withEdges() has not been called.
+  const StrokeLaw& strokeLaw(int tooth) const;
+  /// Every pass of a flute has the same part of its depth everywhere, so that no infeed is larger than the job's. A
+  /// relief's are as much higher everywhere than the last one.
+  /// @param depth of the pass, as in depths() [m]. @param wear of the wheel, which Y compensates [m].
+  DepthLaw depthLaw(int tooth, double depth, double wear) const noexcept;
+  /// The depth of a pass at the small end [m]. @param depth as in depths() [m].
+  double depthAtEnd(double depth) const noexcept;
 
   /// What the strokes of a tooth add to the published law of Z.
-  /// @throw std::invalid_argument if the job asks for kConstantRake, and withZLaw() has not been called.
+  /// @throw std::invalid_argument if the job asks for kConstantRake, and withLaws() has not been called.
   const ZCorrection& zCorrectionOf(int tooth) const;
   /// The job with these. @param corrections one for each tooth. @throw std::invalid_argument for another number.
   ValidJob withZCorrections(std::vector<ZCorrection> corrections) const;
+
+  /// The path of a relief. @return null for flutes.
+  const ReliefPath* relief(int tooth) const noexcept;
+  /// A relief's job with what it is ground on. @param flutes the job of the flutes, with their law of Z.
+  /// @param edges of every tooth: angle by which its edge is ahead of its asked helix [rad].
+  ValidJob withEdges(const ValidJob& flutes, std::vector<double> edges) const;
+  /// Of a relief after withEdges().
+  const ValidJob& flutes() const { return *content_->flutes; }
+  const std::vector<double>& edges() const { return content_->edges; }
 
  private:
   struct Content {
@@ -67,6 +92,11 @@ class ValidJob {
     std::vector<double> depths;
     std::vector<JobPass> passes;
     std::vector<ZCorrection> z_corrections;  ///< of the teeth; empty if they are yet to be computed
+    double deepest = 0;
+    std::vector<ReliefPath> reliefs;         ///< of the teeth; empty for flutes
+    std::vector<StrokeLaw> laws;             ///< of the teeth; empty if a relief's edges are yet to be computed
+    std::shared_ptr<const ValidJob> flutes;  ///< of a relief
+    std::vector<double> edges;               ///< of the teeth, for a relief
   };
 
   std::shared_ptr<const Content> content_;

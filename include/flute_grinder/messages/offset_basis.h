@@ -14,7 +14,7 @@
 namespace grinder {
 
 /// The goal of a job file, with the names of the file and its wheel file. @throw JobFileError
-flute_grinder::GrindGoal goalFromFile(const std::string& path);
+flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation = "");
 
 /// What a work offset is set for that is set for a goal.
 OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method);

@@ -21,7 +21,7 @@ struct PlannedJob : JobPlan {
   std::optional<ClosestPlace> closest;  ///< of wheel, machine and cutter, if that was checked; its leg is a move
 };
 
-/// Plans a job with its law of Z, and checks the cutter that it grinds and that nothing is hit: withZLaw(), planJob(),
+/// Plans a job with its law of Z, and checks the cutter that it grinds and that nothing is hit: withLaws(), planJob(),
 /// checkGroundCutter() and checkCollision(). For any job and machine, the result is either good or has reasons. Cutter
 /// and collisions are checked, too, of a job whose setpoints are refused; a law of Z that does not exist leaves the
 /// result without a program.

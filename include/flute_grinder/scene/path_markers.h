@@ -85,7 +85,7 @@ class ExecutedPath {
 class PathErrorMarkers {
  public:
   /// @param edges of the teeth.
-  PathErrorMarkers(const GrindJob& job, std::vector<GroundEdge> edges);
+  PathErrorMarkers(const ValidJob& job, std::vector<GroundEdge> edges);
 
   /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);

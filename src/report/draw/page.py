@@ -119,9 +119,9 @@ def process_facts(job_file):
             ('wear', '%g mm of the radius' % wheel['wear_mm']),
             ('set-up', 'swivel %g deg, height %g mm%s' % (
                 setup['swivel_deg'], setup['height_mm'], ', lead %g mm' % setup['lead_mm'] if setup.get('lead_mm') else '')),
-            ('depth', '%g mm%s, infeed %g mm' % (
-                process['depth_mm'], ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '',
-                process['infeed_mm'])),
+            ('relief' if 'relief' in process else 'depth', '%s%s, infeed %g mm' % (
+                process.get('relief') or '%g mm' % process['depth_mm'],
+                ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', process['infeed_mm'])),
             ('feed', '%g mm/min' % process['feed_mm_min']),
             ('interpolation', job_file['interpolation']['even_step'].replace('_', ' '))]
 

@@ -1,0 +1,186 @@
+#include "flute_grinder/curve/relief_path.h"
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/motion/setpoint_stream.h"
+#include "flute_grinder/plan/job_digest.h"
+#include "flute_grinder/plan/planned_job.h"
+#include "jobs.h"
+#include "motion/generators.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace grinder {
+namespace test_operations {
+
+using units::kDegree;
+using units::kMillimetre;
+
+constexpr const char* kReamer = "jobs/taper_reamer_d6_t6.yaml";
+
+GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, {}, operation); }
+
+std::string refusal(const std::string& operation) {
+  try {
+    reamer(operation);
+  } catch (const JobFileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(job)); }
+
+std::set<ReasonKind> kindsOf(const CutterCheck& check) {
+  std::set<ReasonKind> kinds;
+  for (const Reason& reason : check.reasons) kinds.insert(reason.kind);
+  return kinds;
+}
+
+/// With another height of the set-up, in the operation and in the list.
+GrindJob withHeight(GrindJob job, double height) {
+  job.process.setup_height = height;
+  job.operations[static_cast<std::size_t>(job.operation)].process.setup_height = height;
+  return job;
+}
+
+TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
+  for (const auto& [name, kind] :
+       {std::pair{"1", OperationKind::kFlute}, std::pair{"flute", OperationKind::kFlute},
+        std::pair{"2", OperationKind::kPrimaryRelief}, std::pair{"secondary", OperationKind::kSecondaryRelief}}) {
+    EXPECT_EQ(reamer(name).process.kind, kind) << name;
+  }
+  const std::string allowed = "; allowed: 1 or flute, 2 or primary, 3 or secondary";
+  EXPECT_EQ(refusal(""), std::string(kReamer) + ": operation is missing" + allowed);
+  EXPECT_EQ(refusal("4"), std::string(kReamer) + ": operation = 4" + allowed);
+  EXPECT_EQ(readJobFile("test/jobs/paper.yaml", {}, "flute").operations.size(), 0u);
+  EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
+}
+
+// What a relief leaves out and may take from the flutes, and what it may not.
+TEST(Operations, TakeWhatTheReferenceSaysFromTheOneAhead) {
+  const GrindJob flute = reamer("flute"), primary = reamer("primary");
+  EXPECT_EQ(primary.process.clearance, flute.process.clearance);
+  EXPECT_EQ(primary.process.direction, flute.process.direction);
+  EXPECT_EQ(primary.process.order, flute.process.order);
+  EXPECT_EQ(primary.process.spark_out, flute.process.spark_out);
+  EXPECT_NE(primary.process.feed, flute.process.feed);
+  EXPECT_EQ(primary.process.depth, 0);
+  EXPECT_EQ(primary.process.setup_lead, 0);
+}
+
+TEST(Operations, EachHasItsDigestAndKnowsWhatWasGroundBefore) {
+  std::set<std::string> digests;
+  for (const char* name : {"flute", "primary", "secondary"}) digests.insert(jobDigest(reamer(name)));
+  EXPECT_EQ(digests.size(), 3u);
+  GrindJob other = reamer("secondary");
+  other.operations[1].process.setup_swivel += 1e-3;  // of the primary relief
+  EXPECT_NE(jobDigest(other), jobDigest(reamer("secondary")));
+  other = reamer("primary");
+  other.operations[2].process.setup_swivel += 1e-3;  // of what comes after
+  EXPECT_EQ(jobDigest(other), jobDigest(reamer("primary")));
+}
+
+TEST(Operations, AreRefusedWhereTheyDoNotFollowOneAnother) {
+  GrindJob job = reamer("primary");
+  std::swap(job.operations[1], job.operations[2]);
+  EXPECT_FALSE(validate(job).empty());
+  job = reamer("primary");
+  job.operation = 3;
+  EXPECT_FALSE(validate(job).empty());
+  job = reamer("primary");
+  job.process.feed *= 2;  // not as in the list
+  EXPECT_FALSE(validate(job).empty());
+  job = reamer("primary");
+  job.cutter.clearance = 0;
+  EXPECT_FALSE(validate(job).empty());
+  job = reamer("secondary");
+  job.cutter.land = 0;
+  EXPECT_FALSE(validate(job).empty());
+  job = test_support::paper();
+  job.process.behind = 1e-4;  // a relief's
+  EXPECT_FALSE(validate(job).empty());
+  job = reamer("primary");
+  for (GrindProcess* process : {&job.process, &job.operations[1].process})
+    process->wheel_profile = WheelShape::kFullRadius;
+  const std::vector<Reason> reasons = validate(job);
+  ASSERT_FALSE(reasons.empty());
+  EXPECT_NE(text(reasons).find("its cylinder is what grinds it"), std::string::npos) << text(reasons);
+}
+
+// Every setpoint of a relief's stroke is on the closed form: P(s) + R N - q w, with the edge of the flutes.
+TEST(Operations, AReliefsStrokesAreTheClosedForm) {
+  for (const char* name : {"primary", "secondary"}) {
+    const ValidJob job = withLaws(reamer(name));
+    const ConicalCutter cutter(job->cutter);
+    const LogCurve edge(cutter);
+    const ReliefPath& path = *job.relief(0);
+    const double last = job.deepest();
+    Machine machine = test_support::roomyMachine();
+    std::map<std::uint16_t, int> strokes;
+    const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) {
+      if (p.move != MoveKind::kStroke) return;
+      const auto tooth = static_cast<std::size_t>(p.tooth);
+      const double s = p.position[kX] - path.lead(), depth = job.depths()[p.pass];
+      ++strokes[p.tooth];
+      ASSERT_NEAR(p.position[kA] + p.path_error, job->tooth_angles[tooth] + job.edges()[tooth] + edge.a(s) + path.a(),
+                  1e-9);
+      ASSERT_NEAR(p.position[kY], path.y() + p.position[kX] * (cutter.tanCone() + path.taper()) + last - depth, 1e-12);
+      ASSERT_NEAR(p.position[kZ], p.position[kX] * cutter.tanCone() * path.cutter().zPerY(), 1e-12);
+    });
+    ASSERT_TRUE(plan.good()) << text(plan.reasons);
+    EXPECT_EQ(strokes.size(), job->tooth_angles.size());
+    EXPECT_LT(plan.statistics.max_even_error, 1e-9);
+    // From where the wheel first touches to the full depth, in infeeds.
+    for (std::size_t i = 1; i < job.depths().size(); ++i) {
+      EXPECT_LE(job.depths()[i] - job.depths()[i - 1], job->process.infeed * (1 + 1e-9));
+    }
+    EXPECT_LE(job.depths().front(), job->process.infeed * (1 + 1e-9));
+    EXPECT_EQ(job.depths().back(), path.depth());
+  }
+}
+
+// The stream that grinds a relief gives the plan's bits.
+TEST(Operations, AReliefIsStreamedAsItIsPlanned) {
+  const ValidJob job = withLaws(reamer("primary"));
+  const Machine machine = test_support::roomyMachine();
+  std::vector<Axes> planned;
+  const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) { planned.push_back(p.position); });
+  SetpointStream stream(plan.program);
+  std::size_t count = 0;
+  for (; !stream.finished(); ++count) {
+    Setpoint p;
+    stream.next(p);
+    ASSERT_LT(count, planned.size());
+    ASSERT_TRUE((p.position == planned[count]).all()) << count;
+  }
+  EXPECT_EQ(count, planned.size());
+}
+
+TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
+  EXPECT_TRUE(checkOf(reamer("primary")).reasons.empty());
+  const CutterCheck good = checkOf(reamer("secondary"));
+  EXPECT_TRUE(good.reasons.empty()) << text(good.reasons);
+  EXPECT_NEAR(good.figures.clearance.from / kDegree, 10, 0.02);
+  EXPECT_NEAR(good.figures.relief.from / kMillimetre, 0.3, 0.02);
+  // The edge near the wheel's lower face: so much of the rim is behind it that it reaches the next tooth.
+  const GrindJob secondary = reamer("secondary");
+  const double per_width = std::cos(secondary.process.setup_swivel);
+  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process.setup_height + 2.5e-3 * per_width))),
+            std::set<ReasonKind>{ReasonKind::kNextEdge});
+  // And near the upper face it ends on the land.
+  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process.setup_height - 1.2e-3 * per_width))),
+            std::set<ReasonKind>{ReasonKind::kHeel});
+  GrindJob wrong = reamer("primary");
+  wrong.cutter.spiral_tolerance = 1;
+  wrong.operations[0].process.setup_lead += 3e-3;  // the flutes' edge is another helix than the relief follows
+  EXPECT_TRUE(kindsOf(checkOf(wrong)).count(ReasonKind::kUndercut)) << text(checkOf(wrong).reasons);
+}
+
+}  // namespace test_operations
+}  // namespace grinder

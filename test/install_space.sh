@@ -17,6 +17,11 @@ for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugin
   [ -f "share/flute_grinder/$file" ]
 done
 
+# What plans and streams a job, without ROS.
+g++ -std=c++17 -I include -I /usr/include/eigen3 "$root/examples/4_stream_a_job.cpp" -o "$folder/stream" \
+  -L lib -lflute_grinder_motion -lflute_grinder_job -lflute_grinder_curve -lyaml-cpp
+(cd share/flute_grinder && "$folder/stream") | grep -q '^planned: 8587 setpoints$'
+
 # What a drive plugin includes, and not the drives' own headers.
 [ -f include/flute_grinder/drive/axes_hw.h ]
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]

@@ -64,8 +64,8 @@ check_space() (
   # Without an address or without parameters it does not start, and says so.
   { ! rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'neither ROS_HOSTNAME nor ROS_IP is set'
   { ! ROS_IP=127.0.0.1 rosrun flute_grinder grinder __name:=second </dev/null 2>&1; } | grep -q 'parameter /second/'
-  rosrun neighbour grinder </dev/null | tee "$folder/state"
-  grep -q '^ready; axis_0 .*; A(1 m) = 2 rad$' "$folder/state"
+  rosrun neighbour grinder "$2/jobs/paper.yaml" </dev/null | tee "$folder/state"
+  grep -q '^ready; axis_0 .*; A(1 m) = 2 rad; Y of the first setpoint = 0.05 m$' "$folder/state"
 )
 for space in devel install; do
   share=$workspace/src/flute_grinder

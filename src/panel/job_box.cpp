@@ -120,43 +120,38 @@ void JobBox::layOut() {
   answer_->addWidget(verdict_);
   answer_->addWidget(other_job_);
   layout->addWidget(answer_);
-  for (QWidget* page : {form_, static_cast<QWidget*>(discard_question_), static_cast<QWidget*>(offset_question_),
-                        static_cast<QWidget*>(swivel_question_)}) {
-    pages_->addWidget(page);
-  }
+  pages_->addWidget(form_);
   auto* pages = new QVBoxLayout(this);
   pages->setContentsMargins(6, 6, 6, 6);
   pages->addWidget(pages_);
 }
 
 void JobBox::makeQuestions() {
-  const auto* discard = discard_question_->addAnswer("discard", "Discard and start",
-                                                     "Start this job; the other cannot be continued any more", 0, 0);
-  keep_ = discard_question_->addAnswer("keep", "Continue it", "Plan the job from where it was left", 0, 1);
+  discard_question_->addAnswer("discard", "Discard and start", "Start this job; the other cannot be continued any more",
+                               0, 0, [this] { askForOffsets(true); });
+  keep_ = discard_question_->addAnswer("keep", "Continue it", "Plan the job from where it was left", 0, 1, [this] {
+    if (!where_left_) return;
+    continue_->setChecked(true);
+    planAnew();
+  });
   fit_ = offset_question_->addAnswer("fit_offsets", "",
                                      "Computed from what they were set for: the wheel and the swivel are the same. "
                                      "Plans the job again",
-                                     0, 1);
-  const auto* right = offset_question_->addAnswer("ignore_offset_check", "Start with these",
-                                                  "Start the job with the work offsets as they are", 1, 0);
-  const auto* confirm = swivel_question_->addAnswer("confirm_swivel", "Confirm and start",
-                                                    "The swivel is set and clamped: start the job", 0, 1);
-  connect(discard, &QPushButton::clicked, this, [this] { askForOffsets(true); });
-  connect(keep_, &QPushButton::clicked, this, &JobBox::continueUnfinished);
-  connect(fit_, &QPushButton::clicked, this, [this] {
-    closeQuestion();
-    if (planned_) Q_EMIT offsetFitWanted(*planned_);
-  });
-  connect(right, &QPushButton::clicked, this, [this] {
-    ignore_offset_check_ = true;
-    askForSwivel();
-  });
-  connect(confirm, &QPushButton::clicked, this, [this] {
-    closeQuestion();
-    if (planned_) Q_EMIT swivelConfirmed(planned_->process.setup_swivel);
-  });
-  for (const Question* question : {discard_question_, offset_question_, swivel_question_}) {
-    connect(question, &Question::declined, this, &JobBox::closeQuestion);
+                                     0, 1, [this] {
+                                       if (planned_) Q_EMIT offsetFitWanted(*planned_);
+                                     });
+  offset_question_->addAnswer("ignore_offset_check", "Start with these",
+                              "Start the job with the work offsets as they are", 1, 0, [this] {
+                                ignore_offset_check_ = true;
+                                askForSwivel();
+                              });
+  swivel_question_->addAnswer("confirm_swivel", "Confirm and start", "The swivel is set and clamped: start the job", 0,
+                              1, [this] {
+                                if (planned_) Q_EMIT swivelConfirmed(planned_->process.setup_swivel);
+                              });
+  for (Question* question : {discard_question_, offset_question_, swivel_question_}) {
+    pages_->addWidget(question);
+    connect(question, &Question::answered, this, &JobBox::closeQuestion);
   }
 }
 
@@ -337,13 +332,6 @@ void JobBox::startConfirmed() {
   goal->discard = static_cast<std::uint8_t>(discard_);
   goal->ignore_offset_check = static_cast<std::uint8_t>(ignore_offset_check_);
   Q_EMIT startWanted(*goal);
-}
-
-void JobBox::continueUnfinished() {
-  closeQuestion();
-  if (!where_left_) return;
-  continue_->setChecked(true);
-  planAnew();
 }
 
 void JobBox::planAnew() {

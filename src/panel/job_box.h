@@ -98,7 +98,6 @@ class JobBox : public QWidget {
   void showZeroPoints();
   bool asksWithReason() const;
   bool discardsSomething() const;
-  void continueUnfinished();
   flute_grinder::GrindGoal goal() const;
   std::optional<flute_grinder::GrindGoal> goalNow();
   std::optional<flute_grinder::GrindGoal> beginPlan();

@@ -19,9 +19,8 @@ Question::Question(const QString& name, int lines)
   layout_->addWidget(text_, 0, 0, 1, 2);
   layout_->setRowStretch(0, 1);
   for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);
-  auto* decline = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1);
+  auto* decline = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1, [] {});
   decline->setFocusPolicy(Qt::StrongFocus);
-  connect(decline, &QPushButton::clicked, this, &Question::declined);
   appearing_.setSingleShot(true);
   appearing_.setInterval(kAppearing);
   connect(&appearing_, &QTimer::timeout, this, [this, decline] {
@@ -30,7 +29,8 @@ Question::Question(const QString& name, int lines)
   });
 }
 
-QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column) {
+QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
+                                 const std::function<void()>& act) {
   auto* button = new QPushButton(text);
   button->setObjectName(name);
   button->setToolTip(hint);
@@ -42,6 +42,10 @@ QPushButton* Question::addAnswer(const char* name, const QString& text, const QS
   policy.setRetainSizeWhenHidden(true);
   button->setSizePolicy(policy);
   layout_->addWidget(button, 1 + row, column);
+  connect(button, &QPushButton::clicked, this, [this, act] {
+    Q_EMIT answered();
+    act();
+  });
   return button;
 }
 

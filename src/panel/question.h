@@ -5,6 +5,8 @@
 #include <QTimer>
 #include <QWidget>
 
+#include <functional>
+
 class QGridLayout;
 
 namespace grinder {
@@ -21,13 +23,15 @@ class Question : public QWidget {
   Question(const QString& name, int lines);
 
   /// @param row 0 or 1, column 0 or 1: not where the answer to a question that comes before this one lies. *Not yet*
-  /// has (1, 1).
-  QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column);
+  /// has (1, 1). @param act what the answer does, after answered().
+  QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
+                         const std::function<void()>& act);
 
   void ask(const QString& text);
 
  Q_SIGNALS:
-  void declined();
+  /// By any answer, *Not yet* among them: the question is to go.
+  void answered();
 
  protected:
   void showEvent(QShowEvent* event) override;

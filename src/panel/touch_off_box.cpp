@@ -58,13 +58,9 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   connect(touch_, &QPushButton::clicked, this, [this] {
     if (at_->isGood()) Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()));
   });
-  const auto* set =
-      question_->addAnswer("touch_off_anyway", "Set it all the same", "Set the work offset; nothing moves", 1, 0);
-  connect(set, &QPushButton::clicked, this, [this] {
-    pages_->setCurrentIndex(0);
-    all_the_same_();
-  });
-  connect(question_, &Question::declined, this, [this] { pages_->setCurrentIndex(0); });
+  question_->addAnswer("touch_off_anyway", "Set it all the same", "Set the work offset; nothing moves", 1, 0,
+                       [this] { all_the_same_(); });
+  connect(question_, &Question::answered, this, [this] { pages_->setCurrentIndex(0); });
   pages_->addWidget(form);
   pages_->addWidget(question_);
   chooseAxis();

@@ -283,7 +283,7 @@ TEST(Reason, EveryKindHasARow) {
 }
 
 TEST(Reason, OfEveryFaultHasText) {
-  for (int kind = 1; kind <= static_cast<int>(FaultKind::kInterlock); ++kind) {
+  for (int kind = 1; kind < countOf<FaultKind>(); ++kind) {
     LoopFault fault;
     fault.kind = static_cast<FaultKind>(kind);
     fault.interlock = Interlock::kSpindle;

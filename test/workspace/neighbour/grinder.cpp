@@ -1,9 +1,12 @@
-// Waits for the grinder's state, prints with the grinder's libraries where its axes are, and a point of the curve.
+// Waits for the grinder's state, prints with the grinder's libraries where its axes are, a point of the curve,
+// and the first setpoint of a job, whose file is the argument.
 
 #include <flute_grinder/GrinderState.h>
 #include <flute_grinder/curve/log_curve.h>
 #include <flute_grinder/drive/robot_hw.h>
-#include <flute_grinder/job/axes.h>
+#include <flute_grinder/job/grind_job.h>
+#include <flute_grinder/job/job_file.h>
+#include <flute_grinder/motion/setpoint_stream.h>
 
 #include <ros/ros.h>
 
@@ -26,6 +29,15 @@ int main(int argc, char** argv) {
     std::cout << "; " << joint.getName() << ' ' << joint.getPosition();
   }
   std::cout << "; A(1 m) = " << LogCurve(0, 2).a(1) << " rad";
-  std::cout << '\n';
+
+  Machine machine;
+  machine.period = 0.001;
+  machine.limits = {Axes::Constant(-100), Axes::Constant(100), Axes::Constant(1), Axes::Constant(10),
+                    Axes::Constant(100)};
+  machine.park = Axes(-0.05, 0.05, 0, 0);
+  SetpointStream stream(GrindProgram(readJobFile(argv[1]), machine, machine.park));
+  Setpoint setpoint;
+  stream.next(setpoint);
+  std::cout << "; Y of the first setpoint = " << setpoint.position[kY] << " m\n";
   return 0;
 }

@@ -98,24 +98,43 @@ class TestMachine(CommandLine):
         self.grind(0, 'reset')
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
 
-    def test_run_streams_what_plan_lists(self):
-        grinder().make_ready_at_park()
-        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500, teeth=2, infeed_mm=0.3, wear_mm=0.01)
-        batches = len(grinder().batches)
-        self.grind(0, 'plan', job, '--csv', self.path('plan.csv'))
-        printed = self.grind(0, 'run', job, '--discard', '--ignore-offset-check', '--csv', self.path('run.csv'))
+    def stream(self, *job):
+        """Plans and runs a job, and holds the setpoints against each other. Returns what was printed, and how many they are."""
+        self.grind(0, 'plan', *job, '--csv', self.path('plan.csv'))
+        printed = self.grind(0, 'run', *job, '--discard', '--ignore-offset-check', '--csv', self.path('run.csv'))
         with open(self.path('plan.csv')) as plan, open(self.path('run.csv')) as run:
             planned, streamed = plan.read().splitlines(), run.read().splitlines()
         # The run's file has four more columns, the positions that the drive read.
         self.assertEqual(streamed[0], planned[0] + ',actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad')
         self.assertTrue(planned == [line.rsplit(',', 4)[0] for line in streamed], 'the setpoints differ')
+        return printed, len(planned) - 1
+
+    def test_run_streams_what_plan_lists(self):
+        grinder().make_ready_at_park()
+        job = gc.job_file(self.path('job.yaml'), flute_length_mm=10, feed_mm_min=1500, teeth=2, infeed_mm=0.3, wear_mm=0.01)
+        batches = len(grinder().batches)
+        printed, count = self.stream(job)
         # From the first setpoint to the last, by the clock of the grinder.
         new = grinder().batches_of_goal(batches)
         duration = (new[-1].end_stamp - new[0].header.stamp).to_sec()
         self.assertRegex(printed.stdout, r'streamed +%d setpoints in %s s, 0 missed\n'
-                         % (len(planned) - 1, re.escape('%.3f' % duration)))
+                         % (count, re.escape('%.3f' % duration)))
         self.assertRegex(printed.stderr, r'100 %')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+
+    def test_run_streams_a_relief_as_planned(self):
+        grinder().make_ready_at_park()
+        with open(gc.package_file('jobs/taper_reamer_d6_t6.yaml')) as file:
+            text = file.read().replace('feed_mm_min: 300', 'feed_mm_min: 3000').replace(' infeed_mm: 0.05', ' infeed_mm: 2')
+        text = text.replace('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0').replace('../wheels', gc.package_file('wheels'))
+        with open(self.path('reamer.yaml'), 'w') as file:
+            file.write(text)
+        refused = self.grind(2, 'run', self.path('reamer.yaml'))
+        self.assertIn('operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary', refused.stderr)
+        self.grind(0, 'confirm-swivel', '13.104')
+        self.stream(self.path('reamer.yaml'), '--operation', 'secondary')
+        last = self.json(0, 'status')[0]['last_job']
+        self.assertEqual((last['name'], last['finished'], last['end']), ('reamer.yaml', True, 'done'))
 
     def test_home(self):
         self.assertEqual(self.grind(0, 'home').stdout, 'homed\n')

@@ -46,6 +46,7 @@ void addSetup(Commands& commands) {
       commands.add("setup", "solve swivel, height and depth of the wheel for the tool that the job asks for",
                    "jobs/paper.yaml --write", [options] { return runSetup(*options); });
   addJob(command, options->job);
+  addOperation(command, options->operation);
   addChoice(command, "--keep", options->keep, "leave this figure as it is in the job file");
   command.add_flag("--write", options->write, "write the set-up into the job file; all else in it stays as it is");
   addMachine(command, options->parameters, options->urdf);

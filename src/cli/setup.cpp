@@ -38,13 +38,19 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
             {"limit", toString(setup.limit)},
             {"margin", setup.margin}};
   json.update(grinder::toJson(setup.job, setup.check.figures));
+  if (!setup.relief) return json;
+  for (const char* key : {"lead_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"}) json.erase(key);
+  json["rim_mm"] = setup.relief->rim / kMillimetre;
+  json["next_edge_deg"] = setup.relief->next_edge / kDegree;
+  json["land_end_clearance_deg"] = {setup.relief->land_end_clearance.from / kDegree,
+                                    setup.relief->land_end_clearance.to / kDegree};
   return json;
 }
 
 }  // namespace
 
 int runSetup(const SetupOptions& options) {
-  const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep));
+  const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep), options.operation);
   const LoopConfig config = readMachineFiles(options.parameters, options.urdf);
   const Range swivel = config.machine.swivel;
   const auto result = solveJobSetup(job, swivel, options.keep);

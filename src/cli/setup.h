@@ -10,6 +10,7 @@ namespace grinder {
 /// Arguments of `grind setup`.
 struct SetupOptions {
   std::string job;
+  std::string operation;  ///< which of several; empty for the only one
   std::optional<SetupFigure> keep;
   bool write = false;      ///< into the job's file
   std::string parameters;  ///< YAML of the machine

@@ -4,6 +4,7 @@
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
+#include "geometry/relief_setup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -136,10 +137,17 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   return r;
 }
 
+/// The key of a process in the file of a job, which may have several.
+std::string keyIn(const GrindJob& job, const std::string& key) {
+  if (job.operations.empty()) return key;
+  return "operations[" + std::to_string(job.operation) + "]" + key.substr(key.find('.'));
+}
+
 /// Puts a figure into the job as it is read from a file, and an edit that writes it there.
 void takeFigure(JobSetup& setup, const char* path, double& field, double value, double scale, int decimals) {
   field = rounded(value, scale, decimals);
-  const JobEdit edit = editOf(path, field, decimals);
+  JobEdit edit = editOf(path, field, decimals);
+  edit.key = keyIn(setup.job, edit.key);
   const auto same = [&](const JobEdit& other) { return other.key == edit.key; };
   setup.edits.erase(std::remove_if(setup.edits.begin(), setup.edits.end(), same), setup.edits.end());
   setup.edits.push_back(edit);
@@ -217,6 +225,55 @@ bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   return complete->from > 0 || complete->to < length;
 }
 
+/// Of one of several operations, what is solved goes into the list as well.
+void intoList(GrindJob& job) {
+  if (!job.operations.empty()) job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
+}
+
+/// Where a relief begins, and how far it has to reach.
+ReliefRequest reliefRequestOf(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
+                              std::optional<SetupFigure> keep) {
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process;
+  const double radius = c.end_diameter / 2;
+  ReliefRequest r;
+  if (p.kind == OperationKind::kPrimaryRelief) {
+    r.start = {c.clearance, 1, p.behind / radius};
+    if (job.operations.size() > 2) r.land = c.land;
+  } else {
+    const ReliefPath::Place end = ValidJob(job.ofOperation(1)).relief(0)->surfaceAt(0, c.land);
+    r.start = {c.second_clearance, end.radius / radius, end.behind};
+  }
+  r.wheel = {p.wheel_diameter / 2, p.wheel_wear, p.wheel_width, 0, 0};
+  r.edge = edgesOf(flutes).front();
+  r.near = flutes->process.setup_swivel;
+  r.swivel = swivel;
+  if (keep) r.asked = p.setup_swivel;
+  return r;
+}
+
+std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const Range& swivel,
+                                                     std::optional<SetupFigure> keep) {
+  if (keep && *keep != SetupFigure::kSwivel) {
+    return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
+  }
+  const ValidJob flutes = withLaws(job.ofOperation(0));
+  const ReliefSetup found = findReliefSetup(groundCutterOf(flutes), reliefRequestOf(job, flutes, swivel, keep));
+  if (!found.refused.empty()) {
+    return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
+           found.refused;
+  }
+  JobSetup setup;
+  setup.job = job;
+  GrindProcess& p = setup.job.process;
+  if (!keep) takeFigure(setup, "process.setup_swivel", p.setup_swivel, found.swivel, units::kDegree, kAngleDecimals);
+  takeFigure(setup, "process.setup_height", p.setup_height, found.height, units::kMillimetre, kLengthDecimals);
+  intoList(setup.job);
+  setup.relief = JobSetup::Relief{found.width, found.next_edge, found.land_end_clearance};
+  setup.check = checkGroundCutter(withLaws(setup.job));
+  return setup;
+}
+
 }  // namespace
 
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
@@ -230,12 +287,14 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
                                                   std::optional<SetupFigure> keep) {
   try {
+    if (isRelief(job.process.kind)) return solveReliefSetup(job, swivel, keep);
     const auto result = solveSetup(requestOf(job, swivel, keep));
     if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
     JobSetup setup;
     setup.job = job;
     take(std::get<SolvedSetup>(result), keep, setup);
     for (int i = 0;; ++i) {
+      intoList(setup.job);
       const ValidJob valid(setup.job);
       if (i == 0 && !hasLaws(valid)) {
         giveRoom(setup);

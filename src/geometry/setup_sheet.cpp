@@ -44,6 +44,13 @@ std::string leadText(const GrindProcess& p) {
                 mm(p.setup_lead));
 }
 
+std::string lawOfFlute(const JobSetup& setup) {
+  const GrindProcess& p = setup.job.process;
+  return line("lead", leadText(p)) +
+         line("depth", format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(p.depth), mm(p.depthEnd()))) +
+         line("overtravel", overtravelText(setup));
+}
+
 std::string whatToSet(const JobSetup& setup, const Range& swivel) {
   const GrindProcess& p = setup.job.process;
   return "set\n" + line("wheel", wheelText(p)) +
@@ -52,9 +59,7 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
          line("height", format("%.3f mm, of the wheel's centre above the cutter's axis at Z = 0", mm(p.setup_height))) +
          line("", format("upper face %.3f mm, lower face %.3f mm, where they are deepest in the cutter",
                          mm(upperFaceHeight(setup.job)), mm(lowerFaceHeight(setup.job)))) +
-         line("lead", leadText(p)) +
-         line("depth", format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(p.depth), mm(p.depthEnd()))) +
-         line("overtravel", overtravelText(setup));
+         (setup.relief ? "" : lawOfFlute(setup));
 }
 
 /// What the reading of Z takes for granted.
@@ -108,6 +113,14 @@ std::string whatComesOut(const JobSetup& setup) {
 }
 
 std::string whatLimits(const JobSetup& setup, const Range& swivel) {
+  if (setup.relief) {
+    const JobSetup::Relief& r = *setup.relief;
+    return line("next tooth", format("the wheel stays %.3f deg or more from its edge", deg(r.next_edge))) +
+           line("rim", format("%.3f of %.3f mm of its width are behind the relief's start", mm(r.rim),
+                              mm(setup.job.process.wheel_width))) +
+           line("land's end", format("clearance %.3f to %.3f deg there", deg(r.land_end_clearance.from),
+                                     deg(r.land_end_clearance.to)));
+  }
   const double percent = 100 * setup.margin;
   switch (setup.limit) {
     case SetupLimit::kSwivel:

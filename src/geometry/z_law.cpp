@@ -38,7 +38,8 @@ ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch)
   throw ReasonError(reason);
 }
 
-/// By how much each tooth's edge is ahead of its asked helix, between the extremes.
+}  // namespace
+
 std::vector<double> edgesOf(const ValidJob& flutes) {
   const GroundCutter cutter = groundCutterOf(flutes);
   std::vector<Range> off(cutter.teeth().size());
@@ -58,8 +59,6 @@ std::vector<double> edgesOf(const ValidJob& flutes) {
   for (const Range& range : off) edges.push_back((range.from + range.to) / 2);
   return edges;
 }
-
-}  // namespace
 
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
   if (job.relief(0) != nullptr) {

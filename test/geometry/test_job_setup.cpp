@@ -350,5 +350,31 @@ TEST(SetupSheet, ReportsHowHighTheWheelStands) {
   EXPECT_NEAR(lowerFaceHeight(job) / kMillimetre, 2 * 2.788 - 4.552, 1e-3);
 }
 
+// Of the shipped reamer: what the file has is what is found, and its plan takes it.
+TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
+  for (const char* name : {"primary", "secondary"}) {
+    const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, name);
+    const auto result = solveJobSetup(job, kMachine, std::nullopt);
+    ASSERT_TRUE(std::holds_alternative<JobSetup>(result)) << std::get<std::string>(result);
+    const JobSetup& setup = std::get<JobSetup>(result);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
+    EXPECT_NEAR(setup.job.process.setup_swivel, job.operations[0].process.setup_swivel, 1e-4 * kDegree);
+    EXPECT_NEAR(setup.job.process.setup_height, job.process.setup_height, 0.05e-3);
+    ASSERT_TRUE(setup.relief);
+    EXPECT_GT(setup.relief->next_edge, 1 * kDegree);
+    EXPECT_GT(setup.relief->land_end_clearance.from, 0);
+    ASSERT_EQ(setup.edits.size(), 2u);
+    EXPECT_EQ(setup.edits[0].key, "operations[" + std::to_string(job.operation) + "].setup.swivel_deg");
+  }
+  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
+  EXPECT_EQ(std::get<std::string>(solveJobSetup(job, kMachine, SetupFigure::kHeight)),
+            "--keep height; allowed for a relief: swivel");
+  // A wheel too narrow for the land of the last relief.
+  GrindJob narrow = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary");
+  for (GrindProcess* p : {&narrow.process, &narrow.operations[2].process}) p->wheel_width = 1e-3;
+  const auto refused = solveJobSetup(narrow, kMachine, std::nullopt);
+  EXPECT_NE(std::get<std::string>(refused).find("mm wide, this one is 1 mm"), std::string::npos);
+}
+
 }  // namespace test_job_setup
 }  // namespace grinder

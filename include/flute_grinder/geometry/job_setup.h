@@ -24,6 +24,13 @@ struct JobSetup {
   CutterCheck check;                          ///< as of a plan; with a reason the set-up is not written
   SetupLimit limit = SetupLimit::kSwivel;     ///< what comes nearest to its limit
   double margin = 0;                          ///< as of SolvedSetup
+  /// Of a relief, in place of overtravel, limit and margin.
+  struct Relief {
+    double rim = 0;  ///< width of the wheel behind the relief's start, of which the land needs all but a margin [m]
+    double next_edge = 0;        ///< how near the wheel comes to the next tooth's edge [rad]
+    Range land_end_clearance{};  ///< minimum and maximum over the flute [rad]
+  };
+  std::optional<Relief> relief;
 };
 
 /// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.
@@ -32,7 +39,8 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 /// Solves the set-up of a job: rake and edge over the flute, and the cores at its ends. The
 /// wheel is taken with its wear at the job's start, and of unequal spirals the middle. The figures are rounded to what
 /// is written into a file, and measured as such, and the overtravel is lengthened to what the job's law of Z needs.
-/// Takes up to some tenths of a second, and seconds if it is refused.
+/// Takes up to some tenths of a second, and seconds if it is refused. Of a relief, swivel and height are found: the
+/// swivel nearest to the flutes' with which the rim reaches over the land, and nothing of the next tooth.
 /// @param job read with unsolvedFields().
 /// @param swivel that the machine allows [rad].
 /// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.

@@ -2,6 +2,8 @@
 
 #include "flute_grinder/motion/job_plan.h"
 
+#include <vector>
+
 namespace grinder {
 
 class ValidJob;
@@ -15,5 +17,9 @@ class ValidJob;
 /// @throw ReasonError if no correction keeps the rake, if a tooth has no edge, or if it has given up. @throw as
 /// wheelOf().
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch = {});
+
+/// By which angle the edge of each tooth is ahead of its asked helix, between the extremes along the flute [rad].
+/// @param flutes with their laws. @throw ReasonError if a tooth has no edge.
+std::vector<double> edgesOf(const ValidJob& flutes);
 
 }  // namespace grinder

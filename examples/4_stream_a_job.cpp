@@ -20,7 +20,7 @@ int main() {
   machine.limits.max_jerk = Axes(10, 10, 10, 1257);
   machine.park = Axes(-0.05, 0.05, 0, 0);
 
-  const JobPlan plan = planJob(readJobFile("jobs/paper.yaml"), machine, machine.park);
+  const JobPlan plan = planJob(ValidJob(readJobFile("jobs/paper.yaml")), machine, machine.park);
   if (!plan.good()) {
     for (const Reason& reason : plan.reasons) std::printf("%s\n", text(reason).c_str());
     return 1;

@@ -9,11 +9,12 @@ from flute_grinder.msg import GrindGoal
 _GRIND = pathlib.Path(__file__).absolute().parents[3] / 'flute_grinder' / 'grind'
 
 
-def goal(path):
-    """The goal that `grind run` sends for a job file, to the last bit. Needs no ROS master.
+def goal(path, operation=None):
+    """The goal that `grind run` sends for a job file, to the last bit; `operation` is which of several. Needs no ROS master.
 
     Raises ValueError, with what `grind` says, if the file cannot be read or is refused."""
-    done = subprocess.run([str(_GRIND), 'goal', '--', str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    which = ['--operation', str(operation)] if operation else []
+    done = subprocess.run([str(_GRIND), 'goal', *which, '--', str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE)
     if done.returncode == 2:
         raise ValueError(done.stderr.decode(errors='replace').strip())

@@ -257,7 +257,7 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   if (keep && *keep != SetupFigure::kSwivel) {
     return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
   }
-  const ValidJob flutes = withLaws(job.ofOperation(0));
+  const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
   const ReliefSetup found = findReliefSetup(groundCutterOf(flutes), reliefRequestOf(job, flutes, swivel, keep));
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
@@ -270,7 +270,7 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   takeFigure(setup, "process.setup_height", p.setup_height, found.height, units::kMillimetre, kLengthDecimals);
   intoList(setup.job);
   setup.relief = JobSetup::Relief{found.width, found.next_edge, found.land_end_clearance};
-  setup.check = checkGroundCutter(withLaws(setup.job));
+  setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
   return setup;
 }
 

@@ -62,7 +62,7 @@ std::vector<double> edgesOf(const ValidJob& flutes) {
 
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
   if (job.relief(0) != nullptr) {
-    const ValidJob flutes = withLaws(job->ofOperation(0), watch);
+    const ValidJob flutes = withLaws(ValidJob(job->ofOperation(0)), watch);
     return job.withEdges(flutes, edgesOf(flutes));
   }
   if (job->process.z_law == ZLaw::kPublished) return job;

@@ -20,7 +20,7 @@ const ros::WallDuration kGreeting(1);              ///< within which a viewer th
 /// All strokes of a job have the same errors.
 PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& program,
                                      const std::vector<GroundEdge>& edges) {
-  PathErrorMarkers errors(*program->job(), edges);
+  PathErrorMarkers errors(program->job(), edges);
   SetpointStream stream(program);
   bool in_stroke = false;
   for (Setpoint p; stream.next(p) && !(in_stroke && p.move != MoveKind::kStroke);) {

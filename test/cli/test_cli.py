@@ -11,6 +11,7 @@ import subprocess
 import sys
 
 import flute_grinder.job
+from flute_grinder.msg import Process
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
@@ -190,6 +191,11 @@ class TestGoal(CommandLine):
         jobs = sorted(pathlib.Path(gc.package_file('jobs')).glob('*.yaml'))
         self.assertGreater(len(jobs), 5)
         for path in jobs:
+            if 'operations:' in path.read_text():
+                kinds = [flute_grinder.job.goal(path, number).process.kind for number in (1, 2, 3)]
+                self.assertEqual(kinds, [Process.FLUTE, Process.PRIMARY, Process.SECONDARY])
+                self.assertEqual(flute_grinder.job.goal(path, 'primary').operation, 1)
+                continue
             goal = flute_grinder.job.goal(path)
             self.assertEqual(goal.job_name, path.name)
             self.assertEqual((goal.dry_run, goal.discard, goal.ignore_offset_check, goal.first_tooth, goal.first_pass), (False,) * 3 + (0, 0))

@@ -10,6 +10,7 @@ import subprocess
 import tempfile
 import unittest
 
+import rostest
 import yaml
 
 GRIND = ['rosrun', 'flute_grinder', 'grind']
@@ -170,4 +171,4 @@ class ReliefGround(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    unittest.main()
+    rostest.rosrun('flute_grinder', 'relief_ground', '__main__')

@@ -6,15 +6,19 @@ place between two of them."""
 import csv
 import math
 import os
-import subprocess
+import pathlib
+import sys
 import tempfile
 import unittest
 
 import rostest
 import yaml
 
-GRIND = ['rosrun', 'flute_grinder', 'grind']
-JOB = 'jobs/taper_reamer_d6_t6.yaml'
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+
+JOB = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
 
 
 class Stroke:
@@ -24,7 +28,7 @@ class Stroke:
         process = job['operations'][operation]
         wheel = process['wheel']
         if 'file' in wheel:
-            with open(os.path.join('jobs', wheel['file']), encoding='utf-8') as file:
+            with open(os.path.join(os.path.dirname(JOB), wheel['file']), encoding='utf-8') as file:
                 wheel = yaml.safe_load(file)
         self.radius, self.width = wheel['diameter_mm'] / 2, wheel['width_mm']
         self.swivel = math.radians(process['setup']['swivel_deg'])
@@ -99,8 +103,7 @@ class ReliefGround(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             for number in range(3):
                 path = os.path.join(folder, 'setpoints.csv')
-                subprocess.run(GRIND + ['plan', JOB, '--operation', str(number + 1), '--csv', path], check=True,
-                               stdout=subprocess.DEVNULL)
+                gc.grind('plan', JOB, '--operation', str(number + 1), '--csv', path).check_returncode()
                 with open(path, encoding='utf-8') as file:
                     rows = list(csv.DictReader(file))
                 cls.strokes.append([Stroke(cls.job, number, rows, tooth) for tooth in (0, 1)])

@@ -207,11 +207,11 @@ class OperationReader {
     GrindProcess& p = job_.process;
     file_.takeChoice("cutter.cut", job_.cutter.cut);
     file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
-    takeOrInherit("process.order", p.order, [&](const std::string& key) { file_.takeChoice(key, p.order); });
-    takeOrInherit("process.direction", p.direction,
-                  [&](const std::string& key) { file_.takeChoice(key, p.direction); });
-    takeOrInherit("process.spark_out", p.spark_out, [&](const std::string& key) {
-      file_.take(key, "0 to " + std::to_string(kMaxSparkOut), p.spark_out);
+    const auto choice = [&](const std::string& key, auto& value) { file_.takeChoice(key, value); };
+    takeOrInherit("process.order", &GrindProcess::order, choice);
+    takeOrInherit("process.direction", &GrindProcess::direction, choice);
+    takeOrInherit("process.spark_out", &GrindProcess::spark_out, [&](const std::string& key, int& value) {
+      file_.take(key, "0 to " + std::to_string(kMaxSparkOut), value);
     });
     if (isRelief(p.kind)) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
@@ -224,13 +224,10 @@ class OperationReader {
   }
 
   template <typename Value, typename Take>
-  void takeOrInherit(const char* key, Value& value, const Take& take) {
-    if (!inherits(key)) return take(keys_(key));
+  void takeOrInherit(const char* key, Value GrindProcess::*value, const Take& take) {
+    if (!inherits(key)) return take(keys_(key), job_.process.*value);
+    job_.process.*value = before_->*value;
     file_.know(keys_(key));
-    if (before_ == nullptr) return;
-    if constexpr (std::is_same_v<Value, GrindOrder>) value = before_->order;
-    if constexpr (std::is_same_v<Value, StrokeDirection>) value = before_->direction;
-    if constexpr (std::is_same_v<Value, int>) value = before_->spark_out;
   }
 
   FlatFile& file_;

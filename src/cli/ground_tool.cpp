@@ -328,7 +328,7 @@ std::vector<double> evenSections(const GrindJob& job, int count) {
 }
 
 GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
-  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, {}, {}};
+  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
   tool.check = checkGroundCutter(job, tool.cutter);
   for (const double x : at) {
     const GroundSection section = tool.cutter.section(x);
@@ -341,6 +341,7 @@ GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter 
 GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
   GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
   tool.of_run = true;
+  tool.on_planned = strokes.isOnPlanned();
   tool.strokes = strokes.strokes();
   tool.gouges = gougesOf(strokes, kMinGouge);
   if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
@@ -388,6 +389,7 @@ Json toJson(const GroundTool& tool) {
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
           {"rake_tolerance_deg", tool.job->cutter.rake_tolerance / kDegree},
+          {"on_planned", tool.on_planned},
           {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
           {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},
           {"sections", sections}};

@@ -27,6 +27,7 @@ struct GroundTool {
   std::vector<MeasuredSection> sections;
   double volume_removed = 0;  ///< over the flute's length [m^3]
   bool of_run = false;        ///< as ground in a run
+  bool on_planned = false;    ///< of a run of a relief: the operations ahead of it are taken as planned
   std::vector<RunStroke> strokes;
   std::vector<Gouge> gouges;  ///< those deeper than what sampling leaves
 };

@@ -7,6 +7,7 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
 
@@ -18,6 +19,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -31,6 +33,7 @@ struct Entry {
   std::string file;
   std::string started;  ///< as in the record
   std::string job;
+  std::string operation;  ///< as GrindJob::operationText()
   std::string tool;
   std::string outcome, reason;
   std::size_t strokes = 0;  ///< ground to their end
@@ -61,6 +64,7 @@ Entry readEntry(const std::string& path, const Tolerances& tolerances) {
   entry.file = path;
   entry.started = record.at("started");
   entry.job = record.at("job").at("name");
+  entry.operation = job.operationText();
   entry.tool = toolText(job.cutter, job.tooth_angles.size());
   entry.outcome = record.at("outcome");
   entry.reason = record.at("reason");
@@ -76,10 +80,19 @@ Entry readEntry(const std::string& path, const Tolerances& tolerances) {
 }
 
 Json toJson(const Entry& entry) {
-  return {{"file", entry.file},       {"started", entry.started}, {"job", entry.job},
-          {"tool", entry.tool},       {"outcome", entry.outcome}, {"reason", entry.reason},
-          {"strokes", entry.strokes}, {"passes", entry.passes},   {"duration_s", entry.duration},
-          {"holds", entry.holds},     {"verdict", entry.verdict}, {"verdict_because", entry.because}};
+  return {{"file", entry.file},
+          {"started", entry.started},
+          {"job", entry.job},
+          {"operation", entry.operation},
+          {"tool", entry.tool},
+          {"outcome", entry.outcome},
+          {"reason", entry.reason},
+          {"strokes", entry.strokes},
+          {"passes", entry.passes},
+          {"duration_s", entry.duration},
+          {"holds", entry.holds},
+          {"verdict", entry.verdict},
+          {"verdict_because", entry.because}};
 }
 
 /// In short; what failed is named.
@@ -95,7 +108,7 @@ using Row = std::array<std::string, 8>;
 
 Row toRow(const Entry& entry) {
   return {timeText(timeOf(entry.started), false),
-          entry.job.empty() ? "-" : entry.job,
+          (entry.job.empty() ? "-" : entry.job) + (entry.operation.empty() ? "" : ", " + entry.operation),
           entry.tool,
           entry.outcome,
           format("%zu of %zu", entry.strokes, entry.passes),
@@ -151,6 +164,40 @@ std::optional<std::string> newestRecord(const std::string& folder) {
   const std::vector<std::string> paths = pathsIn(folder);
   if (paths.empty()) return std::nullopt;
   return paths.back();
+}
+
+std::string doneOperations(const std::string& node, const std::string& job) {
+  GrindJob tool;
+  try {
+    tool = readJobFile(job, {}, "1");
+  } catch (const JobFileError&) {
+    return "";
+  }
+  if (tool.operations.empty()) return "";
+  std::vector<std::string> paths;
+  try {
+    paths = pathsIn(historyFolder(node));
+  } catch (const std::runtime_error&) {
+    // A grinder that has no folder yet has no records.
+  }
+  std::map<std::string, std::string> ended;
+  for (const std::string& path : paths) {
+    try {
+      const Json record = readRecord(path);
+      if (record["outcome"] == "done") ended[record["job"]["digest"]] = record["ended"];
+    } catch (const std::exception&) {
+      // `grind history` names it.
+    }
+  }
+  std::string done;
+  for (int i = 0; i < static_cast<int>(tool.operations.size()); ++i) {
+    const GrindJob operation = tool.ofOperation(i);
+    const auto found = ended.find(jobDigest(operation));
+    if (found == ended.end()) continue;
+    done += (done.empty() ? "" : ", ") + std::string(toString(operation.process.kind)) + " (" +
+            timeText(timeOf(found->second), false) + ")";
+  }
+  return "done by the records: " + (done.empty() ? "none" : done);
 }
 
 int printHistory(const std::string& node, const HistoryOptions& options) {

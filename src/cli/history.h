@@ -21,6 +21,11 @@ std::string historyFolder(const std::string& node);
 /// @throw FileError if the folder cannot be read.
 std::optional<std::string> newestRecord(const std::string& folder);
 
+/// Which operations of a job file the records show as done, with nothing changed of them or what is ahead of them
+/// since; for people. @param node as for historyFolder(). @return empty for a file that cannot be read, or has a single
+/// one.
+std::string doneOperations(const std::string& node, const std::string& job);
+
 /// Lists the records of a grinder with the verdict on each, the newest last. @param node as for historyFolder().
 /// @return the exit status: 2 if a record could not be read.
 /// @throw FileError if the folder cannot be read, JobFileError if the tolerances cannot.

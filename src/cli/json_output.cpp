@@ -25,6 +25,7 @@ Json lastJobObject(const flute_grinder::JobProgress& progress) {
   if (progress.job_digest.empty()) return nullptr;
   const flute_grinder::Cutter& cutter = progress.cutter;
   return {{"name", progress.job_name},
+          {"operation", progress.operation},
           {"cutter",
            {{"end_diameter_mm", cutter.end_diameter / kMillimetre},
             {"cone_angle_deg", cutter.cone_angle / kDegree},

@@ -12,8 +12,7 @@ std::string lastJob(const flute_grinder::JobProgress& p) {
   const std::string came_to =
       p.finished ? "finished"
                  : format("tooth %d, pass %d not finished, X %.3f mm", p.tooth + 1, p.pass + 1, p.x / kMillimetre);
-  return (p.job_name.empty() ? "without a name" : p.job_name) + ": " +
-         toolText(fromMessage(p.cutter), p.cutter.tooth_angles.size()) + "; " + came_to + " (" +
+  return jobText(p.job_name, p.operation, fromMessage(p.cutter), p.cutter.tooth_angles.size()) + ": " + came_to + " (" +
          p.job_digest.substr(0, 12) + ")";
 }
 

@@ -4,6 +4,7 @@
 #include "cli/history.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
+#include "cli/run_before.h"
 #include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
@@ -78,12 +79,12 @@ std::string reasonWhyNot(const Action& action) {
 }
 
 /// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
-void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
+/// @param job of the run, with its laws.
+void surveyRun(const std::string& path, const RunFile& run, const std::optional<ValidJob>& job, Survey& survey,
+               ReportContext& context) {
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
-  if (run.kind() == FileKind::kBag)
-    why = run.job() ? reasonWhyNot([&] { strokes.emplace(withLaws(*run.job())); })
-                    : "the bag does not have the goal of " + run.place();
+  if (job) why = reasonWhyNot([&] { strokes.emplace(*job, groundBefore(path, run)); });
   run.visit([&](const RunRow& row) {
     survey.add(row);
     if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
@@ -91,8 +92,8 @@ void surveyRun(const RunFile& run, Survey& survey, ReportContext& context) {
   if (!strokes || !why.empty()) return;
   why = reasonWhyNot([&] {
     strokes->finish();
-    context.tool =
-        toJson(measure(context.file + ", " + run.place(), *strokes, evenSections(*strokes->job(), kSections)));
+    context.tool = toJson(measure(context.file + ", " + run.place() + groundBeforeText(run), *strokes,
+                                  evenSections(*strokes->job(), kSections)));
   });
 }
 
@@ -108,8 +109,14 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
     return findingsOfRecord(record, context);
   }
   const std::unique_ptr<RunFile> run = RunFile::open(path, job);
-  Survey survey(*run, draws);
-  surveyRun(*run, survey, context);
+  std::optional<ValidJob> asked;
+  if (run->job()) {
+    context.no_tool = reasonWhyNot([&] { asked = withLaws(*run->job()); });
+  } else if (run->kind() == FileKind::kBag) {
+    context.no_tool = "the bag does not have the goal of " + run->place();
+  }
+  Survey survey(*run, asked, draws);
+  surveyRun(path, *run, asked, survey, context);
   Json document = survey.findings(context);
   if (draws) document["plots"] = survey.plots();
   return document;

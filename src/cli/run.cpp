@@ -1,4 +1,5 @@
 #include "cli/call.h"
+#include "cli/history.h"
 #include "cli/interrupt.h"
 #include "cli/offline.h"
 #include "cli/online.h"
@@ -185,8 +186,14 @@ int closeStream(StreamWatch& stream, const std::string& csv, int status) {
   return status;
 }
 
-flute_grinder::GrindGoal goalFor(const RunOptions& options) {
-  flute_grinder::GrindGoal goal = goalFromFile(options.job, options.operation);
+flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& options) {
+  flute_grinder::GrindGoal goal;
+  try {
+    goal = goalFromFile(options.job, options.operation);
+  } catch (const JobFileError& error) {
+    const std::string done = options.operation.empty() ? doneOperations(node, options.job) : "";
+    throw JobFileError(error.what() + (done.empty() ? "" : "; " + done));
+  }
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;
   goal.ignore_offset_check = options.ignore_offset_check;
@@ -196,7 +203,7 @@ flute_grinder::GrindGoal goalFor(const RunOptions& options) {
 }  // namespace
 
 int runJob(const std::string& node, const RunOptions& options) {
-  flute_grinder::GrindGoal goal = goalFor(options);
+  flute_grinder::GrindGoal goal = goalFor(node, options);
   const ValidJob job = jobFromGoal(goal);
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);

@@ -2,6 +2,7 @@
 
 #include "cli/ground_tool.h"
 #include "cli/report.h"
+#include "cli/run_before.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/run_strokes.h"
@@ -71,6 +72,7 @@ void writeStlFile(const GroundTool& tool, const std::string& path) {
 struct Source {
   ValidJob job;
   std::string name;  ///< for the reader
+  std::string file;
   std::unique_ptr<RunFile> run;
 };
 
@@ -79,7 +81,7 @@ Source sourceOf(const SimulateOptions& options) {
   const std::string name = std::filesystem::path(options.file).filename();
   const FileKind kind = kindOf(options.file);
   if (kind == FileKind::kOther || kind == FileKind::kRecord)
-    return {readJobFile(options.file, {}, options.operation), name, nullptr};
+    return {readJobFile(options.file, {}, options.operation), name, options.file, nullptr};
   if (kind == FileKind::kTable || kind == FileKind::kPlan) {
     throw FileError(options.file +
                     ": is no file of 'grind run --csv'; without the positions that the drive read there is "
@@ -93,14 +95,15 @@ Source sourceOf(const SimulateOptions& options) {
                     "; give its job file with --job");
   }
   const ValidJob job = options.job.empty() ? *run->job() : readJobFile(options.job, {}, options.operation);
-  return {job, name + (run->place().empty() ? "" : ", ") + run->place(), std::move(run)};
+  const std::string place = (run->place().empty() ? "" : ", ") + run->place() + groundBeforeText(*run);
+  return {job, name + place, options.file, std::move(run)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
   const ValidJob job = withLaws(source.job);
   if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
-  RunStrokes strokes(job);
+  RunStrokes strokes(job, groundBefore(source.file, *source.run));
   source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
   return measure(source.name, strokes, at);

@@ -108,7 +108,7 @@ std::vector<Gouge> gougesOf(const RunStrokes& strokes, double min) {
   for (const RunStroke& stroke : strokes.strokes()) {
     const GroundTooth& tooth = asked.teeth()[static_cast<std::size_t>(stroke.place.tooth)];
     const Reliefs& reliefs = asked.reliefs(static_cast<std::size_t>(stroke.place.tooth));
-    const Asked flute{reliefs.empty() ? asked.flutes()[tooth.flute].front() : reliefs.back(),
+    const Asked flute{reliefs.empty() ? asked.flutes()[tooth.flute].front() : reliefs.back().front(),
                       ConicalCutter(job.cutterOf(stroke.place.tooth))};
     const WheelSweep sweep = strokes.sweep(stroke);
     Gouge worst{stroke.place, stroke.move, 0, 0};

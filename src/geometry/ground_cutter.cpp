@@ -58,6 +58,22 @@ double meanSpiral(const ConicalCutter& cutter, double from, double to, double tu
   return std::atan(turn / (at_45_deg.a(to) - at_45_deg.a(from)));
 }
 
+std::optional<Wall> outermostWall(const std::vector<WheelSweep>& strokes, double x, double r, bool high) {
+  std::optional<Wall> outermost;
+  for (const WheelSweep& sweep : strokes) {
+    const auto wall = sweep.wall(x, r, high);
+    if (!wall) continue;
+    if (!outermost || (high ? wall->angle > outermost->angle : wall->angle < outermost->angle)) outermost = wall;
+  }
+  return outermost;
+}
+
+double leastRadius(const std::vector<WheelSweep>& strokes, double x, double radius) {
+  double min = radius;
+  for (const WheelSweep& sweep : strokes) min = std::min(min, sweep.minRadius(x, radius));
+  return min;
+}
+
 GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth,
                            std::vector<Reliefs> reliefs)
     : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)), reliefs_(std::move(reliefs)) {
@@ -98,28 +114,11 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
   return all;
 }
 
-std::optional<Wall> GroundCutter::rakeFace(const Flute& flute, double x, double r) const {
-  const bool high = direction() == CutDirection::kRightHand;
-  std::optional<Wall> outermost;
-  for (const WheelSweep& sweep : flute) {
-    const auto wall = sweep.wall(x, r, high);
-    if (!wall) continue;
-    if (!outermost || (high ? wall->angle > outermost->angle : wall->angle < outermost->angle)) outermost = wall;
-  }
-  return outermost;
-}
-
 std::optional<double> GroundCutter::chordalRake(const Flute& flute, double x, double depth, double edge) const {
   const double outer = cutter_.radius(x), inner = outer - chordDepth(cutter_.geometry(), depth);
   const auto face = rakeFace(flute, x, inner);
   if (!face) return std::nullopt;
   return chordAngle(outer, inner, direction() == CutDirection::kRightHand ? face->angle - edge : edge - face->angle);
-}
-
-double GroundCutter::coreRadius(const Flute& flute, double x) const {
-  double min = cutter_.radius(x);
-  for (const WheelSweep& sweep : flute) min = std::min(min, sweep.minRadius(x, cutter_.radius(x)));
-  return min;
 }
 
 double GroundCutter::coreRadius(double x) const {

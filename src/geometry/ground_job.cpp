@@ -236,10 +236,10 @@ class Checker {
   std::vector<Reason> reasons_;
 };
 
-/// The reliefs of a job up to its own, on flutes. @param flutes the cutter with them.
-GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes) {
+/// The reliefs of a job up to an operation, on flutes. @param flutes the cutter with them.
+GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last) {
   std::vector<Reliefs> reliefs(flutes.flutes().size());
-  for (int i = 1; i <= job->operation; ++i) {
+  for (int i = 1; i <= last; ++i) {
     const ValidJob relief =
         i == job->operation ? job : ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
     const std::vector<double> wear = wearOfTeeth(relief);
@@ -247,7 +247,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
       if (own.size() >= static_cast<std::size_t>(i)) continue;  // of a tooth that shares the flute
       const int number = static_cast<int>(tooth);
-      own.push_back(sweepOf(relief, number, wear[tooth], strokeOf(relief, number, relief.deepest(), wear[tooth])));
+      own.push_back({sweepOf(relief, number, wear[tooth], strokeOf(relief, number, relief.deepest(), wear[tooth]))});
     }
   }
   return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs));
@@ -255,7 +255,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes) {
 
 /// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
 GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
-  if (job.relief(0) != nullptr) return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear));
+  if (job.relief(0) != nullptr) return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), job->operation);
   const std::vector<double> wear = wearOfTeeth(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
@@ -309,6 +309,10 @@ WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStrok
 }
 
 GroundCutter groundCutterOf(const ValidJob& job) { return groundCutterOf(job, 0); }
+
+GroundCutter groundBefore(const ValidJob& job) {
+  return relievedCutterOf(job, groundCutterOf(job.flutes()), job->operation - 1);
+}
 
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
   const double length = job->cutter.flute_length;

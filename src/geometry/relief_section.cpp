@@ -56,7 +56,7 @@ ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& sec
   // The land's surface is what begins nearest to the edge. No relief reaches a circle below the least that it leaves.
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<double> lowest;
-  for (const WheelSweep& relief : reliefs) lowest.push_back(relief.minRadius(section.x, radius) * (1 + kBelowTheEdge));
+  for (const Relief& relief : reliefs) lowest.push_back(leastRadius(relief, section.x, radius) * (1 + kBelowTheEdge));
   const auto start_of = [&](std::size_t relief, double r) {
     const auto surface = r < lowest[relief] ? std::nullopt : tooth.surface(reliefs[relief], r);
     return surface ? surface->behind : kNone;

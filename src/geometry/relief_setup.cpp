@@ -146,7 +146,7 @@ ReliefSetup tried(const Lands& lands, const ReliefRequest& request, double swive
   }
   wheel.height = setup.height = ReliefPath::heightFor(cone, request.start, wheel, wheel.width / 2 - setup.width);
   const ReliefPath final_path(cone, request.start, wheel);
-  const Reliefs sweep{reliefSweep(cone, final_path, wheel, request.edge)};
+  const Reliefs sweep{{reliefSweep(cone, final_path, wheel, request.edge)}};
   setup.next_edge = infinity;
   lands.visit([&](const Lands::Land& land) {
     const ReliefSection measured = measureRelief(lands.cutter(), land.section, land.tooth, sweep);

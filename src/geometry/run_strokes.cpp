@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace grinder {
 
@@ -47,7 +48,8 @@ double maxRadius(const ValidJob& job) {
 
 }  // namespace
 
-RunStrokes::RunStrokes(const ValidJob& job) : job_(job), radius_(maxRadius(job)) {}
+RunStrokes::RunStrokes(const ValidJob& job, std::optional<GroundCutter> before)
+    : job_(job), before_(std::move(before)), radius_(maxRadius(job)) {}
 
 double RunStrokes::wearOf(const ToothPass& place) const {
   const std::vector<JobPass>& passes = job_.passes();
@@ -244,18 +246,21 @@ WheelSweep RunStrokes::sweep(const RunStroke& run) const {
 }
 
 GroundCutter RunStrokes::relieved(const std::vector<const RunStroke*>& kept) const {
-  const GroundCutter planned = groundCutterOf(job_);
+  const GroundCutter before = before_ ? *before_ : groundBefore(job_);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   std::vector<Reliefs> reliefs;
-  for (std::size_t i = 0; i < planned.teeth().size(); ++i) {
-    flutes.push_back(planned.flutes()[planned.teeth()[i].flute]);
-    teeth.push_back({planned.teeth()[i].angle, i});
-    reliefs.push_back(planned.reliefs(i));
-    reliefs.back().pop_back();
+  for (std::size_t i = 0; i < before.teeth().size(); ++i) {
+    flutes.push_back(before.flutes()[before.teeth()[i].flute]);
+    teeth.push_back({before.teeth()[i].angle, i});
+    reliefs.push_back(before.reliefs(i));
+    Relief own;
+    for (const RunStroke* stroke : kept) {
+      if (stroke->place.tooth == static_cast<int>(i)) own.push_back(sweep(*stroke));
+    }
+    if (!own.empty()) reliefs.back().push_back(std::move(own));
   }
-  for (const RunStroke* stroke : kept) reliefs[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
-  return GroundCutter(planned.cutter(), std::move(flutes), std::move(teeth), std::move(reliefs));
+  return GroundCutter(before.cutter(), std::move(flutes), std::move(teeth), std::move(reliefs));
 }
 
 GroundCutter RunStrokes::cutter() const {

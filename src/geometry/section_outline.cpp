@@ -31,7 +31,7 @@ class FluteWalls {
  public:
   FluteWalls(const GroundCutter& cutter, const Flute& flute, double x, double blank_radius)
       : cutter_(cutter), flute_(flute), x_(x), core_(blank_radius) {
-    for (const WheelSweep& sweep : flute) core_ = std::min(core_, sweep.minRadius(x, blank_radius));
+    core_ = leastRadius(flute, x, blank_radius);
     const double depth = blank_radius - core_;
     // The floor is a point, in the middle of what is removed a little above it.
     for (double above = kNearFloor; empty_ && above < depth; above *= 4) {
@@ -179,8 +179,8 @@ class Outliner {
   std::optional<double> relieved(std::size_t from, std::size_t to, double r) const {
     const std::size_t flute = rightHand() ? from : to;
     std::optional<double> nearest;
-    for (const WheelSweep& relief : cutter_.reliefs(flute % grid_.teeth)) {
-      const auto wall = relief.wall(x_, r, !rightHand());
+    for (const Relief& relief : cutter_.reliefs(flute % grid_.teeth)) {
+      const auto wall = outermostWall(relief, x_, r, !rightHand());
       if (!wall) continue;
       const double at = angle(flute) + wall->angle;
       nearest = !nearest ? at : rightHand() ? std::min(*nearest, at) : std::max(*nearest, at);

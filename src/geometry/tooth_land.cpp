@@ -2,8 +2,6 @@
 
 #include "flute_grinder/curve/units.h"
 
-#include <algorithm>
-
 namespace grinder {
 
 ToothLand::ToothLand(const GroundCutter& cutter, const GroundSection& section, std::size_t number)
@@ -17,26 +15,21 @@ ToothLand::ToothLand(const GroundCutter& cutter, const GroundSection& section, s
   next_flute_ = &cutter.flutes()[teeth[next].flute];
 }
 
-std::optional<ToothLand::Surface> ToothLand::surface(const WheelSweep& relief, double r) const {
-  const auto wall = relief.wall(x_, r, !right_);
+std::optional<ToothLand::Surface> ToothLand::surface(const Relief& relief, double r) const {
+  const auto wall = outermostWall(relief, x_, r, !right_);
   if (!wall) return std::nullopt;
   return Surface{behind(wall->angle), right_ ? wall->slope : -wall->slope};
 }
 
-double ToothLand::farEnd(const WheelSweep& relief, double r) const {
-  const auto wall = relief.wall(x_, r, right_);
+double ToothLand::farEnd(const Relief& relief, double r) const {
+  const auto wall = outermostWall(relief, x_, r, right_);
   return wall ? behind(wall->angle) : -units::kTurn;
 }
 
 std::optional<double> ToothLand::wallOf(const Flute& flute, double r, bool high) const {
-  std::optional<double> farthest;
-  for (const WheelSweep& sweep : flute) {
-    const auto wall = sweep.wall(x_, r, high);
-    if (!wall) continue;
-    farthest = !farthest ? wall->angle : high ? std::max(*farthest, wall->angle) : std::min(*farthest, wall->angle);
-  }
-  if (farthest) farthest = behind(*farthest);
-  return farthest;
+  const auto wall = outermostWall(flute, x_, r, high);
+  if (!wall) return std::nullopt;
+  return behind(wall->angle);
 }
 
 }  // namespace grinder

@@ -12,18 +12,18 @@ class ToothLand {
   /// @param number of a tooth that has an edge in the section.
   ToothLand(const GroundCutter& cutter, const GroundSection& section, std::size_t number);
 
-  /// Where a relief's surface meets a circle, by its slope over the radius.
+  /// Where a relief's surface meets a circle, nearest to the edge, by its slope over the radius.
   struct Surface {
     double behind, slope;
   };
-  std::optional<Surface> surface(const WheelSweep& relief, double r) const;
+  std::optional<Surface> surface(const Relief& relief, double r) const;
 
   /// The next flute's wall at the heel, and at the next edge, on a circle that it reaches.
   double heelWall(double r) const { return wallOf(*next_flute_, r, !right_).value_or(0) + pitch_; }
   double nextRakeFace(double r) const { return wallOf(*next_flute_, r, right_).value_or(0) + pitch_; }
 
   /// Where a relief ends, far behind the edge; before everything where it does not reach the circle.
-  double farEnd(const WheelSweep& relief, double r) const;
+  double farEnd(const Relief& relief, double r) const;
 
  private:
   double behind(double angle) const { return right_ ? angle - edge_ : edge_ - angle; }

@@ -31,4 +31,10 @@ std::string toolText(const CutterGeometry& cutter, std::size_t teeth) {
                 cutter.rake_angle / units::kDegree, teeth, teeth == 1 ? "tooth" : "teeth");
 }
 
+std::string jobText(const std::string& name, const std::string& operation, const CutterGeometry& cutter,
+                    std::size_t teeth) {
+  return (name.empty() ? "a job without a name" : name) + (operation.empty() ? "" : ", " + operation) + " (" +
+         toolText(cutter, teeth) + ")";
+}
+
 }  // namespace grinder

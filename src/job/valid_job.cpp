@@ -8,6 +8,8 @@ namespace grinder {
 
 namespace {
 
+constexpr double kRunIn = 1e-3;  ///< of a relief's stroke at either end, in which it reaches its feed, and stops [m]
+
 std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& depths) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(depths.size());
@@ -39,6 +41,11 @@ ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& cutter) {
   return {c.second_clearance, end.radius / cutter.radius(0), end.behind};
 }
 
+/// Where the start of a relief goes in a stroke: X of the cutter [m].
+Range startOf(const ReliefPath& path, double length) {
+  return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
+}
+
 /// The paths of a relief behind all teeth. @throw InvalidJob
 std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters) {
   try {
@@ -46,10 +53,8 @@ std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterG
     for (const CutterGeometry& geometry : cutters) {
       const ConicalCutter cutter(geometry);
       paths.emplace_back(cutter, reliefStartOf(job, cutter), reliefWheelOf(job.process));
-      if (cutter.radius(-paths.back().beyondEnd()) > 0 &&
-          cutter.radius(geometry.flute_length + paths.back().beyondShank()) > 0) {
-        continue;
-      }
+      const Range start = startOf(paths.back(), geometry.flute_length);
+      if (cutter.radius(start.from) > 0 && cutter.radius(start.to) > 0) continue;
       throw std::invalid_argument("the stroke of the relief goes beyond where the cone closes");
     }
     return paths;
@@ -67,8 +72,9 @@ std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeome
   std::vector<StrokeLaw> laws;
   Range x{-p.overtravel_end, length + p.overtravel_shank};
   for (std::size_t i = 0; i < reliefs.size(); ++i) {
-    const Range own{reliefs[i].lead() - reliefs[i].beyondEnd(), length + reliefs[i].lead() + reliefs[i].beyondShank()};
-    x = i == 0 ? own : Range{std::min(x.from, own.from), std::max(x.to, own.to)};
+    const Range own = startOf(reliefs[i], length);
+    const double from = own.from + reliefs[i].lead(), to = own.to + reliefs[i].lead();
+    x = i == 0 ? Range{from, to} : Range{std::min(x.from, from), std::max(x.to, to)};
   }
   if (p.direction == StrokeDirection::kToEnd) std::swap(x.from, x.to);
   for (std::size_t i = 0; i < cutters.size(); ++i) {

@@ -15,6 +15,7 @@ template <typename AnyProgress, typename Visit>
 void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("job_digest", progress.job_digest);
   visit("job_name", progress.job_name);
+  visit("operation", progress.operation);
   visit("end_diameter_m", progress.cutter.end_diameter);
   visit("cone_angle_rad", progress.cutter.cone_angle);
   visit("spiral_angle_rad", progress.cutter.spiral_angle);

@@ -24,6 +24,7 @@ using JournalOwned = AtomicFileOwned;
 struct Progress {
   std::string job_digest;            ///< see jobDigest(); empty if there has been no job
   std::string job_name;              ///< as given in the goal, for display
+  std::string operation;             ///< as GrindJob::operationText()
   CutterGeometry cutter;             ///< of the job, for display
   std::vector<double> tooth_angles;  ///< of the job, for display [rad]
   bool finished = false;             ///< every pass is ground

@@ -22,8 +22,8 @@ const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
 /// For the operator; teeth and passes count from 1.
 std::string describe(const Progress& p) {
   std::ostringstream text;
-  text << (p.job_name.empty() ? "a job without a name" : p.job_name) << " ("
-       << toolText(p.cutter, p.tooth_angles.size()) << "), tooth " << p.next.tooth + 1 << ", pass " << p.next.pass + 1;
+  text << jobText(p.job_name, p.operation, p.cutter, p.tooth_angles.size()) << ", tooth " << p.next.tooth + 1
+       << ", pass " << p.next.pass + 1;
   return text.str();
 }
 
@@ -76,6 +76,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.feed_override = before_.feed_override;
   progress_.job_digest = digest;
   progress_.job_name = name;
+  progress_.operation = program.job()->operationText();
   progress_.cutter = program.job()->cutter;
   progress_.tooth_angles = program.job()->tooth_angles;
   progress_.next = program.run().first;

@@ -45,6 +45,7 @@ flute_grinder::JobProgress toMessage(const Progress& progress) {
   flute_grinder::JobProgress m;
   m.job_digest = progress.job_digest;
   m.job_name = progress.job_name;
+  m.operation = progress.operation;
   m.cutter = grinder::toMessage(progress.cutter, progress.tooth_angles);
   m.finished = static_cast<std::uint8_t>(progress.finished);
   m.tooth = static_cast<std::uint16_t>(progress.next.tooth);

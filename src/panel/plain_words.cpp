@@ -33,12 +33,6 @@ std::string feedText(const flute_grinder::PathStatistics& s) {
   return feed + (s.feed_limits.empty() ? "; no axis limits it." : ", limited by");
 }
 
-/// A job by its file and tool.
-std::string named(const std::string& name, const flute_grinder::Cutter& cutter) {
-  return (name.empty() ? "a job without a name" : name) + " (" +
-         toolText(fromMessage(cutter), cutter.tooth_angles.size()) + ")";
-}
-
 }  // namespace
 
 std::string duration(double seconds) {
@@ -87,10 +81,14 @@ std::string done(MachineEvent event) {
   }
 }
 
-std::string describe(const flute_grinder::GrindGoal& goal) { return named(goal.job_name, goal.cutter); }
+std::string describe(const flute_grinder::GrindGoal& goal) {
+  return jobText(goal.job_name, jobFromGoal(goal).operationText(), fromMessage(goal.cutter),
+                 goal.cutter.tooth_angles.size());
+}
 
 std::string describe(const flute_grinder::JobProgress& progress) {
-  return named(progress.job_name, progress.cutter) +
+  return jobText(progress.job_name, progress.operation, fromMessage(progress.cutter),
+                 progress.cutter.tooth_angles.size()) +
          format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
 }
 

@@ -25,6 +25,7 @@ Json followingJson(const Axes& error) {
 StrokeLog::StrokeLog(const ValidJob& job) {
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
     edges_.push_back({ConicalCutter(job.strokeLaw(tooth).cutter), job.strokeLaw(tooth).lead});
+    starts_.push_back(job.relief(tooth) == nullptr ? 0 : job.strokeLaw(tooth).lead);
   }
   for (const double depth : job.depths()) depths_.push_back(job.depthAtEnd(depth));
 }
@@ -43,7 +44,8 @@ void StrokeLog::add(const Setpoint& setpoint, double time) {
   bool in_flute = true;
   if (setpoint.tooth < edges_.size()) {
     const FormedEdge& edge = edges_[setpoint.tooth];
-    in_flute = x >= 0 && x <= edge.cutter.geometry().flute_length;
+    const double along = x - starts_[setpoint.tooth];
+    in_flute = along >= 0 && along <= edge.cutter.geometry().flute_length;
     const double deviation = edge.deviation(x, std::abs(setpoint.path_error));
     if (!(deviation <= stroke.deviation)) stroke.deviation_x = x;
     updateMax(stroke.deviation, deviation);

@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/flat_file.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/record/record_file.h"
 
 #include <algorithm>
@@ -26,6 +27,7 @@ struct ToleranceRow {
   double Tolerances::*value;
 };
 constexpr ToleranceRow kTolerances[]{{"land_mm", &Tolerances::land_mm},
+                                     {"primary_mm", &Tolerances::primary_mm},
                                      {"following_error_um", &Tolerances::following_error_um},
                                      {"feed_percent", &Tolerances::feed_percent},
                                      {"late_cycles_percent", &Tolerances::late_cycles_percent}};
@@ -192,8 +194,19 @@ Criterion feedOf(const Json& job, const Json& strokes, const Json& feed_limits, 
   return feed;
 }
 
-/// @param tool as ground; null if it was not measured.
-std::vector<Criterion> ofTool(const Json& job, const Json& tool, const Tolerances& tolerances) {
+/// Calls `visit(section, tooth, place)` for every tooth in every section of a tool; null has none.
+template <typename Visit>
+void forEachTooth(const Json& tool, const Visit& visit) {
+  for (const Json& section : find(tool, "sections")) {
+    int number = 0;
+    for (const Json& tooth : section.at("teeth")) {
+      visit(section, tooth, format("tooth %d, ", ++number) + placeAt(section.at("x_mm")));
+    }
+  }
+}
+
+/// @param tool with flutes as ground; null if they were not measured.
+std::vector<Criterion> ofFlutes(const Json& job, const Json& tool, const Tolerances& tolerances) {
   const Json& cutter = job.at("cutter");
   const auto asked_rake = number(cutter.at("rake_angle_deg"));
   Criterion rake("rake", "deg", 3, asked_rake, number(cutter.at("rake_tolerance_deg")));
@@ -203,21 +216,43 @@ std::vector<Criterion> ofTool(const Json& job, const Json& tool, const Tolerance
   Criterion spiral("spiral angle", "deg", 3, std::nullopt, number(cutter.at("spiral_tolerance_deg")));
   const bool incomplete_ok = job.at("process").value("incomplete_ok", false);
   for (const Json& section : find(tool, "sections")) {
-    const std::string x = placeAt(section.at("x_mm"));
-    core.add(number(section.at("core_diameter_mm")), x, number(section.at("asked_core_diameter_mm")));
-    int i = 0;
-    for (const Json& tooth : section.at("teeth")) {
-      const std::string place = format("tooth %d, ", ++i) + x;
-      // A job may allow an incomplete flute, which has no rake face at its end.
-      if (tooth.at("complete").get<bool>() || !incomplete_ok) {
-        rake.add(number(tooth.at("rake_deg")), place);
-        chord.add(number(tooth.at("chordal_rake_deg")), place);
-      }
-      land.add(number(tooth.at("land_mm")), place);
-      spiral.add(number(tooth.at("spiral_deg")), place, number(tooth.at("asked_spiral_deg")));
-    }
+    core.add(number(section.at("core_diameter_mm")), placeAt(section.at("x_mm")),
+             number(section.at("asked_core_diameter_mm")));
   }
+  forEachTooth(tool, [&](const Json&, const Json& tooth, const std::string& place) {
+    // A job may allow an incomplete flute, which has no rake face at its end.
+    if (tooth.at("complete").get<bool>() || !incomplete_ok) {
+      rake.add(number(tooth.at("rake_deg")), place);
+      chord.add(number(tooth.at("chordal_rake_deg")), place);
+    }
+    land.add(number(tooth.at("land_mm")), place);
+    spiral.add(number(tooth.at("spiral_deg")), place, number(tooth.at("asked_spiral_deg")));
+  });
   return {rake, chord, core, land, spiral};
+}
+
+/// The operation of a job, "flute" for one alone.
+std::string operationOf(const Json& job) { return job.value("operation", toString(OperationKind::kFlute)); }
+
+/// @param tool as ground; null if it was not measured.
+std::vector<Criterion> ofReliefs(const Json& job, const Json& tool, const Tolerances& tolerances) {
+  const std::string operation = operationOf(job);
+  if (operation == toString(OperationKind::kFlute)) return {};
+  const Json& cutter = job.at("cutter");
+  std::vector<Criterion> criteria;
+  Criterion& clearance = criteria.emplace_back("clearance", "deg", 3, number(cutter.at("clearance_deg")),
+                                               number(cutter.at("clearance_tolerance_deg")));
+  forEachTooth(tool, [&](const Json&, const Json& tooth, const std::string& place) {
+    clearance.add(number(tooth.at("clearance_deg")), place);
+  });
+  // A primary relief is as wide as asked once a secondary one ends it.
+  if (operation != toString(OperationKind::kSecondaryRelief)) return criteria;
+  Criterion& primary =
+      criteria.emplace_back("primary relief", "mm", 3, number(cutter.at("land_mm")), tolerances.primary_mm);
+  forEachTooth(tool, [&](const Json& section, const Json& tooth, const std::string& place) {
+    if (section.at("x_mm") == 0) primary.add(number(tooth.at("primary_mm")), place);
+  });
+  return criteria;
 }
 
 /// @param tool of a record, as far as it was ground; null if it was not measured.
@@ -277,7 +312,9 @@ Json criteriaOf(const Json& data, const Tolerances& tolerances) {
   const Json& ground = !recorded.is_null() && allTeethGround(recorded) ? recorded : none;
   Json list = Json::array();
   list.push_back(deviationOf(job, strokes).json());
-  for (const Criterion& criterion : ofTool(job, ground, tolerances)) list.push_back(criterion.json());
+  const Json& flutes = find(ground, "on_planned") == true ? none : ground;
+  for (const Criterion& criterion : ofFlutes(job, flutes, tolerances)) list.push_back(criterion.json());
+  for (const Criterion& criterion : ofReliefs(job, ground, tolerances)) list.push_back(criterion.json());
   for (const Criterion& criterion :
        {gougeOf(job, recorded), followingErrorOf(job, strokes, tolerances),
         feedOf(job, strokes, find(find(data, "planned"), "feed_limits"), tolerances), lateCyclesOf(data, tolerances)}) {

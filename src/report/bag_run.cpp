@@ -87,6 +87,7 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   } catch (const InvalidJob&) {
     // Of another version: reported as if the bag did not have it.
   }
+  findBefore(static_cast<int>(number));
   selectStates();
   for (const auto& [name, status] : worst_) diagnostics_.emplace_back(name, status);
   Json head{{"grinder", (node_.front() == '/' ? "" : "/") + node_.substr(0, node_.size() - 1)},
@@ -181,6 +182,7 @@ void BagRun::takeHead(const rosbag::MessageInstance& message) {
   if (const auto goal = message.instantiate<flute_grinder::GrindActionGoal>()) {
     heads_[goal->goal_id.id]["job_name"] = goal->goal.job_name;
     jobs_[goal->goal_id.id] = jobFromGoal(goal->goal);
+    if (goal->goal.first_tooth != 0 || goal->goal.first_pass != 0) continued_.insert(goal->goal_id.id);
   } else if (const auto result = message.instantiate<flute_grinder::GrindActionResult>()) {
     Json& head = heads_[result->status.goal_id.id];
     head["outcome"] = outcomeOf(result->status.status);
@@ -227,6 +229,28 @@ void BagRun::selectStates() {
   for (auto change = begin; change != end; ++change) {
     states_.push_back(*change);
     states_.back().time -= start_;
+  }
+}
+
+std::vector<int> BagRun::partsOf(int operation, int number) const {
+  const Json cutter = toJson(**job_)["cutter"];
+  std::vector<int> parts;
+  while (--number > 0) {
+    const std::string& goal = goals_[static_cast<std::size_t>(number - 1)];
+    const auto job = jobs_.find(goal);
+    if (job == jobs_.end() || job->second.operation != operation || toJson(job->second)["cutter"] != cutter) continue;
+    parts.insert(parts.begin(), number);
+    if (continued_.count(goal) == 0) return parts;
+  }
+  return {};
+}
+
+void BagRun::findBefore(int number) {
+  for (int operation = 0; job_ && operation < (*job_)->operation; ++operation) {
+    before_.push_back(partsOf(operation, number));
+    if (!before_.back().empty()) continue;
+    before_.clear();
+    return;
   }
 }
 

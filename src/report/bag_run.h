@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,9 @@ class BagRun : public RunFile {
   void takeState(const rosbag::MessageInstance& message);
   void takeDiagnostics(const rosbag::MessageInstance& message);
   void selectStates();
+  /// @param number of the job.
+  void findBefore(int number);
+  std::vector<int> partsOf(int operation, int number) const;
   bool isAsked() const { return asked_ == 0 || static_cast<std::size_t>(asked_) == goals_.size(); }
   void visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const;
 
@@ -42,6 +46,7 @@ class BagRun : public RunFile {
   double start_ = 0, end_ = 0;            ///< cycle 0 and the last one, since the epoch [s]
   std::map<std::string, Json> heads_;     ///< what goals and results say, by goal
   std::map<std::string, GrindJob> jobs_;  ///< by goal
+  std::set<std::string> continued_;       ///< goals that continue a job
   std::map<std::string, WorstStatus> worst_;
   std::vector<std::pair<double, Json>> offsets_;  ///< with the time from which they were in force, since the epoch [s]
   std::vector<StateChange> changes_;              ///< of the whole bag, since the epoch

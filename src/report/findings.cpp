@@ -71,11 +71,11 @@ void Survey::MaxOfAxes::add(bool in_stroke, const Axes& values) {
   part = part.max(values.abs());
 }
 
-Survey::Survey(const RunFile& run, bool draws)
+Survey::Survey(const RunFile& run, const std::optional<ValidJob>& job, bool draws)
     : run_(run),
       motion_(std::make_unique<MotionOfRows>(run)),
       plots_(draws ? std::make_unique<Plots>(run) : nullptr),
-      strokes_(run.job() ? StrokeLog(*run.job()) : StrokeLog()) {}
+      strokes_(job ? StrokeLog(*job) : StrokeLog()) {}
 
 Survey::~Survey() = default;
 

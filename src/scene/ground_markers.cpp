@@ -228,25 +228,26 @@ void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviati
 
 /// A relief's strokes, on what was ground before.
 GroundCutter relievedSoFar(const ValidJob& job, const std::vector<std::vector<GrindStroke>>& strokes) {
-  const GroundCutter whole = groundCutterOf(job);
+  const GroundCutter before = groundBefore(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   std::vector<Reliefs> reliefs;
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const std::size_t of_tooth = whole.teeth()[i].flute;
+    const std::size_t of_tooth = before.teeth()[i].flute;
     const auto is_same = [&](std::size_t k) {
-      return whole.teeth()[k].flute == of_tooth && isSame(strokes[k], strokes[i]);
+      return before.teeth()[k].flute == of_tooth && isSame(strokes[k], strokes[i]);
     };
     std::size_t same = 0;
     while (same < i && !is_same(same)) ++same;
     teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
     if (same < i) continue;
-    flutes.push_back(whole.flutes()[of_tooth]);
-    reliefs.push_back(whole.reliefs(i));
-    reliefs.back().pop_back();
+    flutes.push_back(before.flutes()[of_tooth]);
+    reliefs.push_back(before.reliefs(i));
+    Relief relief;
     for (const GrindStroke& stroke : strokes[i]) {
-      reliefs.back().push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
+      relief.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
     }
+    if (!relief.empty()) reliefs.back().push_back(std::move(relief));
   }
   return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth), std::move(reliefs)};
 }

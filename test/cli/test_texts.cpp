@@ -41,12 +41,14 @@ flute_grinder::JobProgress progress() {
 TEST(LastJob, SaysHowFarItGot) {
   flute_grinder::JobProgress job = progress();
   EXPECT_EQ(lastJob(job),
-            "mill: D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth; tooth 2, pass 5 not finished, X 12.346 mm "
+            "mill (D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth): tooth 2, pass 5 not finished, X 12.346 mm "
             "(0123456789ab)");
+  job.operation = "primary relief";
+  EXPECT_EQ(lastJob(job).substr(0, 27), "mill, primary relief (D 12 ");
   job.finished = 1;
   job.job_name.clear();
   EXPECT_EQ(lastJob(job),
-            "without a name: D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth; finished (0123456789ab)");
+            "a job without a name (D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth): finished (0123456789ab)");
 }
 
 TEST(StatusJson, CountsFromOneAndInShopUnits) {

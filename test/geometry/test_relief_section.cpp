@@ -87,7 +87,7 @@ struct Tool {
         wheel(wheelOf({clearance * kDegree}, hand * swivel, width, contact)),
         path(cone, {clearance * kDegree}, wheel),
         edge(edgeOf()),
-        relieved(cone, cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), {sweep()})) {}
+        relieved(cone, cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), {{sweep()}})) {}
 
   ReliefWheel wheelOf(const ReliefStart& start, double swivel, double width, double contact) const {
     ReliefWheel w{50 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};

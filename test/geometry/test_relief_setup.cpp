@@ -57,7 +57,7 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
     const Tool tool(file, clearance, width);
     const ReliefSetup setup = findReliefSetup(tool.cutter, tool.request);
     ASSERT_EQ(setup.refused, "");
-    const GroundCutter relieved = tool.with({tool.sweepOf(setup)});
+    const GroundCutter relieved = tool.with({{tool.sweepOf(setup)}});
     for (int i = 0; i <= 10; ++i) {
       const GroundSection section = relieved.section(tool.job.cutter.flute_length * i / 10);
       for (const ToothSection& tooth : section.teeth) {
@@ -99,7 +99,7 @@ TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   tool.request.land = 0.4 * kMillimetre;
   const ReliefSetup first = findReliefSetup(tool.cutter, tool.request);
   ASSERT_EQ(first.refused, "");
-  Reliefs reliefs{tool.sweepOf(first)};
+  Reliefs reliefs{{tool.sweepOf(first)}};
   const ConicalCutter& cone = tool.cutter.cutter();
   const ReliefPath::Place end =
       ReliefPath(cone, tool.request.start, tool.wheelOf(first)).surfaceAt(0, 0.4 * kMillimetre);
@@ -107,7 +107,7 @@ TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   tool.request.start = {20 * kDegree, end.radius / cone.radius(0), end.behind};
   const ReliefSetup second = findReliefSetup(tool.cutter, tool.request);
   ASSERT_EQ(second.refused, "");
-  reliefs.push_back(tool.sweepOf(second));
+  reliefs.push_back({tool.sweepOf(second)});
   for (const double x : {0.0, 10e-3, 22e-3}) {
     const ReliefSection relief = tool.with(reliefs).section(x).teeth[0].relief.value();
     EXPECT_NEAR(*relief.land, 0.4 * kMillimetre, 1e-6);

@@ -4,6 +4,7 @@
 #include "flute_grinder/geometry/gouge.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/run_strokes.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -16,7 +17,9 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -63,7 +66,7 @@ GrindJob straight() {
 }
 
 /// All that a drive reads in a job, with errors of the axes.
-std::vector<Read> readOf(const GrindJob& job, const Error& error) {
+std::vector<Read> readOf(const ValidJob& job, const Error& error) {
   const Machine machine = test_support::roomyMachine();
   std::vector<Read> all;
   SetpointStream stream(std::make_shared<GrindProgram>(job, machine, machine.park));
@@ -288,6 +291,81 @@ TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
   for (std::size_t i = 0; i < with_lift.size(); ++i) with_lift[i].setpoint.cycle = i + 1;
   const GroundCutter cutter = runOf(job, with_lift).cutter();
   EXPECT_NEAR(coreAt(groundCutterOf(job), 9.5e-3) - coreAt(cutter, 9.5e-3), 1e-4, 1e-7);
+}
+
+/// Both reliefs of the shipped reamer, with one tooth.
+ValidJob reliefOf(const char* operation) {
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation);
+  job.tooth_angles = {0};
+  return withLaws(job);
+}
+
+RunStrokes runOf(const ValidJob& relief, std::optional<GroundCutter> before, const Error& error) {
+  const std::vector<Read> read = readOf(relief, error);
+  RunStrokes strokes(relief, std::move(before));
+  for (std::size_t i = 1; i < read.size(); ++i) strokes.add(read[i].setpoint, read[i - 1].at);
+  strokes.finish();
+  return strokes;
+}
+
+ReliefSection reliefAt(const GroundCutter& cutter, double x) { return cutter.section(x).teeth.front().relief.value(); }
+
+TEST(RunStrokes, AWholeToolOfExactRunsIsThePlan) {
+  const ValidJob primary = reliefOf("primary"), secondary = reliefOf("secondary");
+  const GroundCutter flute = runOf(reliefOf("flute"), std::nullopt, kExact).cutter();
+  const GroundCutter first = runOf(primary, flute, kExact).cutter();
+  const GroundCutter whole = runOf(secondary, first, kExact).cutter(), planned = groundCutterOf(secondary);
+  for (const double x : {0.0, 8e-3, 16e-3}) {
+    const ReliefSection ground = reliefAt(whole, x), asked = reliefAt(planned, x);
+    EXPECT_NEAR(ground.clearance.value(), asked.clearance.value(), 1e-4);
+    EXPECT_NEAR(ground.land.value(), asked.land.value(), 1e-6);
+    EXPECT_NEAR(ground.edge_radius, asked.edge_radius, 1e-7);
+  }
+  EXPECT_TRUE(gougesOf(runOf(secondary, first, kExact), 2e-6).empty());
+}
+
+// The flute was ground with A ahead, so that its edge is not where the relief follows it.
+TEST(RunStrokes, AReliefIsMeasuredOnTheFluteAsGround) {
+  constexpr double kAhead = 2e-3;
+  const ValidJob primary = reliefOf("primary");
+  const Error ahead = [](const Setpoint&) { return along(kA, kAhead); };
+  for (const bool known : {true, false}) {
+    const std::optional<GroundCutter> flute = runOf(reliefOf("flute"), std::nullopt, ahead).cutter();
+    const GroundCutter cutter = runOf(primary, known ? flute : std::nullopt, kExact).cutter();
+    // The land falls from where the edge should be: straight over so short a way.
+    const double radius = cutter.section(8e-3).radius;
+    const double taken = known ? radius * kAhead * std::tan(primary->cutter.clearance) : 0;
+    EXPECT_NEAR(radius - reliefAt(cutter, 8e-3).edge_radius, taken, 0.05e-6) << known;
+  }
+}
+
+// Neither of the last two passes covers the other: each was deeper on one half.
+TEST(RunStrokes, AReliefOfSeveralStrokesIsWhatTheyLeaveTogether) {
+  constexpr double kDeeper = 4e-6, kHigher = 4e-6;
+  const ValidJob primary = reliefOf("primary");
+  const int last = static_cast<int>(primary.depths().size()) - 1;
+  const double finishing = primary.depths()[last] - primary.depths()[last - 1];
+  const Error halves = [&](const Setpoint& p) {
+    const bool beyond = p.position[kX] > 8e-3;
+    if (p.pass == last) return along(kY, beyond ? kHigher : 0);
+    // As deep as the last one, and more.
+    if (p.pass == last - 1) return along(kY, beyond ? -finishing - kDeeper : 0);
+    return Axes(Axes::Zero());
+  };
+  const GroundCutter planned = groundCutterOf(primary);
+  const GroundCutter cutter = runOf(primary, std::nullopt, halves).cutter();
+  ASSERT_EQ(cutter.reliefs(0).size(), 1u);
+  EXPECT_GT(cutter.reliefs(0).front().size(), 1u);
+  const auto lower = [&](double x) {
+    const double r = cutter.section(x).radius * (1 - 2e-3);
+    const auto height = [&](const GroundCutter& of) {
+      return outermostWall(of.reliefs(0).front(), x, r, false)->angle;
+    };
+    return (height(planned) - height(cutter)) * r * std::tan(primary->cutter.clearance);
+  };
+  EXPECT_NEAR(lower(1e-3), 0, 0.1e-6);
+  EXPECT_NEAR(lower(14e-3), kDeeper, 0.3e-6);
+  EXPECT_NEAR(cutter.section(14e-3).radius - reliefAt(cutter, 14e-3).edge_radius, kDeeper, 0.2e-6);
 }
 
 }  // namespace test_run_strokes

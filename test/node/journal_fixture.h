@@ -35,6 +35,7 @@ inline Progress someProgress() {
   Progress p;
   p.job_digest = std::string(64, 'd');
   p.job_name = "jobs/mill 10°.yaml";
+  p.operation = "primary relief";
   p.cutter = {0.01, 0.1, 0.5, -0.2, 0.03};
   p.tooth_angles = {0, 1.0 / 3, 2};
   p.finished = true;
@@ -50,6 +51,7 @@ inline Progress someProgress() {
 inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.job_digest, b.job_digest);
   EXPECT_EQ(a.job_name, b.job_name);
+  EXPECT_EQ(a.operation, b.operation);
   EXPECT_EQ(a.cutter.end_diameter, b.cutter.end_diameter);
   EXPECT_EQ(a.cutter.cone_angle, b.cutter.cone_angle);
   EXPECT_EQ(a.cutter.spiral_angle, b.cutter.spiral_angle);

@@ -130,7 +130,7 @@ class TestMachine(CommandLine):
         with open(self.path('reamer.yaml'), 'w') as file:
             file.write(text)
         refused = self.grind(2, 'run', self.path('reamer.yaml'))
-        self.assertIn('operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary', refused.stderr)
+        self.assertIn('operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary; done by the records: none', refused.stderr)
         self.grind(0, 'confirm-swivel', '13.104')
         self.stream(self.path('reamer.yaml'), '--operation', 'secondary')
         last = self.json(0, 'status')[0]['last_job']

@@ -328,7 +328,7 @@ class TestCommand(Kept):
         tolerances = os.path.join(self.home, 'tolerances.yaml')
         for most, verdict, text in ((1e5, 'incomplete', '^passed as far as measured$'), (0, 'failed', '^FAILED: .*feed constancy')):
             with open(tolerances, 'w') as file:
-                json.dump(dict(land_mm=0, following_error_um=most, feed_percent=most, late_cycles_percent=most), file)
+                json.dump(dict(land_mm=0, primary_mm=most, following_error_um=most, feed_percent=most, late_cycles_percent=most), file)
             listed = json.loads(self.grind('--json', '--tolerances', tolerances).stdout)
             for entry in listed:
                 report = json.loads(gc.grind('report', entry['file'], '--json', '--tolerances', tolerances).stdout)

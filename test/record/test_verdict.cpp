@@ -18,7 +18,7 @@
 namespace grinder {
 namespace test_verdict {
 
-const Tolerances kTolerances{0.5, 64, 5, 1};
+const Tolerances kTolerances{0.5, 0.02, 64, 5, 1};
 const std::vector<std::string> kNames{"path deviation", "rake",         "chordal rake", "core diameter",
                                       "land",           "spiral angle", "gouge",        "following error in strokes",
                                       "feed constancy", "late cycles"};
@@ -172,6 +172,62 @@ TEST(Verdict, GougesOfAllPassesBeyondTheToleranceAreNamed) {
             "tooth 2, pass 3, retract, X = 3.000 mm; also tooth 2, pass 2, stroke; tooth 2, pass 4, stroke");
 }
 
+/// Of the secondary relief of the same tool, of which all that was ground before is in the bag as well.
+Json reliefsDocument() {
+  Json data = document();
+  Json& file = data["job"]["file"];
+  file["operation"] = "secondary";
+  file["cutter"].update({{"clearance_deg", 10}, {"clearance_tolerance_deg", 0.5}, {"land_mm", 0.4}});
+  for (Json& section : data["tool"]["sections"]) {
+    const double wider = section["x_mm"].get<double>() / 10;
+    for (Json& tooth : section["teeth"]) tooth.update({{"clearance_deg", 10}, {"primary_mm", 0.4 + wider}});
+  }
+  data["tool"]["on_planned"] = false;
+  return data;
+}
+
+TEST(Verdict, AReliefIsJudgedByClearanceAndTheWidthOfThePrimary) {
+  std::vector<std::string> names = kNames;
+  names.insert(names.begin() + 6, {"clearance", "primary relief"});
+  EXPECT_EQ(namesOf(judged(reliefsDocument()), "passed"), names);
+  const struct {
+    const char* name;
+    const char* path;
+    double at, beyond;
+    const char* place;
+  } cases[]{{"clearance", "/tool/sections/2/teeth/1/clearance_deg", 10.5, 10.501, "tooth 2, X = 20.000 mm"},
+            {"clearance", "/tool/sections/1/teeth/0/clearance_deg", 9.5, 9.499, "tooth 1, X = 10.000 mm"},
+            {"primary relief", "/tool/sections/0/teeth/1/primary_mm", 0.42, 0.421, "tooth 2, X = 0.000 mm"},
+            {"primary relief", "/tool/sections/0/teeth/0/primary_mm", 0.385, 0.379, "tooth 1, X = 0.000 mm"}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.path);
+    Json data = reliefsDocument();
+    at(data, c.path) = c.at;
+    expectVerdict(judged(data), "passed", {});
+    at(data, c.path) = c.beyond;
+    const Json beyond = judged(data);
+    expectVerdict(beyond, "failed", {c.name});
+    EXPECT_EQ(criterion(beyond, c.name)["place"], c.place);
+    at(data, c.path) = nullptr;
+    expectVerdict(judged(data), "failed", {c.name});
+  }
+}
+
+TEST(Verdict, APrimaryReliefIsAsWideAsAskedOnlyBehindASecondaryOne) {
+  Json data = reliefsDocument();
+  data["job"]["file"]["operation"] = "primary";
+  for (Json& tooth : data["tool"]["sections"][0]["teeth"]) tooth["primary_mm"] = 1.5;
+  expectVerdict(judged(data), "passed", {});
+}
+
+TEST(Verdict, OfAReliefOnPlannedFlutesTheFlutesAreNotMeasured) {
+  Json data = reliefsDocument();
+  data["tool"]["on_planned"] = true;
+  const std::vector<std::string> flutes(kNames.begin() + 1, kNames.begin() + 6);
+  EXPECT_EQ(namesOf(judged(data), "not measured"), flutes);
+  EXPECT_EQ(judged(data)["verdict"], "incomplete");
+}
+
 TEST(Verdict, WhatIsNotThereFails) {
   const Json found = judgedWith("/tool/sections/2/teeth/1/land_mm", nullptr);
   expectVerdict(found, "failed", {"land"});
@@ -276,7 +332,7 @@ TEST(Tolerances, AreThoseOfTheFile) {
 }
 
 TEST(Tolerances, BadOnesAreNamed) {
-  const std::string allowed = "allowed: land_mm, following_error_um, feed_percent, late_cycles_percent";
+  const std::string allowed = "allowed: land_mm, primary_mm, following_error_um, feed_percent, late_cycles_percent";
   EXPECT_EQ(refusal("feed_percent: 5"), ": land_mm is missing");
   EXPECT_EQ(refusal("land: 1"), ": land: not known; " + allowed);
   EXPECT_EQ(refusal("# none"), ": has no keys; " + allowed);

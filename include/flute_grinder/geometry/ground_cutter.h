@@ -60,8 +60,18 @@ struct GroundSection {
 /// What strokes of the wheel remove together: a tooth's flute.
 using Flute = std::vector<WheelSweep>;
 
-/// The last strokes of a tooth's reliefs, the first relief first.
-using Reliefs = std::vector<WheelSweep>;
+/// What strokes of the wheel remove together: a relief of a tooth.
+using Relief = std::vector<WheelSweep>;
+
+/// The reliefs of a tooth, the first one first.
+using Reliefs = std::vector<Relief>;
+
+/// The wall that strokes leave together on a circle: of those that reach it, the one that goes farthest.
+/// @param x,r of the circle [m]. @param high the end of their arc at the larger angle.
+std::optional<Wall> outermostWall(const std::vector<WheelSweep>& strokes, double x, double r, bool high);
+
+/// The least radius that strokes leave of a section. @param radius of the blank there [m].
+double leastRadius(const std::vector<WheelSweep>& strokes, double x, double radius);
 
 /// Where a flute is ground.
 struct GroundTooth {
@@ -104,9 +114,11 @@ class GroundCutter {
   const Reliefs& reliefs(std::size_t tooth) const;
 
  private:
-  std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const;
+  std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const {
+    return outermostWall(flute, x, r, direction() == CutDirection::kRightHand);
+  }
   std::optional<double> chordalRake(const Flute& flute, double x, double depth, double edge) const;
-  double coreRadius(const Flute& flute, double x) const;
+  double coreRadius(const Flute& flute, double x) const { return leastRadius(flute, x, cutter_.radius(x)); }
   double coreRadius(double x) const;
   double areaRemoved(double x, double core_radius) const;
   ToothSection measure(const Flute& flute, double x) const;

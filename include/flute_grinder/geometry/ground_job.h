@@ -34,6 +34,9 @@ WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStrok
 /// nothing more. @throw as wheelOf() and ValidJob::zCorrectionOf().
 GroundCutter groundCutterOf(const ValidJob& job);
 
+/// The cutter that the operations ahead of a relief leave, as planned. @param job of a relief, from withLaws().
+GroundCutter groundBefore(const ValidJob& job);
+
 /// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
 struct CutterFigures {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -34,7 +34,8 @@ class RunStrokes {
   static constexpr double kSame = 0.5e-6;
 
   /// @param job from withLaws().
-  explicit RunStrokes(const ValidJob& job);
+  /// @param before the cutter as the operations ahead of a relief ground it; nothing: as they are planned.
+  explicit RunStrokes(const ValidJob& job, std::optional<GroundCutter> before = std::nullopt);
 
   /// Takes the setpoints of a job in order. Those that do not belong to a stroke are needed as well.
   /// @param actual position that was read one cycle before [m], A [rad].
@@ -46,6 +47,8 @@ class RunStrokes {
   void finish();
 
   const ValidJob& job() const noexcept { return job_; }
+  /// Whether the operations ahead are taken as planned.
+  bool isOnPlanned() const noexcept { return job_->operation > 0 && !before_; }
   /// All strokes in the order of the run; one that was broken off by a lift and went on is there twice, up to the
   /// lift and as a whole. Behind them, the parts of other moves.
   const std::vector<RunStroke>& strokes() const noexcept { return strokes_; }
@@ -87,7 +90,7 @@ class RunStrokes {
     double angle;
   };
 
-  /// With the strokes of a relief, on what was ground before as planned.
+  /// With the strokes of a relief, on what was ground before.
   GroundCutter relieved(const std::vector<const RunStroke*>& kept) const;
   Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
   double wearOf(const ToothPass& place) const;
@@ -108,6 +111,7 @@ class RunStrokes {
   RunStroke strokeOf(const Poses& poses, std::size_t from, std::size_t to) const;
 
   const ValidJob job_;
+  const std::optional<GroundCutter> before_;
   const double radius_;             ///< the largest of the blank [m]
   std::optional<Part> last_;        ///< of the last setpoint
   std::optional<Part> reading_;     ///< what the last position belongs to

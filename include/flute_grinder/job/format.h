@@ -16,4 +16,9 @@ bool hasForm(std::string_view text, std::string_view form);
 /// The tool in words for people, in shop units, e.g. "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth".
 std::string toolText(const CutterGeometry& cutter, std::size_t teeth);
 
+/// A job with its tool, for people. @param name of its file; may be empty. @param operation as
+/// GrindJob::operationText().
+std::string jobText(const std::string& name, const std::string& operation, const CutterGeometry& cutter,
+                    std::size_t teeth);
+
 }  // namespace grinder

@@ -111,6 +111,8 @@ struct GrindJob {
   std::vector<GrindOperation> operations;
   int operation = 0;  ///< which one, from 0
 
+  /// Which of several operations it is, for people, e.g. "primary relief"; empty for the only one.
+  std::string operationText() const { return operations.empty() ? "" : rowOf(process.kind).words; }
   /// The job of another of its operations. @param index from 0; with a single one, 0.
   GrindJob ofOperation(int index) const;
 };

@@ -9,8 +9,8 @@
 
 namespace grinder {
 
-/// Figures of a stroke as it was ground; the feed is that within the flute. A stroke that was held, and resumed, is
-/// one.
+/// Figures of a stroke as it was ground; the feed is that within the flute, or along the relief's edge. A stroke that
+/// was held, and resumed, is one.
 struct StrokeFigures {
   ToothPass place;
   double from = 0, to = 0;  ///< since the start [s]
@@ -41,7 +41,10 @@ class StrokeLog {
 
  private:
   std::vector<FormedEdge> edges_;  ///< of the teeth
-  std::vector<double> depths_;     ///< of the passes at the small end [m]
+  /// Where the part of the strokes begins whose feed counts, of the teeth: X of the small end, or of the wheel there as
+  /// a relief begins [m].
+  std::vector<double> starts_;
+  std::vector<double> depths_;  ///< of the passes at the small end [m]
   std::vector<StrokeFigures> strokes_;
 };
 

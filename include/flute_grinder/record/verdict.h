@@ -9,6 +9,7 @@ namespace grinder {
 /// What a ground tool is passed by, beside the tolerances that its job has.
 struct Tolerances {
   double land_mm = 0;              ///< minimum land [mm]
+  double primary_mm = 0;           ///< difference of the primary relief's width at the small end from the job's [mm]
   double following_error_um = 0;   ///< following error in the strokes, of A at the maximum radius [um]
   double feed_percent = 0;         ///< difference of the feed from the job's, between the ends of the flute [%]
   double late_cycles_percent = 0;  ///< late control cycles [%]

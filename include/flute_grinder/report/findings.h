@@ -7,6 +7,7 @@
 #include "flute_grinder/report/run_file.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace grinder {
@@ -27,8 +28,9 @@ struct ReportContext {
 /// Goes through the rows of a file once, and works out all that a report says of them.
 class Survey {
  public:
-  /// @param run must outlive this object. @param draws pictures are wanted.
-  Survey(const RunFile& run, bool draws);
+  /// @param run must outlive this object. @param job of the run, with its laws; nothing if it has none.
+  /// @param draws pictures are wanted.
+  Survey(const RunFile& run, const std::optional<ValidJob>& job, bool draws);
   Survey(const Survey&) = delete;
   Survey& operator=(const Survey&) = delete;
   ~Survey();

@@ -88,6 +88,9 @@ class RunFile {
   const RowSummary& summary() const noexcept { return summary_; }
   /// The job, if the file has it.
   const std::optional<ValidJob>& job() const noexcept { return job_; }
+  /// Of a relief in a bag: for each operation ahead of it, the jobs of the bag that ground it on this cutter: the last
+  /// that began before, and those that continued it. Empty if one of them is not there, and for a file without a job.
+  const std::vector<std::vector<int>>& before() const noexcept { return before_; }
   /// Which of a bag's jobs, for the reader; else empty.
   const std::string& place() const noexcept { return place_; }
   /// What else the file says of the job, in the keys of a record.
@@ -111,6 +114,7 @@ class RunFile {
   const std::string path_;
   double period_ = 0;
   std::optional<ValidJob> job_;
+  std::vector<std::vector<int>> before_;
   std::string place_;
   Json head_ = Json::object();
   std::vector<StateChange> states_;

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Shows that a tool whose operations are in one bag is measured as they ground it together. The bag is made of the setpoints that
+`grind plan --csv` lists, as if a drive had followed them with the errors that a test gives it."""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from flute_grinder import job as job_file
+from flute_grinder.msg import GrindActionGoal, GrindActionResult, SetpointBatch, WrittenSetpoint
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+
+PERIOD = 0.001
+OPERATIONS = ('flute', 'primary', 'secondary')
+
+
+class Bag:
+    """A bag of a grinder, to which jobs are added, one after another in time."""
+
+    def __init__(self, path):
+        self.bag, self.now, self.goals = rosbag.Bag(path, 'w'), 1000.0, 0
+
+    def write(self, topic, message):
+        self.bag.write('/grinder/' + topic, message, rospy.Time.from_sec(self.now))
+
+    def add(self, job, operation, rows, ahead=0.0, first=(0, 0), **cutter):
+        """A run of an operation from its rows, all of them or those from a pass `first` on, with A `ahead` of its setpoints."""
+        self.goals += 1
+        goal = GrindActionGoal(goal=job_file.goal(job, operation))
+        goal.goal_id.id = 'goal %d' % self.goals
+        goal.goal.first_tooth, goal.goal.first_pass = first
+        for name, value in cutter.items():
+            setattr(goal.goal.cutter, name, value)
+        self.write('grind/goal', goal)
+        self.write('job', goal)
+        last = [float(rows[0][key]) for key in ('x_mm', 'y_mm', 'z_mm', 'a_rad')]
+        for begin in range(0, len(rows), 50):
+            batch = SetpointBatch(goal_id=goal.goal_id.id, period=PERIOD)
+            for cycle, row in enumerate(rows[begin:begin + 50], begin):
+                point = [float(row[key]) for key in ('x_mm', 'y_mm', 'z_mm', 'a_rad')]
+                batch.setpoints.append(WrittenSetpoint(
+                    cycle=cycle, position=self.si(point), actual=self.si(last[:3] + [last[3] + ahead]), cycle_period=PERIOD,
+                    path_error=float(row['error_rad']), feed=float(row['feed_mm_min']) * gc.MM_MIN,
+                    move=gc.MOVES.index(row['move']), step=gc.STEPS.index(row['step']), tooth=int(row['tooth']),
+                    pass_=int(row['pass'])))
+                last = point
+            batch.header.stamp = rospy.Time.from_sec(self.now)
+            self.now += PERIOD * len(batch.setpoints)
+            batch.end_stamp = rospy.Time.from_sec(self.now - PERIOD)
+            self.write('setpoints', batch)
+        result = GrindActionResult()
+        result.status.goal_id.id, result.status.status = goal.goal_id.id, GoalStatus.SUCCEEDED
+        self.write('grind/result', result)
+
+    @staticmethod
+    def si(point):
+        return [value * gc.MM for value in point[:3]] + [point[3]]
+
+
+class TestToolOfBag(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        cls.job = os.path.join(cls.folder, 'reamer.yaml')
+        with open(gc.package_file('jobs/taper_reamer_d6_t6.yaml'), encoding='utf-8') as file:
+            text = file.read().replace('../wheels', gc.package_file('wheels'))
+        # In two passes, and fast.
+        for slow, fast in (('feed_mm_min: 700', 'feed_mm_min: 2000'), ('feed_mm_min: 300', 'feed_mm_min: 1000'),
+                           (' infeed_mm: 0.05', ' infeed_mm: 2'), (' infeed_mm: 0.4', ' infeed_mm: 2')):
+            assert slow in text
+            text = text.replace(slow, fast)
+        with open(cls.job, 'w', encoding='utf-8') as file:
+            file.write(text)
+        cls.rows = {}
+        for operation in OPERATIONS:
+            path = os.path.join(cls.folder, operation + '.csv')
+            planned = gc.grind('plan', cls.job, '--operation', operation, '--csv', path)
+            assert planned.returncode == 0, planned.stderr
+            with open(path, encoding='utf-8') as file:
+                cls.rows[operation] = list(csv.DictReader(file))
+
+    def bag(self, *runs):
+        """@param runs of (operation, arguments of Bag.add())."""
+        path = os.path.join(self.folder, self.id() + '.bag')
+        bag = Bag(path)
+        for operation, arguments in runs:
+            bag.add(self.job, operation, arguments.pop('rows', self.rows[operation]), **arguments)
+        bag.bag.close()
+        return path
+
+    def report(self, path, *arguments):
+        printed = gc.grind('report', path, '--json', *arguments)
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        return json.loads(printed.stdout)
+
+    def radius_taken(self, tool):
+        """Of the edges, in the middle of the flute [mm]."""
+        section = tool['sections'][len(tool['sections']) // 2]
+        return [tooth['asked_radius_mm'] - tooth['radius_mm'] for tooth in section['teeth']]
+
+    def test_whole_tool_passes(self):
+        data = self.report(self.bag(*((operation, {}) for operation in OPERATIONS)))
+        self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
+        self.assertIn('job 3 of 3, what is ahead of it by job 1, 2', data['tool']['source'])
+        measured = {criterion['name']: criterion['measured'] for criterion in data['criteria']}
+        self.assertAlmostEqual(measured['clearance'], 10, delta=0.02)
+        self.assertAlmostEqual(measured['primary relief'], 0.3, delta=0.005)
+
+    def test_relief_is_on_the_edge_as_ground(self):
+        """A flute that is turned lets the relief take its edge: as a plane of the clearance does, over so short a way."""
+        ahead = 2e-3
+        tool = self.report(self.bag(('flute', {'ahead': ahead}), ('primary', {}), ('secondary', {})))['tool']
+        radius = (6 / 2 + 8 * math.tan(math.radians(2)))
+        for taken in self.radius_taken(tool):
+            self.assertAlmostEqual(taken, radius * ahead * math.tan(math.radians(10)), delta=0.1e-3)
+        self.assertFalse(tool['on_planned'])
+
+    def test_without_its_flutes_they_are_planned_and_not_judged(self):
+        data = self.report(self.bag(('flute', {'ahead': 2e-3, 'rake_angle': 0.1}), ('primary', {})))
+        self.assertTrue(data['tool']['on_planned'])
+        self.assertIn('what is ahead of it as planned', data['tool']['source'])
+        self.assertEqual(data['verdict'], 'incomplete')
+        self.assertIn('rake: not measured', data['verdict_because'])
+        for taken in self.radius_taken(data['tool']):
+            self.assertAlmostEqual(taken, 0, delta=0.5e-3)
+
+    def test_of_several_tools_the_last_begun_counts_with_what_continued_it(self):
+        flutes = self.rows['flute']
+        cut = next(i for i, row in enumerate(flutes) if row['tooth'] == '3')
+        path = self.bag(('flute', {'ahead': 2e-3}), ('primary', {}), ('flute', {'rows': flutes[:cut]}),
+                        ('flute', {'rows': flutes[cut:], 'first': (3, 0)}), ('primary', {}))
+        data = self.report(path)
+        self.assertIn('job 5 of 5, what is ahead of it by job 3, 4', data['tool']['source'])
+        for taken in self.radius_taken(data['tool']):
+            self.assertAlmostEqual(taken, 0, delta=0.5e-3)
+        self.assertIn('job 2 of 5, what is ahead of it by job 1', self.report(path, '--job', '2')['tool']['source'])
+        simulated = json.loads(gc.grind('simulate', path, '--run', '5', '--json').stdout)
+        self.assertEqual(simulated['source'].split(', ', 1)[1], data['tool']['source'].split(', ', 1)[1])
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'test_tool_of_bag', '__main__')

@@ -24,9 +24,10 @@ inline auto within(double min, double max, const char* unit) {
 }
 
 /// The job file, required.
+void addJob(CLI::App& command, std::string& job);
+
 /// Which of a job file's operations: `--operation`.
 void addOperation(CLI::App& command, std::string& operation);
-void addJob(CLI::App& command, std::string& job);
 
 /// `--csv`, a file to write.
 void addCsv(CLI::App& command, std::string& csv, const char* description);

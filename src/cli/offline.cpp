@@ -57,7 +57,7 @@ void writeCsv(const StepTable& table, const std::string& path) {
 }  // namespace
 
 int runTable(const TableOptions& options) {
-  const GrindJob job = readJobFile(options.job);
+  const GrindJob job = readJobFile(options.job, {}, toString(OperationKind::kFlute));
   const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
   const StepTable table = interpolateBySteps(ConicalCutter(job.cutter), job.interpolation.rotary_scale, rule,
                                              options.step_length_mm * kMillimetre);

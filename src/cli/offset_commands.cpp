@@ -27,6 +27,7 @@ void addOffsets(Commands& commands) {
       .add_option("--fit", options->fit,
                   "fit Y and Z to this job, of the same wheel and swivel as the job for which they were set")
       ->type_name(kYamlFile);
+  addOperation(command, options->operation);
   addYes(command, options->yes);
   addJson(command, options->json);
 }
@@ -45,6 +46,7 @@ void addTouchOff(Commands& commands) {
         return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; allowed: a finite number";
       });
   command.add_option("--job", options->job, "job to be ground; y and z need it")->type_name(kYamlFile);
+  addOperation(command, options->operation);
   addYes(command, options->yes);
 }
 
@@ -71,6 +73,7 @@ void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
     addLength(command, "--at", options->at_mm, "sets the work offset of Y so that the diameter is this one", false);
     command.add_option("--job", options->job, "with --at: job to be ground")->type_name(kYamlFile);
   }
+  addOperation(command, options->operation);
   addYes(command, options->yes);
 }
 

@@ -41,9 +41,10 @@ void requireJob(int axis, const std::string& job, const std::string& command) {
   }
 }
 
-/// What an offset is set for. @param job file, or empty for no particular one. @throw JobFileError
-OffsetBasis basisFor(const std::string& job, OffsetMethod method) {
-  if (!job.empty()) return basisOf(goalFromFile(job), method);
+/// What an offset is set for. @param options with a job file, or none for no particular job. @throw JobFileError
+template <typename Options>
+OffsetBasis basisFor(const Options& options, OffsetMethod method) {
+  if (!options.job.empty()) return basisOf(goalFromFile(options.job, options.operation), method);
   OffsetBasis basis;
   basis.method = method;
   return basis;
@@ -136,8 +137,7 @@ int show(ros::NodeHandle& nh, bool json) {
 
 /// Computes the offsets of Y and Z that do not fit a job, from what they were set for: all of them, or none.
 /// @return the exit status; 1 if an offset must be set anew.
-int fit(ros::NodeHandle& nh, const std::string& job, bool large_change_ok) {
-  const flute_grinder::GrindGoal goal = goalFromFile(job);
+int fit(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, bool large_change_ok) {
   const std::optional<flute_grinder::WorkOffsets> message = workOffsets(nh);
   if (!message) return noGrinder(nh);
   const WorkOffsets offsets = fromMessage(*message);
@@ -193,14 +193,14 @@ std::string offsetRefusal(const std::string& argument) {
 
 int runOffsets(const std::string& node, const OffsetsOptions& options) {
   for (const std::string& argument : options.set) requireJob(axisOf(argument), options.job, "--set " + argument);
-  const OffsetBasis basis = basisFor(options.job, OffsetMethod::kByHand);
+  const OffsetBasis basis = basisFor(options, OffsetMethod::kByHand);
   ros::NodeHandle nh(node);
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
     const double value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
     if (const int status = setWorkOffset(nh, axis, value, basis, options.yes)) return status;
   }
-  const int fitted = options.fit.empty() ? 0 : fit(nh, options.fit, options.yes);
+  const int fitted = options.fit.empty() ? 0 : fit(nh, goalFromFile(options.fit, options.operation), options.yes);
   const int shown = show(nh, options.json);
   return fitted != 0 ? fitted : shown;
 }
@@ -215,12 +215,12 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   request.axis = static_cast<std::uint8_t>(axis);
   request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
   request.set_by = userAtHost();
-  const OffsetBasis basis = basisFor(options.job, OffsetMethod::kTouchOff);
+  const OffsetBasis basis = basisFor(options, OffsetMethod::kTouchOff);
   request.basis = toMessage(basis);
   request.large_change_ok = static_cast<std::uint8_t>(options.yes);
   ros::NodeHandle nh(node);
   if (axis == kY) {
-    const GrindJob job = readJobFile(options.job);
+    const GrindJob job = readJobFile(options.job, {}, options.operation);
     const StateWatch watch(nh);
     if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
     const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);

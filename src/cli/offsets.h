@@ -19,6 +19,7 @@ struct OffsetsOptions {
   std::vector<std::string> set;  ///< AXIS=VALUE, in mm or deg
   std::string job;               ///< job file, for which they are set
   std::string fit;               ///< job file, to which those that can be computed are fitted
+  std::string operation;         ///< of either; empty for the only one
   bool yes = false;              ///< sets them even if they change by much, without a question
   bool json = false;
 };
@@ -28,6 +29,7 @@ struct TouchOffOptions {
   std::string axis;          ///< a letter of kAxisLetters
   std::optional<double> at;  ///< of Y, diameter of the blank that the wheel touches; else the work position [mm or deg]
   std::string job;           ///< job file, for which the offset is set
+  std::string operation;     ///< of that; empty for the only one
   bool yes = false;          ///< sets it even if it changes by much, without a question
 };
 

@@ -10,6 +10,7 @@ namespace grinder {
 /// Arguments of `grind probe`.
 struct ProbeOptions {
   std::string job;
+  std::string operation;            ///< of the job file; empty for the only one
   double within = 0;                ///< the farthest way to a touch [mm], of A [deg]
   std::optional<double> at_mm;      ///< the diameter of the blank, if it is known
   std::optional<double> flange_mm;  ///< instead of the wheel file's

@@ -39,6 +39,7 @@ void addZeros(Commands& commands) {
                                "jobs/unequal_d12_t4.yaml --stickout 62",
                                [options, set] { return options->set ? set() : printZeros(*options); });
   addJob(command, options->job);
+  addOperation(command, options->operation);
   addLength(command, "--stickout", options->stickout_mm, "from the collet's face to the cutter's small end", false)
       .required();
   addFlange(command, options->flange_mm);

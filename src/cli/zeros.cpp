@@ -22,8 +22,8 @@ using units::kMillimetre;
 
 /// [m]; nothing, and a reason on stderr, if the cutter does not stand out far enough.
 std::optional<Eigen::Vector3d> zeroOf(const ZerosOptions& options, const MachineGeometry& geometry) {
-  const GrindJob job = readJobFile(options.job);
-  const double flange = flangeOf(options.job, options.flange_mm);
+  const GrindJob job = readJobFile(options.job, {}, options.operation);
+  const double flange = flangeOf(options.job, job.operation, options.flange_mm);
   const double stickout = options.stickout_mm * kMillimetre;
   if (stickout >= job.cutter.flute_length) return workZero(geometry, job, {flange, stickout});
   std::fprintf(stderr, "--stickout = %.10g mm; allowed: the flutes' length or more, %.10g mm\n", options.stickout_mm,
@@ -42,9 +42,9 @@ void printZero(const Eigen::Vector3d& metres, bool json) {
 
 }  // namespace
 
-double flangeOf(const std::string& job, const std::optional<double>& flange_mm) {
+double flangeOf(const std::string& job, int operation, const std::optional<double>& flange_mm) {
   if (flange_mm) return *flange_mm * kMillimetre;
-  const std::string wheel = wheelFileOf(job);
+  const std::string wheel = wheelFileOf(job, operation);
   if (wheel.empty()) throw std::invalid_argument("--flange is missing, and " + job + " names no wheel file");
   const std::optional<double> flange = readWheelFile(wheel).flange;
   if (!flange) throw std::invalid_argument("--flange is missing, and " + wheel + " has no flange_mm");
@@ -66,7 +66,7 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!await(kPatience, [&] { return nh.hasParam("geometry"); })) return noGrinder(nh);
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometryOf(nh));
   if (!zero) return 1;
-  const OffsetBasis basis = basisOf(goalFromFile(options.job), OffsetMethod::kComputed);
+  const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
     if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.yes)) return status;
   }

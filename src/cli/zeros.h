@@ -12,6 +12,7 @@ namespace grinder {
 /// Arguments of `grind zeros`.
 struct ZerosOptions {
   std::string job;
+  std::string operation;  ///< of the job file; empty for the only one
   double stickout_mm = 0;
   std::optional<double> flange_mm;  ///< instead of the wheel file's
   std::string parameters;           ///< YAML of the machine
@@ -21,9 +22,9 @@ struct ZerosOptions {
   bool json = false;
 };
 
-/// From the flange's face to the wheel's upper face [m]: as given, or as the wheel file of a job says.
-/// @throw std::invalid_argument if neither does; JobFileError
-double flangeOf(const std::string& job, const std::optional<double>& flange_mm);
+/// From the flange's face to the wheel's upper face [m]: as given, or as the wheel file of an operation of a job says.
+/// @param operation from 0. @throw std::invalid_argument if neither does; JobFileError
+double flangeOf(const std::string& job, int operation, const std::optional<double>& flange_mm);
 
 /// The geometry in a grinder's parameters. @param nh the grinder's namespace. @throw ParameterError
 MachineGeometry geometryOf(const ros::NodeHandle& nh);

@@ -47,6 +47,7 @@ TEST(LastJob, SaysHowFarItGot) {
   EXPECT_EQ(lastJob(job).substr(0, 27), "mill, primary relief (D 12 ");
   job.finished = 1;
   job.job_name.clear();
+  job.operation.clear();
   EXPECT_EQ(lastJob(job),
             "a job without a name (D 12 mm, cone 0 deg, spiral 0 deg, rake 0 deg, 3 teeth): finished (0123456789ab)");
 }

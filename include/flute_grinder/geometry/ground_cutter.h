@@ -10,8 +10,8 @@ namespace grinder {
 /// What reliefs leave of a tooth in a section.
 struct ReliefSection {
   double edge_radius = 0;           ///< what is left at the edge: the blank's, unless a relief undercuts it [m]
-  std::optional<double> clearance;  ///< of the first relief at the edge, radial [rad]
-  std::optional<double> land;       ///< width of the first relief, up to the second or to the heel [m]
+  std::optional<double> clearance;  ///< of the first relief where it begins, radial [rad]
+  std::optional<double> land;       ///< width of the first relief, from its start up to the second or to the heel [m]
   std::optional<double> land_end_clearance;  ///< of the first relief there [rad]
   /// From the edge to where the land meets the next flute; nothing if a relief ends before [m].
   std::optional<double> heel;

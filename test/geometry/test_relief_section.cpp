@@ -4,6 +4,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
@@ -251,6 +252,39 @@ TEST(ReliefSection, TheOutlineAndTheSolidHaveIt) {
     }
     fallen *= static_cast<double>(tool.job.tooth_angles.size());
     EXPECT_NEAR(fell, fallen, 0.03 * fallen);
+  }
+}
+
+// Unequal angles and a helix per tooth: each relief follows the edge of its own tooth.
+TEST(ReliefSection, EveryToothHasTheClearanceBehindItsOwnEdge) {
+  GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
+  job.spiral_angles = {36 * kDegree, 38 * kDegree, 36 * kDegree, 38 * kDegree};
+  job.cutter.spiral_angle = job.spiral_angles[0];
+  job.cutter.clearance = 10 * kDegree;
+  job.cutter.clearance_tolerance = 0.5 * kDegree;
+  GrindProcess p;
+  p.kind = OperationKind::kPrimaryRelief;
+  p.feed = 5e-3, p.infeed = 0.1e-3, p.clearance = 4e-3;
+  p.wheel_diameter = 100e-3, p.wheel_width = 6e-3;
+  p.setup_swivel = 38 * kDegree;
+  const ReliefWheel wheel{p.wheel_diameter / 2, 0, p.wheel_width, p.setup_swivel, 0};
+  p.setup_height = ReliefPath::heightFor(ConicalCutter(job.cutter), {job.cutter.clearance}, wheel, -2e-3);
+  job.operations = {{job.process, {}}, {p, {}}};
+  job.process = p;
+  job.operation = 1;
+  const ValidJob ground = withLaws(job);
+  const GroundCutter cutter = groundCutterOf(ground);
+  for (const double part : {0.0, 0.5, 1.0}) {
+    const double x = part * job.cutter.flute_length;
+    const GroundSection section = cutter.section(x);
+    for (int tooth = 0; tooth < 4; ++tooth) {
+      SCOPED_TRACE(tooth);
+      const ToothSection& measured = section.teeth[static_cast<std::size_t>(tooth)];
+      const Stroke stroke = strokeOf(ground, tooth);
+      const double begin = beginOf(stroke, x, section.radius, *measured.edge, 1, 0);
+      EXPECT_NEAR(clearanceAt(stroke, x, section.radius, *measured.edge, 1, begin) / kDegree, 10, 0.02);
+      EXPECT_NEAR(*measured.relief->clearance / kDegree, 10, 0.02);
+    }
   }
 }
 

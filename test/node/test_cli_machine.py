@@ -124,15 +124,11 @@ class TestMachine(CommandLine):
 
     def test_run_streams_a_relief_as_planned(self):
         grinder().make_ready_at_park()
-        with open(gc.package_file('jobs/taper_reamer_d6_t6.yaml')) as file:
-            text = file.read().replace('feed_mm_min: 300', 'feed_mm_min: 3000').replace(' infeed_mm: 0.05', ' infeed_mm: 2')
-        text = text.replace('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0').replace('../wheels', gc.package_file('wheels'))
-        with open(self.path('reamer.yaml'), 'w') as file:
-            file.write(text)
-        refused = self.grind(2, 'run', self.path('reamer.yaml'))
+        job = gc.reamer_file(self.path('reamer.yaml'))
+        refused = self.grind(2, 'run', job)
         self.assertIn('operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary', refused.stderr)
         self.grind(0, 'confirm-swivel', '13.104')
-        self.stream(self.path('reamer.yaml'), '--operation', 'secondary')
+        self.stream(job, '--operation', 'secondary')
         last = self.json(0, 'status')[0]['last_job']
         self.assertEqual((last['name'], last['finished'], last['end']), ('reamer.yaml', True, 'done'))
 

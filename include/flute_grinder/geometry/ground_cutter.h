@@ -103,6 +103,13 @@ class GroundCutter {
   /// Of a tooth; as if it were at angle 0.
   const Reliefs& reliefs(std::size_t tooth) const;
 
+  /// The tooth whose flute bounds a tooth's land, and how far behind it is.
+  struct NextTooth {
+    std::size_t tooth;
+    double pitch;  ///< [rad]
+  };
+  NextTooth next(std::size_t tooth) const;
+
  private:
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const;
   std::optional<double> chordalRake(const Flute& flute, double x, double depth, double edge) const;
@@ -113,6 +120,7 @@ class GroundCutter {
   bool isComplete(const Flute& flute, double x, double core_radius) const;
   bool isComplete(double x) const;
   std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
+  bool landsAreAlike(std::size_t a, std::size_t b) const;
 
   ConicalCutter cutter_;
   std::vector<Flute> flutes_;

@@ -32,7 +32,7 @@ NODE = '/grinder'
 COMMAND_RUNS = 10
 
 REPETITIONS = 9
-BENCHMARKS = r'^(setpointFloor|step/[0-9]|next/[0-9]|cycle|plan/0/real_time|planTool/real_time|checkCutter/0|collision)$'
+BENCHMARKS = r'^(setpointFloor|step/[0-9]|next/[0-9]|cycle|plan/0/real_time|planTool/real_time|checkCutter/[02]|collision)$'
 
 
 def origin():
@@ -88,6 +88,7 @@ def of_benchmarks():
                                 1e3 * time(tool))
     yield 'plan/setpoint', of_value('plan, whole tool, per setpoint', 'ns', per_item(tool), 'setpoint_floor')
     yield 'check_cutter', of_value("check of the ground cutter, the paper's job", 'ms', 1e3 * time('checkCutter/0'))
+    yield 'check_reliefs', of_value("check of the ground cutter, the reamer's with both reliefs", 'ms', 1e3 * time('checkCutter/2'))
     yield 'collision', of_value("check for collisions, the paper's job", 'ms', 1e3 * time('collision'))
 
 

@@ -9,6 +9,7 @@
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/rake_correction.h"
 #include "flute_grinder/geometry/setup_solver.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/motion/job_plan.h"
 #include "jobs.h"
 
@@ -128,12 +129,15 @@ void collision(benchmark::State& state) {
 }
 BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 
-/// What a plan measures of the ground cutter, for the paper's job and for one of four teeth with wear.
+/// What a plan measures of the ground cutter: for the paper's job, for one of four teeth with wear, and for a reamer of
+/// six teeth with both reliefs.
 void checkCutter(benchmark::State& state) {
-  const GrindJob job = state.range(0) == 0 ? paperJob(600) : readJobFile("jobs/unequal_d12_t4.yaml");
+  const GrindJob jobs[]{paperJob(600), readJobFile("jobs/unequal_d12_t4.yaml"),
+                        readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary")};
+  const ValidJob job = withLaws(jobs[state.range(0)]);
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
-BENCHMARK(checkCutter)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
+BENCHMARK(checkCutter)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
 /// The whole tool of `grind simulate`: four teeth with a flute each, or sharing one, in 60 sections of 64 rings.
 void simulateTool(benchmark::State& state) {

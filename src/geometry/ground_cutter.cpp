@@ -19,6 +19,7 @@ constexpr double kChordalDepth = 0.1;  ///< of the flute's depth
 constexpr int kRingsOfDepth = 6;       ///< on which a flute must be complete
 constexpr double kRangeAccuracy = 10e-6;
 constexpr double kSameArcEnd = 1e-6;  ///< of arcs of several strokes [m]
+constexpr double kSamePitch = 1e-9;   ///< [rad]
 
 /// An angle within one turn.
 double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
@@ -145,21 +146,30 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
   return area;
 }
 
-std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<ToothSection>& measured) const {
+GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {
   // Behind an edge that moves toward falling angles lies what has larger ones.
   const std::size_t n = teeth_.size();
   const bool right = direction() == CutDirection::kRightHand;
   const std::size_t next = right ? (tooth + 1) % n : (tooth + n - 1) % n;
+  const double turn = teeth_[next].angle - teeth_[tooth].angle, pitch = right ? turn : -turn;
+  return {next, pitch > 0 ? pitch : pitch + units::kTurn};
+}
+
+std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<ToothSection>& measured) const {
+  const NextTooth behind = next(tooth);
   const ToothSection& own = measured[teeth_[tooth].flute];
-  const ToothSection& other = measured[teeth_[next].flute];
+  const ToothSection& other = measured[teeth_[behind.tooth].flute];
   if (!own.edge || !other.edge) return std::nullopt;
-  const bool around = right ? next <= tooth : next >= tooth;
-  const double pitch =
-      std::abs(teeth_[next].angle - teeth_[tooth].angle + (around ? (right ? units::kTurn : -units::kTurn) : 0));
-  const double ahead = right ? *other.edge - *own.edge : *own.edge - *other.edge;
-  const double left = pitch + ahead - *other.flute;
+  const double turn = *other.edge - *own.edge;
+  const double left = behind.pitch + (direction() == CutDirection::kRightHand ? turn : -turn) - *other.flute;
   if (!(left > 0)) return std::nullopt;
   return left;
+}
+
+bool GroundCutter::landsAreAlike(std::size_t a, std::size_t b) const {
+  const NextTooth behind_a = next(a), behind_b = next(b);
+  return teeth_[a].flute == teeth_[b].flute && teeth_[behind_a.tooth].flute == teeth_[behind_b.tooth].flute &&
+         std::abs(behind_a.pitch - behind_b.pitch) < kSamePitch;
 }
 
 bool GroundCutter::isComplete(const Flute& flute, double x, double core_radius) const {
@@ -213,7 +223,10 @@ GroundSection GroundCutter::section(double x) const {
   const auto has_edge = [](const ToothSection& tooth) { return tooth.edge.has_value(); };
   if (!std::all_of(section.teeth.begin(), section.teeth.end(), has_edge)) return section;
   for (std::size_t i = 0; i < teeth_.size(); ++i) {
-    if (!reliefs(i).empty()) section.teeth[i].relief = measureRelief(*this, section, i, reliefs(i));
+    if (reliefs(i).empty()) continue;
+    std::size_t same = 0;
+    while (same < i && !landsAreAlike(same, i)) ++same;
+    section.teeth[i].relief = same < i ? section.teeth[same].relief : measureRelief(*this, section, i, reliefs(i));
   }
   return section;
 }

@@ -17,7 +17,7 @@ constexpr double kRadiusAccuracy = 10e-9;  ///< of that [m]
 constexpr int kNextEdgeRings = 4;          ///< on which the next tooth is looked at
 constexpr double kBelowTheEdge = 1e-5;     ///< of the radius, where a relief is looked at first
 
-/// From the edge, at the blank's radius, in a straight line across the section.
+/// From a place at the blank's radius to one that is so far behind it, in a straight line across the section.
 double distance(double radius, double r, double behind) {
   return std::hypot(r * std::cos(behind) - radius, r * std::sin(behind));
 }
@@ -78,7 +78,7 @@ ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& sec
   const auto second_first = [&](double r) { return start_of(0, r) - start_of(1, r); };
   const auto land_end = reliefs.size() < 2 ? heel : crossing(below, std::max(lowest[0], lowest[1]), second_first);
   if (const auto end = land_end ? tooth.surface(reliefs[0], *land_end) : std::nullopt) {
-    measured.land = distance(radius, *land_end, end->behind);
+    measured.land = distance(radius, *land_end, end->behind - std::max(0.0, start));
     measured.land_end_clearance = clearanceOf(*land_end, *end);
   }
 

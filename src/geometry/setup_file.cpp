@@ -28,8 +28,9 @@ std::string byHand(const std::vector<JobEdit>& edits) {
 void writeSetup(const std::string& path, const JobSetup& setup) {
   try {
     const std::string text = editJob(readTextFile(path), path, setup.edits);
-    if (!sameNumbers(parseJob(text, path, {}, toString(setup.job.process.kind)), setup.job))
-      throw JobFileError(path + ": has changed since it was read");
+    // The operations behind this one may still be without a set-up.
+    const GrindJob written = parseJob(text, path, unsolvedFields({}), toString(setup.job.process.kind));
+    if (!sameNumbers(written, setup.job)) throw JobFileError(path + ": has changed since it was read");
     replaceFile(path, text);
   } catch (const std::system_error& error) {
     throw JobFileError(path + ": cannot be written: " + error.code().message() + byHand(setup.edits));

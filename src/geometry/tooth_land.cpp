@@ -8,11 +8,9 @@ ToothLand::ToothLand(const GroundCutter& cutter, const GroundSection& section, s
     : x_(section.x), right_(cutter.direction() == CutDirection::kRightHand) {
   const std::vector<GroundTooth>& teeth = cutter.teeth();
   edge_ = *section.teeth[number].edge - teeth[number].angle;
-  const std::size_t next = right_ ? (number + 1) % teeth.size() : (number + teeth.size() - 1) % teeth.size();
-  const double turn = teeth[next].angle - teeth[number].angle;
-  pitch_ = right_ ? turn : -turn;
-  if (!(pitch_ > 0)) pitch_ += units::kTurn;
-  next_flute_ = &cutter.flutes()[teeth[next].flute];
+  const GroundCutter::NextTooth next = cutter.next(number);
+  pitch_ = next.pitch;
+  next_flute_ = &cutter.flutes()[teeth[next.tooth].flute];
 }
 
 std::optional<ToothLand::Surface> ToothLand::surface(const Relief& relief, double r) const {

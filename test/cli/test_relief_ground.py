@@ -1,16 +1,22 @@
 #!/usr/bin/env python3
 """Holds the setpoints of planned reliefs against what a wheel leaves that follows them: from the file of `grind plan --csv`, the wheel
 and the set-up of the job file, and nothing of the package. A point of a section is kept if it is in the wheel at no setpoint, and at no
-place between two of them."""
+place between two of them. Besides the shipped reamer and cutters of the design, random ones are set up by `grind setup`; what that
+refuses is counted. Their number is scaled as RapidCheck's by RC_PARAMS; FIGURES=1 prints what was measured."""
 
+import collections
 import csv
+import functools
 import math
 import os
 import pathlib
+import random
+import re
 import sys
 import tempfile
 import unittest
 
+import numpy
 import rostest
 import yaml
 
@@ -18,159 +24,329 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
 
-JOB = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
+REAMER = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
+KINDS = ('flute', 'primary', 'secondary')
+USUAL_CASES = 10  # with RapidCheck's 100
+TURN = 2 * math.pi
+
+
+def random_cases():
+    more = re.search(r'max_success=(\d+)', os.environ.get('RC_PARAMS', ''))
+    return max(USUAL_CASES, USUAL_CASES * int(more.group(1)) // 100) if more else USUAL_CASES
 
 
 class Stroke:
     """The last stroke of a tooth in an operation."""
 
-    def __init__(self, job, operation, rows, tooth):
-        process = job['operations'][operation]
+    def __init__(self, cutter, process, rows, tooth):
         wheel = process['wheel']
-        if 'file' in wheel:
-            with open(os.path.join(os.path.dirname(JOB), wheel['file']), encoding='utf-8') as file:
-                wheel = yaml.safe_load(file)
-        self.radius, self.width = wheel['diameter_mm'] / 2, wheel['width_mm']
-        self.swivel = math.radians(process['setup']['swivel_deg'])
+        self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
+        swivel = math.radians(process['setup']['swivel_deg'])
+        self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
         last = max(int(row['pass']) for row in rows)
-        self.poses = [
-            (float(row['x_mm']), job['cutter']['end_diameter_mm'] / 2 + self.radius + float(row['y_mm']),
+        # Of the wheel's centre, and A.
+        self.poses = numpy.array([
+            (float(row['x_mm']), cutter['end_diameter_mm'] / 2 + self.radius + float(row['y_mm']),
              process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
-            for row in rows if row['move'] == 'stroke' and int(row['tooth']) == tooth and int(row['pass']) == last]
+            for row in rows if int(row['tooth']) == tooth and int(row['pass']) == last]).T
 
-    def ray(self, x, angle, pose):
+    def ray(self, x, angle, poses):
         """Where a ray from the axis, at an angle of the cutter, first meets the wheel."""
-        centre_x, centre_y, centre_z, a = pose
-        w_x, w_z = -math.sin(self.swivel), math.cos(self.swivel)
-        e_y, e_z, d_x = math.cos(angle - a), math.sin(angle - a), x - centre_x
-        along0, along1 = w_x * d_x - w_z * centre_z, w_z * e_z
-        found = []
+        centre_x, centre_y, centre_z, a = poses
+        e_y, e_z, d_x = numpy.cos(angle - a), numpy.sin(angle - a), x - centre_x
+        along0, along1 = -self.sine * d_x - self.cosine * centre_z, self.cosine * e_z
         a2, a1 = 1 - along1 ** 2, -centre_y * e_y - centre_z * e_z - along0 * along1
         root = a1 ** 2 - a2 * (d_x ** 2 + centre_y ** 2 + centre_z ** 2 - along0 ** 2 - self.radius ** 2)
-        if root >= 0:
-            found.append((-a1 - math.sqrt(root)) / a2)
-        found += [(side * self.width / 2 - along0) / along1 for side in (-1, 1) if along1]
+        with numpy.errstate(all='ignore'):  # what is not met, is not in the wheel
+            found = numpy.array([(-a1 - numpy.sqrt(root)) / a2,
+                                 (-self.half_width - along0) / along1, (self.half_width - along0) / along1])
+            along = along0 + found * along1
+            square = d_x ** 2 + (found * e_y - centre_y) ** 2 + (found * e_z - centre_z) ** 2 - along ** 2
+            in_wheel = (found > 0) & (abs(along) < self.half_width + 1e-9) & (square < self.radius ** 2 + 1e-6)
+            return numpy.where(in_wheel, found, math.inf).min(axis=0)
 
-        def in_wheel(r):
-            along = along0 + r * along1
-            square = d_x ** 2 + (r * e_y - centre_y) ** 2 + (r * e_z - centre_z) ** 2 - along ** 2
-            return r > 0 and abs(along) < self.width / 2 + 1e-9 and square < self.radius ** 2 + 1e-6
-
-        return min(filter(in_wheel, found), default=math.inf)
-
-    def outside(self, x, angle, r, pose):
+    def outside(self, x, angle, r, poses):
         """How far a point is outside the wheel; negative inside."""
-        centre_x, centre_y, centre_z, a = pose
-        d_x, d_y, d_z = x - centre_x, r * math.cos(angle - a) - centre_y, r * math.sin(angle - a) - centre_z
-        along = -math.sin(self.swivel) * d_x + math.cos(self.swivel) * d_z
-        radial = math.sqrt(max(0, d_x ** 2 + d_y ** 2 + d_z ** 2 - along ** 2))
-        return max(abs(along) - self.width / 2, radial - self.radius)
+        centre_x, centre_y, centre_z, a = poses
+        d_x, d_y, d_z = x - centre_x, r * numpy.cos(angle - a) - centre_y, r * numpy.sin(angle - a) - centre_z
+        along = -self.sine * d_x + self.cosine * d_z
+        radial = numpy.sqrt(numpy.maximum(0, d_x ** 2 + d_y ** 2 + d_z ** 2 - along ** 2))
+        return numpy.maximum(abs(along) - self.half_width, radial - self.radius)
 
     def least(self, function):
-        """The least of a function of a pose, over the setpoints and in between."""
-        step = 20
-        best = min(range(0, len(self.poses), step), key=lambda i: function(self.poses[i]))
-        best = min(range(max(best - step, 0), min(best + step + 1, len(self.poses))), key=lambda i: function(self.poses[i]))
-
-        def at(place):
-            i = min(max(int(place), 0), len(self.poses) - 2)
-            return function([p + (place - i) * (q - p) for p, q in zip(self.poses[i], self.poses[i + 1])])
-
-        low, high = max(best - 1, 0), min(best + 1, len(self.poses) - 1)
-        for _ in range(40):
-            third = (high - low) / 3
-            if at(low + third) < at(high - third):
-                high -= third
-            else:
-                low += third
-        return min(at(best), at((low + high) / 2))
+        """The least of a function of the poses, over the setpoints and in between."""
+        count = self.poses.shape[1]
+        values = function(self.poses)
+        best, reach = values.argmin(), 1.0
+        least = values[best]
+        for _ in range(4):
+            places = numpy.clip(numpy.linspace(best - reach, best + reach, 33), 0, count - 1)
+            before = numpy.minimum(places.astype(int), count - 2)
+            part = places - before
+            values = function(self.poses[:, before] * (1 - part) + self.poses[:, before + 1] * part)
+            best, reach = places[values.argmin()], reach / 16
+            least = min(least, values.min())
+        return least
 
     def left(self, x, angle):
         """The radius that is left along a ray."""
-        return self.least(lambda pose: self.ray(x, angle, pose))
+        return self.least(lambda poses: self.ray(x, angle, poses))
+
+    def outside_by(self, x, angle, r):
+        return self.least(lambda poses: self.outside(x, angle, r, poses))
 
     def cuts(self, x, angle, r):
-        return self.least(lambda pose: self.outside(x, angle, r, pose)) < 0
+        return self.outside_by(x, angle, r) < 0
 
 
-class ReliefGround(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        with open(JOB, encoding='utf-8') as file:
-            cls.job = yaml.safe_load(file)
-        cls.cutter = cls.job['cutter']
-        cls.strokes = []
+def boundary(low, high, is_low):
+    """Where what holds at `low` ends, on the way to `high`."""
+    for _ in range(30):
+        middle = (low + high) / 2
+        if is_low(middle):
+            low = middle
+        else:
+            high = middle
+    return (low + high) / 2
+
+
+class Refused(Exception):
+    """What a program does not do, and why."""
+
+
+def grind(*arguments):
+    done = gc.grind(*arguments)
+    if done.returncode != 0:
+        raise Refused('%s: %s' % (' '.join(a for a in arguments if '/' not in a), done.stderr or done.stdout))
+    return done
+
+
+# What is measured of a tooth in a section: how far its first relief takes the edge's radius or leaves it [mm], where the reliefs begin
+# behind the edge and with what clearance [rad], and the width of the first [mm].
+Measured = collections.namedtuple('Measured', 'edge begins clearance second_clearance land')
+
+
+class Tool:
+    """The file of a job whose operations are all planned. Angles behind an edge are positive."""
+
+    def __init__(self, path):
+        with open(path, encoding='utf-8') as file:
+            job = yaml.safe_load(file)
+        self.cutter, self.operations = job['cutter'], job['operations']
+        self.hand = -1 if self.cutter['cut'] == 'left_hand' else 1
+        self.teeth = self.cutter['teeth']
+        self.asked = [math.radians(self.cutter.get(key, 0)) for key in ('clearance_deg', 'second_clearance_deg')]
+        # What is asked again and again, for as long as there is the tool.
+        self.strokes, self.edge = functools.lru_cache(None)(self.strokes), functools.lru_cache(None)(self.edge)
+        self.rows = []
         with tempfile.TemporaryDirectory() as folder:
-            for number in range(3):
-                path = os.path.join(folder, 'setpoints.csv')
-                gc.grind('plan', JOB, '--operation', str(number + 1), '--csv', path).check_returncode()
-                with open(path, encoding='utf-8') as file:
-                    rows = list(csv.DictReader(file))
-                cls.strokes.append([Stroke(cls.job, number, rows, tooth) for tooth in (0, 1)])
+            for number, process in enumerate(self.operations):
+                if 'file' in process['wheel']:
+                    with open(os.path.join(os.path.dirname(path), process['wheel']['file']), encoding='utf-8') as file:
+                        process['wheel'] = yaml.safe_load(file)
+                setpoints = os.path.join(folder, 'setpoints.csv')
+                grind('plan', path, '--operation', str(number + 1), '--csv', setpoints)
+                with open(setpoints, encoding='utf-8') as file:
+                    names = next(file)
+                    self.rows.append(list(csv.DictReader((line for line in file if ',stroke,' in line), names.strip().split(','))))
+
+    def strokes(self, tooth):
+        """Of all operations."""
+        return [Stroke(self.cutter, process, rows, tooth) for process, rows in zip(self.operations, self.rows)]
 
     def radius(self, x):
         return self.cutter['end_diameter_mm'] / 2 + x * math.tan(math.radians(self.cutter['cone_angle_deg']))
 
-    def edge(self, x, tooth):
-        """The angle at which the flute's rake face meets the cone."""
-        flute = self.strokes[0][tooth]
-        radius = self.radius(x)
-        low = next(a for a in self.angles(x, tooth) if flute.cuts(x, a, radius))
-        high = low + 1
-        for _ in range(40):
-            angle = (low + high) / 2
-            if flute.cuts(x, angle, radius):
-                low = angle
-            else:
-                high = angle
-        return low
-
-    def angles(self, x, tooth):
-        turned = self.strokes[0][tooth].poses[0][3]
-        return (turned + math.radians(i) for i in range(-180, 540, 4))
+    def margin(self):
+        """The angle in front of the first relief."""
+        return self.operations[1].get('behind_mm', 0) / self.radius(0)
 
     def sections(self):
         length = self.cutter['flute_length_mm']
         return (0.0, length / 2, length)
 
-    def test_the_edge_keeps_its_radius_and_gets_its_clearance(self):
-        for tooth in (0, 1):
-            for x in self.sections():
-                edge, primary = self.edge(x, tooth), self.strokes[1][tooth]
-                self.assertAlmostEqual(min(primary.left(x, edge), self.radius(x)), self.radius(x), delta=0.5e-3)
-                # The relief's own start may lie some micrometres beside the edge.
-                near, far = edge + math.radians(0.25), edge + math.radians(0.75)
-                fall = primary.left(x, near) - primary.left(x, far)
-                # The clearance falls by less than a degree for each degree behind the edge.
-                clearance = math.degrees(math.atan(fall / (self.radius(x) * (far - near))))
-                self.assertAlmostEqual(clearance, self.cutter['clearance_deg'], delta=0.5)
+    def edge(self, x, tooth, r=None):
+        """The angle at which the flute's rake face meets the cone, or another circle."""
+        # What is cut by less than the way between two setpoints shows, is found in between.
+        flute, r = self.strokes(tooth)[0], r or self.radius(x)
+        step = math.radians(2)
+        inside = [flute.outside(x, i * step, r, flute.poses).min() < 0 for i in range(180)]
+        last, = (i for i in range(180) if inside[i] and not inside[(i + self.hand) % 180])
+        return boundary(last * step, (last + 2 * self.hand) * step, lambda a: flute.cuts(x, a, r))
 
-    def test_the_primary_is_as_wide_as_asked_at_the_small_end(self):
-        edge, radius = self.edge(0, 0), self.radius(0)
-        primary, secondary = self.strokes[1][0], self.strokes[2][0]
-        low, high = edge, edge + math.radians(25)
-        for _ in range(40):
-            angle = (low + high) / 2
-            if secondary.left(0, angle) > primary.left(0, angle):
-                low = angle
-            else:
-                high = angle
-        r = primary.left(0, low)
-        width = math.hypot(r * math.cos(low - edge) - radius, r * math.sin(low - edge))
-        self.assertAlmostEqual(width, self.cutter['land_mm'], delta=0.02)
-        begins = secondary.left(0, low + math.radians(0.2)) - secondary.left(0, low + math.radians(0.7))
-        clearance = math.degrees(math.atan(begins / (r * math.radians(0.5))))
-        self.assertAlmostEqual(clearance, self.cutter['second_clearance_deg'], delta=0.6)
+    def clearance(self, stroke, x, angle):
+        """Of a surface behind an angle, from differences to the second order."""
+        step = math.radians(0.1)
+        r0, r1, r2 = (stroke.left(x, angle + self.hand * i * step) for i in range(3))
+        return math.atan((3 * r0 - 4 * r1 + r2) / (2 * step * r0))
 
-    def test_the_whole_land_falls_away_and_the_next_edge_is_kept(self):
-        for x in self.sections():
-            edge, following = self.edge(x, 0), self.edge(x, 1)
-            for part in range(1, 40):
-                angle = edge + (following - edge) * part / 40
-                left = min(stroke[tooth].left(x, angle) for stroke in self.strokes for tooth in (0, 1))
-                self.assertLess(left, self.radius(x) - 1e-3, (x, part))
-            for stroke in self.strokes[1:]:
-                self.assertGreater(stroke[0].left(x, following), self.radius(x))
+    def measure(self, x, tooth):
+        edge, radius, (_, primary, *more) = self.edge(x, tooth), self.radius(x), self.strokes(tooth)
+
+        def at(behind):
+            return edge + self.hand * behind
+
+        margin = self.margin()
+        begins = boundary(margin - 0.01, margin + 0.01, lambda b: primary.left(x, at(b)) > radius)
+        clearance, second_clearance, land = self.clearance(primary, x, at(begins)), None, None
+        if more:
+            end = boundary(begins, begins + 0.6, lambda b: more[0].left(x, at(b)) > primary.left(x, at(b)))
+            r = primary.left(x, at(end))
+            land = math.hypot(r * math.cos(end - begins) - radius, r * math.sin(end - begins))
+            second_clearance = self.clearance(more[0], x, at(end + 1e-5))
+        return Measured(primary.left(x, at(margin)) - radius, begins, clearance, second_clearance, land)
+
+    def next_tooth(self, tooth):
+        return (tooth + self.hand) % self.teeth
+
+    def spoilt(self, x, tooth):
+        """Where the land stands, or the core is ground, from a little behind the relief's start to the next edge."""
+        edge, radius, after = self.edge(x, tooth), self.radius(x), self.next_tooth(tooth)
+        pitch = self.hand * (self.edge(x, after) - edge) % TURN
+        ends = self.cutter['core_diameter_mm'], self.cutter['core_diameter_end_mm']
+        core = (ends[0] + (ends[1] - ends[0]) * x / self.cutter['flute_length_mm'] - self.cutter['core_tolerance_mm']) / 2
+        for part in range(1, 40):
+            angle = edge + self.hand * (self.margin() + (pitch - self.margin()) * part / 40)
+            left = min(s.ray(x, angle, s.poses).min() for s in self.strokes(tooth) + self.strokes(after))
+            if not core < left < radius - 1e-4:
+                yield x, part, left
+
+    def wheels_off_the_next_tooth(self, x, tooth):
+        """How far those of the reliefs stay off its rake face, at some radii."""
+        after, core = self.next_tooth(tooth), self.cutter['core_diameter_mm'] / 2
+        for part in (0, 0.2, 0.4, 0.6):
+            r = self.radius(x) + (core - self.radius(0)) * part
+            face = self.edge(x, after, r)
+            for stroke in self.strokes(tooth)[1:]:
+                yield stroke.outside_by(x, face, r)
+
+
+
+def wheel(diameter, width):
+    return {'profile': 'straight', 'diameter_mm': diameter, 'width_mm': width, 'corner_radius_mm': [0, 0], 'wear_mm': 0}
+
+
+def job_of(cutter, teeth, flute_wheel, reliefs, **first_relief):
+    """Of a cutter whose operations have no set-up yet, in one pass each so that they are over soon.
+    @param cutter diameter, cone, spiral and length. @param reliefs clearance and wheel of each."""
+    diameter, cone, spiral, length = cutter
+    growth = 2 * length * math.tan(math.radians(cone))
+    passes = {'feed_mm_min': 3000, 'infeed_mm': 20, 'finish_infeed_mm': 0}
+    keys = {
+        'end_diameter_mm': diameter, 'cone_angle_deg': cone, 'spiral_angle_deg': spiral, 'flute_length_mm': length,
+        'rake_angle_deg': 6, 'rake_tolerance_deg': 0.5, 'chordal_rake_tolerance_deg': 40, 'spiral_tolerance_deg': 0.2,
+        'core_diameter_mm': 0.7 * diameter, 'core_diameter_end_mm': 0.7 * (diameter + growth), 'core_tolerance_mm': 0.02 * diameter,
+        'clearance_deg': reliefs[0][0], 'clearance_tolerance_deg': 0.5, 'cut': 'right_hand' if spiral >= 0 else 'left_hand',
+        'shank_diameter_mm': diameter, 'teeth': teeth}
+    if len(reliefs) > 1:
+        keys.update(land_mm=0.05 * diameter, second_clearance_deg=reliefs[1][0])
+    flute = dict(passes, kind='flute', spark_out=0, clearance_mm=3, overtravel_mm=[1, 1], order='tooth_major', direction='from_end',
+                 wheel=flute_wheel)
+    operations = [flute] + [dict(passes, kind='relief', relief=kind, wheel=its) for kind, (_, its) in zip(KINDS[1:], reliefs)]
+    operations[1].update(first_relief)
+    return {'cutter': keys, 'operations': operations,
+            'interpolation': {'even_step': 'exact', 'tolerance_um': 0.5, 'rotary_scale_mm_per_rad': 1}}
+
+
+def drawn(number):
+    """A random cutter of either hand, with one relief or two, now and then with a margin."""
+    draw = random.Random(number)
+    diameter, teeth = draw.uniform(3, 15), draw.randint(4, 8)
+    cutter = diameter, draw.choice([0, draw.uniform(-1, 8)]), draw.choice([-1, 1]) * draw.uniform(0, 40), draw.uniform(1, 1.5) * diameter
+    clearance = draw.uniform(6, 14)
+    reliefs = [(clearance, wheel(draw.uniform(60, 125), draw.uniform(4, 10))),
+               (clearance + draw.uniform(8, 16), wheel(draw.uniform(60, 125), draw.uniform(4, 10)))][:draw.choice([1, 2, 2])]
+    margin = draw.choice([{}, {'behind_mm': 0.02 * diameter}])
+    return job_of(cutter, teeth, wheel(draw.uniform(60, 125), draw.uniform(0.3, 1) * diameter / teeth), reliefs, **margin)
+
+
+def set_up(job, path, *first_relief):
+    """Writes the file of a job, with the set-ups that are found."""
+    with open(path, 'w', encoding='utf-8') as file:
+        yaml.safe_dump(job, file)
+    for kind, _ in zip(KINDS, job['operations']):
+        grind('setup', path, '--operation', kind, '--write', *(first_relief if kind == 'primary' else ()))
+    return Tool(path)
+
+
+class ReliefGround(unittest.TestCase):
+    def setUp(self):
+        self.worst, self.refused = collections.defaultdict(float), []
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, 'job.yaml')
+
+    def near(self, name, off, allowed):
+        """Of what was measured, the worst is remembered."""
+        self.worst[name] = max(self.worst[name], abs(off))
+        self.assertLessEqual(abs(off), allowed, name)
+
+    def check(self, tool, teeth=(0,)):
+        even = tool.cutter['cone_angle_deg'] == 0
+        for tooth in teeth:
+            for x in tool.sections():
+                radius, found = tool.radius(x), tool.measure(x, tooth)
+                self.near('edge on a cylinder [um]' if even else 'edge on a cone [um]', 1e3 * found.edge, 0.5 if even else 1.5)
+                self.near('start of the relief [mm]', radius * (found.begins - tool.margin()), 0.02)
+                self.near('clearance [deg]', math.degrees(found.clearance - tool.asked[0]), 0.02)
+                if found.land:
+                    self.near('second clearance [deg]', math.degrees(found.second_clearance - tool.asked[1]), 0.05)
+                if found.land and x == 0:
+                    self.near('land [mm]', found.land - tool.cutter['land_mm'], 0.02)
+                for part in (0.1, 0.5, 0.9) if tool.margin() else ():
+                    angle = tool.edge(x, tooth) + part * tool.margin() * tool.hand
+                    self.assertGreater(tool.strokes(tooth)[1].left(x, angle), radius)
+                self.assertEqual(list(tool.spoilt(x, tooth)), [])
+                self.assertGreater(min(tool.wheels_off_the_next_tooth(x, tooth)), 0)
+
+    def check_planned(self, cases, least):
+        """@param cases function for each that sets a tool up. @param least number that is not refused."""
+        planned = 0
+        for name, case in cases:
+            try:
+                tool = case()
+            except Refused as refusal:
+                self.refused.append('%s: %s' % (name, refusal))
+                continue
+            planned += 1
+            try:
+                self.check(tool)
+            except Exception as error:
+                with open(self.path, encoding='utf-8') as file:
+                    raise AssertionError('%s: %s\n%s' % (name, error, file.read())) from error
+        if os.environ.get('FIGURES'):
+            print('\n%d planned, %s\n%d refused\n  %s' % (planned, dict(self.worst), len(self.refused), '\n  '.join(self.refused)),
+                  file=sys.__stderr__)
+        self.assertGreaterEqual(planned, least, self.refused)
+
+    def test_the_shipped_reamer(self):
+        self.check(Tool(REAMER), teeth=(0, 5))
+
+    def test_a_margin_in_front_of_the_primary_relief(self):
+        with open(REAMER, encoding='utf-8') as file:
+            job = yaml.safe_load(file)
+        job['operations'][1].update(behind_mm=0.2, wheel=wheel(100, 6))
+        job['operations'][2].update(wheel=wheel(100, 6))
+        tool = set_up(job, self.path)
+        self.assertAlmostEqual(tool.radius(0) * tool.measure(0, 0).begins, 0.2, delta=0.01)
+        self.check(tool)
+
+    def test_cutters_of_the_design(self):
+        """Diameter, cone and spiral; clearance, swivel and wheel of the relief. As many teeth as that wheel leaves alone."""
+        rows = (((10, 5, 30), 10, 30, (100, 6), 6), ((10, 5, 30), 20, 60, (100, 6), 8), ((10, 0, 35), 9, 43, (100, 8), 4),
+                ((12, -1, 38), 12, 45, (100, 6), 4), ((2, 8, 20), 14, 25, (80, 3), 6))
+
+        def case(cutter, clearance, swivel, its, teeth):
+            width = (0.2 if cutter[0] == 2 else 0.1) * cutter[0]
+            job = job_of((*cutter, 1.5 * cutter[0]), teeth, wheel(100, width), [(clearance, wheel(*its))])
+            job['operations'][1]['setup'] = {'swivel_deg': swivel}
+            return set_up(job, self.path, '--keep', 'swivel')
+
+        self.check_planned([(str(row), lambda row=row: case(*row)) for row in rows], len(rows))
+
+    def test_random_cutters(self):
+        cases = random_cases()
+        self.check_planned([(str(i), lambda i=i: set_up(drawn(i), self.path)) for i in range(cases)], cases // 3)
 
 
 if __name__ == '__main__':

@@ -4,8 +4,10 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <gtest/gtest.h>
 
@@ -68,24 +70,46 @@ struct Stroke {
   }
 };
 
+/// The last stroke of a tooth.
+Stroke strokeOf(const ValidJob& job, int tooth) {
+  const StrokeLaw& along = job.strokeLaw(tooth);
+  const GrindProcess& p = job->process;
+  const DepthLaw depth = job.depthLaw(tooth, job.deepest(), 0);
+  const ConicalCutter cutter(along.cutter);
+  return {std::min(along.from, along.to),
+          std::max(along.from, along.to),
+          p.wheel_diameter / 2,
+          p.wheel_width,
+          p.setup_swivel,
+          job->cutter.end_diameter / 2 + p.wheel_diameter / 2 - depth.at_end,
+          cutter.tanCone() + depth.taper,
+          p.setup_height,
+          cutter.tanCone() * cutter.zPerY(),
+          LogCurve(cutter, along.lead),
+          along.a};
+}
+
 /// A job's flutes with a primary relief whose start is at a place of the rim.
 struct Tool {
   GrindJob job;
   GroundCutter cutter;
   ConicalCutter cone;
   double hand;
+  ReliefStart start;
   ReliefWheel wheel;
   ReliefPath path;
   double edge;            ///< of a tooth at angle 0, against its asked helix
   GroundCutter relieved;  ///< with that
 
-  Tool(const std::string& file, double clearance, double swivel, double width, double contact)
+  /// @param margin in front of the relief, along the circle at the small end [mm].
+  Tool(const std::string& file, double clearance, double swivel, double width, double contact, double margin = 0)
       : job(readJobFile(file)),
         cutter(groundCutterOf(job)),
         cone(job.cutter),
         hand(job.cutter.cut == CutDirection::kLeftHand ? -1 : 1),
-        wheel(wheelOf({clearance * kDegree}, hand * swivel, width, contact)),
-        path(cone, {clearance * kDegree}, wheel),
+        start{clearance * kDegree, 1, margin * kMillimetre / cone.radius(0)},
+        wheel(wheelOf(start, hand * swivel, width, contact)),
+        path(cone, start, wheel),
         edge(edgeOf()),
         relieved(cone, cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), {{sweep()}})) {}
 
@@ -129,27 +153,34 @@ struct Tool {
   }
   /// Of the tooth behind the first one.
   Stroke nextFlute() const {
-    const GrindStroke s = strokeOf(job, 0, job.process.deepest(), 0);
-    const GrindProcess& p = job.process;
-    const double pitch = hand > 0 ? job.tooth_angles[1] : job.tooth_angles.back() - units::kTurn;
-    return {std::min(s.from, s.to),
-            std::max(s.from, s.to),
-            p.wheel_diameter / 2,
-            p.wheel_width,
-            p.setup_swivel,
-            job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + s.y,
-            cone.tanCone() + s.y_per_x,
-            p.setup_height,
-            cone.tanCone() * cone.zPerY(),
-            LogCurve(cone, p.setup_lead),
-            pitch};
+    const bool left = hand < 0;
+    Stroke next = test_relief_section::strokeOf(job, left ? static_cast<int>(job.tooth_angles.size()) - 1 : 1);
+    if (left) next.a0 -= units::kTurn;
+    return next;
   }
 };
+
+/// The angle behind an edge at which a relief meets the blank. In front of that, it would undercut it.
+double beginOf(const Stroke& relief, double x, double radius, double edge, double hand, double about) {
+  double low = about - 1 * kDegree, high = about + 1 * kDegree;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (relief.left(x, edge + hand * middle) > radius ? low : high) = middle;
+  }
+  return high;
+}
+
+/// The clearance of a relief there.
+double clearanceAt(const Stroke& relief, double x, double radius, double edge, double hand, double begin) {
+  const double fall = relief.left(x, edge + hand * (begin + 1e-6)) - relief.left(x, edge + hand * (begin + 11e-6));
+  return std::atan(fall / (10e-6 * radius));
+}
 
 // The land is gone through in steps: what is left of it by the relief, and by the next tooth's flute.
 TEST(ReliefSection, IsWhatTheWheelsLeave) {
   for (const Tool& tool :
-       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2)}) {
+       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2),
+        Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2, 0.2)}) {
     const Stroke relief = tool.reliefStroke(), flute = tool.nextFlute();
     for (const double part : {0.0, 0.5, 1.0}) {
       const double x = part * tool.job.cutter.flute_length;
@@ -158,18 +189,13 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
       const double edge = *section.teeth[0].edge;
       const auto left = [&](const Stroke& stroke, double behind) { return stroke.left(x, edge + tool.hand * behind); };
 
-      // Where the relief meets the blank; in front of the edge, it undercuts that.
-      double low = -1 * kDegree, high = 1 * kDegree;
-      for (int i = 0; i < 40; ++i) {
-        const double middle = (low + high) / 2;
-        (left(relief, middle) > section.radius ? low : high) = middle;
-      }
+      const double begin = beginOf(relief, x, section.radius, edge, tool.hand, tool.start.behind);
+      if (tool.start.behind > 0) EXPECT_NEAR(begin, tool.start.behind, 10e-6);  // the margin is left as wide as asked
       EXPECT_NEAR(measured.edge_radius, std::min(section.radius, left(relief, 0)), 5e-9);
-      const double fall = left(relief, high + 1e-6) - left(relief, high + 11e-6);
-      EXPECT_NEAR(*measured.clearance, std::atan(fall / (10e-6 * section.radius)), 0.01 * kDegree);
+      EXPECT_NEAR(*measured.clearance, clearanceAt(relief, x, section.radius, edge, tool.hand, begin), 0.01 * kDegree);
 
       // The heel, from where the flute takes more than the relief.
-      low = 0, high = 60 * kDegree;
+      double low = 0, high = 0;
       while (left(flute, low) > left(relief, low)) low += 0.25 * kDegree;
       high = low, low -= 0.25 * kDegree;
       for (int i = 0; i < 40; ++i) {
@@ -178,10 +204,12 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
       }
       const double r = left(relief, low);
       ASSERT_LT(r, section.radius);
-      const double heel = std::hypot(r * std::cos(low) - section.radius, r * std::sin(low));
+      const auto distance = [&](double from) {
+        return std::hypot(r * std::cos(low - from) - section.radius, r * std::sin(low - from));
+      };
       ASSERT_TRUE(measured.heel && measured.land && measured.land_end_clearance);
-      EXPECT_NEAR(*measured.heel, heel, 1e-6);
-      EXPECT_NEAR(*measured.land, heel, 1e-6);
+      EXPECT_NEAR(*measured.heel, distance(0), 1e-6);
+      EXPECT_NEAR(*measured.land, distance(std::max(0.0, begin)), 1e-6);
       const double end =
           (left(relief, low - 0.01 * kDegree) - left(relief, low + 0.01 * kDegree)) / (0.02 * kDegree * r);
       EXPECT_NEAR(*measured.land_end_clearance, std::atan(end), 0.02 * kDegree);
@@ -224,6 +252,39 @@ TEST(ReliefSection, TheOutlineAndTheSolidHaveIt) {
     }
     fallen *= static_cast<double>(tool.job.tooth_angles.size());
     EXPECT_NEAR(fell, fallen, 0.03 * fallen);
+  }
+}
+
+// Unequal angles and a helix per tooth: each relief follows the edge of its own tooth.
+TEST(ReliefSection, EveryToothHasTheClearanceBehindItsOwnEdge) {
+  GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
+  job.spiral_angles = {36 * kDegree, 38 * kDegree, 36 * kDegree, 38 * kDegree};
+  job.cutter.spiral_angle = job.spiral_angles[0];
+  job.cutter.clearance = 10 * kDegree;
+  job.cutter.clearance_tolerance = 0.5 * kDegree;
+  GrindProcess p;
+  p.kind = OperationKind::kPrimaryRelief;
+  p.feed = 5e-3, p.infeed = 0.1e-3, p.clearance = 4e-3;
+  p.wheel_diameter = 100e-3, p.wheel_width = 6e-3;
+  p.setup_swivel = 38 * kDegree;
+  const ReliefWheel wheel{p.wheel_diameter / 2, 0, p.wheel_width, p.setup_swivel, 0};
+  p.setup_height = ReliefPath::heightFor(ConicalCutter(job.cutter), {job.cutter.clearance}, wheel, -2e-3);
+  job.operations = {{job.process, {}}, {p, {}}};
+  job.process = p;
+  job.operation = 1;
+  const ValidJob ground = withLaws(job);
+  const GroundCutter cutter = groundCutterOf(ground);
+  for (const double part : {0.0, 0.5, 1.0}) {
+    const double x = part * job.cutter.flute_length;
+    const GroundSection section = cutter.section(x);
+    for (int tooth = 0; tooth < 4; ++tooth) {
+      SCOPED_TRACE(tooth);
+      const ToothSection& measured = section.teeth[static_cast<std::size_t>(tooth)];
+      const Stroke stroke = strokeOf(ground, tooth);
+      const double begin = beginOf(stroke, x, section.radius, *measured.edge, 1, 0);
+      EXPECT_NEAR(clearanceAt(stroke, x, section.radius, *measured.edge, 1, begin) / kDegree, 10, 0.02);
+      EXPECT_NEAR(*measured.relief->clearance / kDegree, 10, 0.02);
+    }
   }
 }
 

@@ -2,8 +2,11 @@
 """Shows on the real HAL that each servo cycle plays exactly one setpoint: a stroke of 30 s and short jobs, recorded by a HAL
 sampler, are to the last bit what the node says that it wrote."""
 
+import csv
+import tempfile
 import unittest
 
+import flute_grinder.job
 import rospy
 import rostest
 from flute_grinder.msg import GrinderState
@@ -55,6 +58,7 @@ class TestStream(unittest.TestCase):
         self.assertEqual({(b.played - a.played) % 2 ** 32 for a, b in zip(rows, rows[1:])}, {1})
         self.assertEqual({row.underruns for row in rows}, {rows[0].underruns})
         self.assertTrue(all(row.enabled for row in rows))
+        return setpoints
 
     def test_last_setpoint_is_played_wherever_it_lies_in_the_fifo(self):
         for _ in range(3):
@@ -66,6 +70,17 @@ class TestStream(unittest.TestCase):
         self.assertEqual(bits(row.position), bits(row.command))
         self.assertEqual(self.grinder.wait_rest(), list(row.position))
         self.assertEqual(self.grinder.fresh_state().state, GrinderState.READY)
+
+    def test_relief_is_played_to_the_last_bit_as_planned(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path, plan = gc.reamer_file(folder + '/reamer.yaml'), folder + '/plan.csv'
+            gc.grind('plan', path, '--operation', 'primary', '--csv', plan).check_returncode()
+            with open(plan) as file:
+                planned = [tuple(float(row[key]) for key in ('x_mm', 'y_mm', 'z_mm', 'a_rad')) for row in csv.DictReader(file)]
+            goal = flute_grinder.job.goal(path, 'primary')
+        self.grinder.make_ready_at_park()
+        played = [tuple(map(float.fromhex, position)) for position in self.check(goal)]
+        self.assertTrue([(x / gc.MM, y / gc.MM, z / gc.MM, a) for x, y, z, a in played] == planned, 'the setpoints differ')
 
 
 if __name__ == '__main__':

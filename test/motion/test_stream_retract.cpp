@@ -1,5 +1,8 @@
 // A stream whose wheel is retracted from wherever it rests, and comes back.
 
+#include "flute_grinder/curve/relief_path.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/axis_move.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
@@ -203,6 +206,75 @@ TEST(SetpointStream, ComesBackAboveTheWorkThenDownAtFeedThenAlong) {
   // feed is reached in 2 sqrt(v/j) = 29 ms, over v sqrt(v/j) = 0.13 mm.
   EXPECT_NEAR(left - entry, 0.13e-3, 0.02e-3);
   EXPECT_TRUE(ride.stream().finished());
+}
+
+/// The primary relief of the reamer in one pass, on edges that are as asked. Its strokes go toward the small end.
+ValidJob relief() {
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
+  job.operations[1].process.infeed = 1e-3;
+  job.operations[1].process.finish_infeed = 0;
+  job = job.ofOperation(1);
+  return ValidJob(job).withEdges(ValidJob(job.ofOperation(0)), std::vector<double>(job.tooth_angles.size()));
+}
+
+/// How far a setpoint of a stroke is off the relief's closed form: in Y, Z, and in A at the cutter's surface [m].
+double offTheRelief(const ValidJob& job, const Setpoint& p) {
+  const ReliefPath& path = *job.relief(p.tooth);
+  const ConicalCutter cutter(job->cutter);
+  const double x = p.position[kX];
+  const double a = job->tooth_angles[p.tooth] + path.a() + LogCurve(cutter, path.lead()).a(x);
+  return std::max({std::abs(p.position[kY] - path.y() - x * (cutter.tanCone() + path.taper())),
+                   std::abs(p.position[kZ] - x * cutter.tanCone() * path.cutter().zPerY()),
+                   std::abs(p.position[kA] - a) * cutter.radius(x)});
+}
+
+// Y alone leads off a relief and back, and the stroke goes on along its surface, without a gap.
+TEST(SetpointStream, AReliefIsLeftInYAndGoneOnWith) {
+  const ValidJob job = relief();
+  const Machine machine = roomyMachine();
+  SetpointStream stream(GrindProgram(job, machine, machine.park));
+  const double to = stream.program().strokeTo();
+  ASSERT_LT(to, stream.program().strokeFrom());
+  Setpoint p;
+  const auto run_to_rest = [&](const auto& visit) {
+    while (stream.next(p)) visit(p);
+  };
+  while (p.move != MoveKind::kStroke || p.tooth != 1 || p.move_fraction < 0.5) ASSERT_TRUE(stream.next(p));
+  stream.hold();
+  run_to_rest([&](const Setpoint& s) { ASSERT_LT(offTheRelief(job, s), 1e-6); });
+  const Axes left = p.position;
+  ASSERT_EQ(p.move, MoveKind::kStroke);
+  ASSERT_GT(left[kX], to);
+
+  stream.retract();
+  run_to_rest([&](const Setpoint& s) {
+    for (const int axis : {kX, kZ, kA}) ASSERT_EQ(s.position[axis], left[axis]);
+  });
+  const double highest = stream.program().strokeFrom() * std::tan(2 * units::kDegree);
+  EXPECT_NEAR(p.position[kY], highest + job->process.clearance, 1e-12);
+
+  stream.resume();
+  std::vector<MoveKind> kinds;
+  Axes entry = p.position;
+  bool back = false;
+  std::map<std::uint16_t, double> reached;
+  run_to_rest([&](const Setpoint& s) {
+    if (!back && (kinds.empty() || kinds.back() != s.move)) kinds.push_back(s.move);
+    if (!back && s.move == MoveKind::kPosition) entry = s.position;
+    if (s.move == MoveKind::kInfeed && !back) {
+      for (const int axis : {kX, kZ, kA}) ASSERT_EQ(s.position[axis], entry[axis]);
+    }
+    if (s.move != MoveKind::kStroke) return;
+    back = true;
+    reached[s.tooth] = s.position[kX];
+    ASSERT_LT(offTheRelief(job, s), 1e-6);
+  });
+  EXPECT_EQ(kinds, (std::vector<MoveKind>{MoveKind::kPosition, MoveKind::kInfeed, MoveKind::kStroke}));
+  EXPECT_GT(entry[kX], left[kX]);
+  EXPECT_TRUE(stream.finished());
+  EXPECT_TRUE((p.position == machine.park).all());
+  EXPECT_EQ(reached.size(), 5u);  // the second tooth and all behind it, each to the stroke's end
+  for (const auto& [tooth, x] : reached) EXPECT_NEAR(x, to, 1e-12) << tooth;
 }
 
 TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {

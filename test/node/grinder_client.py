@@ -2,6 +2,7 @@
 
 import atexit
 import contextlib
+import copy
 import math
 import os
 import re
@@ -14,7 +15,7 @@ import threading
 import time
 import unittest
 import xml.etree.ElementTree as xml
-from functools import partialmethod
+from functools import lru_cache, partialmethod
 
 import actionlib
 import rosgraph
@@ -48,14 +49,17 @@ PATIENCE = 60
 
 def goal_of(job, **fields):
     """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
-    and the work offsets are right, unless they say otherwise."""
-    goal = GrindGoal(**dict({'discard': True, 'ignore_offset_check': True}, **fields))
-    for path, value in job.items():
+    and the work offsets are right, unless they say otherwise. The job may be a goal of a file, too."""
+    goal = copy.copy(job) if isinstance(job, GrindGoal) else GrindGoal()
+    for name, value in dict({'discard': True, 'ignore_offset_check': True}, **fields).items():
+        setattr(goal, name, value)
+    for path, value in () if isinstance(job, GrindGoal) else job.items():
         part, name = path.split('.')
         setattr(getattr(goal, part), name, value)
     return goal
 
 
+@lru_cache(None)
 def program(name):
     """The path of one of the package's programs."""
     return roslib.packages.find_node('flute_grinder', name)[0]
@@ -69,6 +73,19 @@ def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
     """Runs the command line to its end."""
     return subprocess.run([program('grind'), *arguments], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           universal_newlines=True, timeout=timeout)
+
+
+def reamer_file(path):
+    """Writes jobs/taper_reamer_d6_t6.yaml to `path`, with reliefs that are over soon: in one pass each, at ten times the feed."""
+    with open(package_file('jobs/taper_reamer_d6_t6.yaml')) as original:
+        text = original.read()
+    for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.05', ' infeed_mm: 2'),
+                     ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels'))):
+        assert old in text, old
+        text = text.replace(old, new)
+    with open(path, 'w') as changed:
+        changed.write(text)
+    return path
 
 
 # The units by the endings of a file's keys, the numbers of its choices, and the fields of its pairs.

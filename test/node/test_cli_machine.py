@@ -3,7 +3,9 @@
 said no, 2 an unreadable file."""
 
 import os
+import pathlib
 import re
+import shutil
 import unittest.mock
 
 import rospy
@@ -124,17 +126,21 @@ class TestMachine(CommandLine):
 
     def test_run_streams_a_relief_as_planned(self):
         grinder().make_ready_at_park()
-        with open(gc.package_file('jobs/taper_reamer_d6_t6.yaml')) as file:
-            text = file.read().replace('feed_mm_min: 300', 'feed_mm_min: 3000').replace(' infeed_mm: 0.05', ' infeed_mm: 2')
-        text = text.replace('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0').replace('../wheels', gc.package_file('wheels'))
-        with open(self.path('reamer.yaml'), 'w') as file:
-            file.write(text)
-        refused = self.grind(2, 'run', self.path('reamer.yaml'))
-        self.assertIn('operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary; done by the records: none', refused.stderr)
+        job = gc.reamer_file(self.path('reamer.yaml'))
+        missing = 'operation is missing; allowed: 1 or flute, 2 or primary, 3 or secondary; done by the records: '
+        with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
+            self.assertIn(missing + 'none\n', self.grind(2, 'run', job).stderr)
         self.grind(0, 'confirm-swivel', '13.104')
-        self.stream(self.path('reamer.yaml'), '--operation', 'secondary')
+        self.stream(job, '--operation', 'secondary')
         last = self.json(0, 'status')[0]['last_job']
-        self.assertEqual((last['name'], last['finished'], last['end']), ('reamer.yaml', True, 'done'))
+        self.assertEqual((last['name'], last['operation'], last['finished'], last['end']),
+                         ('reamer.yaml', 'secondary relief', True, 'done'))
+        kept = self.path('ros/flute_grinder/history/grinder')
+        history = pathlib.Path(rospy.get_param('/grinder/history'))
+        gc.poll(lambda: any(last['digest'] in path.read_text() for path in history.glob('*.json')), 'the record')
+        shutil.copytree(history, kept)
+        with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
+            self.assertRegex(self.grind(2, 'run', job).stderr, re.escape(missing) + r'secondary \([-0-9]{10} [:0-9]{8}\)\n')
 
     def test_home(self):
         self.assertEqual(self.grind(0, 'home').stdout, 'homed\n')

@@ -3,6 +3,7 @@
 journal is whole, and continuing grinds every pass that was not finished, and none that the grinder's state reported as
 finished. The journal belongs to one node, and no job that is not finished is forgotten without a word."""
 
+import csv
 import hashlib
 import os
 import random
@@ -11,6 +12,7 @@ import signal
 import tempfile
 import time
 
+import flute_grinder.job
 import rospy
 import rostest
 import yaml
@@ -45,13 +47,13 @@ PASSES = [(tooth, pass_) for tooth in range(3) for pass_ in range(2)]
 DEPTHS = (0.3 * MM, 0.5 * MM)
 
 
-def quick_machine(journal, at=None):
+def quick_machine(journal, at=None, park=(-0.004, 0.002)):
     """A machine that loses no time with rapids and its spindle. Its axes stand at park, or at other positions."""
     parameters = gc.machine()
     parameters['journal'] = journal
     parameters['hardware']['spindle_run_up_time'] = 0
-    parameters['park_position'].update({'axis_x': -0.004, 'axis_y': 0.002})
-    for joint, position in zip(gc.JOINTS, at or (-0.004, 0.002, 0, 0)):
+    parameters['park_position'].update(zip(gc.JOINTS, park))
+    for joint, position in zip(gc.JOINTS, at or (*park, 0, 0)):
         parameters['hardware'][joint]['start_position'] = position
     for joint, (acceleration, jerk) in {'axis_x': (20.0, 4000.0), 'axis_y': (20.0, 4000.0), 'axis_z': (20.0, 4000.0),
                                         'axis_a': (1000.0, 100000.0)}.items():
@@ -87,6 +89,7 @@ class JournalTest(gc.OwnNode):
     """With a folder for the journal, and nodes that are started on it one after another."""
 
     at = None  # where the axes stand when a node is started
+    park = (-0.004, 0.002)
 
     def setUp(self):
         self.folder = tempfile.mkdtemp()
@@ -96,7 +99,7 @@ class JournalTest(gc.OwnNode):
         self.job = gc.job_from_file(self.job_path)
 
     def start(self, **arguments):
-        super().start(quick_machine(self.journal, self.at), **arguments)
+        super().start(quick_machine(self.journal, self.at, self.park), **arguments)
         self.client.confirm_swivel(gc.PAPER['process.setup_swivel'])
 
     def start_ready(self, **arguments):
@@ -298,6 +301,41 @@ class TestContinue(JournalTest):
         self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
         self.assertEqual(self.read_journal(), journal)
         self.check_reported(journal)
+
+
+class TestContinueARelief(JournalTest):
+    park = (-0.02, 0.01)
+
+    def test_killed_in_a_stroke_it_goes_on_with_that_pass(self):
+        path = gc.reamer_file(os.path.join(self.folder, 'reamer.yaml'))
+        self.job = flute_grinder.job.goal(path, 'primary')
+        self.start_ready()
+        run = self.hold_in_stroke_of(1, 0)
+        journal = self.wait_left(run)
+        self.kill()
+        self.assertEqual((journal['finished'], journal['tooth'], journal['pass'], journal['wheel_in_work']),
+                         (False, 1, 0, True))
+
+        self.start_ready()
+        self.client.confirm_swivel(self.job.process.setup_swivel)
+        self.assertTrue(self.client.set_feed_override(1).success)
+        self.assertNotEqual(self.grind(1, 'run', path, '--operation', 'secondary', '--continue').stderr, '')
+        self.assertEqual(self.client.batches, [])
+        self.grind(0, 'run', path, '--operation', 'primary', '--continue')
+        self.client.fresh_state()
+        machine, setpoints = (os.path.join(self.folder, name) for name in ('machine.yaml', 'setpoints.csv'))
+        with open(machine, 'w') as file:
+            yaml.safe_dump(quick_machine(self.journal, park=self.park), file)
+        self.grind(0, 'plan', path, '--operation', 'primary', '--machine', machine, '--csv', setpoints)
+        with open(setpoints) as file:
+            rows = [row for row in csv.DictReader(file) if row['move'] == 'stroke' and int(row['tooth']) >= 1]
+        ground = [s for batch in self.client.batches for s in batch.setpoints if s.move == STROKE]
+        # As planned, but that no list of differences is made.
+        self.assertTrue([(s.tooth, s.pass_) for s in ground] == [(int(row['tooth']), int(row['pass'])) for row in rows])
+        for s, row in zip(ground, rows):
+            for position, key, unit in zip(s.position, ('x_mm', 'y_mm', 'z_mm', 'a_rad'), (MM, MM, MM, 1)):
+                self.assertAlmostEqual(position, float(row[key]) * unit, delta=1e-12)
+        self.wait_finished()
 
 
 class TestDamagedJournal(JournalTest):

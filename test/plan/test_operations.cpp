@@ -182,5 +182,35 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(kindsOf(checkOf(wrong)).count(ReasonKind::kUndercut)) << text(checkOf(wrong).reasons);
 }
 
+// A wheel 100 x 8 whose rim has the edge 1 mm from its lower face takes 93 of the 90 deg to the next one.
+TEST(Operations, AReliefAsWideAsThePitchIsRefused) {
+  GrindJob job = test_support::jobOf("roughing_d10_t4");
+  job.cutter.clearance = 9 * kDegree;
+  job.cutter.clearance_tolerance = 0.5 * kDegree;
+  GrindProcess relief;
+  relief.kind = OperationKind::kPrimaryRelief;
+  relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 3e-3;
+  relief.wheel_diameter = 100e-3, relief.wheel_width = 8e-3;
+  relief.setup_swivel = 43 * kDegree;
+  const auto with_contact = [&](double contact) {
+    // Of a cylinder, by the design's closed form: phi' = -14.87 deg.
+    const double phi =
+        std::asin(-std::tan(43 * kDegree) * std::tan(35 * kDegree) * std::sin(9 * kDegree)) - 9 * kDegree;
+    const double t_y = -std::tan(35 * kDegree) * std::sin(phi), t_z = std::tan(35 * kDegree) * std::cos(phi);
+    const double n_x = -t_y * std::cos(43 * kDegree), n_y = t_z * std::sin(43 * kDegree) + std::cos(43 * kDegree);
+    const double n_z = -t_y * std::sin(43 * kDegree);
+    relief.setup_height =
+        5e-3 * std::sin(phi) + 50e-3 * n_z / std::hypot(n_x, n_y, n_z) - contact * std::cos(43 * kDegree);
+    GrindJob with = job;
+    with.operations = {{job.process, {}}, {relief, {}}};
+    return checkOf(with.ofOperation(1));
+  };
+  const CutterCheck check = with_contact(-3e-3);
+  ASSERT_EQ(kindsOf(check), std::set<ReasonKind>{ReasonKind::kNextEdge}) << text(check.reasons);
+  EXPECT_NEAR(check.reasons.front().value / kDegree, 93 - 90, 0.5) << text(check.reasons);
+  // With less of the rim behind the edge, the same wheel leaves the next tooth alone.
+  EXPECT_EQ(kindsOf(with_contact(0)).count(ReasonKind::kNextEdge), 0u);
+}
+
 }  // namespace test_operations
 }  // namespace grinder

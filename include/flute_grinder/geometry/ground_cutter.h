@@ -10,8 +10,8 @@ namespace grinder {
 /// What reliefs leave of a tooth in a section.
 struct ReliefSection {
   double edge_radius = 0;           ///< what is left at the edge: the blank's, unless a relief undercuts it [m]
-  std::optional<double> clearance;  ///< of the first relief at the edge, radial [rad]
-  std::optional<double> land;       ///< width of the first relief, up to the second or to the heel [m]
+  std::optional<double> clearance;  ///< of the first relief where it begins, radial [rad]
+  std::optional<double> land;       ///< width of the first relief, from its start up to the second or to the heel [m]
   std::optional<double> land_end_clearance;  ///< of the first relief there [rad]
   /// From the edge to where the land meets the next flute; nothing if a relief ends before [m].
   std::optional<double> heel;
@@ -113,6 +113,13 @@ class GroundCutter {
   /// Of a tooth; as if it were at angle 0.
   const Reliefs& reliefs(std::size_t tooth) const;
 
+  /// The tooth whose flute bounds a tooth's land, and how far behind it is.
+  struct NextTooth {
+    std::size_t tooth;
+    double pitch;  ///< [rad]
+  };
+  NextTooth next(std::size_t tooth) const;
+
  private:
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const {
     return outermostWall(flute, x, r, direction() == CutDirection::kRightHand);
@@ -125,6 +132,7 @@ class GroundCutter {
   bool isComplete(const Flute& flute, double x, double core_radius) const;
   bool isComplete(double x) const;
   std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
+  bool landsAreAlike(std::size_t a, std::size_t b) const;
 
   ConicalCutter cutter_;
   std::vector<Flute> flutes_;

@@ -33,9 +33,9 @@ std::string feedText(const flute_grinder::PathStatistics& s) {
   return feed + (s.feed_limits.empty() ? "; no axis limits it." : ", limited by");
 }
 
-/// A job by its file and tool.
-std::string named(const std::string& name, const flute_grinder::Cutter& cutter) {
-  return (name.empty() ? "a job without a name" : name) + " (" +
+/// A job by its file and tool. @param operation what stands between them.
+std::string named(const std::string& name, const flute_grinder::Cutter& cutter, const std::string& operation = "") {
+  return (name.empty() ? "a job without a name" : name) + operation + " (" +
          toolText(fromMessage(cutter), cutter.tooth_angles.size()) + ")";
 }
 
@@ -87,7 +87,17 @@ std::string done(MachineEvent event) {
   }
 }
 
-std::string describe(const flute_grinder::GrindGoal& goal) { return named(goal.job_name, goal.cutter); }
+std::string operationText(OperationKind kind) { return format("%d %s", static_cast<int>(kind) + 1, rowOf(kind).words); }
+
+std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal) {
+  if (goal.operations.size() < 2 || goal.operation >= countOf<OperationKind>()) return std::nullopt;
+  return static_cast<OperationKind>(goal.operation);
+}
+
+std::string describe(const flute_grinder::GrindGoal& goal) {
+  const auto operation = operationOf(goal);
+  return named(goal.job_name, goal.cutter, operation ? ", " + operationText(*operation) : "");
+}
 
 std::string describe(const flute_grinder::JobProgress& progress) {
   return named(progress.job_name, progress.cutter) +

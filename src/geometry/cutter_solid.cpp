@@ -25,7 +25,8 @@ OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution
   double widest = teeth.empty() ? 0 : units::kTurn + teeth.front().angle - teeth.back().angle;
   for (std::size_t i = 1; i < teeth.size(); ++i) widest = std::max(widest, teeth[i].angle - teeth[i - 1].angle);
   const double columns = std::ceil(widest / units::kTurn * static_cast<double>(resolution.around));
-  return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns))};
+  return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns)),
+          !cutter.reliefs(0).empty()};
 }
 
 /// The sections of cone and shank, with the layers between them.

@@ -175,17 +175,38 @@ class Outliner {
 
   bool rightHand() const { return cutter_.direction() == CutDirection::kRightHand; }
 
-  /// Where the surface of a body's reliefs meets a circle: nearest to the edge.
-  std::optional<double> relieved(std::size_t from, std::size_t to, double r) const {
+  /// Where a body's reliefs meet a circle, nearest to the edge.
+  struct Relieved {
+    double angle;
+    const Relief* relief;  ///< that leaves the surface there
+  };
+
+  std::optional<Relieved> relieved(std::size_t from, std::size_t to, double r) const {
     const std::size_t flute = rightHand() ? from : to;
-    std::optional<double> nearest;
+    std::optional<Relieved> nearest;
     for (const Relief& relief : cutter_.reliefs(flute % grid_.teeth)) {
       const auto wall = outermostWall(relief, x_, r, !rightHand());
       if (!wall) continue;
       const double at = angle(flute) + wall->angle;
-      nearest = !nearest ? at : rightHand() ? std::min(*nearest, at) : std::max(*nearest, at);
+      if (!nearest || (rightHand() ? at < nearest->angle : at > nearest->angle)) nearest = {at, &relief};
     }
     return nearest;
+  }
+
+  /// The radius at which the relief at a body's edge ends. @param heel where the land ends.
+  double primaryEnd(std::size_t from, std::size_t to, double heel) const {
+    double outer = blank_ * kBelowEdgeCircle, inner = heel;
+    const auto first = relieved(from, to, outer);
+    const auto is_first = [&](double r) {
+      const auto at = relieved(from, to, r);
+      return at && at->relief == first->relief;
+    };
+    if (grid_.columns == grid_.primary() || is_first(heel)) return heel;
+    for (int i = 0; i < kHeelHalvings; ++i) {
+      const double middle = (outer + inner) / 2;
+      (is_first(middle) ? outer : inner) = middle;
+    }
+    return outer;
   }
 
   /// The radius at which the relieved land ends in the flute behind it; nothing if a body is not relieved up to there.
@@ -194,7 +215,7 @@ class Outliner {
     const auto gap = [&](double r) {
       const auto at = relieved(from, to, r);
       if (!at) return blank_;
-      return rightHand() ? *at - low(to, r) : high(from, r) - *at;
+      return rightHand() ? at->angle - low(to, r) : high(from, r) - at->angle;
     };
     const double lowest = std::max(walls(from).core(), walls(to).core());
     if (!(gap(blank_ * kBelowEdgeCircle) < 0) || !(gap(lowest) >= 0)) return std::nullopt;
@@ -210,14 +231,15 @@ class Outliner {
   void fillRelieved(std::size_t from, std::size_t to, double heel) {
     fillWall(true, from, rightHand() ? blank_ : heel);
     fillWall(false, to, rightHand() ? heel : blank_);
+    const double primary_end = primaryEnd(from, to, heel);
+    const double edge = rightHand() ? high(from, blank_) : low(to, blank_);
+    const double back = rightHand() ? low(to, heel) : high(from, heel);
     std::vector<PolarPoint> land;
     for (std::size_t column = 0; column <= grid_.columns; ++column) {
-      const double part = static_cast<double>(column) / static_cast<double>(grid_.columns);
-      const double r = blank_ + (heel - blank_) * (rightHand() ? part : 1 - part);
-      const double edge = rightHand() ? high(from, blank_) : low(to, blank_);
-      const double back = rightHand() ? low(to, heel) : high(from, heel);
-      const double at = r == blank_ ? edge : r == heel ? back : relieved(from, to, r).value_or(edge);
-      land.push_back(polar(r, std::clamp(at, std::min(edge, back), std::max(edge, back))));
+      const double r = landRadius(rightHand() ? column : grid_.columns - column, primary_end, heel);
+      const auto at = relieved(from, to, r);
+      const double angle = r == blank_ || !at ? edge : r == heel ? back : at->angle;
+      land.push_back(polar(r, std::clamp(angle, std::min(edge, back), std::max(edge, back))));
     }
     // The flutes in between remove nothing: they shrink to the land's end.
     for (std::size_t flute = from; flute < to; ++flute) {
@@ -228,6 +250,16 @@ class Outliner {
       for (std::size_t ring = 1; ring < grid_.rings; ++ring) set(flute, grid_.lowOfNext(flute, ring), land.back());
       for (std::size_t ring = 0; ring < grid_.rings; ++ring) set(flute + 1, grid_.high(flute + 1, ring), land.back());
     }
+  }
+
+  /// @param column from the edge.
+  double landRadius(std::size_t column, double primary_end, double heel) const {
+    const std::size_t primary = grid_.primary();
+    const auto between = [&](double from, double to, std::size_t part, std::size_t of) {
+      return part == of ? to : from + (to - from) * static_cast<double>(part) / static_cast<double>(of);
+    };
+    if (column <= primary) return between(blank_, primary_end, column, primary);
+    return between(primary_end, heel, column - primary, grid_.columns - primary);
   }
 
   void fillWall(bool of_high, std::size_t flute, double top) {
@@ -285,7 +317,11 @@ PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part) no
 
 SurfaceKind OutlineGrid::kind(std::size_t point, CutDirection direction) const noexcept {
   const std::size_t within = point % perTooth();
-  if (within >= rings && within < rings + columns) return SurfaceKind::kLand;
+  if (within >= rings && within < rings + columns) {
+    const std::size_t column = within - rings;
+    const std::size_t from_edge = direction == CutDirection::kRightHand ? column : columns - 1 - column;
+    return relieved && from_edge < primary() ? SurfaceKind::kPrimary : SurfaceKind::kLand;
+  }
   const bool high_wall = within < rings;
   return high_wall == (direction == CutDirection::kRightHand) ? SurfaceKind::kRakeFace : SurfaceKind::kFluteBack;
 }

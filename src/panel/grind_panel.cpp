@@ -489,7 +489,8 @@ void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
 OffsetBasis GrindPanel::touchedFor(int axis) const {
   OffsetBasis basis;
   basis.method = OffsetMethod::kTouchOff;
-  if (!job_->file().isEmpty()) return basisOf(goalFromFile(job_->file().toStdString()), basis.method);
+  if (!job_->file().isEmpty())
+    return basisOf(goalFromFile(job_->file().toStdString(), job_->operation()), basis.method);
   if (axis == kY) {
     throw std::invalid_argument("Y is 0 where the wheel touches the small end of a job's cutter; open the job first");
   }
@@ -526,7 +527,7 @@ void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
 }
 
 double GrindPanel::touchedY(double diameter) const {
-  const GrindJob job = readJobFile(job_->file().toStdString());
+  const GrindJob job = readJobFile(job_->file().toStdString(), {}, job_->operation());
   const auto state = link_->view().state;
   if (!state) throw std::invalid_argument("no position comes from the grinder");
   const std::string refused = heightRefusal(job, state->work_position[kZ]);

@@ -1,6 +1,7 @@
 #include "panel/job_box.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
@@ -22,6 +23,7 @@
 #include <QVBoxLayout>
 
 #include <exception>
+#include <stdexcept>
 #include <utility>
 
 namespace grinder {
@@ -31,6 +33,7 @@ namespace {
 constexpr const char* kContinue = "Continue where it was left";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
+constexpr int kAnswerLines = 3;       ///< that have room with a choice of the operation; one more without
 constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
 constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
 constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
@@ -67,6 +70,7 @@ QPushButton* button(const char* name, const QString& text, const QString& hint) 
 JobBox::JobBox(QWidget* parent)
     : QWidget(parent),
       name_(new QLabel),
+      operation_(new OperationChoice),
       choose_(button("choose", "Open...", "Choose a job file")),
       setup_(button("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
       continue_(new QCheckBox(kContinue)),
@@ -74,8 +78,8 @@ JobBox::JobBox(QWidget* parent)
       plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
       dry_run_(
           button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
-      verdict_(textView("verdict", 4)),
-      other_job_(textView("other_job", 4)),
+      verdict_(textView("verdict", kAnswerLines)),
+      other_job_(textView("other_job", kAnswerLines)),
       answer_(new QStackedWidget),
       form_(new QWidget),
       discard_question_(new Question("unfinished", kQuestionLines)),
@@ -86,6 +90,7 @@ JobBox::JobBox(QWidget* parent)
   makeQuestions();
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
   connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
+  connect(operation_, &OperationChoice::changed, this, &JobBox::readAnew);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::clickContinue);
   connect(plan_, &QPushButton::clicked, this, [this] {
     if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
@@ -114,6 +119,7 @@ void JobBox::layOut() {
   auto* layout = new QVBoxLayout(form_);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addLayout(file);
+  layout->addWidget(operation_);
   layout->addWidget(continue_);
   layout->addLayout(plan);
   layout->addWidget(zeros_);
@@ -178,11 +184,10 @@ void JobBox::choose() {
 }
 
 void JobBox::openSetup() {
-  auto* dialog = new SetupDialog(file_, grinder_, this);
+  auto* dialog =
+      new SetupDialog(file_, operation_->chosen(), operation_->named(QFileInfo(file_).fileName()), grinder_, this);
   connect(dialog, &SetupDialog::written, this, [this, file = file_] {
-    if (file != file_) return;
-    discardPlan();
-    read();
+    if (file == file_) readAnew();
   });
   moveBeside(*dialog, *this);
   dialog->show();
@@ -191,20 +196,38 @@ void JobBox::openSetup() {
 void JobBox::setFile(const QString& file) {
   file_ = file;
   job_.reset();
-  where_left_.reset();
-  continue_->setChecked(false);
   showFile();
   name_->setToolTip(file);
+  operation_->offer({});
+  readAnew();
+}
+
+/// Also what may be continued is to be found anew.
+void JobBox::readAnew() {
+  where_left_.reset();
+  continue_->setChecked(false);
   discardPlan();
-  if (!file.isEmpty()) read();
+  if (!file_.isEmpty()) read();
+}
+
+std::string JobBox::operation() const {
+  if (operation_->isMissing()) throw std::invalid_argument("choose the operation of the job first");
+  return operation_->chosen();
 }
 
 void JobBox::showFile() { showName(*name_, file_.isEmpty() ? "no job file" : QFileInfo(file_).fileName()); }
 
 void JobBox::read() {
+  const std::string file = file_.toStdString();
   try {
-    job_ = std::make_shared<const GrindJob>(readJobFile(file_.toStdString()));
-    wheel_ = QFileInfo(QString::fromStdString(wheelFileOf(file_.toStdString()))).fileName().toStdString();
+    // Also of a file whose set-ups are still to be found.
+    operation_->offer(readJobFile(file, unsolvedFields(std::nullopt), "1").operations);
+    if (operation_->isMissing()) {
+      job_.reset();
+      return discardPlan();
+    }
+    job_ = std::make_shared<const GrindJob>(readJobFile(file, {}, operation_->chosen()));
+    wheel_ = QFileInfo(QString::fromStdString(wheelFileOf(file, job_->operation))).fileName().toStdString();
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -221,7 +244,9 @@ void JobBox::discardPlan() {
 
 /// What is shown as long as nothing was planned.
 QString JobBox::withoutPlan() const {
-  QString text = file_.isEmpty() ? "Open a job file first." : "Not planned yet.";
+  QString text = file_.isEmpty()           ? "Open a job file first."
+                 : operation_->isMissing() ? "Choose the operation first."
+                                           : "Not planned yet.";
   if (!journal_error_.empty()) text += "\nThere is no journal: " + QString::fromStdString(journal_error_) + ".";
   if (!isUnfinished(progress_) || job_runs_) return text;
   return text +
@@ -232,6 +257,8 @@ QString JobBox::withoutPlan() const {
 void JobBox::clickContinue(bool checked) {
   if (!checked || where_left_) return discardPlan();
   setFile(unfinished_file_);
+  if (unfinished_operation_) operation_->choose(*unfinished_operation_);
+  readAnew();
   continue_->setChecked(true);
   Q_EMIT fileChosen();
 }
@@ -362,10 +389,11 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
   refreshContinue(state);
   if (!idle || !asksWithReason()) closeQuestion();
   choose_->setEnabled(idle);
-  setup_->setEnabled(!file_.isEmpty());
+  const bool chosen = !file_.isEmpty() && !operation_->isMissing();
+  setup_->setEnabled(chosen);
   continue_->setEnabled(idle && (where_left_ || !unfinished_file_.isEmpty()));
-  plan_->setEnabled(idle && !file_.isEmpty());
-  dry_run_->setEnabled(idle && !file_.isEmpty());
+  plan_->setEnabled(idle && chosen);
+  dry_run_->setEnabled(idle && chosen);
 }
 
 /// Whether the question shown, if there is one, still has to be answered.
@@ -412,12 +440,19 @@ void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& s
   if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();
   findUnfinished();
   if (!where_left_) continue_->setChecked(false);
-  const QString name = unfinished_file_.isEmpty() ? QString() : " " + QFileInfo(unfinished_file_).fileName();
-  const QString text =
-      "Continue" + name + QString(" at tooth %1, pass %2").arg(progress_.tooth + 1).arg(progress_.pass + 1);
-  continue_->setText(where_left_ || !name.isEmpty()
-                         ? fontMetrics().elidedText(text, Qt::ElideMiddle, pages_->width() - kTick)
-                         : kContinue);
+  const QString place = QString(" at tooth %1, pass %2").arg(progress_.tooth + 1).arg(progress_.pass + 1);
+  continue_->setText(where_left_                  ? "Continue" + place
+                     : unfinished_file_.isEmpty() ? kContinue
+                                                  : "Continue " + unfinishedName(place));
+}
+
+/// What can be continued, its file's name shortened to the room beside the rest.
+QString JobBox::unfinishedName(const QString& rest) const {
+  const QString operation = unfinished_operation_ ? toString(*unfinished_operation_) : "";
+  if (unfinished_file_ == file_) return operation + rest;
+  const QString all = (operation.isEmpty() ? "" : ", " + operation) + rest;
+  const int room = pages_->width() - kTick - fontMetrics().horizontalAdvance("Continue " + all);
+  return fontMetrics().elidedText(QFileInfo(unfinished_file_).fileName(), Qt::ElideMiddle, room) + all;
 }
 
 /// The file of an unfinished job other than the chosen one, if it lies beside that or is one of the package's.
@@ -434,9 +469,16 @@ void JobBox::findUnfinished() {
   for (const QString& folder : {QFileInfo(file_).path(), packageJobs()}) {
     const QString file = folder + "/" + QFileInfo(QString::fromStdString(progress_.job_name)).fileName();
     try {
-      if (jobDigest(readJobFile(file.toStdString())) != progress_.job_digest) continue;
-      unfinished_file_ = file;
-      return;
+      const GrindJob job = readJobFile(file.toStdString(), {}, "1");
+      const std::size_t several = job.operations.size() > 1 ? job.operations.size() : 0;
+      for (std::size_t i = 0; i < std::max<std::size_t>(several, 1); ++i) {
+        const GrindJob one = job.ofOperation(static_cast<int>(i));
+        if (jobDigest(one) != progress_.job_digest) continue;
+        unfinished_file_ = file;
+        unfinished_operation_.reset();
+        if (several > 0) unfinished_operation_ = one.process.kind;
+        return;
+      }
     } catch (const std::exception&) {
       // Whatever is there is not that job's.
     }

@@ -6,6 +6,7 @@
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/machine/swivel.h"
 #include "flute_grinder/motion/work_offsets.h"
+#include "panel/operation_choice.h"
 #include "panel/question.h"
 
 #include <QCheckBox>
@@ -59,7 +60,12 @@ class JobBox : public QWidget {
   /// The plan is no longer valid.
   void discardPlan();
 
-  /// As read from the file; null if there is none, or if it is wrong. Another object after each reading.
+  /// Which operation of the file is chosen, for readJobFile(). @throw std::invalid_argument if it is still to be
+  /// chosen.
+  std::string operation() const;
+
+  /// As read from the file; null if there is none, if it is wrong, or if its operation is not chosen. Another object
+  /// after each reading.
   const std::shared_ptr<const GrindJob>& job() const { return job_; }
 
   bool planned() const { return planned_.has_value(); }
@@ -86,6 +92,7 @@ class JobBox : public QWidget {
   void openSetup();
   void showFile();
   void read();
+  void readAnew();
   std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();
   void makeQuestions();
@@ -103,6 +110,7 @@ class JobBox : public QWidget {
   std::optional<flute_grinder::GrindGoal> beginPlan();
   void refreshContinue(const std::optional<flute_grinder::GrinderState>& state);
   void findUnfinished();
+  QString unfinishedName(const QString& rest) const;
   void clickContinue(bool checked);
   QString withoutPlan() const;
   void showVerdict(const QString& text, bool good);
@@ -116,14 +124,16 @@ class JobBox : public QWidget {
   std::string journal_error_;                           ///< the same; empty if the journal is good
   bool journal_damaged_ = false;                        ///< the same; the journal may then be discarded
   bool job_runs_ = false;                               ///< whose progress that is
-  QString unfinished_file_;             ///< of another job that can be continued; empty if none is known
-  std::string sought_;                  ///< the job and the chosen file for which that was sought
-  Swivel swivel_;                       ///< as last received from the grinder
-  std::optional<WorkOffsets> offsets_;  ///< as last received from the grinder
-  std::string wheel_;                   ///< name of the file's wheel file; empty if it has none
-  bool discard_ = false;                ///< the unfinished job, by the start that waits for an answer
-  bool ignore_offset_check_ = false;    ///< said for that start
+  QString unfinished_file_;                            ///< of another job that can be continued; empty if none is known
+  std::optional<OperationKind> unfinished_operation_;  ///< of that file, if it has several
+  std::string sought_;                                 ///< the job and the chosen file for which that was sought
+  Swivel swivel_;                                      ///< as last received from the grinder
+  std::optional<WorkOffsets> offsets_;                 ///< as last received from the grinder
+  std::string wheel_;                                  ///< name of the file's wheel file; empty if it has none
+  bool discard_ = false;                               ///< the unfinished job, by the start that waits for an answer
+  bool ignore_offset_check_ = false;                   ///< said for that start
   QLabel* name_;
+  OperationChoice* operation_;
   QPushButton* choose_;
   QPushButton* setup_;
   QCheckBox* continue_;

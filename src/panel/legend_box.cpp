@@ -60,11 +60,14 @@ LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cu
   cutter_->setWordWrap(true);
   cutter_->setMinimumHeight(2 * cutter_->fontMetrics().lineSpacing());
   layout->addWidget(cutter_, 0, 0, 1, 3);
-  constexpr std::array<std::array<const char*, 2>, 3> names{
-      {{"flutes", "flutes_end"}, {"rake_faces", "rake_faces_end"}, {"arrows", "arrows_end"}}};
-  constexpr std::array<const char*, 3> hints{
+  constexpr std::array<std::array<const char*, 2>, 4> names{{{"flutes", "flutes_end"},
+                                                             {"rake_faces", "rake_faces_end"},
+                                                             {"reliefs", "reliefs_end"},
+                                                             {"arrows", "arrows_end"}}};
+  constexpr std::array<const char*, 4> hints{
       "Lines along the flutes: the maximum error measured in the last finished pass",
       "Faces of the ground cutter: how far their rake is from the one asked",
+      "Primary reliefs of the ground cutter: how far their clearance is from the one asked",
       "Arrows across the flute: path error of the setpoints, drawn this many times longer"};
   for (std::size_t i = 0; i < scales_.size(); ++i) {
     scales_[i] = {label(names[i][0]), label(names[i][1])};
@@ -75,11 +78,11 @@ LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cu
     layout->addWidget(scales_[i].end, row, 2);
   }
   max_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
-  layout->addWidget(max_, 4, 0, 1, 3);
+  layout->addWidget(max_, 5, 0, 1, 3);
   auto* lines = label("line_colours");
   lines->setText("Flutes: grey planned, magenta being ground. Cyan: the wheel's path.");
   lines->setWordWrap(true);
-  layout->addWidget(lines, 5, 0, 1, 3);
+  layout->addWidget(lines, 6, 0, 1, 3);
   show(std::nullopt);
 }
 
@@ -93,7 +96,8 @@ void LegendBox::show(const std::optional<flute_grinder::Legend>& legend) {
     cutter_->setText("No job is shown.");
     set(0, "Measured error", "");
     set(1, "Rake error", "");
-    set(2, "Path error", "");
+    set(2, "Clearance error", "");
+    set(3, "Path error", "");
     max_->clear();
     return;
   }
@@ -101,7 +105,10 @@ void LegendBox::show(const std::optional<flute_grinder::Legend>& legend) {
   cutter_->setText(QString::fromStdString(toolText(fromMessage(cutter), cutter.tooth_angles.size())));
   set(0, "Measured error", micrometres(legend->tolerance));
   set(1, "Rake error, off " + degrees(cutter.rake_angle), degrees(cutter.rake_tolerance));
-  set(2, "Path error" + timesText(legend->arrow_scale), micrometres(legend->tolerance));
+  const bool relieved = cutter.clearance > 0;
+  set(2, "Clearance error" + (relieved ? ", off " + degrees(cutter.clearance) : ""),
+      relieved ? degrees(cutter.clearance_tolerance) : "-");
+  set(3, "Path error" + timesText(legend->arrow_scale), micrometres(legend->tolerance));
   max_->setText("Maximum error measured: " + micrometres(legend->max_error));
 }
 

@@ -26,7 +26,7 @@ class LegendBox : public QWidget {
   };
 
   QLabel* cutter_;
-  std::array<Scale, 3> scales_{};
+  std::array<Scale, 4> scales_{};
   QLabel* max_;
 };
 

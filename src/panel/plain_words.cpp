@@ -81,8 +81,16 @@ std::string done(MachineEvent event) {
   }
 }
 
+std::string operationText(OperationKind kind) { return format("%d %s", static_cast<int>(kind) + 1, rowOf(kind).words); }
+
+std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal) {
+  if (goal.operations.size() < 2 || goal.operation >= countOf<OperationKind>()) return std::nullopt;
+  return static_cast<OperationKind>(goal.operation);
+}
+
 std::string describe(const flute_grinder::GrindGoal& goal) {
-  return jobText(goal.job_name, jobFromGoal(goal).operationText(), fromMessage(goal.cutter),
+  const auto operation = operationOf(goal);
+  return jobText(goal.job_name, operation ? rowOf(*operation).words : "", fromMessage(goal.cutter),
                  goal.cutter.tooth_angles.size());
 }
 

@@ -3,8 +3,10 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_state.h"
 
+#include <optional>
 #include <string>
 
 namespace grinder {
@@ -21,7 +23,13 @@ std::string swivelText(const flute_grinder::GrinderState& state);
 /// The success of a request, in a line. @param event a request.
 std::string done(MachineEvent event);
 
-/// A job that runs, by its file and tool.
+/// An operation by its number and name, e.g. "2 primary relief".
+std::string operationText(OperationKind kind);
+
+/// Which of several operations a goal is; nothing if it is the only one.
+std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal);
+
+/// A job that runs, by its file, its operation and its tool.
 std::string describe(const flute_grinder::GrindGoal& goal);
 
 /// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.

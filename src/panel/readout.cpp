@@ -179,9 +179,16 @@ void ProgressBox::show(const GrinderView& view, bool job_runs) {
 
 void ProgressBox::showPlace(const GrinderView& view, const flute_grinder::GrindFeedback& feedback) {
   const QString name = view.job ? QString::fromStdString(view.job->goal.job_name) : "";
-  const QString first = name.isEmpty() ? "T" : ", t";
-  showName(*place_, name, first + QString("ooth %1, pass %2").arg(feedback.tooth + 1).arg(feedback.pass + 1));
-  place_->setToolTip(name);
+  const auto operation = view.job ? operationOf(view.job->goal) : std::nullopt;
+  QString rest = QString("tooth %1, pass %2").arg(feedback.tooth + 1).arg(feedback.pass + 1);
+  QString hint = name;
+  if (operation) {
+    rest = toString(*operation) + (", " + rest);
+    hint += ", " + QString::fromStdString(operationText(*operation));
+  }
+  if (name.isEmpty()) rest[0] = rest[0].toUpper();
+  showName(*place_, name, name.isEmpty() ? rest : ", " + rest);
+  place_->setToolTip(hint);
 }
 
 void ProgressBox::showPlanning(double planned) {

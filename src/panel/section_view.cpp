@@ -114,7 +114,7 @@ void SectionView::setJob(const Job& job) {
 
 /// Why no section can be shown; empty if one can.
 QString SectionView::whyNothing(const GrinderView& view) const {
-  if (!job_) return "No job is chosen, or its file has an error.";
+  if (!job_) return "No job is chosen, none of its operations is, or its file has an error.";
   if (!follow_->isChecked()) return x_->isGood() ? "" : "Allowed X: " + x_->allowed() + ".";
   if (!view.work_position || !std::isfinite((*view.work_position)[kX])) return "No position comes from the grinder.";
   if (!view.state || !isInJob(static_cast<MachineState>(view.state->state))) return "";

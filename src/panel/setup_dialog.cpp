@@ -11,7 +11,6 @@
 
 #include <ros/master.h>
 #include <ros/names.h>
-#include <QFileInfo>
 #include <QFontDatabase>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -30,16 +29,18 @@ constexpr int kSheetLines = 24, kSheetColumns = 105;
 
 }  // namespace
 
-SetupDialog::SetupDialog(const QString& file, const std::string& grinder, QWidget* parent)
+SetupDialog::SetupDialog(const QString& file, const std::string& operation, const QString& title,
+                         const std::string& grinder, QWidget* parent)
     : QDialog(parent),
       file_(file.toStdString()),
+      operation_(operation),
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
       flange_(ros::names::append(grinder, "geometry/flange")),
       sheet_(textView("setup_sheet", kSheetLines)),
       keep_(new QComboBox),
       write_(new QPushButton("Write into the file")) {
   setObjectName("setup_dialog");
-  setWindowTitle("Set-up of " + QFileInfo(file).fileName() + " for " + QString::fromStdString(grinder));
+  setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
   keep_->setObjectName("keep_figure");
   keep_->setToolTip("Leave this figure as it is in the job file");
@@ -88,7 +89,7 @@ void SetupDialog::beginToSolve() {
 SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
   const auto refused = [](const std::string& why) { return Done{nullptr, false, QString::fromStdString(why), false}; };
   try {
-    const GrindJob job = readJobFile(file_, unsolvedFields(keep));
+    const GrindJob job = readJobFile(file_, unsolvedFields(keep), operation_);
     auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
     if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
       return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");

@@ -27,8 +27,10 @@ class SetupDialog : public QDialog {
 
  public:
   /// Begins to solve.
+  /// @param operation of the file, for readJobFile(). @param title what the sheet is of.
   /// @param grinder resolved name of its node; the swivel's range is that of the robot description beside it.
-  SetupDialog(const QString& file, const std::string& grinder, QWidget* parent);
+  SetupDialog(const QString& file, const std::string& operation, const QString& title, const std::string& grinder,
+              QWidget* parent);
   ~SetupDialog() override;
 
  Q_SIGNALS:
@@ -51,7 +53,7 @@ class SetupDialog : public QDialog {
   void poll();
   void take(const Done& done);
 
-  const std::string file_, description_, flange_;
+  const std::string file_, operation_, description_, flange_;
   std::shared_ptr<const JobSetup> setup_;
   QPlainTextEdit* sheet_;
   QComboBox* keep_;

@@ -17,11 +17,11 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kEnd = 0.066;            ///< X of the shank's end within the collet [m]
-constexpr double kMaxTriangles = 17000;   ///< of 72 bytes each, and what the cut adds
-constexpr double kLabelHeight = 0.03;     ///< of a text's letters, of the flute's length
-constexpr std::size_t kRakePlaces = 13;   ///< over the flute's length
-constexpr std::size_t kRakeColours = 16;  ///< markers are lit only if they have one colour each
+constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
+constexpr double kMaxTriangles = 17000;    ///< of 72 bytes each, and what the cut adds
+constexpr double kLabelHeight = 0.03;      ///< of a text's letters, of the flute's length
+constexpr std::size_t kPlaces = 13;        ///< over the flute's length, where rake and clearance are measured
+constexpr std::size_t kErrorColours = 16;  ///< markers are lit only if they have one colour each
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 /// Seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the flutes.
 constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
@@ -103,7 +103,7 @@ SolidResolution resolutionOf(const ValidJob& job) {
   return r;
 }
 
-/// Where the last pass of a tooth has been: before it a rake is not the tool's.
+/// Where the last pass of a tooth has been: before it an angle is not the tool's.
 class LastPasses {
  public:
   /// @param reached nothing for a job that is done.
@@ -136,31 +136,46 @@ class LastPasses {
   std::vector<Reach> teeth_;
 };
 
-/// How far the rake faces are from the asked rake, as a part of the tolerance.
-class RakeDeviation {
+/// How far rake faces and primary reliefs are from rake and clearance as asked, as a part of the tolerance.
+class Deviations {
  public:
-  RakeDeviation(const GroundCutter& cutter, const ValidJob& job) : length_(job->cutter.flute_length) {
-    for (std::size_t i = 0; i < kRakePlaces; ++i) {
-      std::vector<std::optional<double>>& of_teeth = parts_.emplace_back();
-      for (const ToothSection& tooth : cutter.section(length_ * static_cast<double>(i) / (kRakePlaces - 1)).teeth) {
-        of_teeth.emplace_back();
-        if (tooth.rake && tooth.complete) {
-          of_teeth.back() = std::abs(*tooth.rake - job->cutter.rake_angle) / job->cutter.rake_tolerance;
-        }
+  /// @param reached nothing for a job that is done.
+  Deviations(const GroundCutter& cutter, const ValidJob& job, const std::optional<Reached>& reached)
+      : length_(job->cutter.flute_length), kind_(job->process.kind), last_(job, reached) {
+    const CutterGeometry& asked = job->cutter;
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+      std::vector<Parts>& of_teeth = parts_.emplace_back();
+      for (const ToothSection& tooth : cutter.section(length_ * static_cast<double>(i) / (kPlaces - 1)).teeth) {
+        Parts& parts = of_teeth.emplace_back();
+        if (tooth.rake && tooth.complete) parts.rake = std::abs(*tooth.rake - asked.rake_angle) / asked.rake_tolerance;
+        if (!tooth.relief || !tooth.relief->clearance) continue;
+        parts.clearance = std::abs(*tooth.relief->clearance - asked.clearance) / asked.clearance_tolerance;
       }
     }
   }
 
-  /// At the nearest place that was measured; nothing where the flute is not complete.
-  std::optional<double> at(double x, std::size_t tooth) const {
-    if (x > length_) return std::nullopt;
-    const double place = std::clamp(x / length_, 0.0, 1.0) * (kRakePlaces - 1);
-    return parts_[static_cast<std::size_t>(std::lround(place))][tooth];
+  /// At the nearest place that was measured; nothing where the surface is not finished.
+  std::optional<double> at(SurfaceKind surface, double x, std::size_t tooth) const {
+    const bool rake = surface == SurfaceKind::kRakeFace;
+    if ((!rake && surface != SurfaceKind::kPrimary) || x > length_) return std::nullopt;
+    // What an operation ahead has ground is finished.
+    const bool own = kind_ == (rake ? OperationKind::kFlute : OperationKind::kPrimaryRelief);
+    if (own && !last_.at(x, tooth)) return std::nullopt;
+    const double place = std::clamp(x / length_, 0.0, 1.0) * (kPlaces - 1);
+    const Parts& parts = parts_[static_cast<std::size_t>(std::lround(place))][tooth];
+    return rake ? parts.rake : parts.clearance;
   }
 
  private:
+  struct Parts {
+    std::optional<double> rake;  ///< nothing where the flute is not complete
+    std::optional<double> clearance;
+  };
+
   double length_;
-  std::vector<std::vector<std::optional<double>>> parts_;  ///< by places, by teeth
+  OperationKind kind_;
+  LastPasses last_;
+  std::vector<std::vector<Parts>> parts_;  ///< by places, by teeth
 };
 
 std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
@@ -168,6 +183,7 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
     case SurfaceKind::kRakeFace: return colour(0.55, 0.57, 0.62);
     case SurfaceKind::kFluteBack: return colour(0.45, 0.50, 0.60);
     case SurfaceKind::kLand:
+    case SurfaceKind::kPrimary:
     case SurfaceKind::kEndFace:
     case SurfaceKind::kShank: return colour(0.74, 0.75, 0.77);
     case SurfaceKind::kCut: break;
@@ -200,15 +216,13 @@ void appendBlank(MarkerArray& array, const ValidJob& job, const char* ns) {
               colourOf(SurfaceKind::kShank));
 }
 
-void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviation& rake, const LastPasses& last,
-                 const char* ns) {
-  std::array<std::vector<geometry_msgs::Point>, kSurfaceKinds + kRakeColours> by_colour;
+void appendSolid(MarkerArray& array, const CutterSolid& solid, const Deviations& deviations, const char* ns) {
+  std::array<std::vector<geometry_msgs::Point>, kSurfaceKinds + kErrorColours> by_colour;
   for (const SolidTriangle& t : solid.triangles) {
     const double x = solid.vertices[t.vertices[0]].x();
-    const bool finished = t.kind == SurfaceKind::kRakeFace && last.at(x, t.tooth);
-    const auto deviation = finished ? rake.at(x, t.tooth) : std::optional<double>();
+    const auto deviation = deviations.at(t.kind, x, t.tooth);
     const std::size_t level =
-        static_cast<std::size_t>(std::min(deviation.value_or(0), 1 - 1e-9) * static_cast<double>(kRakeColours));
+        static_cast<std::size_t>(std::min(deviation.value_or(0), 1 - 1e-9) * static_cast<double>(kErrorColours));
     auto& points = by_colour[deviation ? kSurfaceKinds + level : static_cast<std::size_t>(t.kind)];
     for (const std::uint32_t v : t.vertices) {
       points.push_back(point(solid.vertices[v].x(), solid.vertices[v].y(), solid.vertices[v].z()));
@@ -219,7 +233,7 @@ void appendSolid(MarkerArray& array, const CutterSolid& solid, const RakeDeviati
     for (std::size_t first = 0; first < points.size(); first += kPointsPerMarker) {
       Marker& m = append(array, ns, Marker::TRIANGLE_LIST, "cutter");
       m.color = i < kSurfaceKinds ? colourOf(static_cast<SurfaceKind>(i))
-                                  : heat((static_cast<double>(i - kSurfaceKinds) + 0.5) / kRakeColours);
+                                  : heat((static_cast<double>(i - kSurfaceKinds) + 0.5) / kErrorColours);
       const auto from = points.begin() + static_cast<std::ptrdiff_t>(first);
       m.points.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPointsPerMarker, points.size() - first)));
     }
@@ -278,12 +292,13 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
                           const std::optional<Reached>& reached) {
   MarkerArray array = clearedArray();
   try {
-    if (reached && reached->pass == job.passes().front().place && reached->phase == PassPhase::kBefore) {
+    const bool of_flutes = job->process.kind == OperationKind::kFlute;
+    if (of_flutes && reached && reached->pass == job.passes().front().place && reached->phase == PassPhase::kBefore) {
       appendBlank(array, job, ns);
       return array;
     }
-    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), RakeDeviation(cutter, job),
-                LastPasses(job, reached), ns);
+    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), Deviations(cutter, job, reached),
+                ns);
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();

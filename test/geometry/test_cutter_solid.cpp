@@ -136,7 +136,7 @@ TEST(CutterSolid, ReportsWhatEachTriangleIs) {
     SCOPED_TRACE(c.name);
     const GroundSection section = c.ground.section(0.01);
     const CutterSolid solid = cutterSolid(c.ground, {0.0099, 0.0101}, {2, 64, 60});
-    std::array<std::size_t, 6> count{};
+    std::array<std::size_t, static_cast<std::size_t>(SurfaceKind::kCut) + 1> count{};
     for (const SolidTriangle& t : solid.triangles) {
       ++count[static_cast<std::size_t>(t.kind)];
       const Eigen::Vector3d middle =

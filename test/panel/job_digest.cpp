@@ -6,6 +6,8 @@
 
 namespace grinder {
 
-std::string digestOf(const QString& job) { return jobDigest(readJobFile(job.toStdString())); }
+std::string digestOf(const QString& job, const std::string& operation) {
+  return jobDigest(readJobFile(job.toStdString(), {}, operation));
+}
 
 }  // namespace grinder

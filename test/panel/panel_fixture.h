@@ -30,8 +30,8 @@ inline const Names kRequests{"enable", "disable", "home", "start",  "hold",
 QString changedJob(const QString& job, const QString& path,
                    const std::vector<std::pair<QByteArray, QByteArray>>& changes);
 
-/// See jobDigest().
-std::string digestOf(const QString& job);
+/// See jobDigest(). @param operation as of readJobFile().
+std::string digestOf(const QString& job, const std::string& operation = "");
 
 /// The panel as rviz makes it: from its plugin, and with a configuration.
 class Panel {

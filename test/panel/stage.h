@@ -117,6 +117,7 @@ class Stage {
   std::string swivel_refusal;   ///< of a confirmation; empty to accept it
   std::vector<double> swivels;
   std::vector<double> overrides;
+  std::vector<flute_grinder::GrindGoal> plans;  ///< that were asked for
   std::vector<flute_grinder::GrindActionGoal> goals;
   std::vector<int> stops;
   std::vector<flute_grinder::JogStep::Request> steps;
@@ -140,7 +141,8 @@ class Stage {
     if (!without_feedback) feedback_.publish(feedback);
     joint_states_.publish(joints);
   }
-  bool onPlan(flute_grinder::Plan::Request&, flute_grinder::Plan::Response& response) {
+  bool onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response) {
+    change([&] { plans.push_back(request.goal); });
     while (get([&] { return plan_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
     change([&] { response = plan; });
     return true;

@@ -211,6 +211,7 @@ TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   WAIT_FOR(panel.label("shown_cutter") == "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth");
   EXPECT_EQ(panel.label("flutes") + ", " + panel.label("flutes_end"), "Measured error, 0.5 um");
   EXPECT_EQ(panel.label("rake_faces") + ", " + panel.label("rake_faces_end"), "Rake error, off 8 deg, 0.5 deg");
+  EXPECT_EQ(panel.label("reliefs") + ", " + panel.label("reliefs_end"), "Clearance error, -");
   EXPECT_EQ(panel.label("arrows") + ", " + panel.label("arrows_end"), "Path error x 2e5, 0.5 um");
   EXPECT_EQ(panel.label("max_error"), "Maximum error measured: 0.0698 um");
   panel.picture("view");
@@ -218,6 +219,10 @@ TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   other.arrow_scale = 0;
   stage.publishLegend(other);
   WAIT_FOR(panel.label("arrows") == "Path error");
+  other.cutter.clearance = 10 * M_PI / 180, other.cutter.clearance_tolerance = 0.25 * M_PI / 180;
+  stage.publishLegend(other);
+  WAIT_FOR(panel.label("reliefs") + ", " + panel.label("reliefs_end") == "Clearance error, off 10 deg, 0.25 deg");
+  panel.picture("view_of_a_relief");
   // A process that has just begun shows nothing.
   stage.publishLegend(flute_grinder::Legend());
   WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");

@@ -133,5 +133,39 @@ TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
   EXPECT_FALSE(panel->enabled("write_setup"));
 }
 
+TEST_F(SetupSheet, OfAReliefGoesToItsOperation) {
+  const QString reamer = QString(kPaper).replace("paper", "taper_reamer_d6_t6");
+  const QByteArray set_up = "    setup: {swivel_deg: 13.104, height_mm: -3.658}\n";
+  file = changedJob(
+      reamer, folder.filePath("job.yaml"),
+      {{set_up, ""},
+       {"file: ../wheels/straight_d100_w6.yaml}\n    setup: {swivel_deg: 13.104, height_mm: -3.548}",
+        "file: " + kPackage.toUtf8() +
+            "/wheels/straight_d100_w6.yaml}\n    setup: {swivel_deg: 13.104, height_mm: -3.548}"},
+       {"mm: 0.01\n    wheel: {file: ../wheels", "mm: 0.01\n    wheel: {file: " + kPackage.toUtf8() + "/wheels"}});
+  panel = std::make_unique<Panel>("grinder", file);
+  auto& operation = panel->the<QComboBox>("operation");
+  ASSERT_TRUE(operation.isVisible()) << panel->text("verdict");
+  WAIT_FOR(panel->state() != "");
+  EXPECT_FALSE(panel->enabled("setup"));
+  QTest::keyClick(&operation, Qt::Key_Down);
+  QTest::keyClick(&operation, Qt::Key_Down);
+  WAIT_FOR(panel->enabled("setup"));
+  EXPECT_NE(panel->text("verdict").find("'grind setup --write' finds it"), std::string::npos) << panel->text("verdict");
+  panel->click("setup");
+  WAIT_FOR(dialog());
+  EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml, 2 primary relief for /grinder");
+  WAIT_FOR(panel->enabled("write_setup"));
+  panel->click("write_setup");
+  WAIT_FOR(sheet().find("Written into ") != std::string::npos);
+  EXPECT_EQ(operation.currentText(), "2 primary relief");
+  EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U) << panel->text("verdict");
+  const flute_grinder::Process written = goalFromFile(file.toStdString(), "primary").process;
+  EXPECT_NEAR(written.setup_swivel, figure("swivel") * units::kDegree, 0.00051 * units::kDegree);
+  EXPECT_NEAR(written.setup_height, figure("height") * units::kMillimetre, 0.00051 * units::kMillimetre);
+  panel->click("close_setup");
+  WAIT_FOR(!dialog());
+}
+
 }  // namespace test_panel_setup
 }  // namespace grinder

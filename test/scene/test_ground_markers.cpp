@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <filesystem>
@@ -187,6 +188,67 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     EXPECT_LT(done.first, facet);
     EXPECT_GT(done.second, job.cutter.flute_length - facet);
   }
+}
+
+/// One operation of a taper reamer of 6 mm and 2 deg, with six teeth and a clearance of 10 deg.
+GrindJob reamer(const char* operation) { return readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation); }
+
+/// The corners of the triangles whose colour stands for a part of the tolerance, by threes.
+std::vector<geometry_msgs::Point> colouredAs(const MarkerArray& array, double expected) {
+  std::vector<geometry_msgs::Point> found;
+  for (const Marker& m : array.markers) {
+    const auto level = deviationOf(m);
+    if (level && std::abs(*level - expected) < 0.1) found.insert(found.end(), m.points.begin(), m.points.end());
+  }
+  return found;
+}
+
+double areaOf(const std::vector<geometry_msgs::Point>& corners) {
+  double area = 0;
+  const auto at = [&](std::size_t i) { return Eigen::Vector3d(corners[i].x, corners[i].y, corners[i].z); };
+  for (std::size_t i = 0; i < corners.size(); i += 3) area += (at(i + 1) - at(i)).cross(at(i + 2) - at(i)).norm() / 2;
+  return area;
+}
+
+TEST(GroundMarkers, ColourThePrimaryReliefsByTheirDeviationWithinTheTolerance) {
+  const GroundCutter cutter = groundCutterOf(withLaws(reamer("secondary")));
+  const double length = 16 * kMillimetre;
+  // As wide as asked at the small end, and wider with the diameter, of six edges; a wedge of 85 deg is cut out.
+  const double width = (0.3 + 0.353) / 2 * kMillimetre, shown = (360 - 85) / 360.0;
+  const double area = 6 * width * length / std::cos(12 * kDegree) * shown;
+  for (const auto& [off, expected] : {std::pair{-0.25, 0.5}, {3.0, 1.0}}) {
+    SCOPED_TRACE(off);
+    GrindJob asked = reamer("secondary");
+    asked.cutter.clearance = (10 - off) * kDegree;
+    asked.cutter.rake_tolerance = 90 * kDegree;
+    const auto coloured = colouredAs(groundMarkers(cutter, withLaws(asked), "planned"), expected);
+    EXPECT_NEAR(areaOf(coloured), area, 0.1 * area);
+    for (const geometry_msgs::Point& p : coloured) {
+      const double below = 3 * kMillimetre + p.x * std::tan(2 * kDegree) - std::hypot(p.y, p.z);
+      EXPECT_GE(below, -1e-9);
+      EXPECT_LE(below, 0.353 * kMillimetre * std::tan(10 * kDegree) + 2e-6);
+    }
+  }
+}
+
+TEST(GroundMarkers, ColourAReliefOnlyWhereItsLastPassHasBeenAndTheRakeFacesFromTheBegin) {
+  GrindJob job = reamer("primary");
+  job.cutter.rake_tolerance = job.cutter.clearance_tolerance = 45 * kDegree;
+  const ValidJob primary = withLaws(job);
+  const int last = primary.passes().back().place.pass;
+  const auto coloured = [&](const Reached& reached) {
+    const MarkerArray array = groundMarkers(groundSoFar(primary, reached), primary, "ground", reached);
+    EXPECT_GT(solidOf(array, "ground").size(), 3u) << "the flutes are there from the begin";
+    return areaOf(colouredAs(array, 0));
+  };
+  const double begun = coloured({{0, 0}, PassPhase::kBefore, 0});
+  const double half = coloured({{5, last}, PassPhase::kStroke, 8 * kMillimetre}) - begun;
+  const double done = coloured({{5, last}, PassPhase::kAfter, 0}) - begun;
+  EXPECT_GT(begun, 6 * 16 * kMillimetre * 0.5 * kMillimetre);
+  EXPECT_GT(half, 0.6 * done);
+  EXPECT_LT(half, done);
+  // A primary relief without the second one reaches to the heel.
+  EXPECT_GT(done, 6 * 16 * kMillimetre * 0.353 * kMillimetre);
 }
 
 /// The maximum radius of all points between two X [m]; 0 if there are none.

@@ -20,8 +20,8 @@ struct PolarPoint {
 /// The point at a part of the way from one to another, in radius and angle.
 PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part) noexcept;
 
-/// What a part of the cutter's surface is.
-enum class SurfaceKind : std::uint8_t { kRakeFace, kFluteBack, kLand, kEndFace, kShank, kCut };
+/// What a part of the cutter's surface is. A relieved land is kPrimary as far as the relief at its edge reaches.
+enum class SurfaceKind : std::uint8_t { kRakeFace, kFluteBack, kLand, kPrimary, kEndFace, kShank, kCut };
 
 /// How the points of an outline follow one another. It is the same in every section, so that sections can be joined
 /// point by point. The outline goes around with rising angles, and for each flute in turn has its floor, its high wall
@@ -30,7 +30,10 @@ struct OutlineGrid {
   std::size_t teeth = 0;
   std::size_t rings = 0;    ///< of a wall, from floor to outer circle
   std::size_t columns = 0;  ///< of a land
+  bool relieved = false;    ///< lands are relieved, for kind()
 
+  /// The columns of a relieved land from its edge to where the relief at the edge ends.
+  std::size_t primary() const noexcept { return (columns + 1) / 2; }
   std::size_t perTooth() const noexcept { return 2 * rings + columns; }
   std::size_t size() const noexcept { return teeth * perTooth(); }
 

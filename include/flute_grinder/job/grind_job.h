@@ -42,7 +42,7 @@ struct OperationRow : EnumRow<OperationKind> {
 };
 /// With the names used in job files and on the command line.
 inline constexpr OperationRow kOperationKinds[]{
-    {{OperationKind::kFlute, "flute"}, "flutes"},
+    {{OperationKind::kFlute, "flute"}, "flute"},
     {{OperationKind::kPrimaryRelief, "primary"}, "primary relief"},
     {{OperationKind::kSecondaryRelief, "secondary"}, "secondary relief"},
 };

@@ -26,8 +26,8 @@ struct Reached {
 GroundCutter groundSoFar(const ValidJob& job, const Reached& reached);
 
 /// The ground cutter with its neck and shank as a solid that is cut open, in the frame `cutter`, its rake faces
-/// coloured by how far they are from the rake that is asked, where the last pass has been. Before the first stroke the
-/// whole blank. Below 3 MB.
+/// and primary reliefs coloured by how far they are from the rake and clearance that are asked, where the last pass has
+/// been. Before the first stroke of the flutes the whole blank. Below 3 MB.
 /// @param reached how far the job has come; nothing for one that is done.
 /// @param ns namespace of the markers.
 /// @return markers; the first deletes what was shown before. Instead of a cutter that cannot be shown, as one with its

@@ -308,7 +308,12 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   }
   std::string named = operation;
   if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
-  return job.ofOperation(static_cast<int>(operationNamed(named, job.operations, name)));
+  const std::size_t index = operationNamed(named, job.operations, name);
+  // What is ahead of an operation must be solved for it to be solved.
+  for (std::size_t i = 0; i < index && !unsolved.empty(); ++i) {
+    readOperation(text, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
+  }
+  return job.ofOperation(static_cast<int>(index));
 }
 
 GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved, const std::string& operation) {

@@ -2,6 +2,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/yaml_text.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/plan/planned_job.h"
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <set>
 
@@ -60,6 +62,25 @@ TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
   EXPECT_EQ(refusal("4"), std::string(kReamer) + ": operation = 4" + allowed);
   EXPECT_EQ(readJobFile("test/jobs/paper.yaml", {}, "flute").operations.size(), 0u);
   EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
+}
+
+TEST(Operations, OnlyThoseAheadMustBeSolvedForOneToBe) {
+  const std::string solved = readTextFile(kReamer);
+  const std::string setup = "    setup: {swivel_deg: 13.104, height_mm: -3.658}\n";
+  const std::size_t at = solved.find(setup);
+  ASSERT_NE(at, std::string::npos);
+  const std::string text = std::string(solved).erase(at, setup.size());
+  const std::vector<std::string> fields{"process.setup_swivel", "process.setup_height"};
+  const std::string wheels = std::filesystem::absolute("jobs/reamer.yaml");
+  EXPECT_EQ(parseJob(text, wheels, fields, "flute").operation, 0);
+  EXPECT_EQ(parseJob(text, wheels, fields, "primary").operation, 1);
+  try {
+    parseJob(text, wheels, fields, "secondary");
+    ADD_FAILURE();
+  } catch (const JobFileError& error) {
+    EXPECT_NE(std::string(error.what()).find("operations[1].setup.swivel_deg is missing"), std::string::npos)
+        << error.what();
+  }
 }
 
 // What a relief leaves out and may take from the flutes, and what it may not.

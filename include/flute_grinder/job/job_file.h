@@ -14,7 +14,7 @@ struct GrindJob;
 /// @param path the file.
 /// @param unsolved fields that the file may omit because they are yet to be found: process.setup_swivel,
 ///        process.setup_height, which are then 0, and process.depth, which is then what leaves the asked core under an
-///        upright wheel.
+///        upright wheel; only of the operation, and of those behind it.
 /// @param operation which of several operations the job is: its number, from 1, or its kind, e.g. "primary".
 /// @return the job in SI.
 /// @throw JobFileError if the file cannot be read, a key is missing, unknown or duplicated, or a value has the wrong

@@ -157,8 +157,9 @@ def tool_pictures(tool):
         figure = new_figure(3.6, NARROW)
         draw_section(figure.add_subplot(), tool, section)
         pictures.append(picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
-                                'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the rake asked. The '
-                                '%s is dimensioned along the outer circle.' % ('primary relief' if is_relieved(tool) else 'land'), figure))
+                                'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the %s asked. The '
+                                '%s is dimensioned along the outer circle.' %
+                                (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
     for key, asked, title in curves_of(tool):
         figure = new_figure(2.6)
         axes = figure.add_subplot(xlabel='X [mm]')

@@ -76,6 +76,26 @@ QString spiralLine(const CutterSection& section) {
          QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.spiral_tolerance / kDegree);
 }
 
+QString reliefLine(const CutterSection& section) {
+  std::vector<double> clearances, widths, heels;
+  bool good = true;
+  for (const ToothSection& tooth : section.ground.teeth) {
+    good = good && section.clearanceIsWithin(tooth);
+    const ReliefSection relief = tooth.relief.value_or(ReliefSection{});
+    if (relief.clearance) clearances.push_back(*relief.clearance / kDegree);
+    if (relief.land) widths.push_back(*relief.land / kMillimetre);
+    if (relief.heel) heels.push_back(*relief.heel / kMillimetre);
+  }
+  const auto clearance = rangeText(clearances), width = rangeText(widths), heel = rangeText(heels);
+  if (!clearance) return line("No relief is ground here", false);
+  return line(QString("Clearance %1, asked %2 to %3 deg")
+                  .arg(*clearance)
+                  .arg((*section.asked_clearance - section.clearance_tolerance) / kDegree, 0, 'f', 2)
+                  .arg((*section.asked_clearance + section.clearance_tolerance) / kDegree, 0, 'f', 2),
+              good) +
+         (width ? "<br>Primary relief " + *width + " mm" : "") + (width && heel ? ", heel at " + *heel + " mm" : "");
+}
+
 QString landLine(const CutterSection& section) {
   const std::vector<ToothSection>& teeth = section.ground.teeth;
   const auto without = std::find_if(teeth.begin(), teeth.end(), [&](const auto& t) { return !section.hasLand(t); });
@@ -112,6 +132,11 @@ bool CutterSection::chordIsWithin(const ToothSection& tooth) const {
   return std::abs(*tooth.chordal_rake - asked_rake) <= chordal_rake_tolerance;
 }
 
+bool CutterSection::clearanceIsWithin(const ToothSection& tooth) const {
+  return tooth.relief && tooth.relief->clearance &&
+         std::abs(*tooth.relief->clearance - *asked_clearance) <= clearance_tolerance;
+}
+
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }
 
 CutterSection cutterSection(const ValidJob& job, double x) {
@@ -125,6 +150,8 @@ CutterSection cutterSection(const ValidJob& job, double x) {
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(*job, x));
   made.core_tolerance = job->cutter.core_tolerance;
   made.spiral_tolerance = job->cutter.spiral_tolerance;
+  if (isRelief(job->process.kind)) made.asked_clearance = job->cutter.clearance;
+  made.clearance_tolerance = job->cutter.clearance_tolerance;
   const std::size_t teeth = job->tooth_angles.size();
   for (int i = 0; i < job.teeth(); ++i) made.asked_spirals.push_back(job.cutterOf(i).spiral_angle);
   if (!(made.ground.core_radius >= kMinCore)) return made;
@@ -133,7 +160,13 @@ CutterSection cutterSection(const ValidJob& job, double x) {
 }
 
 QString figuresText(const CutterSection& section) {
-  QStringList lines{rakeLine(section), coreLine(section), spiralLine(section), landLine(section)};
+  // There is no room for all, and the flutes' are those of another operation.
+  QStringList lines{rakeLine(section)};
+  if (section.asked_clearance) {
+    lines.prepend(reliefLine(section));
+  } else {
+    lines << coreLine(section) << spiralLine(section) << landLine(section);
+  }
   lines.removeAll("");
   return lines.join("<br>");
 }

@@ -4,6 +4,7 @@
 
 #include <QString>
 
+#include <optional>
 #include <vector>
 
 namespace grinder {
@@ -15,19 +16,22 @@ struct CutterSection {
   GroundSection ground;
   std::vector<PolarPoint> outline;  ///< at A = 0; empty if the core is cut through
   CutDirection cut = CutDirection::kRightHand;
-  double asked_rake = 0;              ///< [rad]
-  double rake_tolerance = 0;          ///< [rad]
-  double chordal_rake_tolerance = 0;  ///< [rad]
-  double asked_core = 0;              ///< radius [m]
-  double core_tolerance = 0;          ///< of the diameter [m]
-  std::vector<double> asked_spirals;  ///< of every tooth [rad]
-  double spiral_tolerance = 0;        ///< [rad]
+  double asked_rake = 0;                  ///< [rad]
+  double rake_tolerance = 0;              ///< [rad]
+  double chordal_rake_tolerance = 0;      ///< [rad]
+  double asked_core = 0;                  ///< radius [m]
+  double core_tolerance = 0;              ///< of the diameter [m]
+  std::vector<double> asked_spirals;      ///< of every tooth [rad]
+  double spiral_tolerance = 0;            ///< [rad]
+  std::optional<double> asked_clearance;  ///< of a relief [rad]
+  double clearance_tolerance = 0;         ///< [rad]
 
   bool coreIsWithin() const;
   bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here
   bool chordIsWithin(const ToothSection& tooth) const;
-  bool spiralIsWithin(std::size_t tooth) const;   ///< or the tooth's flute is not complete here
-  bool hasLand(const ToothSection& tooth) const;  ///< or nothing is ground here
+  bool spiralIsWithin(std::size_t tooth) const;             ///< or the tooth's flute is not complete here
+  bool clearanceIsWithin(const ToothSection& tooth) const;  ///< of a relief
+  bool hasLand(const ToothSection& tooth) const;            ///< or nothing is ground here
 };
 
 /// Takes milliseconds for each tooth with a flute of its own.

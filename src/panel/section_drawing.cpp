@@ -21,7 +21,7 @@ const QColor kInk("#202124");
 const QColor kThin("#5f6368");
 const QColor kMeasured("#1a5fb4");
 
-constexpr int kLines = 2;          ///< of a label
+constexpr int kLines = 2;          ///< of a label; of a relief's one more
 constexpr double kDimension = 8;   ///< from the cutter to the land's dimension [px]
 constexpr double kMargin = 14;     ///< around the cutter [px]
 constexpr double kStepsOfQt = 16;  ///< of Qt, in a degree
@@ -35,7 +35,8 @@ class Painting {
   Painting(QPainter& painter, const CutterSection& section, const QRectF& sheet)
       : painter_(painter), section_(section), sheet_(sheet), centre_(sheet.center()) {
     const QFontMetricsF metrics(painter.font());
-    label_ = {metrics.horizontalAdvance("asked 00.00"), kLines * metrics.lineSpacing()};
+    label_ = {metrics.horizontalAdvance("asked 00.00"),
+              (kLines + (section.asked_clearance ? 1 : 0)) * metrics.lineSpacing()};
     // The corners belong to the labels.
     const double w = sheet.width() / 2, h = sheet.height() / 2;
     const double corner = std::hypot(std::max(0.0, w - label_.width()), std::max(0.0, h - label_.height()));
@@ -51,8 +52,12 @@ class Painting {
     circles();
     const ToothSection& first = section_.ground.teeth.front();
     if (first.rake) rake(first);
-    if (first.land) land(*first.land);
-    if (first.flute && !first.land) label(-side_, -1, {"no land"}, false, at(section_.ground.radius, kTop));
+    if (section_.asked_clearance) {
+      if (first.relief && first.relief->clearance) relief(first, *first.relief);
+    } else if (first.land) {
+      land(*first.land);
+    } else if (first.flute)
+      label(-side_, -1, {"no land"}, false, at(section_.ground.radius, kTop));
   }
 
  private:
@@ -101,14 +106,40 @@ class Painting {
           edge + r * inward(*tooth.rake / 2));
   }
 
+  /// Between the circle's tangent and the primary relief's, at the edge; and how wide that is.
+  void relief(const ToothSection& tooth, const ReliefSection& relief) {
+    const QPointF edge = at(section_.ground.radius, kTop);
+    const auto behind = [&](double angle) { return QPointF(-side_ * std::cos(angle), std::sin(angle)); };
+    painter_.setPen(QPen(kThin, 1));
+    painter_.drawLine(edge, edge + 0.95 * radius_ * behind(0));
+    painter_.setPen(dashed(kThin));
+    painter_.drawLine(edge, edge + 0.95 * radius_ * behind(*section_.asked_clearance));
+    const bool good = section_.clearanceIsWithin(tooth);
+    painter_.setPen(QPen(good ? kMeasured : QColor(kWrong), 1.5));
+    painter_.drawLine(edge, edge + 0.95 * radius_ * behind(*relief.clearance));
+    const double r = 0.75 * radius_;
+    arc(edge, r, side_ > 0 ? kPi : 0, side_ * *relief.clearance);
+    QStringList lines{deg(*relief.clearance) + " deg", "asked " + deg(*section_.asked_clearance)};
+    if (relief.land) {
+      lines << QString::number(*relief.land / kMillimetre, 'f', 2) + " mm";
+      alongCircle(*relief.land / section_.ground.radius);
+    }
+    label(-side_, -1, lines, good, edge + r * behind(*relief.clearance / 2));
+  }
+
+  /// A dimension outside of the cutter. @param angle behind the edge [rad].
+  void alongCircle(double angle) {
+    const double outside = radius_ + kDimension;
+    painter_.setPen(QPen(kMeasured, 1.5));
+    arc(centre_, outside, kTop, side_ * angle);
+    for (const double end : {kTop, kTop + side_ * angle}) {
+      painter_.drawLine(at(section_.ground.radius, end), at((outside + 4) / scale_, end));
+    }
+  }
+
   void land(double land) {
     const double outside = radius_ + kDimension;
-    const double end = kTop + side_ * land;
-    painter_.setPen(QPen(kMeasured, 1.5));
-    arc(centre_, outside, kTop, side_ * land);
-    for (const double angle : {kTop, end}) {
-      painter_.drawLine(at(section_.ground.radius, angle), at((outside + 4) / scale_, angle));
-    }
+    alongCircle(land);
     const double target = kTop + side_ * std::min(land / 2, kPi / 4);
     label(-side_, -1,
           {deg(land) + " deg", QString::number(land * section_.ground.radius / kMillimetre, 'f', 2) + " mm"}, true,

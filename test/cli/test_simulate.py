@@ -138,6 +138,17 @@ class TestOutput(TestSimulate):
                          'core Ø %.3f mm, asked %.3f' % (section['core_diameter_mm'], section['asked_core_diameter_mm'])):
                 self.assertIn(line, text)
 
+    def test_svg_of_a_relief_has_its_clearance_and_width(self):
+        job = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
+        for operation, width in (('primary', 'none, heel at none'), ('secondary', '0.300 mm, heel at 1.4')):
+            self.grind(0, 'simulate', job, '--operation', operation, '--svg', self.path('tool.svg'))
+            with open(self.path('tool.svg')) as file:
+                text = file.read()
+            self.assertRegex(text, r'clearance (9\.99|10\.00)\d deg, asked 10\.000')
+            self.assertIn('primary relief ' + width, text)
+            self.assertIn('clearance [deg]', text)
+            self.assertNotIn('land [mm]', text)
+
     def test_svg_of_what_is_hardly_a_tool(self):
         self.grind(1, 'simulate', self.job('dense.yaml', {'cutter': {'teeth': 12}}), '--svg', self.path('tool.svg'))
         self.assertGreater(os.path.getsize(self.path('tool.svg')), 1000)

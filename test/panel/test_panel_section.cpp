@@ -6,6 +6,7 @@
 
 #include <ros/package.h>
 #include <QCheckBox>
+#include <QComboBox>
 #include <QDoubleSpinBox>
 #include <QRegularExpression>
 #include <QTemporaryDir>
@@ -103,6 +104,31 @@ TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
   EXPECT_NEAR(shown[9], land, 0.0051);
   EXPECT_NEAR(shown[10], kRadius * land * M_PI / 180, 0.0051);
   EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+}
+
+TEST_F(SectionOnStage, AReliefHasItsClearanceAndWidth) {
+  Panel panel("cell/stage", QString(kPaper).replace("test/jobs/paper", "jobs/taper_reamer_d6_t6"));
+  stage.be(flute_grinder::GrinderState::READY, "ready");
+  openSection(panel);
+  WAIT_FOR(shows(panel, "none of its operations is"));
+  panel.openTab("Job");
+  auto& operation = panel.the<QComboBox>("operation");
+  QTest::keyClick(&operation, Qt::Key_Down);
+  QTest::keyClick(&operation, Qt::Key_Down);
+  openSection(panel);
+  // The path is such that the clearance is the one asked.
+  WAIT_FOR(shows(panel, "Clearance 10.00, asked 9.50 to 10.50 deg<br>Rake 6.00 deg, asked 5.50 to 6.50 deg"));
+  EXPECT_FALSE(shows(panel, "Primary relief")) << "it ends on the land, until the secondary one is ground";
+  panel.picture("section_primary");
+  panel.openTab("Job");
+  QTest::keyClick(&operation, Qt::Key_Down);
+  openSection(panel);
+  WAIT_FOR(shows(panel, "deg<br>Primary relief "));
+  // As wide as asked at the small end, and wider with the diameter.
+  const double width = 0.3 * (6 + 2 * 8 * std::tan(2 * M_PI / 180)) / 6;
+  EXPECT_NEAR(numbers(panel).at(3), width, 0.0051) << panel.label("section_figures");
+  EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+  panel.picture("section_secondary");
 }
 
 TEST_F(SectionOnStage, TheRakeOfThePapersJobIsNearlyThatAsked) {

@@ -247,7 +247,7 @@ TEST(GroundMarkers, ColourAReliefOnlyWhereItsLastPassHasBeenAndTheRakeFacesFromT
   EXPECT_GT(begun, 6 * 16 * kMillimetre * 0.5 * kMillimetre);
   EXPECT_GT(half, 0.6 * done);
   EXPECT_LT(half, done);
-  // A primary relief without the second one reaches to the heel.
+  // Without the secondary one it reaches far beyond the land.
   EXPECT_GT(done, 6 * 16 * kMillimetre * 0.353 * kMillimetre);
 }
 

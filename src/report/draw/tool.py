@@ -15,7 +15,21 @@ CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
           ('chordal_rake_deg', 'asked_rake_deg', 'chordal rake [deg]'),
           ('core_diameter_mm', 'asked_core_diameter_mm', 'core diameter [mm]'),
           ('land_mm', None, 'land [mm]'),
+          ('clearance_deg', 'asked_clearance_deg', 'clearance [deg]'),
+          ('primary_mm', None, 'primary relief [mm]'),
           ('spiral_deg', 'asked_spiral_deg', 'spiral angle [deg]')]
+SHADED = 'rake_deg', 'clearance_deg'  # with their tolerance
+
+
+def is_relieved(tool):
+    return 'clearance_deg' in tool['sections'][0]['teeth'][0]
+
+
+def curves_of(tool):
+    """Those that it has. Of a relieved land, its width on the blank says nothing."""
+    section = tool['sections'][0]
+    return [curve for curve in CURVES if (curve[0] in section or curve[0] in section['teeth'][0]) and
+            not (curve[0] == 'land_mm' and is_relieved(tool))]
 
 
 def number(value):
@@ -51,10 +65,13 @@ def draw_section(axes, tool, section):
     sign = 1 if tool['cut'] == 'right_hand' else -1
     if tooth['edge_deg'] is not None:
         draw_rake(axes, radius, tooth, sign)
-        draw_land(axes, radius, tooth, sign)
-    axes.set_title('X = %.3f mm\nrake %s\ncore Ø %s\nland %s' % (
+        if is_relieved(tool):
+            draw_relief(axes, radius, tooth, sign)
+        else:
+            draw_land(axes, radius, tooth['land_mm'], tooth['land_deg'], sign)
+    axes.set_title('X = %.3f mm\nrake %s\ncore Ø %s\n%s' % (
         section['x_mm'], text(tooth['rake_deg'], 'deg', tooth['asked_rake_deg']),
-        text(section['core_diameter_mm'], 'mm', section['asked_core_diameter_mm']), text(tooth['land_mm'], 'mm')), loc='left')
+        text(section['core_diameter_mm'], 'mm', section['asked_core_diameter_mm']), land_text(tool, tooth)), loc='left')
     axes.set(aspect='equal', anchor='S', xlim=(-1.32 * radius, 1.32 * radius), ylim=(-1.15 * radius, 1.32 * radius))
     axes.set_axis_off()
 
@@ -72,16 +89,39 @@ def draw_rake(axes, radius, tooth, sign):
         axes.text(sign * 0.1 * radius, 1.2 * radius, '%.2f°' % tooth['rake_deg'], ha='left' if sign > 0 else 'right')
 
 
-def draw_land(axes, radius, tooth, sign):
-    if tooth['land_deg'] is None:
+def land_text(tool, tooth):
+    if not is_relieved(tool):
+        return 'land ' + text(tooth['land_mm'], 'mm')
+    return 'clearance %s\nprimary relief %s, heel at %s' % (
+        text(tooth['clearance_deg'], 'deg', tooth['asked_clearance_deg']), text(tooth['primary_mm'], 'mm'),
+        text(tooth['heel_mm'], 'mm'))
+
+
+def draw_relief(axes, radius, tooth, sign):
+    """Against the circle's tangent behind the edge, the clearance asked and the one ground."""
+    axes.plot([0, -sign * 0.9 * radius], [radius, radius], color=THEORY, linewidth=0.6)
+    for clearance, style in ((tooth['asked_clearance_deg'], {'color': LIMIT, 'linestyle': '--'}),
+                             (tooth['clearance_deg'], {'color': INK})):
+        if clearance is not None:
+            x, y = point(0.9 * radius, 180 + clearance)
+            axes.plot([0, sign * x], [radius, radius + y], **style)
+    if tooth['clearance_deg'] is not None:
+        axes.text(-sign * 0.92 * radius, 0.95 * radius, '%.2f°' % tooth['clearance_deg'],
+                  ha='right' if sign > 0 else 'left', va='center')
+    if tooth['primary_mm'] is not None:
+        draw_land(axes, radius, tooth['primary_mm'], math.degrees(tooth['primary_mm'] / radius), sign)
+
+
+def draw_land(axes, radius, length, degrees, sign):
+    if degrees is None:
         return
     # Behind the edge; an arc with its length.
-    angles = np.radians(90 + sign * np.linspace(0, tooth['land_deg'], 60))
+    angles = np.radians(90 + sign * np.linspace(0, degrees, 60))
     axes.plot(1.08 * radius * np.cos(angles), 1.08 * radius * np.sin(angles), color=INK)
-    for end in (90, 90 + sign * tooth['land_deg']):
+    for end in (90, 90 + sign * degrees):
         axes.plot(*np.transpose([point(1.02 * radius, end), point(1.12 * radius, end)]), color=INK)
-    middle = 90 + sign * min(tooth['land_deg'] / 2, 60)
-    axes.text(*point(1.15 * radius, middle), '%.2f' % tooth['land_mm'], ha='right' if sign > 0 else 'left')
+    middle = 90 + sign * min(degrees / 2, 60)
+    axes.text(*point(1.15 * radius, middle), '%.2f' % length, ha='right' if sign > 0 else 'left')
 
 
 def shown_sections(tool):
@@ -100,9 +140,10 @@ def draw_curve(axes, tool, key, asked, title):
         axes.plot(x, [number(row[key]) for row in rows], label=None if of_section else 'tooth %d' % (i + 1), **style)
         if asked:
             axes.plot(x, [row[asked] for row in rows], color=LIMIT, linestyle='--')
-    if key == 'rake_deg':
-        rake, tolerance = sections[0]['teeth'][0][asked], tool['rake_tolerance_deg']
-        axes.axhspan(rake - tolerance, rake + tolerance, color=LIMIT, alpha=0.08)
+    tolerance = tool['job']['cutter'].get(key.replace('_deg', '_tolerance_deg')) if key in SHADED else None
+    if tolerance is not None:
+        middle = sections[0]['teeth'][0][asked]
+        axes.axhspan(middle - tolerance, middle + tolerance, color=LIMIT, alpha=0.08)
     axes.set_title(title, loc='left')
     axes.ticklabel_format(useOffset=False)
     if key == 'rake_deg' and tool['teeth'] > 1:
@@ -116,29 +157,32 @@ def tool_pictures(tool):
         figure = new_figure(3.6, NARROW)
         draw_section(figure.add_subplot(), tool, section)
         pictures.append(picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
-                                'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the rake asked. The '
-                                'land is dimensioned along the outer circle.', figure))
-    for key, asked, title in CURVES:
+                                'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the %s asked. The '
+                                '%s is dimensioned along the outer circle.' %
+                                (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
+    for key, asked, title in curves_of(tool):
         figure = new_figure(2.6)
         axes = figure.add_subplot(xlabel='X [mm]')
         draw_curve(axes, tool, key, asked, title)
         name = title.split(' [')[0]
         pictures.append(picture(key.rsplit('_', 1)[0].replace('_', '-'), name[0].upper() + name[1:],
                                 'Over X in mm' + ('; dashed: as asked' if asked else '') +
-                                ('; shaded: the tolerance.' if key == 'rake_deg' else '.'), figure))
+                                ('; shaded: the tolerance.' if key in SHADED else '.'), figure))
     return pictures
 
 
 def draw_file(tool):
     """All in one picture."""
-    figure = Figure((9, 11.7), constrained_layout=True, facecolor='white')
-    above, below = figure.add_gridspec(2, 1, height_ratios=(4.1, 7.5))
+    curves = curves_of(tool)
+    heights = 4.1, 1.5 * len(curves)
+    figure = Figure((9, sum(heights) + 0.1), constrained_layout=True, facecolor='white')
+    above, below = figure.add_gridspec(2, 1, height_ratios=heights)
     figure.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
     shown = shown_sections(tool)
     for place, section in zip(above.subgridspec(1, len(shown)), shown):
         draw_section(figure.add_subplot(place), tool, section)
     panels = []
-    for place, curve in zip(below.subgridspec(len(CURVES), 1), CURVES):
+    for place, curve in zip(below.subgridspec(len(curves), 1), curves):
         panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))
         draw_curve(panels[-1], tool, *curve)
         panels[-1].label_outer()

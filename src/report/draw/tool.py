@@ -18,6 +18,7 @@ CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
           ('clearance_deg', 'asked_clearance_deg', 'clearance [deg]'),
           ('primary_mm', None, 'primary relief [mm]'),
           ('spiral_deg', 'asked_spiral_deg', 'spiral angle [deg]')]
+LEAST_SPAN = 0.002  # of a picture's figures; what is less is rounding
 SHADED = 'rake_deg', 'clearance_deg'  # with their tolerance
 
 
@@ -146,6 +147,9 @@ def draw_curve(axes, tool, key, asked, title):
         axes.axhspan(middle - tolerance, middle + tolerance, color=LIMIT, alpha=0.08)
     axes.set_title(title, loc='left')
     axes.ticklabel_format(useOffset=False)
+    low, high = axes.get_ylim()
+    if high - low < LEAST_SPAN:
+        axes.set_ylim((low + high - LEAST_SPAN) / 2, (low + high + LEAST_SPAN) / 2)
     if key == 'rake_deg' and tool['teeth'] > 1:
         axes.legend(ncol=min(tool['teeth'], 4), fontsize=7)
 

@@ -113,9 +113,14 @@ class TestToolOfBag(unittest.TestCase):
         return [tooth['asked_radius_mm'] - tooth['radius_mm'] for tooth in section['teeth']]
 
     def test_whole_tool_passes(self):
-        data = self.report(self.bag(*((operation, {}) for operation in OPERATIONS)))
+        page = os.path.join(self.folder, 'tool.html')
+        data = self.report(self.bag(*((operation, {}) for operation in OPERATIONS)), '-o', page)
         self.assertEqual((data['verdict'], data['verdict_because']), ('passed', []))
         self.assertIn('job 3 of 3, what is ahead of it by job 1, 2', data['tool']['source'])
+        with open(page, encoding='utf-8') as file:
+            printed = file.read()
+        for text in (data['tool']['source'], '10 ± 0.5 deg, 0.3 mm wide, then 22 deg'):
+            self.assertIn(text, printed)
         measured = {criterion['name']: criterion['measured'] for criterion in data['criteria']}
         self.assertAlmostEqual(measured['clearance'], 10, delta=0.02)
         self.assertAlmostEqual(measured['primary relief'], 0.3, delta=0.005)

@@ -105,8 +105,19 @@ def tool_facts(cutter):
             ('spiral angle', '%s ± %g deg' % (', '.join('%g' % s for s in spiral_angles(cutter)), cutter['spiral_tolerance_deg'])),
             ('rake', '%g ± %g deg' % (cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])),
             ('core', '%g to %g ± %g mm' % (cutter['core_diameter_mm'], cutter['core_diameter_end_mm'], cutter['core_tolerance_mm'])),
+            ('clearance', clearances(cutter)),
             ('teeth', '%d%s' % (teeth, ' at ' + ', '.join('%g' % a for a in angles) + ' deg' if angles else '')),
             ('cut', cutter['cut'].replace('_', ' ')), ('shank', '%g mm' % cutter['shank_diameter_mm'])]
+
+
+def clearances(cutter):
+    """None without reliefs."""
+    if not cutter.get('clearance_deg'):
+        return None
+    asked = '%g ± %g deg' % (cutter['clearance_deg'], cutter['clearance_tolerance_deg'])
+    if not cutter.get('land_mm'):
+        return asked
+    return '%s, %g mm wide, then %g deg' % (asked, cutter['land_mm'], cutter['second_clearance_deg'])
 
 
 def process_facts(job_file):
@@ -130,6 +141,7 @@ def run_facts(data):
     machine, offsets = data.get('machine', {}), data.get('work_offsets')
     setpoints = data.get('setpoints', {})
     return [('file', '%s (%s)' % (data['file'], data['type'])), ('job in the bag', data.get('in_bag')),
+            ('ground tool', data['tool']['source'] if 'operation' in data.get('tool', {}).get('job', {}) else None),
             ('operator', data.get('operator')), ('serial number', data.get('serial')),
             ('begun', local(data['started']) if 'started' in data else None),
             ('ended', local(data['ended']) if 'ended' in data else None),

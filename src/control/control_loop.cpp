@@ -2,12 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 // The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
 namespace grinder {
 
+template <typename Call>
+void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    thrown_ = error.what();
+  } catch (...) {
+    thrown_ = "an exception that is no std::exception";
+  }
+  thrown_ += " (thrown by its ";
+  thrown_ += function;
+  thrown_ += ")";
+  has_thrown_ = true;
+}
+
+ros::Duration ControlLoop::awaitCycle() noexcept {
+  const ros::Duration nominal(config_.machine.period);
+  ros::Duration period = nominal;
+  bool waited = false;
+  callDrive("wait()", [&] {
+    period = hw_.wait(nominal);
+    waited = true;
+  });
+  return waited ? period : hw_.RobotHW::wait(nominal);
+}
+
+void ControlLoop::writeOff(const ros::Time& time) noexcept {
+  drive_command_ = DriveCommand{};
+  drive_.setCommand(drive_command_);
+  if (has_positions_) callDrive("write()", [&] { hw_.write(time, ros::Duration(config_.machine.period)); });
+}
+
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
-  hw_.read(time, period);
+  callDrive("read()", [&] { hw_.read(time, period); });
   sample_.time = time.toSec();
   sample_.period = period.toSec();
   const bool moving = sample_.has_setpoint && (sample_.setpoint.velocity != 0).any();
@@ -33,6 +66,11 @@ void ControlLoop::readDrive() {
   const std::uint64_t last_feedback = sample_.drive.feedback_count;
   touched_ = sample_.drive.probe_contact;
   sample_.drive = drive_.getStatus();
+  if (has_thrown_) {
+    sample_.drive.fault = true;
+    sample_.drive.fault_text = thrown_;
+    has_thrown_ = false;
+  }
   drive_checks_.observe(sample_.drive);
   sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -40,6 +78,7 @@ void ControlLoop::readDrive() {
     sample_.position[i] = joint.getPosition();
     sample_.velocity[i] = joint.getVelocity();
   }
+  has_positions_ = has_positions_ || sample_.position.isFinite().all();
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
   // again; after a fault the commands do not change.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
@@ -88,7 +127,8 @@ void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period)
   sample_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
   for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
   drive_.setCommand(drive_command);
-  hw_.write(time, period);
+  // Before the first positions there is nothing that a command could follow.
+  if (has_positions_) callDrive("write()", [&] { hw_.write(time, period); });
   history_.add({command_, written_});
 }
 

@@ -36,7 +36,11 @@ std::optional<LoopFault> DriveChecks::findFault(const CycleSample& sample, bool 
   }
   const double longest = config_.late_fault * config_.machine.period;
   if (moving_unbuffered && !(sample.period <= longest)) return faultOf(FaultKind::kLate, sample.period, longest);
-  if (sample.drive.fault) return faultOf(FaultKind::kDriveFault);
+  if (sample.drive.fault) {
+    LoopFault fault = faultOf(FaultKind::kDriveFault);
+    fault.drive_text = sample.drive.fault_text;
+    return fault;
+  }
   if (!sample.drive.enabled) return faultOf(FaultKind::kPowerLost);
   return findFeedbackFault(sample);
 }

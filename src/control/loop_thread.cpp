@@ -54,24 +54,22 @@ void ControlLoop::stopThread() {
 }
 
 void ControlLoop::run() {
+  own_thread_ = pthread_self();
   pthread_setname_np(pthread_self(), "control_loop");
   realtime_scheduling_ = becomeRealtime();
   using Clock = std::chrono::steady_clock;
-  const ros::Duration nominal(config_.machine.period);
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
   // The first wait returns a period that has not passed; no stamp is to be ahead of the clock.
-  ros::Time time = ros::Time(wall.sec, wall.nsec) - nominal;
+  ros::Time time = ros::Time(wall.sec, wall.nsec) - ros::Duration(config_.machine.period);
   while (running_) {
-    const ros::Duration period = hw_.wait(nominal);
+    const ros::Duration period = awaitCycle();
     const Clock::time_point begin = Clock::now();
     time += period;
     cycle(time, period);
     sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
-  drive_command_ = DriveCommand{};
-  drive_.setCommand(drive_command_);
-  hw_.write(time, nominal);
+  writeOff(time);
 }
 
 bool ControlLoop::setFeedOverride(double fraction) {

@@ -99,12 +99,17 @@ void HalHardware::read(const ros::Time&, const ros::Duration&) {
 
 void HalHardware::readJoints() {
   status_.fault = overflow_;
+  status_.fault_text = overflow_ ? "the FIFO of commands is full" : "";
   status_.homed = true;
   for (std::size_t i = 0; i < position_.size(); ++i) {
     const Pins::Joint& joint = pins_->joints[i];
     position_[i] = *joint.feedback;
     velocity_[i] = *joint.velocity;
-    status_.fault = status_.fault || *joint.fault;
+    if (*joint.fault && !status_.fault) {
+      status_.fault = true;
+      status_.fault_text = "of the amplifier of ";
+      status_.fault_text += kJointNames[i];
+    }
     status_.homed = status_.homed && *joint.homed;
   }
 }

@@ -117,6 +117,7 @@ void SimulatedDrive::readSwitches(Fault fault) {
   status_.emergency_stop = fault == Fault::kEmergencyStop;
   if (fault == Fault::kDriveFault) {
     status_.fault = true;
+    status_.fault_text = "injected";
   } else if (drive_command_.reset) {
     status_.fault = false;
   }

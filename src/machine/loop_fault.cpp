@@ -11,6 +11,7 @@ Reason reasonOf(const LoopFault& fault) {
   reason.kind = row.reason;
   reason.axis = fault.axis;
   reason.detail = toString(fault.interlock);
+  if (!fault.drive_text.view().empty()) reason.detail = ": " + std::string(fault.drive_text.view());
   reason.unit = row.unit == Unit::kMetre ? unitOf(fault.axis, 0) : row.unit;
   reason.value = fault.value;
   reason.limit = fault.limit;

@@ -18,7 +18,8 @@ std::atomic<ControlLoop*> guarded{nullptr};
 
 /// Uses only atomics and system calls: the crashed thread may have left any other data inconsistent.
 void onCrash(int signal) {
-  if (ControlLoop* loop = guarded) {
+  ControlLoop* loop = guarded;
+  if (loop && !loop->isOwnThread()) {
     loop->postStop(MachineEvent::kDisable);
     for (int i = 0; i < kMaxChecks && isPowered(loop->status().state); ++i) nanosleep(&kCheckInterval, nullptr);
     nanosleep(&kReportTime, nullptr);

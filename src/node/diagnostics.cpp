@@ -114,6 +114,7 @@ void Diagnostics::addDrive(const CycleSample& sample) {
   updateMax(drive_.feedback_age, sample.feedback_age);
   drive_.emergency_stop |= drive.emergency_stop;
   drive_.fault |= drive.fault;
+  if (drive.fault) drive_.fault_text = drive.fault_text;
   if (sample.interlock != Interlock::kNone) drive_.interlock = sample.interlock;
   if (sample.state == MachineState::kFault) drive_.loop_fault = sample.fault;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -199,7 +200,10 @@ void Diagnostics::reportDrive(Status& status) {
     status.mergeSummary(DiagnosticStatus::ERROR, "emergency stop");
   }
   if (drive_.fault && reported != FaultKind::kDriveFault) {
-    status.mergeSummary(DiagnosticStatus::ERROR, "the drive reports a fault");
+    LoopFault fault;
+    fault.kind = FaultKind::kDriveFault;
+    fault.drive_text = drive_.fault_text;
+    status.mergeSummary(DiagnosticStatus::ERROR, fault.text());
   }
   if (!(drive_.feedback_age <= config_.feedback_timeout) && reported != FaultKind::kStaleFeedback) {
     status.mergeSummary(DiagnosticStatus::ERROR, text("no fresh positions for ", drive_.feedback_age, " s"));

@@ -81,6 +81,7 @@ class Diagnostics {
     double feedback_age = 0;  ///< longest [s]
     bool emergency_stop = false;
     bool fault = false;
+    FaultText fault_text;
     Interlock interlock = Interlock::kNone;
     LoopFault loop_fault;
     Axes position = Axes::Zero();  ///< the latest, or one that was not finite

@@ -127,6 +127,8 @@ void GrinderNode::loadDrive(const std::string& type, const ParameterReader& para
     ready = hw_->init(private_nh_, hardware_nh);
   } catch (const std::exception& error) {
     throw ParameterError("the drive " + type + ": " + error.what());
+  } catch (...) {
+    throw ParameterError("the drive " + type + ": init() has thrown what is no std::exception");
   }
   if (!ready) throw ParameterError("the drive " + type + " could not be initialised");
 }

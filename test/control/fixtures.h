@@ -72,13 +72,16 @@ class FakeDrive : public AxesHW {
     status.spindle_at_speed = written_drive.spindle;
     status.coolant_on = written_drive.coolant;
     ++status.feedback_count;
-    if (on_read) {
-      const HeapNotCounted of_the_test;
-      on_read(*this);
-    }
+    call([this] {
+      if (on_read) on_read(*this);
+    });
   }
 
   void write(const ros::Time&, const ros::Duration&) override {
+    ++writes;
+    call([this] {
+      if (on_write) on_write();
+    });
     written = command;
     written_drive = drive_command;
   }
@@ -99,10 +102,24 @@ class FakeDrive : public AxesHW {
   Buffer& command = command_;
   DriveCommand& drive_command = drive_command_;
   std::function<void(FakeDrive&)> on_read;  ///< has the last word on what is read
+  std::function<void()> on_write;           ///< before what is written takes effect
   std::function<void()> on_wait;            ///< in place of the wait
 
+  int writes = 0;
   Buffer written{};  ///< as of the last write()
   DriveCommand written_drive;
+
+ private:
+  template <typename Call>
+  static void call(const Call& of_the_test) {
+    const HeapNotCounted here;
+    try {
+      of_the_test();
+    } catch (...) {
+      heap_holds_exception = true;
+      throw;
+    }
+  }
 };
 
 #define EXPECT_CONTAINS(text, part) \

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 // Counts what a piece of code asks of the heap, in the programs that are linked with heap.cpp; in others it is always
 // nothing.
@@ -16,6 +17,7 @@ struct HeapUse {
 // Of this thread alone, and initialised before any constructor runs: some of them allocate.
 inline thread_local bool heap_counted = false;
 inline thread_local HeapUse heap_use;
+inline thread_local bool heap_holds_exception = false;  ///< what it takes is the thrower's
 
 template <typename Work>
 HeapUse heapUse(const Work& work) {
@@ -23,6 +25,7 @@ HeapUse heapUse(const Work& work) {
   heap_counted = true;
   work();
   heap_counted = false;
+  if (std::exchange(heap_holds_exception, false)) heap_use = {};
   return heap_use;
 }
 

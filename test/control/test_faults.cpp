@@ -3,6 +3,7 @@
 #include "control/rig.h"
 
 #include <cmath>
+#include <exception>
 #include <limits>
 
 // Faults, and how the machine recovers from them.
@@ -10,6 +11,12 @@ namespace grinder::test_support {
 namespace test_faults {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+struct Thrown : std::exception {
+  explicit Thrown(const char* words) : text(words) {}
+  const char* what() const noexcept override { return text; }
+  const char* text;
+};
 
 struct FaultCase {
   std::string name;
@@ -35,6 +42,27 @@ std::vector<FaultCase> faultCases() {
        FaultKind::kDriveFault,
        0,
        {"the drive reports a fault"}},
+      {"DriveFaultInItsWords",
+       [](FakeDrive& d) {
+         d.status.fault = true;
+         d.status.fault_text = "overcurrent in X (code 12)";
+       },
+       1,
+       FaultKind::kDriveFault,
+       0,
+       {"the drive reports a fault: overcurrent in X (code 12)"}},
+      {"ReadThrows",
+       [](FakeDrive&) { throw Thrown("no answer"); },
+       1,
+       FaultKind::kDriveFault,
+       0,
+       {"the drive reports a fault: no answer (thrown by its read())"}},
+      {"ReadThrowsAnything",
+       [](FakeDrive&) { throw 7; },
+       1,
+       FaultKind::kDriveFault,
+       0,
+       {"the drive reports a fault: an exception that is no std::exception (thrown by its read())"}},
       {"PowerLost",
        [](FakeDrive& d) { d.status.enabled = false; },
        1,
@@ -149,6 +177,64 @@ TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
 
 INSTANTIATE_TEST_SUITE_P(, FaultWhileRunning, testing::ValuesIn(faultCases()),
                          [](const testing::TestParamInfo<FaultCase>& info) { return info.param.name; });
+
+TEST(ControlLoopFault, OfAThrowingWriteEndsTheJobInTheNextCycle) {
+  Rig<FakeDrive> rig;
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  bool throws = true;
+  rig.drive.on_write = [&] {
+    if (throws) throw Thrown("the bus is down");
+  };
+  EXPECT_EQ(rig.cycle().state, S::kRunning);
+  EXPECT_EQ(rig.cycle().state, S::kFault);
+  EXPECT_EQ(rig.last().fault.text(), "the drive reports a fault: the bus is down (thrown by its write())");
+  EXPECT_TRUE(rig.drive.written_drive.enable);  // which the bus has not passed on
+  throws = false;
+  rig.cycle();
+  EXPECT_FALSE(rig.drive.written_drive.enable);
+  ASSERT_TRUE(rig.ask(E::kReset).accepted);
+  ASSERT_NO_FATAL_FAILURE(rig.enable());
+}
+
+TEST(ControlLoopFault, OfADriveThatThrowsWithoutPowerRefusesThePower) {
+  Rig<FakeDrive> rig;
+  rig.drive.on_read = [](FakeDrive&) { throw Thrown("no answer"); };
+  rig.run(3);
+  EXPECT_EQ(rig.last().state, S::kDisabled);
+  EXPECT_EQ(rig.last().drive.fault_text.view(), "no answer (thrown by its read())");
+  EXPECT_EQ(rig.ask(E::kEnable).text, "enable refused: the drive reports a fault; reset it first");
+  rig.drive.on_read = nullptr;
+  ASSERT_NO_FATAL_FAILURE(rig.enable());
+}
+
+TEST(ControlLoop, WritesNothingBeforeAllPositionsHaveBeenFinite) {
+  Rig<FakeDrive> rig;
+  rig.drive.on_read = [](FakeDrive& d) { d.position[kZ] = kNan; };
+  rig.run(5);
+  EXPECT_EQ(rig.drive.writes, 0);
+  const Axes there(-0.03, 0.02, 0.001, 0.4);
+  rig.drive.on_read = [&](FakeDrive& d) { d.place(there); };
+  rig.cycle();
+  EXPECT_EQ(rig.drive.writes, 1);
+  EXPECT_TRUE(sameBits(toAxes(rig.drive.written), there));
+  // Positions that are lost later do not keep the power from being switched off.
+  rig.drive.on_read = [](FakeDrive& d) { d.position[kZ] = kNan; };
+  rig.cycle();
+  EXPECT_EQ(rig.drive.writes, 2);
+  EXPECT_TRUE(sameBits(toAxes(rig.drive.written), there));
+}
+
+TEST(FaultText, CutsOffWhatIsTooLong) {
+  FaultText text;
+  text = "one";
+  text += ", two";
+  EXPECT_EQ(text.view(), "one, two");
+  text = std::string(FaultText::kMost - 1, 'x');
+  text += "yz";
+  EXPECT_EQ(text.view(), std::string(FaultText::kMost - 1, 'x') + "y");
+  text = "";
+  EXPECT_TRUE(text.view().empty());
+}
 
 TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
   Rig<FakeDrive> rig;

@@ -17,7 +17,7 @@ STEEP_CLEAR = checks.Helix(STEEP).y(31 * MM) + 1 * MM
 
 # fault, axis: code and text of the result
 FAULTS = {
-    ('drive_fault', X): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault'),
+    ('drive_fault', X): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault: injected'),
     ('stale_feedback', X): (GrindResult.LINK_LOST, r'^no fresh positions from the drive for 0\.\d+ s, allowed 0\.002 s'),
     ('nan_feedback', Y): (GrindResult.HARDWARE_FAULT, r'^axis Y position from the drive is -?nan'),
     ('stuck_axis', X): (GrindResult.PATH_TOLERANCE_VIOLATED,

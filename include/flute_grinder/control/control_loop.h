@@ -17,6 +17,8 @@
 #include <boost/lockfree/policies.hpp>
 #include <boost/lockfree/spsc_queue.hpp>
 
+#include <pthread.h>
+
 #include <array>
 #include <atomic>
 #include <thread>
@@ -57,12 +59,22 @@ class ControlLoop : public RequestBox {
   /// @param period time since the previous cycle, monotonic.
   void cycle(const ros::Time& time, const ros::Duration& period);
 
+  /// Whether the caller is the loop's own thread. Async-signal-safe.
+  bool isOwnThread() const noexcept { return running_ && pthread_equal(own_thread_, pthread_self()) != 0; }
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
   const LoopConfig& config() const { return config_; }
 
  private:
   void run();
+
+  /// Calls the drive; what it throws becomes a fault of the drive in the next readDrive().
+  template <typename Call>
+  void callDrive(const char* function, const Call& call) noexcept;
+  /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails. @return time since the last one.
+  ros::Duration awaitCycle() noexcept;
+  /// Tells the drive to switch the power off, when no cycle follows.
+  void writeOff(const ros::Time& time) noexcept;
 
   void readDrive();
   void readSwivel();
@@ -144,6 +156,9 @@ class ControlLoop : public RequestBox {
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;
+  FaultText thrown_;            ///< by the drive, since the last readDrive()
+  bool has_thrown_ = false;     ///< the drive
+  bool has_positions_ = false;  ///< all have been finite once
   Axes command_ = Axes::Zero();
   CommandHistory history_;
   JobTrack written_;                ///< for the running job, or else the last one
@@ -166,6 +181,7 @@ class ControlLoop : public RequestBox {
   std::thread thread_;
   std::atomic<double> feed_override_{1};
   std::atomic<bool> running_{false};
+  std::atomic<pthread_t> own_thread_{};
   std::atomic<bool> realtime_scheduling_{false};
   std::atomic<bool> memory_locked_{false};
 };

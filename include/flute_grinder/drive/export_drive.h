@@ -10,9 +10,9 @@
 namespace grinder {
 
 /// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
-/// flute_grinder/job/axes.h declare, and the order of RobotHW's virtual functions. To be increased whenever one of
-/// them changes. The node refuses plugins that were built against another version.
-constexpr std::uint32_t kDriveAbi = 2;
+/// flute_grinder/job/axes.h and fault_text.h declare, and the order of RobotHW's virtual functions. To be increased
+/// whenever one of them changes. The node refuses plugins that were built against another version.
+constexpr std::uint32_t kDriveAbi = 3;
 
 }  // namespace grinder
 

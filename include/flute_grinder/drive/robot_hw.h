@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/job/fault_text.h"
+
 #include <ros/duration.h>
 #include <ros/node_handle.h>
 #include <ros/time.h>
@@ -70,6 +72,7 @@ struct DriveStatus {
   bool enabled = false;              ///< power is on, the axes follow their commands
   bool emergency_stop = false;       ///< the emergency stop is pressed
   bool fault = false;                ///< the drive reports a fault of its own
+  FaultText fault_text;              ///< which, in the drive's words, with the maker's code; may be empty
   bool homed = false;                ///< positions refer to the machine's reference
   bool homing = false;               ///< the axes are searching for the reference, as commanded
   bool spindle_at_speed = false;     ///< the wheel turns at its grinding speed
@@ -175,12 +178,12 @@ class RobotHW : public InterfaceManager {
   /// @return false if the drive cannot be used; log the reason, or throw it.
   virtual bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) = 0;
 
-  /// Reads positions and status. Real-time.
+  /// Reads positions and status. Real-time. What it throws is a fault of the drive, as what write() and wait() throw.
   /// @param time time of the cycle, for stamps.
   /// @param period time since the last cycle, monotonic.
   virtual void read(const ros::Time& time, const ros::Duration& period) = 0;
 
-  /// Sends the commands. Real-time; same arguments as read().
+  /// Sends the commands. Real-time; same arguments as read(). Not called before all positions have been finite once.
   virtual void write(const ros::Time& time, const ros::Duration& period) = 0;
 
   /// Blocks until the next cycle is due. By default, cycles follow the monotonic clock. Missed cycles are skipped and

@@ -88,7 +88,7 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kJerk, "jerk"}, "{axis} jerk {excess}"},
     {{ReasonKind::kNotFinite, "not_finite"}, "{axis} position {value} is not a finite number"},
     {{ReasonKind::kEmergencyStop, "emergency_stop"}, "emergency stop"},
-    {{ReasonKind::kDriveFault, "drive_fault"}, "the drive reports a fault"},
+    {{ReasonKind::kDriveFault, "drive_fault"}, "the drive reports a fault{detail}"},
     {{ReasonKind::kPowerLost, "power_lost"}, "the drive has switched its power off"},
     {{ReasonKind::kStaleFeedback, "stale_feedback"}, "no fresh positions from the drive for {value}, allowed {limit}"},
     {{ReasonKind::kInvalidFeedback, "invalid_feedback"}, "{axis} position from the drive is {number}"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/job/fault_text.h"
 #include "flute_grinder/motion/limit_check.h"
 
 #include <cstdint>
@@ -81,6 +82,7 @@ struct LoopFault {
   std::uint64_t cycle = 0;                 ///< of the last setpoint written, for kUnderrun
   LimitViolation violation;                ///< for kLimit
   Interlock interlock = Interlock::kNone;  ///< for kInterlock
+  FaultText drive_text;                    ///< for kDriveFault, may be empty
 
   /// The fault as text in SI units, e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m". Not real-time
   /// safe.

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace grinder {
+
+/// A short text that is copied without the heap; what is too long is cut off. Real-time safe.
+class FaultText {
+ public:
+  static constexpr std::size_t kMost = 95;  ///< characters
+
+  FaultText() = default;
+  FaultText& operator=(std::string_view text) noexcept {
+    size_ = 0;
+    return *this += text;
+  }
+  FaultText& operator+=(std::string_view text) noexcept {
+    const std::size_t count = std::min(text.size(), kMost - size_);
+    std::copy_n(text.begin(), count, text_.begin() + size_);
+    size_ = static_cast<unsigned char>(size_ + count);
+    return *this;
+  }
+  std::string_view view() const noexcept { return {text_.data(), size_}; }
+
+ private:
+  std::array<char, kMost> text_{};
+  unsigned char size_ = 0;
+};
+
+}  // namespace grinder

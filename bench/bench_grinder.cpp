@@ -68,7 +68,7 @@ BENCHMARK(step)->DenseRange(0, 2);
 void next(benchmark::State& state) {
   const EvenStepRule rule = ruleOf(state);
   state.SetLabel(toString(rule));
-  const GrindProgram program(paperJob(60, rule), machine(), machine().park);
+  const GrindProgram program(ValidJob(paperJob(60, rule)), machine(), machine().park);
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     SetpointStream stream(program);
@@ -84,7 +84,7 @@ BENCHMARK(next)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 void plan(benchmark::State& state) {
   const EvenStepRule rule = ruleOf(state);
   state.SetLabel(toString(rule));
-  const GrindJob job = paperJob(60, rule);
+  const ValidJob job(paperJob(60, rule));
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
@@ -98,7 +98,7 @@ BENCHMARK(plan)->DenseRange(0, 2)->Unit(benchmark::kMillisecond)->UseRealTime();
 /// A whole tool, ten teeth in twenty passes, in a memory that does not grow with its setpoints. Peak memory is that of
 /// the whole program, in MB.
 void planTool(benchmark::State& state) {
-  const GrindJob job = wholeToolJob();
+  const ValidJob job(wholeToolJob());
   std::int64_t setpoints = 0;
   for (auto _ : state) {
     const JobPlan plan = planJob(job, machine(), machine().park);
@@ -117,7 +117,7 @@ BENCHMARK(planTool)->Unit(benchmark::kMillisecond)->UseRealTime();
 void collision(benchmark::State& state) {
   std::ostringstream urdf;
   urdf << std::ifstream("urdf/grinder.urdf").rdbuf();
-  const GrindJob job = paperJob(600);
+  const ValidJob job(paperJob(600));
   Machine clear = machine();
   clear.collision_clearance = 1e-3;
   for (auto _ : state) {
@@ -134,7 +134,7 @@ BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 void checkCutter(benchmark::State& state) {
   const GrindJob jobs[]{paperJob(600), readJobFile("jobs/unequal_d12_t4.yaml"),
                         readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary")};
-  const ValidJob job = withLaws(jobs[state.range(0)]);
+  const ValidJob job = withLaws(ValidJob(jobs[state.range(0)]));
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
 BENCHMARK(checkCutter)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
@@ -146,7 +146,7 @@ void simulateTool(benchmark::State& state) {
   state.SetLabel(shared ? "same flutes" : "a flute each");
   job.process.wheel_wear_per_pass = shared ? 0 : 1e-6;
   for (auto _ : state) {
-    const GroundCutter cutter = groundCutterOf(job);
+    const GroundCutter cutter = groundCutterOf(ValidJob(job));
     for (int i = 0; i < 60; ++i) {
       const GroundSection section = cutter.section(job.cutter.flute_length * i / 59);
       benchmark::DoNotOptimize(cutter.areaRemoved(section));
@@ -175,7 +175,7 @@ void cycle(benchmark::State& state) {
   loop->postSwivel(paperJob(60).process.setup_swivel);
   const ros::Time time(1000);
   const ros::Duration period(config.machine.period);
-  const GrindProgram program(paperJob(60), config.machine, config.machine.park);
+  const GrindProgram program(ValidJob(paperJob(60)), config.machine, config.machine.park);
   std::unique_ptr<SetpointStream> stream;
   CycleSample sample;
 

@@ -70,7 +70,7 @@ Entry readEntry(const std::string& path, const Tolerances& tolerances) {
   entry.reason = record.at("reason");
   entry.strokes = static_cast<std::size_t>(std::count_if(
       strokes.begin(), strokes.end(), [](const Json& stroke) { return stroke.at("complete").get<bool>(); }));
-  entry.passes = passesFrom(job, record.at("first"));
+  entry.passes = passesFrom(ValidJob(job), record.at("first"));
   entry.holds = record.at("holds").size();
   judgeRecord(record, tolerances);
   entry.duration = record["duration_s"];

@@ -126,7 +126,7 @@ void printChecks(const GrindJob& job, const CutterFigures& ground, const std::op
 }
 
 int runPlan(const PlanOptions& options) {
-  const GrindJob job = readJobFile(options.job, {}, options.operation);
+  const ValidJob job(readJobFile(options.job, {}, options.operation));
   const Machine machine = readMachineFiles(options.parameters, options.urdf).machine;
   std::optional<SetpointCsv> csv;
   std::function<void(const Setpoint&)> visit;
@@ -138,12 +138,12 @@ int runPlan(const PlanOptions& options) {
   if (csv) csv->close();
   if (options.json) {
     Json json = toJson(plan);
-    json.update(toJson(job, plan.figures));
-    json["shank_cut_mm"] = shankCut(job.cutter) / kMillimetre;
+    json.update(toJson(*job, plan.figures));
+    json["shank_cut_mm"] = shankCut(job->cutter) / kMillimetre;
     print(json);
   } else if (plan.statistics.setpoints > 0) {
     printStatistics(plan.statistics);
-    printChecks(job, plan.figures, plan.complete, plan.closest);
+    printChecks(*job, plan.figures, plan.complete, plan.closest);
   }
   for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason).c_str());

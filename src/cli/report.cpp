@@ -103,7 +103,7 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
     if (job != 0) throw FileError(path + ": job " + std::to_string(job) + ": only a bag has several jobs");
     const Json record = readRecord(path);
     context.no_tool = reasonWhyNot([&] {
-      const ValidJob asked = withLaws(parseJob(record["job"]["file"].dump(), path));
+      const ValidJob asked = withLaws(ValidJob(parseJob(record["job"]["file"].dump(), path)));
       context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(*asked, kSections)));
     });
     return findingsOfRecord(record, context);

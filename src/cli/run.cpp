@@ -204,7 +204,7 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
 
 int runJob(const std::string& node, const RunOptions& options) {
   flute_grinder::GrindGoal goal = goalFor(node, options);
-  const ValidJob job = jobFromGoal(goal);
+  const ValidJob job(jobFromGoal(goal));
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
   const StateWatch watch(nh);

@@ -81,7 +81,7 @@ Source sourceOf(const SimulateOptions& options) {
   const std::string name = std::filesystem::path(options.file).filename();
   const FileKind kind = kindOf(options.file);
   if (kind == FileKind::kOther || kind == FileKind::kRecord)
-    return {readJobFile(options.file, {}, options.operation), name, options.file, nullptr};
+    return {ValidJob(readJobFile(options.file, {}, options.operation)), name, options.file, nullptr};
   if (kind == FileKind::kTable || kind == FileKind::kPlan) {
     throw FileError(options.file +
                     ": is no file of 'grind run --csv'; without the positions that the drive read there is "
@@ -94,7 +94,7 @@ Source sourceOf(const SimulateOptions& options) {
     throw FileError(options.file + ": the bag does not have the goal of " + run->place() +
                     "; give its job file with --job");
   }
-  const ValidJob job = options.job.empty() ? *run->job() : readJobFile(options.job, {}, options.operation);
+  const ValidJob job = options.job.empty() ? *run->job() : ValidJob(readJobFile(options.job, {}, options.operation));
   const std::string place = (run->place().empty() ? "" : ", ") + run->place() + groundBeforeText(*run);
   return {job, name + place, options.file, std::move(run)};
 }

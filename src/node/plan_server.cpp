@@ -38,7 +38,7 @@ PlanServer::~PlanServer() {
 /// @return null if another job is being planned. @throw InvalidJob
 std::shared_ptr<const PlannedJob> PlanServer::planOf(const flute_grinder::GrindGoal& goal, const Axes& offset) {
   std::promise<std::shared_ptr<const PlannedJob>> promise;
-  Planner::Request request{jobFromGoal(goal)};
+  Planner::Request request{ValidJob(jobFromGoal(goal))};
   request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), {goal.first_tooth, goal.first_pass}, offset};
   request.control = control_;
   request.done = [&](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };

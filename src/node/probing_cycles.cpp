@@ -96,7 +96,7 @@ double tooth(const Cycle& cycle) {
   if (!cycle.offsets.axes[kX].wasSet()) {
     throw ProbingError("the work offset of X was never set; probe the end face first");
   }
-  const ValidJob job = withLaws(jobFromGoal(cycle.goal.job));
+  const ValidJob job = withLaws(ValidJob(jobFromGoal(cycle.goal.job)));
   // The rake face of a right-hand tooth comes down to the ball as A grows.
   const double toward = job->cutter.cut == CutDirection::kLeftHand ? -1 : 1;
   const Prober::Touch touch = cycle.prober.touch(kA, toward * cycle.goal.within);

@@ -89,7 +89,7 @@ SectionView::Computed SectionView::computed(const Wanted& wanted) {
     return {wanted.job, nullptr, QString::fromStdString(text).toHtmlEscaped(), Clock::now() - begin, job};
   };
   try {
-    if (!job) job = withLaws(*wanted.job);
+    if (!job) job = withLaws(ValidJob(*wanted.job));
     // The length may have more decimals than the choice.
     const double x = std::min(wanted.x * kMillimetre, (*job)->cutter.flute_length);
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));

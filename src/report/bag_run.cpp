@@ -83,7 +83,7 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   const std::size_t number = asked_ == 0 ? goals_.size() : static_cast<std::size_t>(asked_);
   place_ = "job " + std::to_string(number) + " of " + std::to_string(goals_.size());
   try {
-    if (const auto job = jobs_.find(goal_); job != jobs_.end()) job_ = job->second;
+    if (const auto job = jobs_.find(goal_); job != jobs_.end()) job_.emplace(job->second);
   } catch (const InvalidJob&) {
     // Of another version: reported as if the bag did not have it.
   }

@@ -69,7 +69,7 @@ struct Checked : CollisionResult {
 
 Checked checked(const GrindJob& job, double collision_clearance = 1e-3, const std::optional<Axes>& start = {}) {
   const Machine machine = machineWith(collision_clearance);
-  const GrindProgram program(job, machine, start.value_or(machine.park));
+  const GrindProgram program(ValidJob(job), machine, start.value_or(machine.park));
   return {checkCollision(program, MachineShapes(roomyUrdf())), program};
 }
 

@@ -40,9 +40,9 @@ GrindProgram programOf(const ValidJob& job, const Axes& offset = Axes::Zero()) {
   return {job, machine, {machine.park, {}, offset}};
 }
 
-CollisionResult checked(const ValidJob& job, const std::string& urdf = shippedUrdf(),
+CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),
                         const Axes& offset = Axes::Zero()) {
-  return checkCollision(programOf(job, offset), MachineShapes(urdf));
+  return checkCollision(programOf(ValidJob(job), offset), MachineShapes(urdf));
 }
 
 TEST(JobCollision, ThePapersJobHitsNothing) {
@@ -69,7 +69,7 @@ TEST(JobCollision, AHitIsRefusedWithoutAClearanceToo) {
   job.cutter.flute_length = 0.06;
   Machine machine = plainMachine();
   machine.collision_clearance = 0;
-  EXPECT_TRUE(checkCollision(GrindProgram(job, machine, machine.park), MachineShapes(shippedUrdf())).reason);
+  EXPECT_TRUE(checkCollision(GrindProgram(ValidJob(job), machine, machine.park), MachineShapes(shippedUrdf())).reason);
 }
 
 /// The wheel's rim and the edge of the collet, in the plane Z = 0.
@@ -152,7 +152,7 @@ TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
     }
   }
   EXPECT_GT(legs_of_strokes, 20u);
-  EXPECT_EQ(pathOf(programOf(paperJob())).moves.size(), programOf(paperJob()).moves().size());
+  EXPECT_EQ(pathOf(programOf(ValidJob(paperJob()))).moves.size(), programOf(ValidJob(paperJob())).moves().size());
 }
 
 TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
@@ -160,7 +160,7 @@ TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
   longer.process.wheel_diameter = 0.5;
   longer.cutter.flute_length = 0.16;
   const ValidJob job = ValidJob(longer).withZCorrections({bentJob().zCorrectionOf(0)});
-  const CollisionResult result = checked(job);
+  const CollisionResult result = checkCollision(programOf(job), MachineShapes(shippedUrdf()));
   ASSERT_TRUE(result.reason);
   EXPECT_EQ(result.reason->move, programOf(job).moves().at(result.closest->leg).kind);
   EXPECT_EQ(result.reason->x, result.closest->axes[kX]);
@@ -171,7 +171,7 @@ TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
   job.process.infeed = job.process.depth / 3;
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
     job.process.direction = direction;
-    const Axes end = collisionJobOf(programOf(job)).stroke_end;
+    const Axes end = collisionJobOf(programOf(ValidJob(job))).stroke_end;
     const double x = job.cutter.flute_length + job.process.overtravel_shank;
     EXPECT_DOUBLE_EQ(end[kX], x);
     EXPECT_NEAR(end[kY], x * std::tan(job.cutter.cone_angle) - job.process.depth, 1e-12);

@@ -1,8 +1,8 @@
 #include "control/fixtures.h"
 #include "control/heap.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ struct alignas(64) Wide {
 
 /// A counter that saw nothing would let every rig pass.
 TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
-  const GrindJob job = readJobFile("test/jobs/paper.yaml");
+  const ValidJob job(readJobFile("test/jobs/paper.yaml"));
   const LoopConfig config = machineConfig();
   LoopFault fault;
   fault.kind = FaultKind::kFollowingError;

@@ -1,8 +1,8 @@
 #include "control/checks.h"
 #include "control/paper_job.h"
 #include "control/rig.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include <rapidcheck.h>
@@ -17,7 +17,7 @@ namespace test_work_offsets {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
-GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+ValidJob paper() { return ValidJob(readJobFile("test/jobs/paper.yaml")); }
 
 /// The paper's job from where the axes stand.
 SetpointStream streamAt(const Axes& offset, const Axes& command, const LoopConfig& config = machineConfig()) {

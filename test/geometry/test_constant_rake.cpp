@@ -84,12 +84,12 @@ double rakeError(const GroundCutter& cutter, const GrindJob& job) {
 
 double publishedRakeError(GrindJob job) {
   job.process.z_law = ZLaw::kPublished;
-  return rakeError(groundCutterOf(job), job);
+  return rakeError(groundCutterOf(ValidJob(job)), job);
 }
 
 Reason refusalOf(const GrindJob& job) {
   try {
-    withLaws(job);
+    withLaws(ValidJob(job));
   } catch (const ReasonError& error) {
     return error.reason();
   }
@@ -112,7 +112,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
                                     << s.wheel << " x " << s.width);
     std::optional<ValidJob> with_law;
     try {
-      with_law = withLaws(*job);
+      with_law = withLaws(ValidJob(*job));
     } catch (const ReasonError& error) {
       ADD_FAILURE() << text(error.reason());
       continue;
@@ -138,7 +138,7 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
   for (const double lead : {-1e-3, 1e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
-    const ValidJob with_law = withLaws(job);
+    const ValidJob with_law = withLaws(ValidJob(job));
     EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
     const brute::Bench bench{request,
                              job.process.setup_swivel,
@@ -159,7 +159,7 @@ TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
   job.tooth_angles = {0, 1.5, 3.1, 4.6};
   job.spiral_angles = {20 * kDegree, 20.2 * kDegree, 20 * kDegree, 20.2 * kDegree};
   job.process.z_law = ZLaw::kConstantRake;
-  const ValidJob with_law = withLaws(job);
+  const ValidJob with_law = withLaws(ValidJob(job));
   const auto same = [&](int i, int k) {
     return with_law.zCorrectionOf(i).coefficients == with_law.zCorrectionOf(k).coefficients;
   };
@@ -169,7 +169,7 @@ TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
 }
 
 TEST(ConstantRake, TheSameJobGivesTheSameBits) {
-  const ValidJob once = withLaws(steepJob());
+  const ValidJob once = withLaws(ValidJob(steepJob()));
   // Of a job that was computed before nothing is taken.
   ZCorrection other = once.zCorrectionOf(0);
   other.coefficients[2] += 1e-6;
@@ -177,13 +177,13 @@ TEST(ConstantRake, TheSameJobGivesTheSameBits) {
   EXPECT_EQ(std::memcmp(&again.zCorrectionOf(0), &once.zCorrectionOf(0), sizeof(ZCorrection)), 0);
   GrindJob published = steepJob();
   published.process.z_law = ZLaw::kPublished;
-  EXPECT_EQ(withLaws(published).zCorrectionOf(0).pieces, 0);
+  EXPECT_EQ(withLaws(ValidJob(published)).zCorrectionOf(0).pieces, 0);
 }
 
 TEST(ConstantRake, ACylinderNeedsNoCorrection) {
   GrindJob job = jobFor({10, 0, 30, 8, 30, 1.6, 100, 3}).value();
   job.tooth_angles = {0, 3};
-  const ValidJob with_law = withLaws(job);
+  const ValidJob with_law = withLaws(ValidJob(job));
   for (const int tooth : {0, 1}) {
     const ZCorrection& c = with_law.zCorrectionOf(tooth);
     for (double x = -0.01; x < 0.04; x += 0.001) EXPECT_LT(std::abs(c.at(x).z), 1e-9);
@@ -193,14 +193,14 @@ TEST(ConstantRake, ACylinderNeedsNoCorrection) {
 TEST(ConstantRake, TheWheelIsThatOfTheJobsStart) {
   GrindJob job = steepJob();
   job.process.wheel_wear = 5 * kMillimetre;
-  EXPECT_LT(rakeError(groundCutterOf(withLaws(job)), job), 0.005);
+  EXPECT_LT(rakeError(groundCutterOf(withLaws(ValidJob(job))), job), 0.005);
 }
 
 TEST(ConstantRake, EitherWayOfTheStrokeTheCorrectionIsTheSame) {
   GrindJob job = steepJob();
-  const ValidJob there = withLaws(job);
+  const ValidJob there = withLaws(ValidJob(job));
   job.process.direction = StrokeDirection::kToEnd;
-  EXPECT_EQ(withLaws(job).zCorrectionOf(0).coefficients, there.zCorrectionOf(0).coefficients);
+  EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).coefficients, there.zCorrectionOf(0).coefficients);
 }
 
 TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
@@ -225,7 +225,7 @@ TEST(ConstantRake, ItGivesUpWhenToldTo) {
   int looks = 0;
   const PlanWatch never_again = [&](double) { return ++looks < 5; };
   try {
-    withLaws(job, never_again);
+    withLaws(ValidJob(job), never_again);
     FAIL();
   } catch (const ReasonError& error) {
     EXPECT_EQ(error.reason().kind, ReasonKind::kGivenUp);
@@ -235,23 +235,23 @@ TEST(ConstantRake, ItGivesUpWhenToldTo) {
 
 TEST(ConstantRake, WithoutItsCorrectionsNoCutterIsComputed) {
   const GrindJob job = steepJob();
-  EXPECT_THROW(groundCutterOf(job), std::invalid_argument);
+  EXPECT_THROW(groundCutterOf(ValidJob(job)), std::invalid_argument);
 }
 
 // From the job to the streamed setpoints and back to the cutter.
 TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
-  const GrindJob job = steepJob();
-  RunStrokes strokes(withLaws(job));
+  const ValidJob job = withLaws(ValidJob(steepJob()));
+  RunStrokes strokes(job);
   Axes actual = test_support::roomyMachine().park;
   const JobPlan plan =
-      planJob(withLaws(job), test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
+      planJob(job, test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
         strokes.add(p, actual);
         actual = p.position;
       });
   strokes.finish();
   ASSERT_TRUE(plan.good()) << text(plan.reasons);
   const ValidJob& with_law = plan.program->job();
-  const ConicalCutter cutter(job.cutter);
+  const ConicalCutter cutter(job->cutter);
   SetpointStream stream(plan.program);
   Setpoint p;
   int points = 0;
@@ -266,7 +266,7 @@ TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
   for (const RunStroke& stroke : strokes.strokes()) {
     for (const PathDeviation& d : stroke.deviations) EXPECT_LT(std::abs(d.z), 1e-12);
   }
-  EXPECT_LT(rakeError(strokes.cutter(), job), 0.006);  // sampled from setpoints
+  EXPECT_LT(rakeError(strokes.cutter(), *job), 0.006);  // sampled from setpoints
 }
 
 }  // namespace test_constant_rake

@@ -26,9 +26,9 @@ using units::kDegree;
 using units::kMillimetre;
 
 CutterCheck checked(const GrindJob& job) {
-  const JobPlan plan = planJob(job, roomyMachine(), roomyMachine().park);
+  const JobPlan plan = planJob(ValidJob(job), roomyMachine(), roomyMachine().park);
   EXPECT_TRUE(plan.good()) << text(plan.reasons);
-  return checkGroundCutter(job);
+  return checkGroundCutter(ValidJob(job));
 }
 
 /// The one reason of a kind.
@@ -64,7 +64,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
-    const GroundCutter cutter = groundCutterOf(job);
+    const GroundCutter cutter = groundCutterOf(ValidJob(job));
     double min_rake = 90 * kDegree, max_spiral = -90 * kDegree;
     for (int i = 0; i <= 8; ++i) {
       for (const ToothSection& tooth : cutter.section(i / 8.0 * job.cutter.flute_length).teeth) {
@@ -110,8 +110,8 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
     GrindJob job = readJobFile(entry.path(), {}, "flute");
     job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
-    const GrindProgram program(job, roomyMachine(), roomyMachine().park);
-    const CutterCheck check = checkGroundCutter(job);
+    const GrindProgram program(ValidJob(job), roomyMachine(), roomyMachine().park);
+    const CutterCheck check = checkGroundCutter(program.job());
     ASSERT_EQ(check.edges.size(), job.tooth_angles.size());
     for (std::size_t tooth = 0; tooth < check.edges.size(); ++tooth) {
       const GroundEdge& edge = check.edges[tooth];
@@ -151,7 +151,7 @@ TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
 
 TEST(GroundJob, AChordOffByMoreThanItsToleranceIsRefused) {
   GrindJob job = cylinder(38);
-  const double off = std::abs(*groundCutterOf(job).section(0).teeth[0].chordal_rake - 8 * kDegree);
+  const double off = std::abs(*groundCutterOf(ValidJob(job)).section(0).teeth[0].chordal_rake - 8 * kDegree);
   job.cutter.chordal_rake_tolerance = 1.001 * off;
   EXPECT_TRUE(checked(job).reasons.empty());
   job.cutter.chordal_rake_tolerance = 0.999 * off;
@@ -172,7 +172,7 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   // A longer stroke changes nothing up to there, and something behind.
   GrindJob longer = job;
   longer.process.overtravel_shank = 10 * kMillimetre;
-  const GroundCutter ground = groundCutterOf(job), whole = groundCutterOf(longer);
+  const GroundCutter ground = groundCutterOf(ValidJob(job)), whole = groundCutterOf(ValidJob(longer));
   const double inside = check.complete->to - 0.05 * kMillimetre, behind = check.complete->to + 0.5 * kMillimetre;
   EXPECT_NEAR(*ground.section(inside).teeth[0].rake, *whole.section(inside).teeth[0].rake, 1e-6);
   EXPECT_NEAR(ground.areaRemoved(ground.section(inside)), whole.areaRemoved(whole.section(inside)), 1e-12);
@@ -245,14 +245,14 @@ TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
   GrindJob job = jobOf("roughing_d10_t4");
   job.process.wheel_wear_per_pass = 0.05 * kMillimetre;
   job.process.wheel_wear = 1 * kMillimetre;
-  const GroundSection section = groundCutterOf(job).section(0.01);
+  const GroundSection section = groundCutterOf(ValidJob(job)).section(0.01);
   // Depths 0.4, 0.8, 1.2, 1.55, 1.6 and 1.6 mm: the fifth of six passes of a tooth is its deepest.
   for (std::size_t i = 0; i < 4; ++i) {
     GrindJob one = job;
     one.tooth_angles = {0};
     one.process.wheel_wear_per_pass = 0;
     one.process.wheel_wear = 1 * kMillimetre + static_cast<double>(6 * i + 4) * 0.05 * kMillimetre;
-    const ToothSection alone = groundCutterOf(one).section(0.01).teeth[0];
+    const ToothSection alone = groundCutterOf(ValidJob(one)).section(0.01).teeth[0];
     EXPECT_DOUBLE_EQ(*section.teeth[i].rake, *alone.rake);
     EXPECT_DOUBLE_EQ(section.teeth[i].depth, alone.depth);
   }
@@ -264,14 +264,14 @@ TEST(GroundJob, EarlierPassesRemoveNothingMore) {
     SCOPED_TRACE(name);
     GrindJob job = jobOf(name);
     job.process.wheel_wear_per_pass = 0;
-    const GroundCutter whole = groundCutterOf(job);
+    const GroundCutter whole = groundCutterOf(ValidJob(job));
     const double deepest = std::max(job.process.depth, job.process.depthEnd());
     for (const double part : {0.25, 0.5, 0.9}) {
       GrindJob earlier = job;
       earlier.process.depth = part * job.process.depth;
       earlier.process.depth_end = part * job.process.depthEnd();
       earlier.process.infeed = earlier.process.finish_infeed = part * deepest;
-      const GroundCutter before = groundCutterOf(earlier);
+      const GroundCutter before = groundCutterOf(ValidJob(earlier));
       for (const double at : {0.0, 0.4, 1.0}) {
         const double x = at * job.cutter.flute_length;
         const ToothSection first = before.section(x).teeth[0], last = whole.section(x).teeth[0];
@@ -292,7 +292,7 @@ TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
   job.tooth_angles = {0, 180 * kDegree};
   job.spiral_angles = {30 * kDegree, 33 * kDegree};
   ASSERT_TRUE(validate(job).empty());
-  const GroundSection section = groundCutterOf(job).section(0.015);
+  const GroundSection section = groundCutterOf(ValidJob(job)).section(0.015);
   EXPECT_NEAR(*section.teeth[0].spiral, 30 * kDegree, 1e-4);
   EXPECT_NEAR(*section.teeth[1].spiral, 33 * kDegree, 1e-4);
 }
@@ -307,7 +307,7 @@ TEST(GroundJob, AStraightGrooveIsAsDeepAsAskedAtBothEnds) {
   job.process.depth_end = 2 * kMillimetre;
   job.process.infeed = 2 * kMillimetre;
   job.cutter.rake_angle = 0;
-  const GroundCutter cutter = groundCutterOf(job);
+  const GroundCutter cutter = groundCutterOf(ValidJob(job));
   const double slope = 1.0 / 30;  // the wheel touches the floor this far off its lowest point
   const double deeper = 10 * kMillimetre * (std::sqrt(1 + slope * slope) - 1);
   for (const double at : {0.0, 0.5, 1.0}) {
@@ -337,7 +337,7 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   p.setup_height = -p.wheel_width / 2;  // the upper face at the axis
   const CutterCheck check = checked(job);
   EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
-  const GroundSection end = groundCutterOf(job).section(c.flute_length);
+  const GroundSection end = groundCutterOf(ValidJob(job)).section(c.flute_length);
   EXPECT_NEAR(end.core_radius, 0.005 * kMillimetre, 1e-9);
   EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
 }
@@ -357,7 +357,7 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
     const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
     min = std::min(min, off), max = std::max(max, off);
   }
-  EXPECT_NEAR(checkGroundCutter(job).figures.edge, (max - min) / 2, 1e-4);
+  EXPECT_NEAR(checkGroundCutter(ValidJob(job)).figures.edge, (max - min) / 2, 1e-4);
 }
 
 // Straight flutes on a cylinder: the lower face passes 2.5 mm above the axis, so that the core is a hyperbola.
@@ -376,12 +376,12 @@ TEST(GroundJob, TheCoreIsJudgedBetweenTheEnds) {
   EXPECT_GT(off, 15e-6);
   for (const double more : {1.02, 0.98}) {
     job.cutter.core_tolerance = more * off;
-    const CutterCheck check = checkGroundCutter(job);
+    const CutterCheck check = checkGroundCutter(ValidJob(job));
     const bool refused = std::any_of(check.reasons.begin(), check.reasons.end(),
                                      [](const Reason& r) { return r.kind == ReasonKind::kCoreSize; });
     EXPECT_EQ(refused, more < 1);
   }
-  EXPECT_NEAR(reasonOf(checkGroundCutter(job), ReasonKind::kCoreSize).x, job.cutter.flute_length / 2, 1e-9);
+  EXPECT_NEAR(reasonOf(checkGroundCutter(ValidJob(job)), ReasonKind::kCoreSize).x, job.cutter.flute_length / 2, 1e-9);
 }
 
 /// A cone of which the wheel still reaches the small end where it is nearly at the apex, 12.0 mm beyond.
@@ -426,18 +426,18 @@ double spoiledByTrying(const GrindJob& job, double core) {
 }
 
 TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
-  const double expected = spoiledByTrying(nearApex(9.5), groundCutterOf(nearApex(9.5)).section(0).core_radius);
+  const double expected =
+      spoiledByTrying(nearApex(9.5), groundCutterOf(ValidJob(nearApex(9.5))).section(0).core_radius);
   EXPECT_LT(expected, 10 * kMillimetre);
   for (const double overtravel : {9.2, 9.5, 9.8}) {
-    const GrindJob job = nearApex(overtravel);
-    ASSERT_TRUE(validate(job).empty()) << text(validate(job));
+    const ValidJob job(nearApex(overtravel));
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_TRUE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   }
   for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
-    const GrindJob job = nearApex(overtravel);
+    const ValidJob job(nearApex(overtravel));
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_FALSE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);
@@ -445,11 +445,11 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
                                     [](const Reason& r) { return r.kind == ReasonKind::kNotBelow; });
     ASSERT_NE(named, check.reasons.end()) << text(check.reasons);
     EXPECT_EQ(named->field, "process.overtravel_end");
-    EXPECT_EQ(named->value, job.process.overtravel_end);
+    EXPECT_EQ(named->value, job->process.overtravel_end);
     EXPECT_NEAR(named->limit, expected, 0.02 * kMillimetre);
   }
   // Too short is too short.
-  EXPECT_FALSE(groundCutterOf(nearApex(8)).section(0).teeth[0].complete);
+  EXPECT_FALSE(groundCutterOf(ValidJob(nearApex(8))).section(0).teeth[0].complete);
 }
 
 }  // namespace test_ground_job

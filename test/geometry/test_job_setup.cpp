@@ -49,7 +49,7 @@ void expectContains(const std::string& text, const std::string& part) {
 }
 
 double rakeAt(const GrindJob& job, double x, std::size_t tooth = 0) {
-  return groundCutterOf(job).section(x).teeth.at(tooth).rake.value() / kDegree;
+  return groundCutterOf(ValidJob(job)).section(x).teeth.at(tooth).rake.value() / kDegree;
 }
 
 const JobEdit* editOf(const JobSetup& setup, const std::string& key) {
@@ -132,7 +132,7 @@ TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
     job.process.z_law = ZLaw::kConstantRake;
     const JobSetup setup = solved(job);
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-    const GroundCutter cutter = groundCutterOf(withLaws(setup.job));
+    const GroundCutter cutter = groundCutterOf(withLaws(ValidJob(setup.job)));
     for (int i = 0; i <= 20; ++i) {
       const double x = job.cutter.flute_length * i / 20;
       EXPECT_TRUE(cutter.section(x).teeth[0].complete) << x;
@@ -164,7 +164,7 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
 }
 
 bool hasReason(const GrindJob& job, ReasonKind kind) {
-  const CutterCheck check = checkGroundCutter(job, groundCutterOf(job));
+  const CutterCheck check = checkGroundCutter(ValidJob(job), groundCutterOf(ValidJob(job)));
   return std::any_of(check.reasons.begin(), check.reasons.end(), [&](const auto& r) { return r.kind == kind; });
 }
 
@@ -197,7 +197,7 @@ TEST(JobSetup, ACylindersCoreIsGroundToAMicrometre) {
   GrindJob job = shipped("roughing_d10_t4");
   job.cutter.core_diameter = job.cutter.core_diameter_end = 6.7 * kMillimetre;
   const JobSetup setup = solved(job);
-  EXPECT_NEAR(groundCutterOf(setup.job).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
+  EXPECT_NEAR(groundCutterOf(ValidJob(setup.job)).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
   EXPECT_NEAR(setup.check.figures.core_diameter[0], job.cutter.core_diameter, 1e-6);
   EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.015);
 }

@@ -167,8 +167,8 @@ TEST(Mirror, ALeftHandJobIsARightHandOneInTheMirror) {
     const GrindJob right = random.job(), left = mirrored(right);
     ASSERT_TRUE(validate(right).empty()) << text(validate(right));
     ASSERT_TRUE(validate(left).empty());
-    expectMirrored(groundCutterOf(right), groundCutterOf(left));
-    expectMirroredPlans(right, left);
+    expectMirrored(groundCutterOf(ValidJob(right)), groundCutterOf(ValidJob(left)));
+    expectMirroredPlans(ValidJob(right), ValidJob(left));
   }
 }
 
@@ -176,7 +176,7 @@ TEST(Mirror, UnequalTeethHaveTheirLandsInTheMirror) {
   const GrindJob right = jobOf("unequal_d12_t4");
   GrindJob one = right;
   one.process.wheel_wear_per_pass = 0;  // teeth in another order are ground by another wheel
-  expectMirrored(groundCutterOf(one), groundCutterOf(mirrored(one)));
+  expectMirrored(groundCutterOf(ValidJob(one)), groundCutterOf(ValidJob(mirrored(one))));
 }
 
 TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
@@ -185,7 +185,7 @@ TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
   for (const double lead : {0.0, 0.5e-3, -2e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
-    const ValidJob right = withLaws(job), left = withLaws(mirrored(job));
+    const ValidJob right = withLaws(ValidJob(job)), left = withLaws(ValidJob(mirrored(job)));
     for (std::size_t i = 0; i < right.zCorrectionOf(0).coefficients.size(); ++i) {
       EXPECT_NEAR(left.zCorrectionOf(0).coefficients[i], -right.zCorrectionOf(0).coefficients[i], kRounding) << i;
     }
@@ -221,8 +221,8 @@ TEST(Mirror, AProbeTouchesTheMirroredFace) {
   for (const double at : {5.0, 20.0}) {
     const double from_axis = right.cutter.end_diameter / 2 + at * kMillimetre * std::tan(right.cutter.cone_angle);
     const Eigen::Vector3d ball{at * kMillimetre, from_axis - 0.3 * kMillimetre, 0};
-    EXPECT_NEAR(rakeTouchAngle(mirrored(right), ball, 0.3 * kMillimetre),
-                -rakeTouchAngle(right, ball, 0.3 * kMillimetre), 1e-6);
+    EXPECT_NEAR(rakeTouchAngle(ValidJob(mirrored(right)), ball, 0.3 * kMillimetre),
+                -rakeTouchAngle(ValidJob(right), ball, 0.3 * kMillimetre), 1e-6);
   }
 }
 

@@ -201,8 +201,8 @@ TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
         const Ball ball{10 * kMillimetre, from_axis * kMillimetre, angle, diameter * kMillimetre};
         // The upper face stands by 2 mm above the wheel's middle, the lower one by 2 mm below.
         const double high = std::asin((0.7 - diameter / 2) / from_axis) - angle;
-        EXPECT_NEAR(touch(straight(CutDirection::kRightHand), ball), high, 1e-9);
-        EXPECT_NEAR(touch(straight(CutDirection::kLeftHand), ball), -high - 2 * angle, 1e-9);
+        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kRightHand)), ball), high, 1e-9);
+        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kLeftHand)), ball), -high - 2 * angle, 1e-9);
       }
     }
   }
@@ -213,11 +213,11 @@ TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
   int touched = 0, of_hand[2] = {0, 0};
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
-    const GrindJob job = random.job();
-    const Ball ball = random.ball(job);
+    const ValidJob job(random.job());
+    const Ball ball = random.ball(*job);
     try {
       expectTouch(job, ball, touch(job, ball));
-      ++touched, ++of_hand[job.cutter.cut == CutDirection::kRightHand];
+      ++touched, ++of_hand[job->cutter.cut == CutDirection::kRightHand];
     } catch (const ReasonError&) {
       continue;  // the ball lies badly
     }
@@ -230,10 +230,11 @@ TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
   for (const char* name : {"finishing_d20_t8", "left_hand_d8_t3", "micro_d05_t2", "mould_cone_d2_t2", "paper",
                            "roughing_d10_t4", "taper_d6_t6", "unequal_d12_t4"}) {
     SCOPED_TRACE(name);
-    GrindJob job = jobOf(name);
-    job.process.wheel_wear_per_pass = 0;
-    const double x = job.cutter.flute_length / 3;
-    const double depth = ConicalCutter(job.cutter).radius(x) - groundCutterOf(job).section(x).core_radius;
+    GrindJob asked = jobOf(name);
+    asked.process.wheel_wear_per_pass = 0;
+    const ValidJob job(asked);
+    const double x = job->cutter.flute_length / 3;
+    const double depth = ConicalCutter(job->cutter).radius(x) - groundCutterOf(job).section(x).core_radius;
     const Ball ball{x, Groove(job).radius(x) - 0.15 * depth, 0.3, 0.2 * depth};
     ASSERT_FALSE(refusal(job, ball)) << text(*refusal(job, ball));
     expectTouch(job, ball, touch(job, ball));
@@ -244,18 +245,19 @@ TEST(RakeTouch, FollowsTheLawOfZ) {
   GrindJob asked = jobOf("taper_d6_t6");
   asked.process.wheel_wear_per_pass = 0;
   asked.process.z_law = ZLaw::kConstantRake;
-  const ValidJob job = withLaws(asked);
+  const ValidJob job = withLaws(ValidJob(asked));
   const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
   expectTouch(job, ball, touch(job, ball));
 }
 
 TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFaceFirst) {
-  GrindJob job = paper();
-  job.process.wheel_wear_per_pass = 0;
+  GrindJob asked = paper();
+  asked.process.wheel_wear_per_pass = 0;
+  const ValidJob job(asked);
   int touched = 0, refused = 0;
   for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
-    const Ball ball{job.cutter.flute_length / 2, (6.0155 + 0.0005 * i) * kMillimetre, 0, 0.8 * kMillimetre};
+    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.0005 * i) * kMillimetre, 0, 0.8 * kMillimetre};
     if (refusal(job, ball)) {
       ++refused;
       EXPECT_EQ(touched, 0);
@@ -269,7 +271,7 @@ TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFace
 }
 
 TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWouldNot) {
-  const GrindJob job = jobOf("left_hand_d8_t3");
+  const ValidJob job(jobOf("left_hand_d8_t3"));
   struct Wrong {
     double from_axis_mm;
     const char* what;
@@ -295,7 +297,7 @@ TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWo
 TEST(RakeTouch, ABallThatIsTooLargeForTheFluteIsRefusedWithOneThatIsNot) {
   for (const char* name : {"paper", "left_hand_d8_t3"}) {
     SCOPED_TRACE(name);
-    const GrindJob job = jobOf(name);
+    const ValidJob job(jobOf(name));
     const Ball ball{10 * kMillimetre, 5 * kMillimetre, 0, 6 * kMillimetre};
     const auto reason = refusal(job, ball);
     ASSERT_TRUE(reason);
@@ -313,17 +315,17 @@ TEST(RakeTouch, InASlotTheOtherWallIsTouchedFirstByABallThatIsWiderThanTheSlot) 
   job.process.wheel_width = kMillimetre;
   job.process.setup_height = 0;
   Ball ball{10 * kMillimetre, 3.5 * kMillimetre, 0, 0.99 * kMillimetre};
-  EXPECT_NEAR(touch(job, ball), std::asin(0.005 / 3.5), 1e-9);
+  EXPECT_NEAR(touch(ValidJob(job), ball), std::asin(0.005 / 3.5), 1e-9);
   ball.diameter = 1.01 * kMillimetre;
-  const auto reason = refusal(job, ball);
+  const auto reason = refusal(ValidJob(job), ball);
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "ball diameter");
   EXPECT_EQ(reason->detail, "else it touches the flute's other wall first");
 }
 
 TEST(RakeTouch, TheWholeBallMustBeWithinTheFlutesLength) {
-  const GrindJob job = straight(CutDirection::kRightHand);
-  const double length = job.cutter.flute_length, nan = std::numeric_limits<double>::quiet_NaN();
+  const ValidJob job(straight(CutDirection::kRightHand));
+  const double length = job->cutter.flute_length, nan = std::numeric_limits<double>::quiet_NaN();
   Ball ball{0, 4.5 * kMillimetre, 0, kMillimetre};
   for (const double x : {-kMillimetre, 0.49 * kMillimetre, length - 0.49 * kMillimetre, length + kMillimetre, nan}) {
     ball.x = x;
@@ -340,7 +342,7 @@ TEST(RakeTouch, TheWholeBallMustBeWithinTheFlutesLength) {
 }
 
 TEST(RakeTouch, NoBallAndNoPlaceAreRefused) {
-  const GrindJob job = straight(CutDirection::kRightHand);
+  const ValidJob job(straight(CutDirection::kRightHand));
   const double nan = std::numeric_limits<double>::quiet_NaN(), x = 10 * kMillimetre;
   for (const double diameter : {0.0, -kMillimetre, 1.0, nan}) {
     EXPECT_EQ(refusal(job, {x, 4.5 * kMillimetre, 0, diameter}).value_or(Reason{}).field, "ball diameter");
@@ -354,7 +356,7 @@ TEST(RakeTouch, NoBallAndNoPlaceAreRefused) {
 TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
   GrindJob job = straight(CutDirection::kRightHand);
   job.process.setup_height = 20 * kMillimetre;  // the wheel passes above the cutter
-  const auto reason = refusal(job, {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
+  const auto reason = refusal(ValidJob(job), {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "ball's X");
   EXPECT_EQ(text(*reason), "ball's X = 10 mm; allowed: where the first tooth has a rake face");

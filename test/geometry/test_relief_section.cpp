@@ -104,7 +104,7 @@ struct Tool {
   /// @param margin in front of the relief, along the circle at the small end [mm].
   Tool(const std::string& file, double clearance, double swivel, double width, double contact, double margin = 0)
       : job(readJobFile(file)),
-        cutter(groundCutterOf(job)),
+        cutter(groundCutterOf(ValidJob(job))),
         cone(job.cutter),
         hand(job.cutter.cut == CutDirection::kLeftHand ? -1 : 1),
         start{clearance * kDegree, 1, margin * kMillimetre / cone.radius(0)},
@@ -154,7 +154,8 @@ struct Tool {
   /// Of the tooth behind the first one.
   Stroke nextFlute() const {
     const bool left = hand < 0;
-    Stroke next = test_relief_section::strokeOf(job, left ? static_cast<int>(job.tooth_angles.size()) - 1 : 1);
+    Stroke next =
+        test_relief_section::strokeOf(ValidJob(job), left ? static_cast<int>(job.tooth_angles.size()) - 1 : 1);
     if (left) next.a0 -= units::kTurn;
     return next;
   }
@@ -272,7 +273,7 @@ TEST(ReliefSection, EveryToothHasTheClearanceBehindItsOwnEdge) {
   job.operations = {{job.process, {}}, {p, {}}};
   job.process = p;
   job.operation = 1;
-  const ValidJob ground = withLaws(job);
+  const ValidJob ground = withLaws(ValidJob(job));
   const GroundCutter cutter = groundCutterOf(ground);
   for (const double part : {0.0, 0.5, 1.0}) {
     const double x = part * job.cutter.flute_length;

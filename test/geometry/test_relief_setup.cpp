@@ -21,7 +21,8 @@ struct Tool {
   GroundCutter cutter;
   ReliefRequest request;
 
-  Tool(const std::string& file, double clearance, double width) : job(readJobFile(file)), cutter(groundCutterOf(job)) {
+  Tool(const std::string& file, double clearance, double width)
+      : job(readJobFile(file)), cutter(groundCutterOf(ValidJob(job))) {
     request.start.clearance = clearance * kDegree;
     request.wheel.nominal_radius = 50 * kMillimetre;
     request.wheel.width = width * kMillimetre;

@@ -76,13 +76,13 @@ std::vector<Read> readOf(const ValidJob& job, const Error& error) {
 }
 
 RunStrokes runOf(const GrindJob& job, const std::vector<Read>& read) {
-  RunStrokes strokes(job);
+  RunStrokes strokes{ValidJob(job)};
   for (std::size_t i = 1; i < read.size(); ++i) strokes.add(read[i].setpoint, read[i - 1].at);
   strokes.finish();
   return strokes;
 }
 
-RunStrokes runOf(const GrindJob& job, const Error& error) { return runOf(job, readOf(job, error)); }
+RunStrokes runOf(const GrindJob& job, const Error& error) { return runOf(job, readOf(ValidJob(job), error)); }
 
 const Error kExact = [](const Setpoint&) { return Axes(Axes::Zero()); };
 
@@ -115,7 +115,7 @@ double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).c
 
 TEST(RunStrokes, ASparkOutThatWasDeeperIsInTheCore) {
   const GrindJob job = straight();
-  const double planned = coreAt(groundCutterOf(job), 0.01);
+  const double planned = coreAt(groundCutterOf(ValidJob(job)), 0.01);
   const double ground = coreAt(runOf(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4))).cutter(), 0.01);
   EXPECT_NEAR(planned - ground, 1e-4, 1e-8);
 }
@@ -136,7 +136,7 @@ TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
     EXPECT_NEAR(stroke.range.from, -job.process.overtravel_end, 1e-12);
     EXPECT_NEAR(stroke.range.to, job.cutter.flute_length + job.process.overtravel_shank, 1e-12);
   }
-  const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(job);
+  const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(ValidJob(job));
   EXPECT_EQ(cutter.flutes().front().size(), 1u);
   for (const double x : {0.0, 0.011, 0.022}) {
     const ToothSection one = cutter.section(x).teeth.front(), other = planned.section(x).teeth.front();
@@ -167,7 +167,7 @@ TEST(RunStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
         errors.back().push_back(Axes(0, uniform(-size, size), uniform(-size, size), uniform(-size, size) / 0.005));
       }
     }
-    const auto read = readOf(job, [&](const Setpoint& p) {
+    const auto read = readOf(ValidJob(job), [&](const Setpoint& p) {
       return p.move == MoveKind::kReturn ? Axes(Axes::Zero()) : errors[p.pass][static_cast<std::size_t>(p.move)];
     });
     const GroundCutter cutter = runOf(job, read).cutter();
@@ -276,7 +276,7 @@ TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
 // After a stop in the stroke it goes on a little before; the first part was deeper there.
 TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
   const GrindJob job = straight();
-  std::vector<Read> read = readOf(job, kExact);
+  std::vector<Read> read = readOf(ValidJob(job), kExact);
   const auto in_last = [](const Read& r) { return r.setpoint.pass == 5 && r.setpoint.move == MoveKind::kStroke; };
   const auto from =
       std::find_if(read.begin(), read.end(), [&](const Read& r) { return in_last(r) && r.at[kX] > 9e-3; });
@@ -290,14 +290,14 @@ TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
   with_lift.insert(with_lift.end(), from, read.end());
   for (std::size_t i = 0; i < with_lift.size(); ++i) with_lift[i].setpoint.cycle = i + 1;
   const GroundCutter cutter = runOf(job, with_lift).cutter();
-  EXPECT_NEAR(coreAt(groundCutterOf(job), 9.5e-3) - coreAt(cutter, 9.5e-3), 1e-4, 1e-7);
+  EXPECT_NEAR(coreAt(groundCutterOf(ValidJob(job)), 9.5e-3) - coreAt(cutter, 9.5e-3), 1e-4, 1e-7);
 }
 
 /// Both reliefs of the shipped reamer, with one tooth.
 ValidJob reliefOf(const char* operation) {
   GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation);
   job.tooth_angles = {0};
-  return withLaws(job);
+  return withLaws(ValidJob(job));
 }
 
 RunStrokes runOf(const ValidJob& relief, std::optional<GroundCutter> before, const Error& error) {

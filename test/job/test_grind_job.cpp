@@ -285,12 +285,12 @@ std::vector<std::string> orderOf(const ValidJob& job) {
 
 TEST(PassOrder, IsThatOfTeethOrOfPasses) {
   GrindJob job = paperJob();
-  EXPECT_EQ(orderOf(job), std::vector<std::string>{"0/0"});
+  EXPECT_EQ(orderOf(ValidJob(job)), std::vector<std::string>{"0/0"});
   job.tooth_angles = {0, 1, 3};
   job.process.spark_out = 1;
-  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "0/1", "1/0", "1/1", "2/0", "2/1"}));
+  EXPECT_EQ(orderOf(ValidJob(job)), (std::vector<std::string>{"0/0", "0/1", "1/0", "1/1", "2/0", "2/1"}));
   job.process.order = GrindOrder::kPassMajor;
-  EXPECT_EQ(orderOf(job), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
+  EXPECT_EQ(orderOf(ValidJob(job)), (std::vector<std::string>{"0/0", "1/0", "2/0", "0/1", "1/1", "2/1"}));
 }
 
 TEST(ValidJob, RefusesAnInvalidJobWithAllReasons) {

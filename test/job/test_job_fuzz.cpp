@@ -204,7 +204,7 @@ struct Case {
 
   JobPlan plan(const std::function<void(const Setpoint&)>& visit = {}) const {
     try {
-      return planJob(job, machine, {start, first}, visit);
+      return planJob(ValidJob(job), machine, {start, first}, visit);
     } catch (const InvalidJob& invalid) {
       JobPlan refused;
       refused.fault = PlanFault::kInvalidJob;

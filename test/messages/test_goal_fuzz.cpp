@@ -88,7 +88,7 @@ bool answer(const flute_grinder::GrindGoal& goal) {
   const Machine m = machine();
   JobPlan plan;
   try {
-    plan = planJob(job, m, {m.park, {goal.first_tooth, goal.first_pass}});
+    plan = planJob(ValidJob(job), m, {m.park, {goal.first_tooth, goal.first_pass}});
   } catch (const InvalidJob& invalid) {
     plan.fault = PlanFault::kInvalidJob;
     plan.reasons = invalid.reasons();

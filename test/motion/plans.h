@@ -14,7 +14,7 @@
 namespace grinder::test_support {
 
 inline JobPlan planOf(const GrindJob& job, const Machine& machine = plainMachine()) {
-  return planJob(job, machine, machine.park);
+  return planJob(ValidJob(job), machine, machine.park);
 }
 
 inline std::string textOf(const JobPlan& plan) {

@@ -219,7 +219,7 @@ inline Ride rideWithRetracts(const Work& work, const std::vector<Setpoint>& undi
 /// The paper's job, gone through up to a place in its stroke.
 class PaperStroke {
  public:
-  explicit PaperStroke(double x) : stream_(GrindProgram(paperJob(), plainMachine(), plainMachine().park)) {
+  explicit PaperStroke(double x) : stream_(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park)) {
     while (p_.move != MoveKind::kStroke || p_.position[kX] < x || p_.cycle % 2 == 1) next();
   }
 

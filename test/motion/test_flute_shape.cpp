@@ -44,7 +44,7 @@ RC_GTEST_PROP(FluteShape, EveryStrokeIsOnItsToothsHelixAtItsDepth, ()) {
   for (std::size_t i = 1; i < depths.size(); ++i)
     RC_ASSERT(depths[i] - depths[i - 1] <= job.process.infeed * (1 + 1e-9));
   double y_off = 0, deviation = 0, last_x = 0;
-  const JobPlan plan = planJob(job, work.machine, work.start, [&](const Setpoint& p) {
+  const JobPlan plan = planJob(ValidJob(job), work.machine, work.start, [&](const Setpoint& p) {
     if (p.move != MoveKind::kStroke) return;
     const double x = p.position[kX];
     last_x = x;
@@ -77,9 +77,9 @@ TEST(FluteShape, ADepthThatIsTheSameAtBothEndsChangesNoBit) {
   reported.spiral_angles = {reported.cutter.spiral_angle};
   const Machine machine = plainMachine();
   std::vector<Setpoint> expected;
-  planJob(plain, machine, machine.park, [&](const Setpoint& p) { expected.push_back(p); });
+  planJob(ValidJob(plain), machine, machine.park, [&](const Setpoint& p) { expected.push_back(p); });
   std::size_t i = 0;
-  const JobPlan plan = planJob(reported, machine, machine.park, [&](const Setpoint& p) {
+  const JobPlan plan = planJob(ValidJob(reported), machine, machine.park, [&](const Setpoint& p) {
     ASSERT_LT(i, expected.size());
     ASSERT_TRUE((p.position == expected[i++].position).all());
   });

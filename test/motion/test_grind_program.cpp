@@ -24,7 +24,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 GrindProgram programOf(const GrindJob& job, const ToothPass& first = {}) {
-  return GrindProgram(job, plainMachine(), {plainMachine().park, first});
+  return GrindProgram(ValidJob(job), plainMachine(), {plainMachine().park, first});
 }
 
 std::vector<MoveKind> kindsOf(const GrindProgram& program) {
@@ -77,7 +77,7 @@ TEST(GrindProgram, OfOnePassIndexesGoesOverTheWorkDownAlongAndOut) {
 TEST(GrindProgram, StartingInTheWorkBeginsWithALift) {
   Axes start;
   start << 0.01, 0, 0, 1;
-  const GrindProgram program(paperJob(), plainMachine(), start);
+  const GrindProgram program(ValidJob(paperJob()), plainMachine(), start);
   const Move& lift = program.moves().front();
   EXPECT_EQ(lift.kind, MoveKind::kLift);
   EXPECT_EQ(lift.to[kX], start[kX]);
@@ -165,7 +165,7 @@ TEST(GrindProgram, RefusesAFirstPassThatIsNotThere) {
 TEST(GrindProgram, ReturnsToThePark) {
   Machine machine = plainMachine();
   machine.park << 0.05, 0.06, 0.01, 0.7;
-  const GrindProgram program(paperJob(), machine, machine.park);
+  const GrindProgram program(ValidJob(paperJob()), machine, machine.park);
   EXPECT_EQ(program.moves().back().kind, MoveKind::kReturn);
   EXPECT_TRUE((program.moves().back().to == machine.park).all());
 }
@@ -185,7 +185,7 @@ TEST_P(GrindProgramUnfit, IsRefusedWithText) {
   Machine machine = plainMachine();
   Axes start = machine.park;
   GetParam().change(machine, start);
-  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, start); });
+  const std::string error = errorOf([&] { GrindProgram(ValidJob(paperJob()), machine, start); });
   EXPECT_TRUE(contains(error, GetParam().text)) << "got: " << error;
 }
 
@@ -219,7 +219,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(GrindProgram, RefusesAFeedBelowTheSlowest) {
   Machine machine = plainMachine();
   machine.limits.max_velocity[kA] = 1e-5;
-  const std::string error = errorOf([&] { GrindProgram(paperJob(), machine, machine.park); });
+  const std::string error = errorOf([&] { GrindProgram(ValidJob(paperJob()), machine, machine.park); });
   EXPECT_TRUE(contains(error, "process.feed")) << error;
   EXPECT_TRUE(contains(error, "axis A velocity")) << error;
 }

@@ -63,7 +63,8 @@ void expectNear(const Axes& value, const Axes& expected, double noise) {
 
 void expectSame(const GrindJob& job, const Machine& machine) {
   std::vector<Setpoint> setpoints;
-  const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) { setpoints.push_back(p); });
+  const JobPlan plan =
+      planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) { setpoints.push_back(p); });
   ASSERT_TRUE(plan.good()) << textOf(plan);
   const PathStatistics& s = plan.statistics;
   const PathStatistics expected = accumulate(setpoints, job, machine.period);
@@ -109,7 +110,7 @@ TEST(JobPlan, ReportsTheStatisticsOfManyTeethAndPasses) {
 /// Checks move_ends against the setpoints' own moves.
 void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& start, bool rc = false) {
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(job, machine, start, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan = planJob(ValidJob(job), machine, start, [&](const Setpoint& p) { visited.push_back(p); });
   std::vector<std::uint64_t> expected;
   std::size_t i = 0;
   for (const Move& move : plan.program->moves()) {

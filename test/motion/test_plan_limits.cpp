@@ -66,7 +66,8 @@ TEST(JobPlan, RefusesAWayBeyondAnAxisLimitWithTheAmount) {
   Machine machine = plainMachine();
   machine.limits.max_position[kX] = 0.030;  // the stroke goes to 31 mm
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan =
+      planJob(ValidJob(paperJob()), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
   ASSERT_EQ(plan.reasons.size(), 3u) << textOf(plan);  // stroke, and retract and return from its end
   EXPECT_EQ(textOf(plan).find("axis X position 31 mm is 1 mm beyond its limit 30 mm (stroke, tooth 1, pass 1, X = "),
@@ -83,7 +84,8 @@ TEST(JobPlan, ReportsEveryAxisThatIsBeyondItsLimits) {
   machine.limits.max_position << 0.030, 0.04, 0.2, 2;
   machine.limits.min_position[kZ] = -1e-5;  // the stroke begins at -12 um
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan =
+      planJob(ValidJob(paperJob()), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
   expectReasons(plan, visited, kX, 0.030);
   expectReasons(plan, visited, kY, 0.04);
@@ -102,12 +104,13 @@ TEST(JobPlan, ReportsASingleSetpointWithoutACount) {
     if (p.move == MoveKind::kStroke) xs.push_back(p.position[kX]);
   };
   Machine machine = plainMachine();
-  planJob(paperJob(), machine, machine.park, see);
+  planJob(ValidJob(paperJob()), machine, machine.park, see);
   const double last = *std::max_element(xs.begin(), xs.end());
   xs.erase(std::remove(xs.begin(), xs.end(), last), xs.end());
   machine.limits.max_position[kX] = (last + *std::max_element(xs.begin(), xs.end())) / 2;
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan =
+      planJob(ValidJob(paperJob()), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   ASSERT_EQ(beyondUpperLimit(visited, kX, machine.limits.max_position[kX])[MoveKind::kStroke].count, 1u);
   const auto reasons = reasonsWith(plan, "(stroke, ");
   ASSERT_EQ(reasons.size(), 1u) << textOf(plan);
@@ -121,7 +124,7 @@ TEST(JobPlan, ReportsAllLimitsOfManyTeethInOneTextEach) {
   job.tooth_angles = {0, 1, 2};
   job.process.spark_out = 1;
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan = planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.reasons.size(), 5u) << textOf(plan);  // now index and position leave from beyond the limit too
   expectReasons(plan, visited, kX, 0.030);
 }
@@ -130,7 +133,7 @@ TEST(JobPlan, RefusesAStartBeyondALimit) {
   const Machine machine = plainMachine();
   Axes start = machine.park;
   start[kX] = -0.5;
-  const JobPlan plan = planJob(paperJob(), machine, start);
+  const JobPlan plan = planJob(ValidJob(paperJob()), machine, start);
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
   EXPECT_TRUE(contains(textOf(plan), "axis X position -500 mm")) << textOf(plan);
   EXPECT_TRUE(contains(textOf(plan), "limit -300 mm")) << textOf(plan);
@@ -147,7 +150,7 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   const Real normal =
       std::cos(std::atan(std::tan(Real(job.cutter.spiral_angle)) * std::cos(Real(job.cutter.cone_angle))));
   const ReferenceCurve curve(job.cutter);
-  const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) {
+  const JobPlan plan = planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) {
     visited.push_back(p);
     if (p.step == StepKind::kNone) return;
     const Real x = p.position[kX];

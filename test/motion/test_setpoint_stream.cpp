@@ -19,7 +19,7 @@ using namespace test_support;
 TEST(SetpointStream, StartsAtRestWhereTheAxesStand) {
   Axes start;
   start << 0.01, 0.04, -0.002, 0.3;
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
   Setpoint p;
   ASSERT_TRUE(stream.next(p));
   EXPECT_EQ(p.cycle, 0u);
@@ -32,7 +32,7 @@ TEST(SetpointStream, StartsAtRestWhereTheAxesStand) {
 }
 
 TEST(SetpointStream, LeavesTheSetpointAsItWasAtTheEnd) {
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   Setpoint p;
   while (stream.next(p)) {
   }
@@ -48,7 +48,7 @@ TEST(SetpointStream, KeepsThePapersCutterWithinAMicroradianAt60MillimetresPerMin
   for (const EvenStepRule rule : {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
     SCOPED_TRACE(toString(rule));
     job.interpolation.even_step = rule;
-    SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+    SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), plainMachine().park));
     const ReferenceCurve curve(job.cutter);
     double whole_stroke = 0;
     double flute = 0;
@@ -177,7 +177,7 @@ RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {
 }
 
 TEST(SetpointStream, IsFinishedAtItsEndOnly) {
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   Setpoint p;
   EXPECT_FALSE(stream.finished());
   while (stream.next(p))
@@ -190,7 +190,7 @@ TEST(SetpointStream, IsFinishedAtItsEndOnly) {
 TEST(SetpointStream, ReportsMoveAndProgress) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 2};
-  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), plainMachine().park));
   const auto moves = stream.program().moves();
   Setpoint p;
   ASSERT_TRUE(stream.next(p));
@@ -218,7 +218,7 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
 
 TEST(SetpointStream, SharesItsProgram) {
   const Machine machine = plainMachine();
-  const auto program = std::make_shared<const GrindProgram>(paperJob(), machine, machine.park);
+  const auto program = std::make_shared<const GrindProgram>(ValidJob(paperJob()), machine, machine.park);
   SetpointStream shared(program);
   SetpointStream owned(*program);
   EXPECT_EQ(&shared.program(), program.get());

@@ -59,7 +59,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathO
 }
 
 TEST(SetpointStream, GoesAtFeedForMostOfThePapersStroke) {
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   std::size_t strokes = 0;
   std::size_t at_feed = 0;
   for (const Setpoint& p : all(stream)) {
@@ -221,7 +221,7 @@ TEST(SetpointStream, AFeedThatThereIsNotIsNotTaken) {
 
 TEST(SetpointStream, TheInfeedGoesAtTheOverriddenFeedToo) {
   for (const double fraction : {0.25, 1.0, 1.2}) {
-    SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+    SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
     stream.setFeedOverride(fraction);
     double fastest = 0;
     Setpoint p;

@@ -20,7 +20,7 @@ namespace test_stream_hold {
 using namespace test_support;
 
 TEST(SetpointStream, HeldBeforeItBeginsDoesNotMove) {
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), plainMachine().park));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   stream.hold();
   const auto setpoints = all(stream);
   ASSERT_EQ(setpoints.size(), 1u);
@@ -171,7 +171,7 @@ RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxe
 TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
   GrindJob job = paperJob();
   Axes start = plainMachine().park;
-  SetpointStream stream(GrindProgram(job, plainMachine(), start));
+  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), start));
   SetpointStream undisturbed(stream.program());
   Setpoint p, q;
   const auto step = [&] {

@@ -299,7 +299,7 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     SCOPED_TRACE(toString(kind));
     Axes start = plainMachine().park;
     start[kX] = -0.1;
-    SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
+    SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
     Setpoint p;
     while (p.move != kind || p.move_fraction < 0.3) ASSERT_TRUE(stream.next(p));
     stream.hold();
@@ -491,7 +491,7 @@ TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
 TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
   Axes start = plainMachine().park;
   start[kY] = 0;
-  SetpointStream stream(GrindProgram(paperJob(), plainMachine(), start));
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
   stream.retract();
   Setpoint p;
   ASSERT_TRUE(stream.next(p));

@@ -137,7 +137,7 @@ TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {
 }
 
 TEST(ZLaw, AJobWithoutItsCorrectionsIsRefused) {
-  const ValidJob job = constantRakeJob();
+  const ValidJob job(constantRakeJob());
   EXPECT_THROW(GrindProgram(job, plainMachine(), plainMachine().park), std::invalid_argument);
   const JobPlan plan = planJob(job, plainMachine(), plainMachine().park);
   EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
@@ -150,7 +150,7 @@ TEST(ZLaw, AJobWithoutItsCorrectionsIsRefused) {
 TEST(ZLaw, ASlightBowCostsNoFeed) {
   const GrindProgram program(bentJob(30e-6), plainMachine(), plainMachine().park);
   EXPECT_TRUE(program.schedule().feedLimits().empty());
-  const GrindProgram straight(paperJob(), plainMachine(), plainMachine().park);
+  const GrindProgram straight(ValidJob(paperJob()), plainMachine(), plainMachine().park);
   EXPECT_EQ(program.schedule().feedSpeed(), straight.schedule().feedSpeed());
 }
 

@@ -1,8 +1,8 @@
 #include "collision/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/valid_job.h"
 #include "node/job_gate.h"
 #include "node/planner.h"
 
@@ -52,7 +52,7 @@ class JobThreads : public ::testing::Test {
     test_support::setUp(drive_, machineConfig());
     drive_.on_read = [this](FakeDrive& drive) { drive.status.emergency_stop = emergency_stop_; };
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
-    loop_->postSwivel(job_.process.setup_swivel);
+    loop_->postSwivel(job_->process.setup_swivel);
   }
 
   template <typename Work>
@@ -122,7 +122,7 @@ class JobThreads : public ::testing::Test {
     if (status.jobs_started > status.jobs_ended && status.place.move_index < 3) canceled_amid_ = number;
   }
 
-  const GrindJob job_ = readJobFile("test/jobs/paper.yaml");
+  const ValidJob job_{readJobFile("test/jobs/paper.yaml")};
   FakeDrive drive_;
   std::atomic<bool> emergency_stop_{false};
   std::unique_ptr<ControlLoop> loop_;

@@ -37,15 +37,15 @@ GrindJob endless() {
   return job;
 }
 
-GrindJob changed(const std::function<void(GrindProcess&)>& change) {
+ValidJob changed(const std::function<void(GrindProcess&)>& change) {
   GrindJob job = paper();
   change(job.process);
-  return job;
+  return ValidJob(job);
 }
 
 /// A request with its outcome.
 struct Asked {
-  explicit Asked(const GrindJob& job) : request{job} {
+  explicit Asked(const GrindJob& job) : request{ValidJob(job)} {
     request.run.at = machine().park;
     request.control = std::make_shared<PlanControl>();
     request.done = [this](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
@@ -67,7 +67,7 @@ TEST(Planner, PlansWhatPlanJobPlans) {
   ASSERT_TRUE(planner.submit(asked.request));
   const auto plan = asked.wait();
   ASSERT_TRUE(plan->good());
-  const JobPlan expected = planJob(paper(), machine(), machine().park);
+  const JobPlan expected = planJob(ValidJob(paper()), machine(), machine().park);
   EXPECT_EQ(plan->statistics.setpoints, expected.statistics.setpoints);
   EXPECT_EQ(plan->move_ends, expected.move_ends);
   std::uint64_t streamed = 0;
@@ -96,7 +96,7 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
       [](Planner::Request& r) { r.run.offset[kA] += 1e-9; },
   };
   for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
-  const GrindJob two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
+  const ValidJob two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
   const auto withFirstPass = [&](int pass) {
     return programOf([&](Planner::Request& r) {
       r.job = two_passes;
@@ -115,7 +115,8 @@ TEST(Planner, PlansAJobWithItsLawOfZ) {
   const auto plan = asked.wait();
   ASSERT_TRUE(plan->good()) << text(plan->reasons);
   std::vector<Axes> expected;
-  planJob(withLaws(job), machine(), machine().park, [&](const Setpoint& p) { expected.push_back(p.position); });
+  planJob(withLaws(ValidJob(job)), machine(), machine().park,
+          [&](const Setpoint& p) { expected.push_back(p.position); });
   std::size_t i = 0;
   SetpointStream stream(plan->program);
   for (Setpoint p; stream.next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;

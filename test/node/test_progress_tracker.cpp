@@ -22,7 +22,7 @@ GrindProgram program(int passes) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.process.infeed = job.process.depth / passes;
   const Machine machine = test_support::machineConfig().machine;
-  return {job, machine, machine.park};
+  return {ValidJob(job), machine, machine.park};
 }
 
 /// Index of the stroke of a pass.
@@ -150,7 +150,7 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
   job.process.infeed = job.process.depth / 2;
   const Machine machine = test_support::machineConfig().machine;
   const Axes offset(0.1, 0.03, 0, 0.5);
-  const GrindProgram two(job, machine, {machine.park, {}, offset});
+  const GrindProgram two(ValidJob(job), machine, {machine.park, {}, offset});
   begin(two, "job");
   EXPECT_TRUE((onDisk().offset == offset).all());
   endStroke(two, 0);

@@ -36,7 +36,7 @@ std::string refusal(const std::string& operation) {
   return "";
 }
 
-CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(job)); }
+CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(ValidJob(job))); }
 
 std::set<ReasonKind> kindsOf(const CutterCheck& check) {
   std::set<ReasonKind> kinds;
@@ -137,7 +137,7 @@ TEST(Operations, AreRefusedWhereTheyDoNotFollowOneAnother) {
 // Every setpoint of a relief's stroke is on the closed form: P(s) + R N - q w, with the edge of the flutes.
 TEST(Operations, AReliefsStrokesAreTheClosedForm) {
   for (const char* name : {"primary", "secondary"}) {
-    const ValidJob job = withLaws(reamer(name));
+    const ValidJob job = withLaws(ValidJob(reamer(name)));
     const ConicalCutter cutter(job->cutter);
     const LogCurve edge(cutter);
     const ReliefPath& path = *job.relief(0);
@@ -168,7 +168,7 @@ TEST(Operations, AReliefsStrokesAreTheClosedForm) {
 
 // The stream that grinds a relief gives the plan's bits.
 TEST(Operations, AReliefIsStreamedAsItIsPlanned) {
-  const ValidJob job = withLaws(reamer("primary"));
+  const ValidJob job = withLaws(ValidJob(reamer("primary")));
   const Machine machine = test_support::roomyMachine();
   std::vector<Axes> planned;
   const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) { planned.push_back(p.position); });

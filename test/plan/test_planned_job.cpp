@@ -25,7 +25,7 @@ Machine machine() {
 }
 
 PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const PlanWatch& watch = {}) {
-  return planWholeJob(job, on, MachineShapes(shippedUrdf()), on.park, {}, watch);
+  return planWholeJob(ValidJob(job), on, MachineShapes(shippedUrdf()), on.park, {}, watch);
 }
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
@@ -41,7 +41,7 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   const PlannedJob whole = planned(job);
   ASSERT_TRUE(whole.good()) << text(whole.reasons);
   EXPECT_EQ(whole.digest, jobDigest(job));
-  const ValidJob with_law = withLaws(job);
+  const ValidJob with_law = withLaws(ValidJob(job));
   EXPECT_EQ(whole.program->job().zCorrectionOf(0).coefficients, with_law.zCorrectionOf(0).coefficients);
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
   EXPECT_EQ(whole.complete->to, job.cutter.flute_length);

@@ -58,7 +58,7 @@ struct Cycle {
 class JobRecordTest : public ::testing::Test {
  protected:
   JobRecordTest() {
-    plan_.program = std::make_shared<const GrindProgram>(job_, config_.machine, config_.machine.park);
+    plan_.program = std::make_shared<const GrindProgram>(ValidJob(job_), config_.machine, config_.machine.park);
     plan_.digest = jobDigest(job_);
     plan_.statistics.setpoints = 4321;
     plan_.statistics.duration = 4.32;

@@ -42,8 +42,13 @@ std::string textsOf(const MarkerArray& array) {
   return all;
 }
 
+MarkerArray plannedMarkers(const GrindJob& asked) {
+  const ValidJob job(asked);
+  return groundMarkers(groundCutterOf(job), job, "planned");
+}
+
 void expectFit(const GrindJob& job) {
-  const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+  const MarkerArray array = plannedMarkers(job);
   EXPECT_LT(ros::serialization::serializationLength(array), kMaxBytes);
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   const std::vector<Marker> solid = solidOf(array, "planned");
@@ -76,15 +81,16 @@ TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
 
 TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
   const GrindJob job = jobOf("roughing_d10_t4");
-  const GroundCutter cutter = groundSoFar(job, {{0, 0}, PassPhase::kBefore, 0});
+  const GroundCutter cutter = groundSoFar(ValidJob(job), {{0, 0}, PassPhase::kBefore, 0});
   EXPECT_EQ(cutter.volumeRemoved(0, job.cutter.flute_length, 10), 0);
 }
 
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;
-  for (const ValidJob& job : std::vector<ValidJob>{jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"),
-                                                   jobOf("unequal_d12_t4"), withLaws(even)}) {
+  for (const GrindJob& asked :
+       {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), even}) {
+    const ValidJob job = withLaws(ValidJob(asked));
     SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process.z_law));
     const GroundCutter planned = groundCutterOf(job),
                        done = groundSoFar(job, {job.passes().back().place, PassPhase::kAfter, 0});
@@ -107,8 +113,8 @@ TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
     const double length = job.cutter.flute_length, reached = length / 2;
     // The second tooth in its last pass; the first is done.
     const ToothPass pass{1, static_cast<int>(passDepths(job.process).size()) - 1};
-    const GroundCutter cutter = groundSoFar(job, {pass, PassPhase::kStroke, reached});
-    const GroundCutter planned = groundCutterOf(job);
+    const GroundCutter cutter = groundSoFar(ValidJob(job), {pass, PassPhase::kStroke, reached});
+    const GroundCutter planned = groundCutterOf(ValidJob(job));
     const bool from_end = direction == StrokeDirection::kFromEnd;
     const double ground_at = from_end ? 0.0 : length, whole_at = from_end ? length : 0.0;
     const double finished = planned.section(ground_at).teeth[1].depth;
@@ -118,7 +124,7 @@ TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
     EXPECT_LT(cutter.section(whole_at).teeth[1].depth, finished + 1e-9);
     EXPECT_EQ(cutter.section(ground_at).teeth[2].depth, 0);
     EXPECT_EQ(cutter.section(ground_at).teeth[3].depth, 0);
-    const GroundCutter first = groundSoFar(job, {{1, 0}, PassPhase::kStroke, reached});
+    const GroundCutter first = groundSoFar(ValidJob(job), {{1, 0}, PassPhase::kStroke, reached});
     EXPECT_GT(first.section(ground_at).teeth[1].depth, 0.9 * job.process.infeed);
     EXPECT_EQ(first.section(whole_at).teeth[1].depth, 0);
   }
@@ -135,12 +141,12 @@ std::optional<double> deviationOf(const Marker& m) {
 
 TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
   GrindJob job = jobOf("roughing_d10_t4");
-  const double ground = *groundCutterOf(job).section(job.cutter.flute_length / 2).teeth[0].rake;
+  const double ground = *groundCutterOf(ValidJob(job)).section(job.cutter.flute_length / 2).teeth[0].rake;
   for (const auto& [deviation, expected] : {std::pair{0.0, 0.03}, {0.25, 0.5}, {-0.25, 0.5}, {0.45, 0.9}, {3.0, 1.0}}) {
     SCOPED_TRACE(deviation);
     job.cutter.rake_angle = ground - deviation * kDegree;
     job.cutter.rake_tolerance = 0.5 * kDegree;
-    const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+    const MarkerArray array = plannedMarkers(job);
     std::size_t coloured = 0;
     for (const Marker& m : solidOf(array, "planned")) {
       const auto level = deviationOf(m);
@@ -153,12 +159,13 @@ TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
 }
 
 TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
-  GrindJob job = jobOf("roughing_d10_t4");
-  const int last = static_cast<int>(passDepths(job.process).size()) - 1;
+  GrindJob asked = jobOf("roughing_d10_t4");
+  const int last = static_cast<int>(passDepths(asked.process).size()) - 1;
   ASSERT_GT(last, 0);
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    job.process.direction = direction;
-    const double half = job.cutter.flute_length / 2;
+    asked.process.direction = direction;
+    const ValidJob job(asked);
+    const double half = job->cutter.flute_length / 2;
     // X between which points are coloured; none if the first is larger.
     const auto coloured = [&](const Reached& reached) {
       std::pair<double, double> x{1, -1};
@@ -173,7 +180,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     const auto roughed = coloured({{1, last - 1}, PassPhase::kAfter, 0});
     const auto begun = coloured({{0, last}, PassPhase::kBefore, 0});
     EXPECT_GT(begun.first, begun.second) << "a flute that is only roughed has the rake of no tool";
-    if (ValidJob(job).passes()[1].place.tooth == 1) {
+    if (job.passes()[1].place.tooth == 1) {
       EXPECT_GT(roughed.first, roughed.second);
     }
     const auto in_stroke = coloured({{0, last}, PassPhase::kStroke, half});
@@ -184,9 +191,9 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     } else {
       EXPECT_GT(in_stroke.first, half - facet);
     }
-    const auto done = coloured({ValidJob(job).passes().back().place, PassPhase::kAfter, 0});
+    const auto done = coloured({job.passes().back().place, PassPhase::kAfter, 0});
     EXPECT_LT(done.first, facet);
-    EXPECT_GT(done.second, job.cutter.flute_length - facet);
+    EXPECT_GT(done.second, job->cutter.flute_length - facet);
   }
 }
 
@@ -211,7 +218,7 @@ double areaOf(const std::vector<geometry_msgs::Point>& corners) {
 }
 
 TEST(GroundMarkers, ColourThePrimaryReliefsByTheirDeviationWithinTheTolerance) {
-  const GroundCutter cutter = groundCutterOf(withLaws(reamer("secondary")));
+  const GroundCutter cutter = groundCutterOf(withLaws(ValidJob(reamer("secondary"))));
   const double length = 16 * kMillimetre;
   // As wide as asked at the small end, and wider with the diameter, of six edges; a wedge of 85 deg is cut out.
   const double width = (0.3 + 0.353) / 2 * kMillimetre, shown = (360 - 85) / 360.0;
@@ -221,7 +228,7 @@ TEST(GroundMarkers, ColourThePrimaryReliefsByTheirDeviationWithinTheTolerance) {
     GrindJob asked = reamer("secondary");
     asked.cutter.clearance = (10 - off) * kDegree;
     asked.cutter.rake_tolerance = 90 * kDegree;
-    const auto coloured = colouredAs(groundMarkers(cutter, withLaws(asked), "planned"), expected);
+    const auto coloured = colouredAs(groundMarkers(cutter, withLaws(ValidJob(asked)), "planned"), expected);
     EXPECT_NEAR(areaOf(coloured), area, 0.1 * area);
     for (const geometry_msgs::Point& p : coloured) {
       const double below = 3 * kMillimetre + p.x * std::tan(2 * kDegree) - std::hypot(p.y, p.z);
@@ -234,7 +241,7 @@ TEST(GroundMarkers, ColourThePrimaryReliefsByTheirDeviationWithinTheTolerance) {
 TEST(GroundMarkers, ColourAReliefOnlyWhereItsLastPassHasBeenAndTheRakeFacesFromTheBegin) {
   GrindJob job = reamer("primary");
   job.cutter.rake_tolerance = job.cutter.clearance_tolerance = 45 * kDegree;
-  const ValidJob primary = withLaws(job);
+  const ValidJob primary = withLaws(ValidJob(job));
   const int last = primary.passes().back().place.pass;
   const auto coloured = [&](const Reached& reached) {
     const MarkerArray array = groundMarkers(groundSoFar(primary, reached), primary, "ground", reached);
@@ -276,14 +283,14 @@ std::size_t cornersOfShank(const std::vector<Marker>& solid, const GrindJob& job
 
 TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
   for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
-    const GrindJob job = jobOf(name);
-    const Reached reached{ValidJob(job).passes().front().place, PassPhase::kBefore, 0};
+    const ValidJob job(jobOf(name));
+    const Reached reached{job.passes().front().place, PassPhase::kBefore, 0};
     const std::vector<Marker> solid =
         solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
     ASSERT_EQ(solid.size(), 1U);
     const Marker& m = solid[0];
-    EXPECT_NEAR(maxRadius(solid, -1e-9, 1e-9), job.cutter.end_diameter / 2, 1e-12);
-    EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), job.cutter.shank_diameter / 2, 1e-12);
+    EXPECT_NEAR(maxRadius(solid, -1e-9, 1e-9), job->cutter.end_diameter / 2, 1e-12);
+    EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), job->cutter.shank_diameter / 2, 1e-12);
     // Edges across the facets: a circle of so many corners that none shows.
     std::set<long> angles;
     for (const geometry_msgs::Point& p : m.points) {
@@ -296,7 +303,7 @@ TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
 TEST(GroundMarkers, TheShankBehindTheFlutesIsRound) {
   for (const char* name : {"paper", "roughing_d10_t4"}) {
     const GrindJob job = jobOf(name);
-    const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
+    const std::vector<Marker> solid = solidOf(plannedMarkers(job), "planned");
     // Three quarters of it are left by the cut.
     EXPECT_GE(cornersOfShank(solid, job), 18U) << name;
   }
@@ -315,8 +322,9 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
       job.cutter.neck_length = neck * kMillimetre;
       for (const bool ground : {false, true}) {
         const Reached reached{{0, 0}, PassPhase::kBefore, 0};
-        const std::vector<Marker> solid =
-            solidOf(groundMarkers(ground ? groundCutterOf(job) : groundSoFar(job, reached), job, "ground"), "ground");
+        const ValidJob valid(job);
+        const std::vector<Marker> solid = solidOf(
+            groundMarkers(ground ? groundCutterOf(valid) : groundSoFar(valid, reached), valid, "ground"), "ground");
         const double begin = job.cutter.flute_length + job.cutter.neck_length, end = 66 * kMillimetre;
         EXPECT_NEAR(maxRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
         EXPECT_NEAR(maxRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
@@ -334,7 +342,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
 TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
   GrindJob job = paper();
   job.cutter.shank_diameter = 20 * kMillimetre;
-  const std::vector<Marker> solid = solidOf(groundMarkers(groundCutterOf(job), job, "planned"), "planned");
+  const std::vector<Marker> solid = solidOf(plannedMarkers(job), "planned");
   const double stroke_end = 37 * kMillimetre;
   EXPECT_LT(maxRadius(solid, 0, stroke_end - 1e-9), 9 * kMillimetre);
   EXPECT_NEAR(maxRadius(solid, stroke_end - 1e-9, stroke_end + 1e-9), 10 * kMillimetre, 1e-9);
@@ -345,7 +353,7 @@ TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   GrindJob job = jobOf("roughing_d10_t4");
   job.process.depth = job.process.infeed = 0.49999 * job.cutter.end_diameter;
   job.process.setup_height = 0;
-  const MarkerArray array = groundMarkers(groundCutterOf(job), job, "planned");
+  const MarkerArray array = plannedMarkers(job);
   EXPECT_TRUE(solidOf(array, "planned").empty());
   EXPECT_NE(textsOf(array).find("core radius = "), std::string::npos) << textsOf(array);
 }

@@ -25,7 +25,7 @@ using visualization_msgs::MarkerArray;
 
 GrindProgram program() {
   const auto machine = test_support::plainMachine();
-  return GrindProgram(readJobFile("test/jobs/paper.yaml"), machine, machine.park);
+  return GrindProgram(ValidJob(readJobFile("test/jobs/paper.yaml")), machine, machine.park);
 }
 
 std::vector<GroundEdge> edgesOf(const GrindProgram& program) { return checkGroundCutter(program.job()).edges; }
@@ -85,7 +85,7 @@ TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.tooth_angles = {0, 2, 4};
   job.process.infeed = job.process.depth / 2;
-  const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
+  const GrindProgram of_job(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
   ToolPath flutes(of_job, edgesOf(of_job));
   std::string done(job.tooth_angles.size(), 'p');
   EXPECT_EQ(looksOf(flutes), done);
@@ -167,7 +167,7 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
     const GrindProgram job = program();
-    PathErrorMarkers errors(*job.job(), edgesOf(job));
+    PathErrorMarkers errors(job.job(), edgesOf(job));
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
       if (p.cycle % 7 == 0) p.path_error = value;
@@ -196,7 +196,7 @@ TEST(PathMarkers, AreLinesOfAWidth) {
   expectLinesOfAWidth(shown.flutes);
   expectLinesOfAWidth(shown.executed);
   const GrindProgram job = program();
-  PathErrorMarkers errors(*job.job(), edgesOf(job));
+  PathErrorMarkers errors(job.job(), edgesOf(job));
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) errors.add(p);
   expectLinesOfAWidth(errors.markers());
@@ -221,8 +221,8 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
     auto machine = test_support::plainMachine();
     machine.park << -0.02, 0.08, 0, 0;
-    const GrindProgram of_job(job, machine, machine.park);
-    const GroundCutter cutter = groundCutterOf(job);
+    const GrindProgram of_job(ValidJob(job), machine, machine.park);
+    const GroundCutter cutter = groundCutterOf(of_job.job());
     const std::vector<GroundEdge> edges = edgesOf(of_job);
     ToolPath flutes(of_job, edges);
     const MarkerArray strips = flutes.markers();
@@ -234,7 +234,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
       EXPECT_LT(distance(edge[i], groundAt(cutter, edge[i].x)), kLinear);
 
     ExecutedPath executed(of_job, edges);
-    PathErrorMarkers errors(job, edges);
+    PathErrorMarkers errors(of_job.job(), edges);
     SetpointStream stream(of_job);
     double max = 0;
     const double normal = std::cos(std::atan(std::tan(job.cutter.spiral_angle) * std::cos(job.cutter.cone_angle)));
@@ -284,7 +284,7 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
     job.cutter.cone_angle = shape.cone * units::kDegree;
     job.cutter.spiral_angle = shape.spiral * units::kDegree;
     job.cutter.flute_length = 30e-3;
-    const GrindProgram of_job(job, test_support::plainMachine(), test_support::plainMachine().park);
+    const GrindProgram of_job(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
     // An edge under the wheel's centre is the helix.
     const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
     const std::vector<geometry_msgs::Point> strip = ToolPath(of_job, {edge}).markers().markers.at(1).points;
@@ -304,7 +304,7 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
   const ConicalCutter& cutter = job.cutter();
   const double length = job.job()->cutter.flute_length;
   // An edge under the wheel's centre: the arrows begin on the commanded points.
-  PathErrorMarkers errors(*job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  PathErrorMarkers errors(job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
   std::map<double, Setpoint> commanded;
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
@@ -338,7 +338,7 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   job.cutter.spiral_angle = 1;
   job.cutter.flute_length = 500e-3;
   job.process.depth = job.process.infeed = 0.01e-3;
-  const GrindProgram program(job, test_support::plainMachine(), test_support::plainMachine().park);
+  const GrindProgram program(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
   const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
   const MarkerArray array = ToolPath(program, {edge}).markers();
   std::size_t points = 0;

@@ -44,8 +44,8 @@ struct JobPass {
 /// A job that validate() accepts, with what follows from it, computed once. Copies share it.
 class ValidJob {
  public:
-  /// Implicit: a job may stand where a valid one is taken. @throw InvalidJob
-  ValidJob(GrindJob job);
+  /// Explicit: one made anew of a valid job's content has neither its laws nor its edges. @throw InvalidJob
+  explicit ValidJob(GrindJob job);
 
   const GrindJob& operator*() const noexcept { return content_->job; }
   const GrindJob* operator->() const noexcept { return &content_->job; }

@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   machine.limits = {Axes::Constant(-100), Axes::Constant(100), Axes::Constant(1), Axes::Constant(10),
                     Axes::Constant(100)};
   machine.park = Axes(-0.05, 0.05, 0, 0);
-  SetpointStream stream(GrindProgram(readJobFile(argv[1]), machine, machine.park));
+  SetpointStream stream(GrindProgram(ValidJob(readJobFile(argv[1])), machine, machine.park));
   Setpoint setpoint;
   stream.next(setpoint);
   std::cout << "; Y of the first setpoint = " << setpoint.position[kY] << " m\n";

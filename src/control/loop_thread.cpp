@@ -70,6 +70,7 @@ void ControlLoop::run() {
     sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
   writeOff(time);
+  ended_ = true;
 }
 
 bool ControlLoop::setFeedOverride(double fraction) {

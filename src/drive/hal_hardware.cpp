@@ -154,6 +154,11 @@ void HalHardware::writeSwitches() {
   }
 }
 
+bool HalHardware::powerOff() {
+  *pins_->enable = false;
+  return true;
+}
+
 void HalHardware::switchOff() {
   *pins_->enable = false;
   if (*pins_->enabled) return;  // the streamer may still be reading

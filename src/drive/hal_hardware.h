@@ -22,6 +22,7 @@ class HalHardware : public AxesHW {
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
   void read(const ros::Time& time, const ros::Duration& period) override;
   void write(const ros::Time& time, const ros::Duration& period) override;
+  bool powerOff() override;
   /// With power on, waits until the FIFO has room for a command; otherwise uses the monotonic clock.
   ros::Duration wait(const ros::Duration& period) override;
 

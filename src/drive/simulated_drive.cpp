@@ -4,9 +4,11 @@
 #include "flute_grinder/drive/export_drive.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <thread>
 #include <utility>
 
 namespace grinder {
@@ -15,10 +17,11 @@ namespace {
 
 constexpr double kSlip = 0.002;        ///< of the swivel [rad]
 constexpr double kFlickerAt = 0.2e-3;  ///< before the surface [m]
+constexpr std::chrono::milliseconds kHangStep{1};
 
-constexpr std::array<const char*, 11> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
+constexpr std::array<const char*, 12> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
                                                   "nan_feedback", "drive_fault",    "reference_lost", "spindle_lost",
-                                                  "coolant_lost", "swivel_slipped", "probe_flickers"};
+                                                  "coolant_lost", "swivel_slipped", "probe_flickers", "hang"};
 
 /// A buffer of the axes' values, to compute with.
 auto axes(std::array<double, kAxisCount>& buffer) { return Eigen::Map<Axes>(buffer.data()); }
@@ -94,6 +97,7 @@ void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
 }
 
 void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
+  while (static_cast<Fault>(injected_ & 0xff) == Fault::kHang) std::this_thread::sleep_for(kHangStep);
   const std::uint16_t injected = injected_;
   const auto fault = static_cast<Fault>(injected & 0xff);
   const int failing_axis = injected >> 8;
@@ -121,7 +125,8 @@ void SimulatedDrive::readSwitches(Fault fault) {
   } else if (drive_command_.reset) {
     status_.fault = false;
   }
-  status_.enabled = drive_command_.enable && !status_.emergency_stop && !status_.fault;
+  if (!drive_command_.enable) power_off_ = false;
+  status_.enabled = drive_command_.enable && !status_.emergency_stop && !status_.fault && !power_off_;
 }
 
 void SimulatedDrive::readEquipment(Fault fault, double dt) {

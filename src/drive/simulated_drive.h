@@ -79,13 +79,15 @@ class SimulatedDrive : public AxesHW {
     kSpindleLost,
     kCoolantLost,
     kSwivelSlipped,
-    kProbeFlickers
+    kProbeFlickers,
+    kHang  ///< read() does not return
   };
 
   bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
   void read(const ros::Time& time, const ros::Duration& period) override;
   void write(const ros::Time& time, const ros::Duration& period) override;
   ros::Duration wait(const ros::Duration& period) override;
+  bool powerOff() override { return power_off_ = true; }
 
   /// Initialises the drive without ROS.
   void init(const Model& model, const Equipment& equipment);
@@ -109,6 +111,7 @@ class SimulatedDrive : public AxesHW {
   Model model_;
   Equipment equipment_;
   std::optional<Blank> blank_;
+  std::atomic<bool> power_off_{false};      ///< by powerOff(), until `enable` is false
   std::atomic<std::uint16_t> injected_{0};  ///< fault and axis in one word
   ros::ServiceServer inject_service_;
 

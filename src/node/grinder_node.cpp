@@ -91,9 +91,10 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
                                            own.thresholds, urdf, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
+  watchdog_ = std::make_unique<LoopWatchdog>(*loop_, *hw_);
   stopAxesOnCrash(*loop_);
   if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
-  telemetry_->start();
+  telemetry_->start(*watchdog_);
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
   offset_server_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
                                                   offsetLimits(config.machine.limits, own.offset_change_limit));
@@ -133,15 +134,20 @@ void GrinderNode::loadDrive(const std::string& type, const ParameterReader& para
   if (!ready) throw ParameterError("the drive " + type + " could not be initialised");
 }
 
-void GrinderNode::shutDown() {
+bool GrinderNode::shutDown() {
   gate_.shut();
   loop_->postStop(MachineEvent::kDisable);
-  await(kStopTimeout, [this] { return !isPowered(loop_->status().state); });
-  await(kGoalEndTimeout, [this] { return !goals_->busy(); });
+  const auto or_hangs = [this](bool done) { return done || watchdog_->loopHangs(); };
+  await(kStopTimeout, [&] { return or_hangs(!isPowered(loop_->status().state)); });
+  await(kGoalEndTimeout, [&] { return or_hangs(!goals_->busy()); });
   // What rviz shows must not outlive the node.
   telemetry_->clearScene();
   planner_->end();
+  loop_->requestEnd();
+  await(kGoalEndTimeout, [&] { return or_hangs(loop_->hasEnded()); });
+  if (!loop_->hasEnded()) return false;
   loop_->stopThread();
+  return true;
 }
 
 }  // namespace grinder

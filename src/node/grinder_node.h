@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/loop_watchdog.h"
 #include "flute_grinder/control/machine_config.h"
 #include "node/goal_server.h"
 #include "node/history.h"
@@ -37,7 +38,8 @@ class GrinderNode {
 
   /// Stops a running job on the path, lifts the wheel, ends the goal and switches the drive off. No job can start once
   /// this has been called.
-  void shutDown();
+  /// @return false if the drive hangs: the loop's thread does not end, and the process has to without it.
+  [[nodiscard]] bool shutDown();
 
  private:
   /// @param type the plugin's.
@@ -51,6 +53,7 @@ class GrinderNode {
   std::unique_ptr<History> history_;
   ros::Publisher machine_;  ///< keeps the latched message
   std::unique_ptr<ControlLoop> loop_;
+  std::unique_ptr<LoopWatchdog> watchdog_;
   JobGate gate_;
   std::unique_ptr<Planner> planner_;
   std::unique_ptr<Telemetry> telemetry_;

@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <string>
@@ -79,7 +80,10 @@ int main(int argc, char** argv) {
     ros::AsyncSpinner spinner(1);  // for the drive's callbacks; all others have their own threads
     spinner.start();
     waitForEnd(signals);
-    node.shutDown();
+    if (!node.shutDown()) {
+      ROS_FATAL("the drive does not return to the control loop: the process ends without it");
+      std::_Exit(1);
+    }
     spinner.stop();
   } catch (const std::exception& error) {
     ROS_FATAL_STREAM(error.what());

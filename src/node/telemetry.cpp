@@ -129,6 +129,7 @@ void Telemetry::showJob(const PlannedJob& plan) {
 void Telemetry::tick() {
   readRecords();
   if (samples_read_ == 0) return;
+  logHang();
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
     showJob(*job->plan);
@@ -192,6 +193,36 @@ void Telemetry::processRecord() {
   // If the sample of a job's end was lost, a sample of a later job ends it.
   while (jobs_.size() > 1 && sample_.job > jobs_.front().number) endJob(jobs_.front());
   if (!jobs_.empty() && sample_.job == jobs_.front().number) trackJob(jobs_.front());
+}
+
+void Telemetry::logHang() {
+  const bool hangs = watchdog_->loopHangs();
+  if (std::exchange(hung_, hangs) == hangs) return;
+  if (hangs) {
+    ROS_ERROR_STREAM(hang().text());
+  } else {
+    ROS_WARN("the drive has returned to the control loop");
+  }
+}
+
+LoopFault Telemetry::hang() const {
+  LoopFault fault;
+  fault.kind = FaultKind::kDriveFault;
+  fault.drive_text = "it does not return to the control loop; ";
+  fault.drive_text += watchdog_->finding() == LoopWatchdog::Finding::kHangsPowerIsOff
+                          ? "its power is switched off"
+                          : "its power can only be switched off by hand";
+  return fault;
+}
+
+/// What the loop has said last no longer holds.
+void Telemetry::replaceByHang(flute_grinder::GrinderState& message) const {
+  const LoopFault fault = hang();
+  message.state = static_cast<std::uint8_t>(MachineState::kFault);
+  message.state_name = toString(MachineState::kFault);
+  message.enabled = static_cast<std::uint8_t>(watchdog_->finding() == LoopWatchdog::Finding::kHangs);
+  message.fault = fault.text();
+  message.fault_reason = grinder::toMessage(reasonOf(fault));
 }
 
 /// A fault that has ended a job is logged with its goal.
@@ -305,6 +336,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.fault = text(fault);
   message.fault_reason = grinder::toMessage(fault);
   message.hold_reason = toString(sample_.interlock);
+  if (watchdog_->loopHangs()) replaceByHang(message);
   const JournalWriter::Status journal = journal_.status();
   message.progress = toMessage(journal.on_disk);
   message.journal_error = journal.error;

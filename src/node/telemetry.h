@@ -4,6 +4,7 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/loop_watchdog.h"
 #include "flute_grinder/scene/scene.h"
 #include "node/diagnostics.h"
 #include "node/frames.h"
@@ -39,8 +40,11 @@ class Telemetry {
             const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
             const DiagnosticThresholds& thresholds, const std::string& urdf, const FirstView& first_view);
 
-  /// Starts publishing.
-  void start() { thread_.start(); }
+  /// Starts publishing. @param watchdog must outlive this object.
+  void start(const LoopWatchdog& watchdog) {
+    watchdog_ = &watchdog;
+    thread_.start();
+  }
 
   /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
   void show(std::shared_ptr<const PlannedJob> plan);
@@ -86,6 +90,9 @@ class Telemetry {
   void readRecords();
   void processRecord();
   void logFault();
+  void logHang();
+  LoopFault hang() const;
+  void replaceByHang(flute_grinder::GrinderState& message) const;
   void trackJob(Job& job);
   void addToBatch(Job& job, const Buffered& written);
   Axes workPosition(const Job& job) const;
@@ -111,7 +118,9 @@ class Telemetry {
   CycleSample sample_;  ///< the latest
   std::uint64_t samples_read_ = 0;
   bool in_fault_ = false;  ///< by the sample before
-  std::deque<Job> jobs_;   ///< announced; the first may be running
+  const LoopWatchdog* watchdog_ = nullptr;
+  bool hung_ = false;     ///< when it was last asked
+  std::deque<Job> jobs_;  ///< announced; the first may be running
   JobRecorder recorder_;
   std::mutex feedback_mutex_;  ///< guards the next two
   std::uint64_t feedback_number_ = 0;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -92,6 +93,11 @@ class FakeDrive : public AxesHW {
     return sinceLastCycle(period);
   }
 
+  bool powerOff() override {
+    power_off = true;
+    return true;
+  }
+
   void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, position.begin()); }
 
   // The buffers, for the tests.
@@ -106,7 +112,8 @@ class FakeDrive : public AxesHW {
   std::function<void()> on_wait;            ///< in place of the wait
 
   int writes = 0;
-  Buffer written{};  ///< as of the last write()
+  std::atomic<bool> power_off{false};  ///< by powerOff()
+  Buffer written{};                    ///< as of the last write()
   DriveCommand written_drive;
 
  private:

@@ -1,5 +1,6 @@
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/loop_watchdog.h"
 
 #include <pthread.h>
 #include <sys/mman.h>
@@ -65,6 +66,31 @@ TEST_F(ControlLoopThread, GoesOnWhenTheDriveThrows) {
   }
   loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
+}
+
+TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {
+  std::atomic<bool> hangs{false};
+  drive_.on_read = [&](FakeDrive&) {
+    while (hangs) std::this_thread::yield();
+  };
+  loop_->startThread();
+  const LoopWatchdog watchdog(*loop_, drive_);
+  const auto await = [](const auto& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!condition() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    return condition();
+  };
+  const std::uint64_t before = loop_->status().cycles;
+  ASSERT_TRUE(await([&] { return loop_->status().cycles > before + 500; }));  // longer than it waits
+  EXPECT_FALSE(watchdog.loopHangs());
+  EXPECT_FALSE(drive_.power_off);
+  hangs = true;
+  ASSERT_TRUE(await([&] { return watchdog.finding() == LoopWatchdog::Finding::kHangsPowerIsOff; }));
+  EXPECT_TRUE(drive_.power_off);
+  loop_->requestEnd();
+  EXPECT_FALSE(loop_->hasEnded());
+  hangs = false;
+  EXPECT_TRUE(await([&] { return loop_->hasEnded(); }));
 }
 
 TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {

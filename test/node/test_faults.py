@@ -55,6 +55,21 @@ class TestFaultInTheStroke(unittest.TestCase):
             with self.subTest(fault=fault, axis=axis):
                 self.check_end(*self.fault_in_stroke(fault, axis), code, text)
 
+    def test_drive_that_hangs(self):
+        """Nothing can be asked of the loop; its watchdog switches the power off, and the drive's return ends the job."""
+        g = grinder()
+        g.make_ready()
+        run = g.send(STEEP).wait_in_stroke(5 * MM)
+        self.assertTrue(g.inject('hang').success)
+        state = g.wait_state(GrinderState.FAULT)
+        self.assertRegex(state.fault, r'the drive reports a fault: it does not return to the control loop; its power is switched off')
+        self.assertFalse(state.enabled)
+        g.inject('none')
+        run.wait_complete()
+        self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
+        self.assertRegex(run.text, 'the drive has switched its power off')
+        self.assertEqual(g.wait_state(GrinderState.FAULT).fault, run.text.split(' (')[0])
+
     def test_way_back_from_an_emergency_stop(self):
         g = grinder()
         run, state = self.fault_in_stroke('emergency_stop')

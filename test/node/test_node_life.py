@@ -216,6 +216,16 @@ class TestMarkersDoNotOutliveTheNode(gc.OwnNode):
         self.check_taken_back('wheel', 'blank')  # the first view's
 
 
+class TestDriveHangs(gc.OwnNode):
+    def test_the_process_ends_without_it(self):
+        g = self.start(gc.machine())
+        g.make_ready()
+        g.inject('hang')
+        g.wait_state(GrinderState.FAULT)
+        self.assertEqual(self.node.end(signal.SIGTERM), 1)
+        self.assertIn('does not return to the control loop: the process ends without it', self.node.output)
+
+
 class TestFaultIsLogged(gc.OwnNode):
     def test_with_its_job_or_without_one(self):
         g = self.start(gc.machine())

@@ -42,6 +42,9 @@ class ControlLoop : public RequestBox {
   void startThread();
   /// Ends the thread after its current cycle; the drive is then without power.
   void stopThread();
+  /// The same without waiting for the end, which does not come while the drive hangs. Thread safe.
+  void requestEnd() noexcept { running_ = false; }
+  bool hasEnded() const noexcept { return ended_; }
 
   /// The status of the most recent cycle. For any thread; never waits.
   LoopStatus status() const noexcept { return status_.load(); }
@@ -60,7 +63,7 @@ class ControlLoop : public RequestBox {
   void cycle(const ros::Time& time, const ros::Duration& period);
 
   /// Whether the caller is the loop's own thread. Async-signal-safe.
-  bool isOwnThread() const noexcept { return running_ && pthread_equal(own_thread_, pthread_self()) != 0; }
+  bool isOwnThread() const noexcept { return pthread_equal(own_thread_, pthread_self()) != 0; }
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
   const LoopConfig& config() const { return config_; }
@@ -181,6 +184,7 @@ class ControlLoop : public RequestBox {
   std::thread thread_;
   std::atomic<double> feed_override_{1};
   std::atomic<bool> running_{false};
+  std::atomic<bool> ended_{false};
   std::atomic<pthread_t> own_thread_{};
   std::atomic<bool> realtime_scheduling_{false};
   std::atomic<bool> memory_locked_{false};

@@ -193,6 +193,12 @@ class RobotHW : public InterfaceManager {
   /// @return time since the last cycle, which all time-outs and stamps of the loop follow.
   virtual ros::Duration wait(const ros::Duration& period);
 
+  /// Switches the power off at once, in place of write(), because read(), write() or wait() has not returned for 0.25
+  /// s. Called in a thread of its own, maybe while one of these still hangs, or goes on. Enabled must then be reported
+  /// as false until `enable` has been. By default nothing is done: the drive's own watchdog is all there is.
+  /// @return whether the power is switched off.
+  virtual bool powerOff() { return false; }
+
  protected:
   /// Time since the last call, by the monotonic clock; the nominal period in the first one. Real-time safe.
   ros::Duration sinceLastCycle(const ros::Duration& nominal);

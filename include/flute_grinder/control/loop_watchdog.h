@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flute_grinder/control/control_loop.h"
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+
+namespace grinder {
+
+/// Switches the drive's power off when the control loop no longer comes round: when read(), write() or wait() of the
+/// drive hangs, and nobody is left to call write().
+class LoopWatchdog {
+ public:
+  /// Looks as often as that, and acts when it has found the same cycle kMostLooks times in a row. A computer that
+  /// stalls as a whole delays the looks as well, and is no hang: 0.25 s.
+  static constexpr std::chrono::milliseconds kLook{10};
+  static constexpr int kMostLooks = 25;
+
+  /// @param loop whose thread has been started. @param hw its drive. Both must outlive this object.
+  LoopWatchdog(const ControlLoop& loop, RobotHW& hw);
+  ~LoopWatchdog();
+
+  /// What is known of the loop. Thread safe.
+  enum class Finding : std::uint8_t { kRuns, kHangs, kHangsPowerIsOff };
+  Finding finding() const noexcept { return finding_; }
+  bool loopHangs() const noexcept { return finding() != Finding::kRuns; }
+
+ private:
+  void run();
+
+  const ControlLoop& loop_;
+  RobotHW& hw_;
+  std::atomic<Finding> finding_{Finding::kRuns};
+  std::mutex mutex_;
+  std::condition_variable end_;
+  bool ends_ = false;  ///< guarded by the mutex
+  std::thread thread_;
+};
+
+}  // namespace grinder

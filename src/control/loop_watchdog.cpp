@@ -1,0 +1,35 @@
+#include "flute_grinder/control/loop_watchdog.h"
+
+#include <pthread.h>
+
+namespace grinder {
+
+LoopWatchdog::LoopWatchdog(const ControlLoop& loop, RobotHW& hw) : loop_(loop), hw_(hw), thread_([this] { run(); }) {}
+
+LoopWatchdog::~LoopWatchdog() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ends_ = true;
+  }
+  end_.notify_one();
+  thread_.join();
+}
+
+void LoopWatchdog::run() {
+  pthread_setname_np(pthread_self(), "watchdog");
+  std::uint64_t seen = 0;
+  int looks = 0;
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!end_.wait_for(lock, kLook, [this] { return ends_; })) {
+    const std::uint64_t cycles = loop_.status().cycles;
+    if (cycles != seen) {
+      seen = cycles;
+      looks = 0;
+      finding_ = Finding::kRuns;
+    } else if (++looks == kMostLooks) {
+      finding_ = hw_.powerOff() ? Finding::kHangsPowerIsOff : Finding::kHangs;
+    }
+  }
+}
+
+}  // namespace grinder

@@ -58,14 +58,14 @@ TEST(AxesHW, RegistersTheDriveHandle) {
 
 // What plugins of this version have compiled in, on a 64-bit computer. A change of it needs another version.
 TEST(DriveAbi, LayoutOfTheVersion) {
-  EXPECT_EQ(kDriveAbi, 2U);
-  EXPECT_EQ(sizeof(DriveStatus), 48U);
-  EXPECT_EQ(offsetof(DriveStatus, swivel), 40U);
+  EXPECT_EQ(kDriveAbi, 3U);
+  EXPECT_EQ(sizeof(DriveStatus), 144U);
+  EXPECT_EQ(offsetof(DriveStatus, swivel), 136U);
   EXPECT_EQ(sizeof(DriveCommand), 5U);
   EXPECT_EQ(sizeof(JointHandle), 64U);
   EXPECT_EQ(sizeof(DriveHandle), 48U);
   EXPECT_EQ(sizeof(RobotHW), 72U);
-  EXPECT_EQ(sizeof(AxesHW), 400U);
+  EXPECT_EQ(sizeof(AxesHW), 496U);
 }
 
 }  // namespace test_axes_hw

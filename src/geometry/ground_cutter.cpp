@@ -146,6 +146,12 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
   return area;
 }
 
+double GroundCutter::areaRemoved(const GroundSection& section) const {
+  double depth = 0;
+  for (const ToothSection& tooth : section.teeth) depth = std::max(depth, tooth.depth);
+  return areaRemoved(section.x, section.radius - depth);
+}
+
 GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {
   // Behind an edge that moves toward falling angles lies what has larger ones.
   const std::size_t n = teeth_.size();
@@ -227,6 +233,7 @@ GroundSection GroundCutter::section(double x) const {
     std::size_t same = 0;
     while (same < i && !landsAreAlike(same, i)) ++same;
     section.teeth[i].relief = same < i ? section.teeth[same].relief : measureRelief(*this, section, i, reliefs(i));
+    section.core_radius = std::min(section.core_radius, section.teeth[i].relief->core_radius);
   }
   return section;
 }

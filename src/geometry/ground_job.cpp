@@ -101,7 +101,7 @@ class Checker {
   void check(const GroundSection& section) {
     if (job_.relief(0) != nullptr) {
       for (std::size_t i = 0; i < section.teeth.size(); ++i) checkRelief(section, i);
-      return;
+      return checkReliefCore(section);
     }
     if (!(section.core_radius > kMinCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
@@ -201,13 +201,22 @@ class Checker {
     add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
   }
 
-  /// Asked between the ends is what lies on a straight line between the diameters there.
   void checkCore(const GroundSection& section) {
-    const CutterGeometry& c = job_->cutter;
-    const double asked = c.core_diameter + (c.core_diameter_end - c.core_diameter) * section.x / c.flute_length;
-    const double core = 2 * section.core_radius;
-    if (std::abs(core - asked) <= c.core_tolerance) return;
-    add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, c.core_tolerance);
+    const double core = 2 * section.core_radius, asked = askedCore(job_->cutter, section.x);
+    const double tolerance = job_->cutter.core_tolerance;
+    if (std::abs(core - asked) <= tolerance) return;
+    add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, tolerance);
+  }
+
+  /// What the flutes leave is checked with them.
+  void checkReliefCore(const GroundSection& section) {
+    const auto least = [&](const ToothSection& t) { return t.relief && t.relief->core_radius <= section.core_radius; };
+    if (std::none_of(section.teeth.begin(), section.teeth.end(), least)) return;
+    const double core = 2 * section.core_radius, asked = askedCore(job_->cutter, section.x);
+    const double tolerance = job_->cutter.core_tolerance;
+    if (core >= asked - tolerance) return;
+    add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, tolerance,
+        "the height or the swivel of the relief's set-up");
   }
 
   /// From a tooth to the one whose flute bounds its land [rad].
@@ -218,7 +227,8 @@ class Checker {
     return (before + 1 < angles.size() ? angles[before + 1] : 2 * units::kPi) - angles[before];
   }
 
-  void add(ReasonKind kind, double x, int tooth, Unit unit, double value, double limit, double low = 0) {
+  void add(ReasonKind kind, double x, int tooth, Unit unit, double value, double limit, double low = 0,
+           const char* detail = "") {
     const auto same = [&](const Reason& r) { return r.kind == kind; };
     if (std::any_of(reasons_.begin(), reasons_.end(), same)) return;
     Reason reason;
@@ -229,6 +239,7 @@ class Checker {
     reason.value = value;
     reason.limit = limit;
     reason.low = low;
+    reason.detail = detail;
     reasons_.push_back(std::move(reason));
   }
 

@@ -1,6 +1,7 @@
 #include "geometry/relief_setup.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/quantity.h"
 #include "geometry/relief_section.h"
 #include "geometry/tooth_land.h"
@@ -106,6 +107,25 @@ double reachNeeded(const ReliefPath& path, double x, const Over& over) {
   return std::numeric_limits<double>::infinity();
 }
 
+/// What a relief leaves of core and next teeth, and whether it is to be refused for that.
+void judge(const Lands& lands, const Reliefs& relief, ReliefSetup& setup) {
+  const CutterGeometry& c = lands.cutter().cutter().geometry();
+  setup.next_edge = std::numeric_limits<double>::infinity();
+  lands.visit([&](const Lands::Land& land) {
+    const ReliefSection measured = measureRelief(lands.cutter(), land.section, land.tooth, relief);
+    setup.next_edge = std::min(setup.next_edge, measured.next_edge);
+    const double core = 2 * measured.core_radius, least = askedCore(c, land.section.x) - c.core_tolerance;
+    if (core >= std::min(least, 2 * land.section.core_radius)) return;
+    setup.refused = "the wheel leaves a core of " + figure(core, Unit::kMetre) +
+                    " at X = " + figure(land.section.x, Unit::kMetre) + "; allowed: from " +
+                    figure(least, Unit::kMetre);
+  });
+  if (setup.next_edge >= kNextEdgeMargin) return;
+  setup.refused = setup.next_edge < 0
+                      ? "the wheel reaches " + figure(-setup.next_edge, Unit::kRadian) + " beyond the next edge"
+                      : "the wheel comes within " + figure(setup.next_edge, Unit::kRadian) + " of the next edge";
+}
+
 /// A swivel tried out.
 ReliefSetup tried(const Lands& lands, const ReliefRequest& request, double swivel) {
   const ConicalCutter& cone = lands.cutter().cutter();
@@ -146,17 +166,7 @@ ReliefSetup tried(const Lands& lands, const ReliefRequest& request, double swive
   }
   wheel.height = setup.height = ReliefPath::heightFor(cone, request.start, wheel, wheel.width / 2 - setup.width);
   const ReliefPath final_path(cone, request.start, wheel);
-  const Reliefs sweep{{reliefSweep(cone, final_path, wheel, request.edge)}};
-  setup.next_edge = infinity;
-  lands.visit([&](const Lands::Land& land) {
-    const ReliefSection measured = measureRelief(lands.cutter(), land.section, land.tooth, sweep);
-    setup.next_edge = std::min(setup.next_edge, measured.next_edge);
-  });
-  if (!(setup.next_edge >= kNextEdgeMargin)) {
-    setup.refused = setup.next_edge < 0
-                        ? "the wheel reaches " + figure(-setup.next_edge, Unit::kRadian) + " beyond the next edge"
-                        : "the wheel comes within " + figure(setup.next_edge, Unit::kRadian) + " of the next edge";
-  }
+  judge(lands, {{reliefSweep(cone, final_path, wheel, request.edge)}}, setup);
   return setup;
 }
 

@@ -30,7 +30,8 @@ struct ReliefSetup {
 };
 
 /// Finds swivel and height for a relief that reaches over the land of every tooth all along the flute, keeps clear of
-/// the next tooth, and leaves a clearance up to the land's end. Takes some ten milliseconds.
+/// the next tooth, leaves the core within its tolerance, and a clearance up to the land's end. Takes some ten
+/// milliseconds.
 /// @param cutter the flutes.
 ReliefSetup findReliefSetup(const GroundCutter& cutter, const ReliefRequest& request);
 

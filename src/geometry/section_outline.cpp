@@ -16,7 +16,8 @@ namespace grinder {
 namespace {
 
 constexpr double kNearFloor = 1e-9;              ///< above a flute's floor [m]
-constexpr int kHeelHalvings = 30;                ///< to where a land meets the flute behind it
+constexpr int kHeelRings = 16;                   ///< between which a land may meet the flute behind it
+constexpr int kHeelHalvings = 26;                ///< to where, between two of them
 constexpr double kBelowEdgeCircle = 1 - 1e-4;    ///< of the radius, where a relief is looked at first
 constexpr std::uintmax_t kMaxMeetingSteps = 60;  ///< to where two walls meet
 
@@ -209,17 +210,22 @@ class Outliner {
     return outer;
   }
 
-  /// The radius at which the relieved land ends in the flute behind it; nothing if a body is not relieved up to there.
+  /// The radius at which the relieved land, on the way inward, first meets the flute behind it, at the latest at its
+  /// floor; nothing if a body is not relieved.
   std::optional<double> heelOf(std::size_t from, std::size_t to) {
-    if (!relieved(from, to, blank_ * kBelowEdgeCircle)) return std::nullopt;
+    const double top = blank_ * kBelowEdgeCircle, lowest = std::max(walls(from).core(), walls(to).core());
+    if (!relieved(from, to, top)) return std::nullopt;
     const auto gap = [&](double r) {
       const auto at = relieved(from, to, r);
       if (!at) return blank_;
       return rightHand() ? at->angle - low(to, r) : high(from, r) - at->angle;
     };
-    const double lowest = std::max(walls(from).core(), walls(to).core());
-    if (!(gap(blank_ * kBelowEdgeCircle) < 0) || !(gap(lowest) >= 0)) return std::nullopt;
-    double outer = blank_ * kBelowEdgeCircle, inner = lowest;
+    double outer = top, inner = top;
+    for (int i = 1; i <= kHeelRings && gap(inner) < 0; ++i) {
+      outer = inner;
+      inner = top + (lowest - top) * i / kHeelRings;
+    }
+    if (inner == top) return std::nullopt;
     for (int i = 0; i < kHeelHalvings; ++i) {
       const double middle = (outer + inner) / 2;
       (gap(middle) < 0 ? outer : inner) = middle;

@@ -308,11 +308,13 @@ double shankCut(const CutterGeometry& cutter) {
   return std::max(0.0, cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length));
 }
 
+double askedCore(const CutterGeometry& cutter, double x) noexcept {
+  return cutter.core_diameter + (cutter.core_diameter_end - cutter.core_diameter) * x / cutter.flute_length;
+}
+
 double askedDepth(const GrindJob& job, double x) {
   const CutterGeometry& c = job.cutter;
-  const double at_end = (c.end_diameter - c.core_diameter) / 2;
-  const double radius = c.end_diameter / 2 + c.flute_length * std::tan(c.cone_angle);  // at the flute's end
-  return at_end + (radius - c.core_diameter_end / 2 - at_end) * x / c.flute_length;
+  return c.end_diameter / 2 + x * std::tan(c.cone_angle) - askedCore(c, x) / 2;
 }
 
 }  // namespace grinder

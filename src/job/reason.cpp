@@ -49,7 +49,7 @@ class Writer {
       case ReasonKind::kCoreSize:
         return name("cutter.core_diameter") + ", " + name("cutter.core_diameter_end") + ": the core is " + value() +
                " at X = " + x() + "; allowed: within " + low() + " of " + limit() + "; change " +
-               name("process.depth") + " or " + name("process.depth_end");
+               (r_.detail.empty() ? name("process.depth") + " or " + name("process.depth_end") : r_.detail);
       case ReasonKind::kLand:
         return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
                ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");

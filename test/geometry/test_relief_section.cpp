@@ -177,6 +177,41 @@ double clearanceAt(const Stroke& relief, double x, double radius, double edge, d
   return std::atan(fall / (10e-6 * radius));
 }
 
+/// The angle behind an edge from which on the flute takes more than the relief.
+double heelOf(const Stroke& relief, const Stroke& flute, double x, double edge, double hand) {
+  const auto on_land = [&](double behind) {
+    return flute.left(x, edge + hand * behind) > relief.left(x, edge + hand * behind);
+  };
+  double high = 0;
+  while (on_land(high)) high += 0.25 * kDegree;
+  double low = high - 0.25 * kDegree;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = (low + high) / 2;
+    (on_land(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// From an edge to a place behind it.
+double distanceTo(double radius, double r, double behind) {
+  return std::hypot(r * std::cos(behind) - radius, r * std::sin(behind));
+}
+
+/// The least radius that a stroke leaves in a section.
+double coreOf(const Stroke& stroke, double x) {
+  const double step = 2 * kDegree;
+  double best = 0;
+  for (double angle = 0; angle < units::kTurn; angle += step) {
+    if (stroke.left(x, angle) < stroke.left(x, best)) best = angle;
+  }
+  double low = best - step, high = best + step;
+  for (int i = 0; i < 40; ++i) {
+    const double third = (high - low) / 3;
+    stroke.left(x, low + third) < stroke.left(x, high - third) ? high -= third : low += third;
+  }
+  return stroke.left(x, (low + high) / 2);
+}
+
 // The land is gone through in steps: what is left of it by the relief, and by the next tooth's flute.
 TEST(ReliefSection, IsWhatTheWheelsLeave) {
   for (const Tool& tool :
@@ -195,19 +230,9 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
       EXPECT_NEAR(measured.edge_radius, std::min(section.radius, left(relief, 0)), 5e-9);
       EXPECT_NEAR(*measured.clearance, clearanceAt(relief, x, section.radius, edge, tool.hand, begin), 0.01 * kDegree);
 
-      // The heel, from where the flute takes more than the relief.
-      double low = 0, high = 0;
-      while (left(flute, low) > left(relief, low)) low += 0.25 * kDegree;
-      high = low, low -= 0.25 * kDegree;
-      for (int i = 0; i < 40; ++i) {
-        const double middle = (low + high) / 2;
-        (left(flute, middle) > left(relief, middle) ? low : high) = middle;
-      }
-      const double r = left(relief, low);
+      const double low = heelOf(relief, flute, x, edge, tool.hand), r = left(relief, low);
       ASSERT_LT(r, section.radius);
-      const auto distance = [&](double from) {
-        return std::hypot(r * std::cos(low - from) - section.radius, r * std::sin(low - from));
-      };
+      const auto distance = [&](double from) { return distanceTo(section.radius, r, low - from); };
       ASSERT_TRUE(measured.heel && measured.land && measured.land_end_clearance);
       EXPECT_NEAR(*measured.heel, distance(0), 1e-6);
       EXPECT_NEAR(*measured.land, distance(std::max(0.0, begin)), 1e-6);
@@ -221,7 +246,8 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
 // The outline follows the relief from the edge to the heel, and the solid is closed over it.
 TEST(ReliefSection, TheOutlineAndTheSolidHaveIt) {
   for (const Tool& tool :
-       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2)}) {
+       {Tool("jobs/taper_d6_t6.yaml", 10, 20, 3, -1.3), Tool("jobs/left_hand_d8_t3.yaml", 12, 30, 6, -2),
+        Tool("jobs/roughing_d10_t4.yaml", 24, 25, 4, -2)}) {
     const double length = tool.job.cutter.flute_length, x = 0.4 * length;
     const OutlineGrid grid{tool.job.tooth_angles.size(), 20, 12};
     const auto outline = sectionOutline(tool.relieved, x, tool.cone.radius(x), grid);
@@ -289,6 +315,33 @@ TEST(ReliefSection, EveryToothHasTheClearanceBehindItsOwnEdge) {
   }
 }
 
+// A steep relief that is wide takes some of the next flute's floor, too. The land still ends where the flute's wall
+// first comes through the relief, or, where that is ground away, at what the relief leaves of it at the floor.
+TEST(ReliefSection, OnTheFloorOfTheNextFluteTakesTheCoreAndLeavesTheHeel) {
+  struct Case {
+    double clearance, swivel, width, contact;
+    bool below_the_core;
+  };
+  for (const Case& c :
+       {Case{24, 25, 4, -2, true}, Case{24, 40, 4, -2, false}, Case{18, 40, 8, -2, true}, Case{30, 25, 4, -1, true}}) {
+    const Tool tool("jobs/roughing_d10_t4.yaml", c.clearance, c.swivel, c.width, c.contact);
+    const Stroke relief = tool.reliefStroke(), flute = tool.nextFlute();
+    for (const double part : {0.0, 1.0}) {
+      const double x = part * tool.job.cutter.flute_length;
+      const GroundSection section = tool.relieved.section(x);
+      const ReliefSection measured = section.teeth[0].relief.value();
+      const double core = coreOf(relief, x), of_flutes = coreOf(flute, x), edge = *section.teeth[0].edge;
+      EXPECT_EQ(core < of_flutes, c.below_the_core);
+      EXPECT_NEAR(measured.core_radius, core, 10e-9);
+      EXPECT_NEAR(section.core_radius, std::min(core, of_flutes), 10e-9);
+      const double behind = heelOf(relief, flute, x, edge, tool.hand);
+      ASSERT_TRUE(measured.heel);
+      EXPECT_NEAR(*measured.heel, distanceTo(section.radius, relief.left(x, edge + tool.hand * behind), behind), 1e-6);
+      EXPECT_GT(measured.next_edge, 0);
+    }
+  }
+}
+
 /// A relief that reaches the next edge is seen, and one that ends before the heel.
 TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
   const Tool wide("jobs/taper_d6_t6.yaml", 10, 25, 6, -2.5), narrow("jobs/left_hand_d8_t3.yaml", 12, 30, 3, 0);
@@ -300,6 +353,11 @@ TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
   const ReliefSection short_of = narrow.relieved.section(0).teeth[0].relief.value();
   EXPECT_FALSE(short_of.heel);
   EXPECT_GT(short_of.next_edge, 0);
+  // That it is deeper than the flutes makes no difference: some of the land stands behind it.
+  const Tool deep("jobs/left_hand_d8_t3.yaml", 30, 40, 4, -1);
+  const GroundSection deep_section = deep.relieved.section(0);
+  EXPECT_LT(deep_section.core_radius, deep.cutter.section(0).core_radius - 50e-6);
+  EXPECT_FALSE(deep_section.teeth[0].relief.value().heel);
 }
 
 }  // namespace test_relief_section

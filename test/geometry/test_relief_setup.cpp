@@ -94,6 +94,23 @@ TEST(ReliefSetup, SaysWhatIsInTheWay) {
   EXPECT_NE(findReliefSetup(long_land.cutter, long_land.request).refused.find("clearance is lost"), std::string::npos);
 }
 
+// A steep relief on the way to the heel. What it takes of the core depends on the swivel.
+TEST(ReliefSetup, KeepsTheCore) {
+  Tool tool("jobs/roughing_d10_t4.yaml", 28, 8);
+  const double least = tool.job.cutter.core_diameter - tool.job.cutter.core_tolerance;
+  const ReliefSetup setup = findReliefSetup(tool.cutter, tool.request);
+  ASSERT_EQ(setup.refused, "");
+  const auto core_with = [&](const ReliefSetup& with, double x) {
+    return 2 * tool.with({{tool.sweepOf(with)}}).section(x).core_radius;
+  };
+  for (int i = 0; i <= 10; ++i) EXPECT_GT(core_with(setup, tool.job.cutter.flute_length * i / 10), least);
+  tool.request.asked = tool.request.near;
+  const ReliefSetup nearest = findReliefSetup(tool.cutter, tool.request);
+  EXPECT_NE(nearest.refused.find("the wheel leaves a core of 6.2"), std::string::npos) << nearest.refused;
+  EXPECT_NE(nearest.refused.find("allowed: from 6.79 mm"), std::string::npos) << nearest.refused;
+  EXPECT_NEAR(core_with(nearest, 0), 6.2 * kMillimetre, 0.01 * kMillimetre);
+}
+
 // A second relief goes on where the first is as wide as asked.
 TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   Tool tool("jobs/roughing_d10_t4.yaml", 10, 6);

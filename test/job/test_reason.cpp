@@ -234,6 +234,13 @@ const Row kRows[]{
     {Kind::kCoreSize, "CoreSize", Unit::kMetre, 0.00713, 0.0068, [](Reason& r) { r.low = 2e-5; },
      "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 7.13 mm at X = 0 mm; allowed: within 0.02 mm "
      "of 6.8 mm; change process.depth_mm or process.depth_end_mm"},
+    {Kind::kCoreSize, "CoreSizeOfARelief", Unit::kMetre, 0.00663, 0.0068,
+     [](Reason& r) {
+       r.low = 2e-5;
+       r.detail = "the height";
+     },
+     "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 6.63 mm at X = 0 mm; allowed: within 0.02 mm "
+     "of 6.8 mm; change the height"},
     {Kind::kLand, "Land", Unit::kRadian, 0.75 * kPi, 0.5 * kPi, [](Reason& r) { r.x = 0.0123; },
      "no land is left on tooth 1 at X = 12.3 mm: its flute takes 135 deg, its pitch is 90 deg; lower "
      "process.wheel.width_mm or process.depth_mm"},

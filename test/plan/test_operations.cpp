@@ -203,6 +203,33 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(kindsOf(checkOf(wrong)).count(ReasonKind::kUndercut)) << text(checkOf(wrong).reasons);
 }
 
+// A steep and wide one goes over the next flute's floor. How deep it may go there is for the core's tolerance to say.
+TEST(Operations, AReliefThatTakesTheCoreIsRefused) {
+  GrindJob job = test_support::jobOf("roughing_d10_t4");
+  job.cutter.clearance = 24 * kDegree;
+  job.cutter.clearance_tolerance = 0.5 * kDegree;
+  GrindProcess relief;
+  relief.kind = OperationKind::kPrimaryRelief;
+  relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 3e-3;
+  relief.wheel_diameter = 100e-3, relief.wheel_width = 4e-3;
+  relief.setup_swivel = 25 * kDegree;
+  const auto with_contact = [&](double contact) {
+    const ReliefWheel wheel{relief.wheel_diameter / 2, 0, relief.wheel_width, relief.setup_swivel, 0};
+    relief.setup_height = ReliefPath::heightFor(ConicalCutter(job.cutter), {job.cutter.clearance}, wheel, contact);
+    GrindJob with = job;
+    with.operations = {{job.process, {}}, {relief, {}}};
+    return checkOf(with.ofOperation(1));
+  };
+  EXPECT_TRUE(with_contact(-1e-3).reasons.empty());
+  const CutterCheck deep = with_contact(-2e-3);
+  ASSERT_EQ(kindsOf(deep), std::set<ReasonKind>{ReasonKind::kCoreSize}) << text(deep.reasons);
+  EXPECT_EQ(deep.figures.core_diameter[0], deep.reasons.front().value);
+  EXPECT_LT(deep.reasons.front().value, job.cutter.core_diameter - 0.5e-3);
+  EXPECT_NE(text(deep.reasons).find("change the height or the swivel of the relief's set-up"), std::string::npos);
+  job.cutter.core_tolerance = 0.6e-3;
+  EXPECT_TRUE(with_contact(-2e-3).reasons.empty());
+}
+
 // A wheel 100 x 8 whose rim has the edge 1 mm from its lower face takes 93 of the 90 deg to the next one.
 TEST(Operations, AReliefAsWideAsThePitchIsRefused) {
   GrindJob job = test_support::jobOf("roughing_d10_t4");

@@ -15,7 +15,8 @@ struct ReliefSection {
   std::optional<double> land_end_clearance;  ///< of the first relief there [rad]
   /// From the edge to where the land meets the next flute; nothing if a relief ends before [m].
   std::optional<double> heel;
-  double next_edge = 0;  ///< minimum distance of the wheels from the next tooth's rake face; negative if cut [rad]
+  double core_radius = 0;  ///< least that the reliefs leave, the blank's if that is less [m]
+  double next_edge = 0;    ///< minimum distance of the wheels from the next tooth's rake face; negative if cut [rad]
 };
 
 /// What is measured of a tooth in a section. What does not exist there, as the land of a tooth whose land is ground
@@ -53,7 +54,7 @@ constexpr double kMinCore = 1e-6;  ///< radius of a core that still holds the te
 struct GroundSection {
   double x = 0;            ///< [m]
   double radius = 0;       ///< of the blank [m]
-  double core_radius = 0;  ///< least that is left; the blank's where nothing is removed [m]
+  double core_radius = 0;  ///< least that flutes and reliefs leave; the blank's where nothing is removed [m]
   std::vector<ToothSection> teeth;
 };
 
@@ -92,8 +93,8 @@ class GroundCutter {
   /// @param x of the section, where the blank has a radius [m].
   GroundSection section(double x) const;
 
-  /// The area that is removed in a section [m^2].
-  double areaRemoved(const GroundSection& section) const { return areaRemoved(section.x, section.core_radius); }
+  /// The area that the flutes remove in a section [m^2].
+  double areaRemoved(const GroundSection& section) const;
 
   /// Where all flutes are complete, to 10 um.
   /// @param from,to ends of the range that is looked at [m].

@@ -139,6 +139,10 @@ std::vector<double> passDepths(const GrindProcess& process);
 /// The same for another depth of the last pass [m].
 std::vector<double> passDepths(const GrindProcess& process, double deepest);
 
+/// The diameter of the core that is asked at `x`: on a straight line between those at the flute's ends [m].
+/// @param x from the small end [m].
+double askedCore(const CutterGeometry& cutter, double x) noexcept;
+
 /// The depth of the flute that a job asks for at `x`, radial: at each end that of the core it asks for there, or else
 /// by its depths [m]. @param x from the small end [m].
 double askedDepth(const GrindJob& job, double x);

@@ -54,7 +54,8 @@ enum class ReasonKind : std::uint8_t {
   kSwivel,       ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
   kUnevenRake,   ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
   kSpiral,       ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
-  kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`
+  kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`; `detail`, if there is
+                 ///< one, says what to change of a relief
   kChordalRake,  ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
   kClearance,    ///< the clearance ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kUndercut,     ///< a relief takes `value` of the edge's radius, allowed `limit`; at `x` of `tooth`

@@ -125,6 +125,9 @@ std::optional<double> GroundCutter::chordalRake(const Flute& flute, double x, do
 double GroundCutter::coreRadius(double x) const {
   double min = cutter_.radius(x);
   for (const Flute& flute : flutes_) min = std::min(min, coreRadius(flute, x));
+  for (const Reliefs& reliefs : reliefs_) {
+    for (const Relief& relief : reliefs) min = std::min(min, leastRadius(relief, x, cutter_.radius(x)));
+  }
   return min;
 }
 
@@ -140,16 +143,15 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
     std::vector<Arc> arcs;
     for (const GroundTooth& tooth : teeth_) {
       if (const auto& a = of_flutes[tooth.flute]) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
+      for (const Relief& relief : reliefs_[tooth.flute]) {
+        for (const WheelSweep& sweep : relief) {
+          if (const auto a = sweep.arc(x, r)) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
+        }
+      }
     }
     area += covered(arcs) * r * depth * 2 * u / kRings;
   }
   return area;
-}
-
-double GroundCutter::areaRemoved(const GroundSection& section) const {
-  double depth = 0;
-  for (const ToothSection& tooth : section.teeth) depth = std::max(depth, tooth.depth);
-  return areaRemoved(section.x, section.radius - depth);
 }
 
 GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {

@@ -93,8 +93,8 @@ class GroundCutter {
   /// @param x of the section, where the blank has a radius [m].
   GroundSection section(double x) const;
 
-  /// The area that the flutes remove in a section [m^2].
-  double areaRemoved(const GroundSection& section) const;
+  /// The area that is removed in a section [m^2].
+  double areaRemoved(const GroundSection& section) const { return areaRemoved(section.x, section.core_radius); }
 
   /// Where all flutes are complete, to 10 um.
   /// @param from,to ends of the range that is looked at [m].

@@ -166,7 +166,7 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   job_offset_ = program.run().offset;
   in_journal_ = job.in_journal;
   wheel_.startJob(job.wheel);
-  limit_check_.restart();
+  limit_check_.restart(program.terms());
   sample_.fault = LoopFault{};
   sample_.interlock = Interlock::kNone;
   sample_.job_ended = false;  // for a previous job whose sample was lost

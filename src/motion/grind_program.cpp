@@ -107,6 +107,19 @@ std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, c
   return helices;
 }
 
+Axes termsOf(const ValidJob& job, const std::vector<Helix>& helices, const FeedSchedule::Stroke& stroke) {
+  double turn = 0;
+  for (const Helix& helix : helices) {
+    turn = std::max(turn, std::abs(helix.curve.a(0)));
+    // X is rounded, too.
+    for (const double x : {stroke.from, stroke.to}) turn = std::max(turn, std::abs(helix.curve.slope(x) * x));
+  }
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) turn = std::max(turn, std::abs(job.strokeLaw(tooth).a));
+  Axes terms = Axes::Zero();
+  terms[kA] = turn;
+  return terms;
+}
+
 }  // namespace
 
 GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run)
@@ -116,6 +129,7 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       stroke_(strokeOf(job)),
       helices_(helicesOf(job, stroke_, machine)),
       helix_of_tooth_(job->tooth_angles.size()),
+      terms_(termsOf(job, helices_, stroke_)),
       clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process.clearance) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
     helix_of_tooth_[tooth] = indexOf(helices_, job.cutterOf(static_cast<int>(tooth)).spiral_angle);

@@ -36,7 +36,6 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const 
   const Axes& p = setpoint.position;
   if (seen_++ == 0) {
     last_ = p;
-    max_ = Axes::Zero();
     for (Axes& end : ends_) end = p;
   }
   if (slow_down_ < 1 && setpoint.cycle % 2 == 1) slowPastDown();
@@ -103,7 +102,7 @@ void LimitCheck::checkPairEnd(const Setpoint& setpoint) noexcept {
 void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    // A position is the sum of a few numbers no larger than the largest so far, each rounded to half an epsilon.
+    // A position is the sum of a few numbers no larger than that, each rounded to half an epsilon.
     const double noise = roundings_ * 2 * kEpsilon * max_[axis] * rounding;
     if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);

@@ -34,6 +34,7 @@ PlanChecks::PlanChecks(JobPlan& plan)
       period_(program_.machine().period),
       deviation_factor_(overrideFactor(program_)),
       check_(program_.machine().limits, period_) {
+  check_.restart(program_.terms());
   plan.move_ends.assign(program_.moves().size(), 0);
   deviation_.kind = ReasonKind::kTolerance;
   deviation_.unit = Unit::kDeviationMetre;

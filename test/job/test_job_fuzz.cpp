@@ -338,6 +338,7 @@ class Meddler {
 /// Runs a stream to its end, or for long enough.
 void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
   LimitCheck check(stream.program().machine().limits, stream.program().machine().period);
+  check.restart(stream.program().terms());
   Meddler meddler(dice);
   Setpoint p;
   for (int i = 0; i < 6000 && !stream.finished(); ++i) {

@@ -259,6 +259,34 @@ TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
   }
 }
 
+// A cylinder's A takes all of its jerk limit. With a lead, its positions are small between turns that are not, from
+// which they are computed: their rounding is that of the turns.
+TEST(JobPlan, LetsTheRoundingPassOfALead) {
+  GrindJob job = paperJob();
+  job.cutter.end_diameter = job.cutter.shank_diameter = 0.3e-3;
+  job.cutter.cone_angle = 0;
+  job.cutter.spiral_angle = -60 * units::kDegree;
+  job.cutter.flute_length = 0.41e-3;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = 0.285e-3;
+  job.process.depth = job.process.infeed = 7.5e-6;
+  job.process.clearance = 0.1e-3;
+  job.process.overtravel_end = job.process.overtravel_shank = 0;
+  job.process.feed = 1e-3;
+  job.process.direction = StrokeDirection::kToEnd;
+  job.interpolation.rotary_scale = 0.1e-3;
+  Machine machine = test_support::plainMachine();
+  machine.limits.max_velocity << 0.02, 0.02, 0.02, 3;
+  machine.limits.max_acceleration << 0.2, 0.2, 0.2, 30;
+  machine.limits.max_jerk << 5, 5, 5, 300;
+  machine.park << 0.2e-3, 0.2e-3, 0, 0;
+  for (int i = 0; i < 20; ++i) {
+    job.process.setup_lead = (0.3 + i * 1e-3) * 1e-3;
+    machine.period = (0.7 + i * 1e-3) * 1e-3;
+    const JobPlan plan = planOf(job, machine);
+    EXPECT_TRUE(plan.good()) << i << ": " << textOf(plan);
+  }
+}
+
 /// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.
 RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
   const Work work = *test_support::work(2000);

@@ -142,6 +142,7 @@ RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxe
   const Work work = *test_support::work(kCycles);
   SetpointStream stream(work.program());
   LimitCheck check(work.machine.limits, work.machine.period);
+  check.restart(stream.program().terms());
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
   std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
   const double share = *logUniform(1e-3, 0.3);

@@ -80,6 +80,10 @@ class GrindProgram {
   double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
   double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
 
+  /// The size of the largest numbers from which the positions of strokes are computed, where these may be smaller: A is
+  /// a difference of turns, those up to X = 0 and the tooth's. [m], A [rad]
+  const Axes& terms() const noexcept { return terms_; }
+
   /// Y at which the wheel is clear of the workpiece over the whole stroke [m].
   double clearanceHeight() const noexcept { return clearance_y_; }
 
@@ -93,6 +97,7 @@ class GrindProgram {
   FeedSchedule::Stroke stroke_;
   std::vector<Helix> helices_;
   std::vector<std::size_t> helix_of_tooth_;
+  Axes terms_;
   double clearance_y_;
   std::vector<Move> moves_;
 };

@@ -44,9 +44,11 @@ class LimitCheck {
   static constexpr double kUnplannedRoundings = 3;
 
   /// Discards the history: the axes are assumed to be at rest before the next setpoint.
-  void restart() noexcept {
+  /// @param terms sizes of numbers from which the positions to come are computed, see GrindProgram::terms().
+  void restart(const Axes& terms = Axes::Zero()) noexcept {
     seen_ = 0;
     slow_down_ = 1;
+    max_ = terms;
   }
 
   /// For axes that stood still for a while and continue at a fraction of their speed, see SCurveProfile::slowDown().
@@ -84,7 +86,7 @@ class LimitCheck {
   std::uint64_t seen_ = 0;
   double slow_down_ = 1;  ///< for the next pair
   Axes last_ = Axes::Zero();
-  Axes max_ = Axes::Zero();  ///< maximum magnitude of the position so far
+  Axes max_ = Axes::Zero();  ///< maximum magnitude of the position so far, and of its terms
   Axes ends_[3];             ///< the last pair ends, newest first
   Axes velocity_ = Axes::Zero();
   Axes acceleration_ = Axes::Zero();

@@ -59,7 +59,7 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   job.process.feed = 0.1e-3 / 60;
   const Machine machine = plainMachine();
   int looks = 0;
-  const JobPlan plan = planJob(job, machine, machine.park, {}, [&](double) { return ++looks > 0; });
+  const JobPlan plan = planJob(ValidJob(job), machine, machine.park, {}, [&](double) { return ++looks > 0; });
   EXPECT_EQ(plan.fault, PlanFault::kTooLong);
   EXPECT_EQ(plan.program, nullptr);
   EXPECT_EQ(looks, 0);
@@ -79,7 +79,8 @@ TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {
   EXPECT_TRUE(planOf(paperJob(), machine).good());
   machine.max_job_duration = whole - 2 * machine.period;
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(paperJob(), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan =
+      planJob(ValidJob(paperJob()), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kTooLong);
   ASSERT_EQ(plan.reasons.size(), 1u);
   EXPECT_TRUE(contains(textOf(plan), "max_job_duration = ")) << textOf(plan);
@@ -100,7 +101,7 @@ TEST(JobPlan, CountsOnlyThePassesThatAreLeft) {
     job.process.order = order;
     EXPECT_EQ(planOf(job, machine).fault, PlanFault::kTooLong);
     const ToothPass half = order == GrindOrder::kToothMajor ? ToothPass{1, 0} : ToothPass{1, 2};
-    const JobPlan plan = planJob(job, machine, {machine.park, half});
+    const JobPlan plan = planJob(ValidJob(job), machine, {machine.park, half});
     EXPECT_TRUE(plan.good()) << textOf(plan);
   }
 }
@@ -114,7 +115,7 @@ TEST(JobPlan, AsksItsWatchAllTheTime) {
   std::uint64_t longest = 0;
   std::vector<double> done;
   const JobPlan plan = planJob(
-      job, machine, machine.park, [&](const Setpoint&) { ++visited; },
+      ValidJob(job), machine, machine.park, [&](const Setpoint&) { ++visited; },
       [&](double part) {
         longest = std::max(longest, visited - seen);
         seen = visited;
@@ -136,7 +137,7 @@ TEST(JobPlan, IsGivenUpByItsWatch) {
   std::uint64_t visited = 0;
   int looks = 0;
   const JobPlan plan = planJob(
-      job, machine, machine.park, [&](const Setpoint&) { ++visited; }, [&](double) { return ++looks < 3; });
+      ValidJob(job), machine, machine.park, [&](const Setpoint&) { ++visited; }, [&](double) { return ++looks < 3; });
   EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
   EXPECT_EQ(looks, 3);
   EXPECT_EQ(visited, plan.statistics.setpoints);
@@ -179,8 +180,8 @@ TEST(JobPlan, GoesNoFartherTowardAnApexThanItsStepsHold) {
     ASSERT_TRUE(validate(job).empty());
     for (const Machine& machine : {plainMachine(), strongMachine()}) {
       bool finite = true;
-      const JobPlan plan =
-          planJob(job, machine, machine.park, [&](const Setpoint& p) { finite &= p.position.isFinite().all(); });
+      const JobPlan plan = planJob(ValidJob(job), machine, machine.park,
+                                   [&](const Setpoint& p) { finite &= p.position.isFinite().all(); });
       EXPECT_TRUE(finite);
       EXPECT_EQ(plan.good(), plan.reasons.empty());
       EXPECT_FALSE(contains(textOf(plan), "nan")) << textOf(plan);
@@ -223,7 +224,7 @@ TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
   GrindJob job = steepJob();
   job.process.feed = 600 * units::kMillimetrePerMinute;
   const auto deviationAt = [&](double override_fraction) {
-    SetpointStream stream(GrindProgram(job, strongMachine(), strongMachine().park));
+    SetpointStream stream(GrindProgram(ValidJob(job), strongMachine(), strongMachine().park));
     stream.setFeedOverride(override_fraction);
     const ConicalCutter cutter(job.cutter);
     double max = 0;

@@ -59,7 +59,7 @@ class TestMachine(CommandLine):
             'zero_points': dict.fromkeys('xyza'), 'coolant_on': False, 'spindle_commanded': False, 'coolant_commanded': False,
             'emergency_stop': False, 'wheel_in_work': False, 'swivel_measured': False, 'feed_mm_min': 0,
             'override_percent': 100, 'tooth': None, 'pass': None, 'hold_reason': '', 'fault': '',
-            'journal_error': '', 'last_job': {'name': '', 'finished': True, 'tooth': 1, 'pass': 1, 'end': 'done'}})
+            'journal_error': '', 'last_job': {'name': '', 'operation': '', 'finished': True, 'tooth': 1, 'pass': 1, 'end': 'done'}})
 
     def test_disable_and_enable(self):
         self.grind(0, 'disable')
@@ -137,8 +137,9 @@ class TestMachine(CommandLine):
                          ('reamer.yaml', 'secondary relief', True, 'done'))
         kept = self.path('ros/flute_grinder/history/grinder')
         history = pathlib.Path(rospy.get_param('/grinder/history'))
-        gc.poll(lambda: any(last['digest'] in path.read_text() for path in history.glob('*.json')), 'the record')
-        shutil.copytree(history, kept)
+        record = gc.poll(lambda: next((path for path in history.glob('**/*.json') if last['digest'] in path.read_text()), None),
+                         'the record')
+        shutil.copytree(record.parent, kept)
         with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
             self.assertRegex(self.grind(2, 'run', job).stderr, re.escape(missing) + r'secondary \([-0-9]{10} [:0-9]{8}\)\n')
 
@@ -171,7 +172,7 @@ class TestMachine(CommandLine):
         self.assertRegex(printed, r'(?m)^coolant +on$')
         self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 10 %$')
         # The journal's disk may be a moment behind.
-        last_job = (r'(?m)^last job +paper\.yaml: D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth; '
+        last_job = (r'(?m)^last job +paper\.yaml \(D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth\): '
                     r'tooth 1, pass 1 not finished, X \d+\.\d{3} mm \([0-9a-f]{12}\)$')
         gc.poll(lambda: re.search(last_job, self.grind(0, 'status').stdout), last_job)
         self.grind(0, 'retract')

@@ -317,7 +317,7 @@ class TestCommand(Kept):
     def test_json(self):
         done = self.grind('--json')
         first, second = json.loads(done.stdout)
-        self.assertEqual(list(first), ['file', 'started', 'job', 'tool', 'outcome', 'reason', 'strokes', 'passes',
+        self.assertEqual(list(first), ['file', 'started', 'job', 'operation', 'tool', 'outcome', 'reason', 'strokes', 'passes',
                                        'duration_s', 'holds', 'verdict', 'verdict_because'])
         self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))
         self.assertEqual([first[key] for key in ('started', 'job', 'outcome', 'reason', 'strokes', 'passes', 'holds')],

@@ -127,7 +127,7 @@ TEST_F(Operation, ThatRunsIsNamed) {
   stage.change([&] { stage.progress.tooth = 4, stage.progress.pass = 11; });
   stage.be(flute_grinder::GrinderState::RUNNING, "running");
   WAIT_FOR(panel.the<QWidget>("other_job").isVisible());
-  EXPECT_EQ(panel.text("other_job").find("Running: taper_reamer_d6_t6.yaml, 3 secondary relief (D 6 mm, "), 0U)
+  EXPECT_EQ(panel.text("other_job").find("Running: taper_reamer_d6_t6.yaml, secondary relief (D 6 mm, "), 0U)
       << panel.text("other_job");
   EXPECT_NE(panel.label("place").find(", secondary, tooth 5, pass 12"), std::string::npos) << panel.label("place");
   EXPECT_EQ(panel.the<QLabel>("place").toolTip(), "taper_reamer_d6_t6.yaml, 3 secondary relief");

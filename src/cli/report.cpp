@@ -84,7 +84,7 @@ void surveyRun(const std::string& path, const RunFile& run, const std::optional<
                ReportContext& context) {
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
-  if (job) why = reasonWhyNot([&] { strokes.emplace(*job, groundBefore(path, run)); });
+  if (job) why = reasonWhyNot([&] { strokes.emplace(*job, recordedBefore(path, run)); });
   run.visit([&](const RunRow& row) {
     survey.add(row);
     if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
@@ -92,7 +92,7 @@ void surveyRun(const std::string& path, const RunFile& run, const std::optional<
   if (!strokes || !why.empty()) return;
   why = reasonWhyNot([&] {
     strokes->finish();
-    context.tool = toJson(measure(context.file + ", " + run.place() + groundBeforeText(run), *strokes,
+    context.tool = toJson(measure(context.file + ", " + run.place() + recordedBeforeText(run), *strokes,
                                   evenSections(*strokes->job(), kSections)));
   });
 }

@@ -7,7 +7,7 @@
 
 namespace grinder {
 
-std::optional<GroundCutter> groundBefore(const std::string& path, const RunFile& run) {
+std::optional<GroundCutter> recordedBefore(const std::string& path, const RunFile& run) {
   std::optional<GroundCutter> ground;
   for (const std::vector<int>& parts : run.before()) {
     std::optional<RunStrokes> strokes;
@@ -22,7 +22,7 @@ std::optional<GroundCutter> groundBefore(const std::string& path, const RunFile&
   return ground;
 }
 
-std::string groundBeforeText(const RunFile& run) {
+std::string recordedBeforeText(const RunFile& run) {
   if (!run.job() || (*run.job())->operation == 0) return "";
   if (run.before().empty()) return ", what is ahead of it as planned";
   std::string numbers;

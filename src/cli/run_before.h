@@ -12,9 +12,9 @@ namespace grinder {
 /// @param path of the bag. @return nothing if RunFile::before() is empty.
 /// @throw FileError, std::invalid_argument if a run cannot be read, or is not of its job; ReasonError for a job
 ///        without a law of Z.
-std::optional<GroundCutter> groundBefore(const std::string& path, const RunFile& run);
+std::optional<GroundCutter> recordedBefore(const std::string& path, const RunFile& run);
 
 /// Where that comes from, for the reader, to be put behind the run's place; empty for flutes.
-std::string groundBeforeText(const RunFile& run);
+std::string recordedBeforeText(const RunFile& run);
 
 }  // namespace grinder

@@ -95,7 +95,7 @@ Source sourceOf(const SimulateOptions& options) {
                     "; give its job file with --job");
   }
   const ValidJob job = options.job.empty() ? *run->job() : ValidJob(readJobFile(options.job, {}, options.operation));
-  const std::string place = (run->place().empty() ? "" : ", ") + run->place() + groundBeforeText(*run);
+  const std::string place = (run->place().empty() ? "" : ", ") + run->place() + recordedBeforeText(*run);
   return {job, name + place, options.file, std::move(run)};
 }
 
@@ -103,7 +103,7 @@ Source sourceOf(const SimulateOptions& options) {
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
   const ValidJob job = withLaws(source.job);
   if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
-  RunStrokes strokes(job, groundBefore(source.file, *source.run));
+  RunStrokes strokes(job, recordedBefore(source.file, *source.run));
   source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
   return measure(source.name, strokes, at);

@@ -22,12 +22,14 @@ void LoopWatchdog::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!end_.wait_for(lock, kLook, [this] { return ends_; })) {
     const std::uint64_t cycles = loop_.status().cycles;
-    if (cycles != seen) {
+    if (cycles != seen || loop_.hasEnded()) {
       seen = cycles;
       looks = 0;
       finding_ = Finding::kRuns;
     } else if (++looks == kMostLooks) {
+      lock.unlock();
       finding_ = hw_.powerOff() ? Finding::kHangsPowerIsOff : Finding::kHangs;
+      lock.lock();
     }
   }
 }

@@ -27,7 +27,7 @@ void OperationChoice::offer(const std::vector<GrindOperation>& operations) {
   if (several) box_->addItem("choose");
   for (int i = 0; i + 1 < items; ++i) {
     const OperationKind kind = operations[static_cast<std::size_t>(i)].process.kind;
-    box_->addItem(QString::fromStdString(operationText(kind)), toString(kind));
+    box_->addItem(QString::fromStdString(operationEntry(kind)), toString(kind));
   }
   setVisible(several);
 }

@@ -81,7 +81,9 @@ std::string done(MachineEvent event) {
   }
 }
 
-std::string operationText(OperationKind kind) { return format("%d %s", static_cast<int>(kind) + 1, rowOf(kind).words); }
+std::string operationEntry(OperationKind kind) {
+  return format("%d %s", static_cast<int>(kind) + 1, rowOf(kind).words);
+}
 
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal) {
   if (goal.operations.size() < 2 || goal.operation >= countOf<OperationKind>()) return std::nullopt;

@@ -24,7 +24,7 @@ std::string swivelText(const flute_grinder::GrinderState& state);
 std::string done(MachineEvent event);
 
 /// An operation by its number and name, e.g. "2 primary relief".
-std::string operationText(OperationKind kind);
+std::string operationEntry(OperationKind kind);
 
 /// Which of several operations a goal is; nothing if it is the only one.
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal);

@@ -184,7 +184,7 @@ void ProgressBox::showPlace(const GrinderView& view, const flute_grinder::GrindF
   QString hint = name;
   if (operation) {
     rest = toString(*operation) + (", " + rest);
-    hint += ", " + QString::fromStdString(operationText(*operation));
+    hint += ", " + QString::fromStdString(operationEntry(*operation));
   }
   if (name.isEmpty()) rest[0] = rest[0].toUpper();
   showName(*place_, name, name.isEmpty() ? rest : ", " + rest);

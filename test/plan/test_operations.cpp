@@ -203,43 +203,44 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(kindsOf(checkOf(wrong)).count(ReasonKind::kUndercut)) << text(checkOf(wrong).reasons);
 }
 
-// A steep and wide one goes over the next flute's floor. How deep it may go there is for the core's tolerance to say.
-TEST(Operations, AReliefThatTakesTheCoreIsRefused) {
+/// The shipped roughing cutter with a primary relief. @param width,height of its wheel and set-up [m].
+GrindJob roughingWithRelief(double clearance, double width, double swivel, double height) {
   GrindJob job = test_support::jobOf("roughing_d10_t4");
-  job.cutter.clearance = 24 * kDegree;
+  job.cutter.clearance = clearance;
   job.cutter.clearance_tolerance = 0.5 * kDegree;
   GrindProcess relief;
   relief.kind = OperationKind::kPrimaryRelief;
   relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 3e-3;
-  relief.wheel_diameter = 100e-3, relief.wheel_width = 4e-3;
-  relief.setup_swivel = 25 * kDegree;
+  relief.wheel_diameter = 100e-3, relief.wheel_width = width;
+  relief.setup_swivel = swivel, relief.setup_height = height;
+  job.operations = {{job.process, {}}, {relief, {}}};
+  return job.ofOperation(1);
+}
+
+// A steep and wide one goes over the next flute's floor. How deep it may go there is for the core's tolerance to say.
+TEST(Operations, AReliefThatTakesTheCoreIsRefused) {
+  const double clearance = 24 * kDegree, width = 4e-3, swivel = 25 * kDegree;
+  const CutterGeometry cutter = test_support::jobOf("roughing_d10_t4").cutter;
+  double core_tolerance = cutter.core_tolerance;
   const auto with_contact = [&](double contact) {
-    const ReliefWheel wheel{relief.wheel_diameter / 2, 0, relief.wheel_width, relief.setup_swivel, 0};
-    relief.setup_height = ReliefPath::heightFor(ConicalCutter(job.cutter), {job.cutter.clearance}, wheel, contact);
-    GrindJob with = job;
-    with.operations = {{job.process, {}}, {relief, {}}};
-    return checkOf(with.ofOperation(1));
+    const double height =
+        ReliefPath::heightFor(ConicalCutter(cutter), {clearance}, {50e-3, 0, width, swivel, 0}, contact);
+    GrindJob job = roughingWithRelief(clearance, width, swivel, height);
+    job.cutter.core_tolerance = core_tolerance;
+    return checkOf(job);
   };
   EXPECT_TRUE(with_contact(-1e-3).reasons.empty());
   const CutterCheck deep = with_contact(-2e-3);
   ASSERT_EQ(kindsOf(deep), std::set<ReasonKind>{ReasonKind::kCoreSize}) << text(deep.reasons);
   EXPECT_EQ(deep.figures.core_diameter[0], deep.reasons.front().value);
-  EXPECT_LT(deep.reasons.front().value, job.cutter.core_diameter - 0.5e-3);
+  EXPECT_LT(deep.reasons.front().value, cutter.core_diameter - 0.5e-3);
   EXPECT_NE(text(deep.reasons).find("change the height or the swivel of the relief's set-up"), std::string::npos);
-  job.cutter.core_tolerance = 0.6e-3;
+  core_tolerance = 0.6e-3;
   EXPECT_TRUE(with_contact(-2e-3).reasons.empty());
 }
 
 // A wheel 100 x 8 whose rim has the edge 1 mm from its lower face takes 93 of the 90 deg to the next one.
 TEST(Operations, AReliefAsWideAsThePitchIsRefused) {
-  GrindJob job = test_support::jobOf("roughing_d10_t4");
-  job.cutter.clearance = 9 * kDegree;
-  job.cutter.clearance_tolerance = 0.5 * kDegree;
-  GrindProcess relief;
-  relief.kind = OperationKind::kPrimaryRelief;
-  relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 3e-3;
-  relief.wheel_diameter = 100e-3, relief.wheel_width = 8e-3;
-  relief.setup_swivel = 43 * kDegree;
   const auto with_contact = [&](double contact) {
     // Of a cylinder, by the design's closed form: phi' = -14.87 deg.
     const double phi =
@@ -247,11 +248,9 @@ TEST(Operations, AReliefAsWideAsThePitchIsRefused) {
     const double t_y = -std::tan(35 * kDegree) * std::sin(phi), t_z = std::tan(35 * kDegree) * std::cos(phi);
     const double n_x = -t_y * std::cos(43 * kDegree), n_y = t_z * std::sin(43 * kDegree) + std::cos(43 * kDegree);
     const double n_z = -t_y * std::sin(43 * kDegree);
-    relief.setup_height =
+    const double height =
         5e-3 * std::sin(phi) + 50e-3 * n_z / std::hypot(n_x, n_y, n_z) - contact * std::cos(43 * kDegree);
-    GrindJob with = job;
-    with.operations = {{job.process, {}}, {relief, {}}};
-    return checkOf(with.ofOperation(1));
+    return checkOf(roughingWithRelief(9 * kDegree, 8e-3, 43 * kDegree, height));
   };
   const CutterCheck check = with_contact(-3e-3);
   ASSERT_EQ(kindsOf(check), std::set<ReasonKind>{ReasonKind::kNextEdge}) << text(check.reasons);

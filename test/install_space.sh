@@ -23,7 +23,7 @@ g++ -std=c++17 -I include -I /usr/include/eigen3 "$root/examples/4_stream_a_job.
 (cd share/flute_grinder && "$folder/stream") | grep -q '^planned: 8587 setpoints$'
 
 # What a drive plugin includes, and not the drives' own headers.
-[ -f include/flute_grinder/drive/axes_hw.h ]
+[ -f include/flute_grinder/drive/drive.h ]
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
 
 port=${ROS_MASTER_URI##*:}

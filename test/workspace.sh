@@ -38,7 +38,7 @@ make_workspace() {
 
 # The tests first: they depend on all that they need, in a workspace that has nothing yet.
 rm -rf "$workspace/build/test_results"
-make_workspace run_tests_flute_grinder_gtest_flute_grinder_test_robot_hw run_tests_flute_grinder_roslaunch-check \
+make_workspace run_tests_flute_grinder_gtest_flute_grinder_test_drive_clock run_tests_flute_grinder_roslaunch-check \
   run_tests_flute_grinder_rostest_test_node_stand_in.test
 catkin_test_results "$workspace/build/test_results"
 make_workspace

@@ -27,20 +27,20 @@ ros::Duration ControlLoop::awaitCycle() noexcept {
   ros::Duration period = nominal;
   bool waited = false;
   callDrive("wait()", [&] {
-    period = hw_.wait(nominal);
+    period = drive_.wait(nominal);
     waited = true;
   });
-  return waited ? period : hw_.RobotHW::wait(nominal);
+  return waited ? period : drive_.Drive::wait(nominal);
 }
 
-void ControlLoop::writeOff(const ros::Time& time) noexcept {
-  drive_command_ = DriveCommand{};
-  drive_.setCommand(drive_command_);
-  if (has_positions_) callDrive("write()", [&] { hw_.write(time, ros::Duration(config_.machine.period)); });
+void ControlLoop::writeOff(const DriveCycle& cycle) noexcept {
+  DriveCommand off;
+  std::copy(command_.data(), command_.data() + kAxisCount, off.position.begin());
+  if (has_positions_) callDrive("write()", [&] { drive_.write(cycle, off); });
 }
 
 void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
-  callDrive("read()", [&] { hw_.read(time, period); });
+  const DriveCycle times{time, period, ros::Duration(config_.machine.period)};
   sample_.time = time.toSec();
   sample_.period = period.toSec();
   const bool moving = sample_.has_setpoint && (sample_.setpoint.velocity != 0).any();
@@ -48,7 +48,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   sample_.job = next_status_.jobs_started;
   drive_command_.reset = false;
 
-  readDrive();
+  readDrive(times);
   trackMotion();
   moving_unbuffered_ = moving && sample_.drive.commands_waiting == 0;
   if (isPowered(state_)) checkDrive();
@@ -58,26 +58,24 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
   if (state_ == MachineState::kHoming) awaitHoming();
   advance();
 
-  writeDrive(time, period);
+  writeDrive(times);
   publish();
 }
 
-void ControlLoop::readDrive() {
+void ControlLoop::readDrive(const DriveCycle& cycle) {
+  callDrive("read()", [&] { drive_.read(cycle, feedback_); });
   const std::uint64_t last_feedback = sample_.drive.feedback_count;
   touched_ = sample_.drive.probe_contact;
-  sample_.drive = drive_.getStatus();
+  sample_.drive = feedback_.status;
   if (has_thrown_) {
     sample_.drive.fault = true;
     sample_.drive.fault_text = thrown_;
     has_thrown_ = false;
   }
-  drive_checks_.observe(sample_.drive);
+  drive_checks_.observe(sample_);
   sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
-  for (int i = 0; i < kAxisCount; ++i) {
-    const JointHandle& joint = joints_[static_cast<std::size_t>(i)];
-    sample_.position[i] = joint.getPosition();
-    sample_.velocity[i] = joint.getVelocity();
-  }
+  std::copy(feedback_.position.begin(), feedback_.position.end(), sample_.position.data());
+  std::copy(feedback_.velocity.begin(), feedback_.velocity.end(), sample_.velocity.data());
   has_positions_ = has_positions_ || sample_.position.isFinite().all();
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
   // again; after a fault the commands do not change.
@@ -116,7 +114,7 @@ void ControlLoop::checkDrive() {
   if (const auto fault = drive_checks_.findFault(sample_, moving_unbuffered_)) fail(*fault);
 }
 
-void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period) {
+void ControlLoop::writeDrive(const DriveCycle& cycle) {
   // Put together here and copied as a whole, like sample and status.
   DriveCommand drive_command = drive_command_;
   drive_command.home = state_ == MachineState::kHoming;
@@ -125,10 +123,9 @@ void ControlLoop::writeDrive(const ros::Time& time, const ros::Duration& period)
   if (!sample_.drive.probe_free) spindle_by_hand_ = false;
   sample_.spindle_commanded = drive_command.spindle = stream_ || spindle_by_hand_;
   sample_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
-  for (int i = 0; i < kAxisCount; ++i) joints_[static_cast<std::size_t>(i)].setCommand(command_[i]);
-  drive_.setCommand(drive_command);
+  std::copy(command_.data(), command_.data() + kAxisCount, drive_command.position.begin());
   // Before the first positions there is nothing that a command could follow.
-  if (has_positions_) callDrive("write()", [&] { hw_.write(time, period); });
+  if (has_positions_) callDrive("write()", [&] { drive_.write(cycle, drive_command); });
   history_.add({command_, written_});
 }
 
@@ -148,7 +145,6 @@ void ControlLoop::publish() {
   next_status_.position_valid = sample_.position.isFinite().all() && sample_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = sample_.feed_override;
   next_status_.swivel = sample_.swivel;
-  next_status_.has_probe = sample_.drive.has_probe;
   next_status_.probe_contact = sample_.drive.probe_contact;
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();

@@ -1,10 +1,15 @@
 #include "flute_grinder/control/drive_checks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace grinder {
 
 namespace {
+
+constexpr double kAveraged = 1;  ///< over which the time of a cycle is averaged [s]
+/// The longest time of a cycle on average [periods]. The next fraction of the rate, a half, is well beyond it.
+constexpr double kLongest = 1.6;
 
 /// @param value,limit what is beyond which limit, at which axis.
 LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis = 0) noexcept {
@@ -17,6 +22,17 @@ LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis =
 }
 
 }  // namespace
+
+void DriveChecks::observe(const CycleSample& sample) noexcept {
+  // A fault that comes after the present one has cleared is a new one.
+  was_reset_ = was_reset_ && sample.drive.fault;
+  time_ += sample.period;
+  bounded_time_ += std::min(sample.period, 2 * config_.machine.period);  // a stall of the computer passes
+  ++cycles_;
+  if (bounded_time_ < kAveraged) return;
+  slow_ = bounded_time_ > cycles_ * kLongest * config_.machine.period ? time_ / cycles_ : 0;
+  time_ = bounded_time_ = cycles_ = 0;
+}
 
 Refusal DriveChecks::powerRefusal(const CycleSample& sample) const noexcept {
   if (sample.drive.emergency_stop) return Refusal::kEmergencyStop;
@@ -42,6 +58,7 @@ std::optional<LoopFault> DriveChecks::findFault(const CycleSample& sample, bool 
     return fault;
   }
   if (!sample.drive.enabled) return faultOf(FaultKind::kPowerLost);
+  if (slow_ > 0) return faultOf(FaultKind::kSlow, slow_, kLongest * config_.machine.period);
   return findFeedbackFault(sample);
 }
 

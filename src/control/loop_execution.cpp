@@ -35,11 +35,15 @@ void ControlLoop::executeRequest(MachineEvent event) {
 Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
   // The spindle by hand depends on one interlock alone.
   const Interlock interlock = isSwitch(event) ? Interlock::kProbe : openInterlock();
-  return {event,          state_,     refusal, interlock, kY, liftTarget(), config_.machine.limits.max_position[kY],
-          sample_.swivel, job_swivel_};
+  Answer answer{
+      event,          state_,      refusal, interlock, kY, liftTarget(), config_.machine.limits.max_position[kY],
+      sample_.swivel, job_swivel_, {}};
+  if (refusal == Refusal::kNotPrepared) answer.drive_text = preparation_->why();
+  return answer;
 }
 
 Refusal ControlLoop::execute(MachineEvent event) {
+  if (!driveCan(event)) return Refusal::kNotOffered;
   if (!after(state_, event)) return Refusal::kState;
   if (isStop(event)) return executeStop(event);
   switch (event) {
@@ -54,6 +58,15 @@ Refusal ControlLoop::execute(MachineEvent event) {
     case MachineEvent::kCoolantOn: return switchOn(coolant_by_hand_);
     case MachineEvent::kCoolantOff: coolant_by_hand_ = false; return Refusal::kNone;
     default: return Refusal::kState;
+  }
+}
+
+bool ControlLoop::driveCan(MachineEvent event) const {
+  switch (event) {
+    case MachineEvent::kHome: return capabilities_.homing;
+    case MachineEvent::kSpindleOn: return capabilities_.spindle;
+    case MachineEvent::kCoolantOn: return capabilities_.coolant;
+    default: return true;
   }
 }
 
@@ -87,7 +100,8 @@ Refusal ControlLoop::executeStop(MachineEvent event) {
 Refusal ControlLoop::enable() {
   const Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal != Refusal::kNone || isPowered(state_)) return refusal;
-  drive_command_.enable = true;
+  if (preparation_ && !preparation_->begin()) return Refusal::kPreparing;
+  drive_command_.enable = !preparation_;
   awaiting_power_ = true;
   waited_ = 0;
   return Refusal::kNone;
@@ -108,7 +122,8 @@ Refusal ControlLoop::switchOn(bool& commanded) {
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
   waited_ += sample_.period;
-  const Refusal refusal = drive_checks_.powerRefusal(sample_);
+  Refusal refusal = drive_checks_.powerRefusal(sample_);
+  if (refusal == Refusal::kNone) refusal = awaitPreparation();
   if (refusal != Refusal::kNone) {
     drive_command_.enable = false;
     answerEnable(refusal);
@@ -117,9 +132,16 @@ void ControlLoop::awaitPower() {
     apply(MachineEvent::kEnable);
     answerEnable(Refusal::kNone);
   } else if (!(waited_ <= config_.enable_timeout)) {
+    const bool prepared = drive_command_.enable;
     drive_command_.enable = false;
-    answerEnable(Refusal::kNoPower);
+    answerEnable(prepared ? Refusal::kNoPower : Refusal::kPreparing);
   }
+}
+
+Refusal ControlLoop::awaitPreparation() {
+  if (drive_command_.enable || preparation_->state() == DrivePreparation::State::kPreparing) return Refusal::kNone;
+  drive_command_.enable = preparation_->state() == DrivePreparation::State::kReady;
+  return drive_command_.enable ? Refusal::kNone : Refusal::kNotPrepared;
 }
 
 void ControlLoop::answerEnable(Refusal refusal) {

@@ -11,6 +11,12 @@ constexpr int kSwivelDigits = 10;  ///< so that a job's angle appears as entered
 /// Of an angle, as operators read it. @param angle [rad].
 std::string degrees(double angle, int digits = 6) { return grinder::text(Quantity{angle, Unit::kRadian}, digits); }
 
+/// What a drive would do. @param event that not every drive executes.
+const char* offer(MachineEvent event) {
+  if (event == MachineEvent::kHome) return "home the axes";
+  return event == MachineEvent::kSpindleOn ? "switch the spindle" : "switch the coolant";
+}
+
 }  // namespace
 
 RequestReply Answer::reply() const {
@@ -28,10 +34,13 @@ RequestReply Answer::reply() const {
     case Refusal::kState:
       text << "the machine is in state " << toString(state) << "; allowed: " << allowedIn(state);
       break;
+    case Refusal::kNotOffered: text << "the drive does not " << offer(event); break;
     case Refusal::kEmergencyStop: text << "the emergency stop is pressed; release it first"; break;
     case Refusal::kDriveFault: text << "the drive reports a fault; reset it first"; break;
     case Refusal::kDriveFaultStays: text << "the drive still reports a fault after the reset; remove its cause"; break;
     case Refusal::kInterlock: text << toString(interlock); break;
+    case Refusal::kPreparing: text << "the drive has not become ready in time; wait, then try again"; break;
+    case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.view(); break;
     case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
     case Refusal::kMoved: text << "the axes do not stand where the job was planned to start; plan it again"; break;
     case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;

@@ -10,20 +10,10 @@
 // Construction and the thread; the cycle is in control_loop.cpp.
 namespace grinder {
 
-namespace {
-
-template <typename Interface>
-Interface& require(RobotHW& hw, const char* name) {
-  auto* interface = hw.get<Interface>();
-  if (!interface) throw HardwareInterfaceException(std::string("the drive offers no ") + name);
-  return *interface;
-}
-
-}  // namespace
-
-ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel)
+ControlLoop::ControlLoop(Drive& drive, const LoopConfig& config, const Wheel& wheel)
     : RequestBox(config.enable_timeout),
-      hw_(hw),
+      drive_(drive),
+      capabilities_(drive.capabilities()),
       config_(config),
       axis_move_(config.machine),
       dead_man_(config.jog_timeout),
@@ -31,10 +21,7 @@ ControlLoop::ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& whe
       limit_check_(config.machine.limits, config.machine.period, LimitCheck::kUnplannedRoundings),
       drive_checks_(config_),
       wheel_(wheel) {
-  require<JointStateInterface>(hw, "JointStateInterface");
-  auto& joints = require<PositionJointInterface>(hw, "PositionJointInterface");
-  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i] = joints.getHandle(kJointNames[i]);
-  drive_ = require<DriveInterface>(hw, "DriveInterface").getHandle("drive");
+  if (capabilities_.prepares) preparation_.emplace(drive);
   next_status_.wheel = wheel;
   status_.store(next_status_);
 }
@@ -69,7 +56,8 @@ void ControlLoop::run() {
     cycle(time, period);
     sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
-  writeOff(time);
+  const ros::Duration period(config_.machine.period);
+  writeOff({time, period, period});
   ended_ = true;
 }
 

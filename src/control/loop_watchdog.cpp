@@ -4,7 +4,8 @@
 
 namespace grinder {
 
-LoopWatchdog::LoopWatchdog(const ControlLoop& loop, RobotHW& hw) : loop_(loop), hw_(hw), thread_([this] { run(); }) {}
+LoopWatchdog::LoopWatchdog(const ControlLoop& loop, Drive& drive)
+    : loop_(loop), drive_(drive), thread_([this] { run(); }) {}
 
 LoopWatchdog::~LoopWatchdog() {
   {
@@ -28,7 +29,7 @@ void LoopWatchdog::run() {
       finding_ = Finding::kRuns;
     } else if (++looks == kMostLooks) {
       lock.unlock();
-      finding_ = hw_.powerOff() ? Finding::kHangsPowerIsOff : Finding::kHangs;
+      finding_ = drive_.powerOff() ? Finding::kHangsPowerIsOff : Finding::kHangs;
       lock.lock();
     }
   }

@@ -40,9 +40,9 @@ HalFifo::HalFifo(int component, int streamer, std::uint32_t depth) {
 
 HalFifo::~HalFifo() { hal_stream_detach(&stream_); }
 
-bool HalFifo::push(const Axes& command, std::uint32_t number) {
+bool HalFifo::push(const AxisValues& command, std::uint32_t number) {
   std::array<hal_stream_data, kColumns> sample;
-  for (int i = 0; i < kAxisCount; ++i) sample[static_cast<std::size_t>(i)].f = command[i];
+  for (std::size_t i = 0; i < command.size(); ++i) sample[i].f = command[i];
   sample.back().u = number;
   return hal_stream_write(&stream_, sample.data()) >= 0;
 }

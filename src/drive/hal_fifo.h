@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/drive/drive.h"
 
 #include <hal.h>
 
@@ -26,7 +26,7 @@ class HalFifo {
   /// one until another follows (LinuxCNC 2.9): with power on, write one in each cycle.
   /// @param number number that the streamer outputs when it plays the command.
   /// @return false if the FIFO is full.
-  bool push(const Axes& command, std::uint32_t number);
+  bool push(const AxisValues& command, std::uint32_t number);
 
   /// Discards queued commands. Call only while the streamer is disabled, because it also reads from the FIFO.
   void drain();

@@ -24,14 +24,22 @@ void nap(std::int64_t nanoseconds) {
 
 }  // namespace
 
-bool HalHardware::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
-  const HalParameters parameters = readHalParameters(ParameterReader(root_nh), ParameterReader(robot_hw_nh));
+void HalHardware::init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) {
+  const HalParameters parameters = readHalParameters(ParameterReader(node_nh), ParameterReader(drive_nh));
   buffer_ = parameters.buffer;
   component_ = std::make_unique<HalComponent>(parameters.component);
   fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, 2 * buffer_);
   makePins();
   checkServoThread(parameters.control_rate);
-  return true;
+}
+
+DriveCapabilities HalHardware::capabilities() const {
+  DriveCapabilities can;
+  can.homing = can.spindle = can.coolant = true;
+  can.probe = has_probe_;
+  can.swivel = has_swivel_;
+  can.buffer = buffer_;
+  return can;
 }
 
 void HalHardware::makePins() {
@@ -54,7 +62,7 @@ void HalHardware::makePins() {
   c.addPin("spindle-at-speed", HAL_IN, pins.spindle_at_speed, true);
   c.addPin("coolant-on", HAL_IN, pins.coolant_on, true);
   c.addPin("probe-free", HAL_IN, pins.probe_free, true);
-  status_.has_probe = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
+  has_probe_ = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
   has_swivel_ = c.addPin("swivel", HAL_IN, pins.swivel, false);
   c.addPin("servo-cycles", HAL_IN, pins.servo_cycles, true);
   c.addPin("servo-rate", HAL_IN, pins.servo_rate, true);
@@ -79,42 +87,44 @@ void HalHardware::checkServoThread(double control_rate) const {
   throw ParameterError(text.str());
 }
 
-void HalHardware::read(const ros::Time&, const ros::Duration&) {
+void HalHardware::read(const DriveCycle&, DriveFeedback& feedback) {
+  DriveStatus& status = feedback.status;
   // Read before the other pins: whatever has just switched the power off is then visible in them.
-  status_.enabled = *pins_->enabled;
-  status_.emergency_stop = *pins_->emergency_stop;
-  status_.underruns = static_cast<std::uint32_t>(*pins_->underruns);
-  status_.commands_waiting = waiting();
-  status_.spindle_at_speed = *pins_->spindle_at_speed;
-  status_.coolant_on = *pins_->coolant_on;
-  status_.probe_free = *pins_->probe_free;
-  if (status_.has_probe) status_.probe_contact = *pins_->probe_contact;
-  if (has_swivel_) status_.swivel = *pins_->swivel;
-  readJoints();
-  readHoming();
+  enabled_ = status.enabled = *pins_->enabled;
+  status.emergency_stop = *pins_->emergency_stop;
+  status.underruns = static_cast<std::uint32_t>(*pins_->underruns);
+  status.commands_waiting = waiting();
+  status.spindle_at_speed = *pins_->spindle_at_speed;
+  status.coolant_on = *pins_->coolant_on;
+  status.probe_free = *pins_->probe_free;
+  if (has_probe_) status.probe_contact = *pins_->probe_contact;
+  if (has_swivel_) status.swivel = *pins_->swivel;
+  readJoints(feedback);
+  readHoming(status);
   const double servo_cycles = *pins_->servo_cycles;
-  if (servo_cycles != servo_cycles_) ++status_.feedback_count;
+  if (servo_cycles != servo_cycles_) ++status.feedback_count;
   servo_cycles_ = servo_cycles;
 }
 
-void HalHardware::readJoints() {
-  status_.fault = overflow_;
-  status_.fault_text = overflow_ ? "the FIFO of commands is full" : "";
-  status_.homed = true;
-  for (std::size_t i = 0; i < position_.size(); ++i) {
+void HalHardware::readJoints(DriveFeedback& feedback) const {
+  DriveStatus& status = feedback.status;
+  status.fault = overflow_;
+  status.fault_text = overflow_ ? "the FIFO of commands is full" : "";
+  status.homed = true;
+  for (std::size_t i = 0; i < pins_->joints.size(); ++i) {
     const Pins::Joint& joint = pins_->joints[i];
-    position_[i] = *joint.feedback;
-    velocity_[i] = *joint.velocity;
-    if (*joint.fault && !status_.fault) {
-      status_.fault = true;
-      status_.fault_text = "of the amplifier of ";
-      status_.fault_text += kJointNames[i];
+    feedback.position[i] = *joint.feedback;
+    feedback.velocity[i] = *joint.velocity;
+    if (*joint.fault && !status.fault) {
+      status.fault = true;
+      status.fault_text = "of the amplifier of ";
+      status.fault_text += kJointNames[i];
     }
-    status_.homed = status_.homed && *joint.homed;
+    status.homed = status.homed && *joint.homed;
   }
 }
 
-void HalHardware::readHoming() {
+void HalHardware::readHoming(DriveStatus& status) {
   const bool homing = *pins_->homing;
   if (homing_ && !homing) {
     // Queued commands refer to the old reference: they must leave the FIFO before commands take effect again.
@@ -123,34 +133,34 @@ void HalHardware::readHoming() {
   }
   homing_ = homing;
   if (settling_ && static_cast<std::int32_t>(*pins_->played - settled_) >= 0) settling_ = false;
-  status_.homing = homing || (settling_ && status_.enabled);
+  status.homing = homing || (settling_ && status.enabled);
 }
 
-void HalHardware::write(const ros::Time&, const ros::Duration&) {
-  writeSwitches();
-  if (!drive_command_.enable) {
+void HalHardware::write(const DriveCycle&, const DriveCommand& command) {
+  writeSwitches(command);
+  if (!command.enable) {
     switchOff();
   } else if (!*pins_->enable) {
-    switchOn();
-  } else if (status_.enabled) {
-    send();
+    switchOn(command.position);
+  } else if (enabled_) {
+    send(command.position);
   }
 }
 
-void HalHardware::writeSwitches() {
+void HalHardware::writeSwitches(const DriveCommand& command) {
   *pins_->heartbeat = !*pins_->heartbeat;
-  if (drive_command_.reset) {
+  if (command.reset) {
     reset_cycles_ = kResetCycles;
     overflow_ = false;
   }
   *pins_->fault_reset = reset_cycles_ > 0;
   if (reset_cycles_ > 0) --reset_cycles_;
-  *pins_->home = drive_command_.home;
-  *pins_->spindle_run = drive_command_.spindle;
-  *pins_->coolant_run = drive_command_.coolant;
-  for (std::size_t i = 0; i < command_.size(); ++i) {
-    *pins_->joints[i].command = command_[i];
-    *pins_->joints[i].enable = drive_command_.enable;
+  *pins_->home = command.home;
+  *pins_->spindle_run = command.spindle;
+  *pins_->coolant_run = command.coolant;
+  for (std::size_t i = 0; i < command.position.size(); ++i) {
+    *pins_->joints[i].command = command.position[i];
+    *pins_->joints[i].enable = command.enable;
   }
 }
 
@@ -167,34 +177,32 @@ void HalHardware::switchOff() {
   settling_ = false;
 }
 
-void HalHardware::switchOn() {
+void HalHardware::switchOn(const AxisValues& position) {
   if (*pins_->enabled) return;  // HAL has not switched off yet
   // The first commands are queued before power comes on, because the streamer's pins still have the values at which a
   // job was aborted.
   fifo_->drain();
   sent_ = *pins_->played;
-  for (std::uint32_t i = 0; i < buffer_; ++i) send();
+  for (std::uint32_t i = 0; i < buffer_; ++i) send(position);
   *pins_->enable = true;
 }
 
-void HalHardware::send() {
-  Axes command;
-  std::copy(command_.begin(), command_.end(), command.data());
-  if (fifo_->push(command, sent_ + 1)) {
+void HalHardware::send(const AxisValues& position) {
+  if (fifo_->push(position, sent_ + 1)) {
     ++sent_;
   } else {
     overflow_ = true;
   }
 }
 
-ros::Duration HalHardware::wait(const ros::Duration& period) {
-  if (!*pins_->enabled || !*pins_->enable) return RobotHW::wait(period);
-  const std::int64_t time = period.toNSec() / kNapsPerCycle;
+ros::Duration HalHardware::wait(const ros::Duration& nominal) {
+  if (!*pins_->enabled || !*pins_->enable) return Drive::wait(nominal);
+  const std::int64_t time = nominal.toNSec() / kNapsPerCycle;
   for (int naps = 0; naps < kNapsPerCycle * kMaxWait; ++naps) {
     if (waiting() < buffer_ || !*pins_->enabled) break;
     nap(time);
   }
-  return sinceLastCycle(period);
+  return sinceLastCycle(nominal);
 }
 
 }  // namespace grinder

@@ -2,7 +2,7 @@
 
 #include "drive/hal_component.h"
 #include "drive/hal_fifo.h"
-#include "flute_grinder/drive/axes_hw.h"
+#include "flute_grinder/drive/drive.h"
 
 #include <array>
 #include <cstdint>
@@ -17,14 +17,15 @@ namespace grinder {
 ///
 /// Parameters, in the drive's namespace: `component`, name of the HAL component; `streamer`, number of the streamer;
 /// `buffer` [s], duration of the motion that the FIFO holds.
-class HalHardware : public AxesHW {
+class HalHardware : public Drive {
  public:
-  bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
-  void read(const ros::Time& time, const ros::Duration& period) override;
-  void write(const ros::Time& time, const ros::Duration& period) override;
+  void init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) override;
+  DriveCapabilities capabilities() const override;
+  void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
+  void write(const DriveCycle& cycle, const DriveCommand& command) override;
   bool powerOff() override;
   /// With power on, waits until the FIFO has room for a command; otherwise uses the monotonic clock.
-  ros::Duration wait(const ros::Duration& period) override;
+  ros::Duration wait(const ros::Duration& nominal) override;
 
  private:
   /// Pointers to the pins' values, in HAL's memory.
@@ -45,20 +46,22 @@ class HalHardware : public AxesHW {
 
   void makePins();
   void checkServoThread(double control_rate) const;
-  void readJoints();
-  void readHoming();
-  void writeSwitches();
-  void switchOn();
+  void readJoints(DriveFeedback& feedback) const;
+  void readHoming(DriveStatus& status);
+  void writeSwitches(const DriveCommand& command);
+  void switchOn(const AxisValues& position);
   void switchOff();
-  void send();
+  void send(const AxisValues& position);
   std::uint32_t waiting() const { return sent_ - *pins_->played; }
 
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
   bool has_swivel_ = false;   ///< HAL reads the swivel's encoder
+  bool has_probe_ = false;    ///< HAL reads the measuring probe
   std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
 
+  bool enabled_ = false;    ///< at the last read()
   std::uint32_t sent_ = 0;  ///< number of the last command
   bool overflow_ = false;   ///< the FIFO was full when a command was to be written
   double servo_cycles_ = 0;

@@ -1,6 +1,6 @@
 #include "drive/hal_parameters.h"
 
-#include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/drive/drive.h"
 
 #include <cmath>
 

@@ -24,7 +24,7 @@ constexpr std::array<const char*, 12> kFaultNames{"none",         "emergency_sto
                                                   "coolant_lost", "swivel_slipped", "probe_flickers", "hang"};
 
 /// A buffer of the axes' values, to compute with.
-auto axes(std::array<double, kAxisCount>& buffer) { return Eigen::Map<Axes>(buffer.data()); }
+auto axes(AxisValues& buffer) { return Eigen::Map<Axes>(buffer.data()); }
 
 /// That this thread has used [ns].
 std::int64_t processorTime() {
@@ -73,35 +73,40 @@ SimulatedDrive::Simulation SimulatedDrive::readSimulation(const ParameterReader&
   return simulation;
 }
 
-bool SimulatedDrive::init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) {
-  const Simulation simulation = readSimulation(ParameterReader(root_nh), ParameterReader(robot_hw_nh));
+void SimulatedDrive::init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) {
+  const Simulation simulation = readSimulation(ParameterReader(node_nh), ParameterReader(drive_nh));
   init(simulation.model, simulation.equipment);
   blank_ = simulation.blank;
-  inject_service_ = robot_hw_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
-  return true;
+  inject_service_ = drive_nh.advertiseService("inject_fault", &SimulatedDrive::onInjectFault, this);
 }
 
 void SimulatedDrive::init(const Model& model, const Equipment& equipment) {
   model_ = model;
   equipment_ = equipment;
   status_.homed = equipment.absolute_encoders;
-  status_.has_probe = true;
   for (std::size_t i = 0; i < model.size(); ++i) {
     const int axis = static_cast<int>(i);
     motor_[axis] = model[i].start_position;
     offset_[axis] = status_.homed ? 0 : motor_[axis];
     time_constant_[axis] = model[i].time_constant;
     counts_per_unit_[axis] = model[i].counts_per_unit;
-    position_[i] = command_[i] = sent_[i] = motor_[axis] - offset_[axis];
+    command_.position[i] = motor_[axis] - offset_[axis];
   }
 }
 
-void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
+DriveCapabilities SimulatedDrive::capabilities() const {
+  DriveCapabilities can;
+  can.homing = can.spindle = can.coolant = can.probe = true;
+  can.swivel = std::isfinite(equipment_.swivel);
+  return can;
+}
+
+void SimulatedDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
   while (static_cast<Fault>(injected_ & 0xff) == Fault::kHang) std::this_thread::sleep_for(kHangStep);
   const std::uint16_t injected = injected_;
   const auto fault = static_cast<Fault>(injected & 0xff);
   const int failing_axis = injected >> 8;
-  const double dt = period.toSec();
+  const double dt = cycle.period.toSec();
 
   readSwitches(fault);
   readEquipment(fault, dt);
@@ -110,11 +115,12 @@ void SimulatedDrive::read(const ros::Time&, const ros::Duration& period) {
   const Axes last = motor_;
   moveMotors(fault, failing_axis, dt);
   if (blank_) status_.probe_contact = readProbe(*blank_, fault);
+  feedback.status = status_;
   if (!fresh) return;
-  axes(velocity_) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
+  axes(feedback.velocity) = dt > 0 ? Axes((motor_ - last) / dt) : Axes::Zero();
   const Axes counts = ((motor_ - offset_) * counts_per_unit_).unaryExpr([](double v) { return std::rint(v); });
-  axes(position_) = counts / counts_per_unit_;
-  if (fault == Fault::kNanFeedback) axes(position_)[failing_axis] = std::numeric_limits<double>::quiet_NaN();
+  axes(feedback.position) = counts / counts_per_unit_;
+  if (fault == Fault::kNanFeedback) axes(feedback.position)[failing_axis] = std::numeric_limits<double>::quiet_NaN();
 }
 
 void SimulatedDrive::readSwitches(Fault fault) {
@@ -122,20 +128,20 @@ void SimulatedDrive::readSwitches(Fault fault) {
   if (fault == Fault::kDriveFault) {
     status_.fault = true;
     status_.fault_text = "injected";
-  } else if (drive_command_.reset) {
+  } else if (command_.reset) {
     status_.fault = false;
   }
-  if (!drive_command_.enable) power_off_ = false;
-  status_.enabled = drive_command_.enable && !status_.emergency_stop && !status_.fault && !power_off_;
+  if (!command_.enable) power_off_ = false;
+  status_.enabled = command_.enable && !status_.emergency_stop && !status_.fault && !power_off_;
 }
 
 void SimulatedDrive::readEquipment(Fault fault, double dt) {
   if (fault == Fault::kReferenceLost) status_.homed = false;
   const double change = equipment_.spindle_run_up_time > 0 ? dt / equipment_.spindle_run_up_time : 1;
-  spindle_speed_ = std::clamp(spindle_speed_ + (drive_command_.spindle ? change : -change), 0.0, 1.0);
+  spindle_speed_ = std::clamp(spindle_speed_ + (command_.spindle ? change : -change), 0.0, 1.0);
   if (fault == Fault::kSpindleLost) spindle_speed_ = 0;
   status_.spindle_at_speed = spindle_speed_ >= 1;
-  status_.coolant_on = drive_command_.coolant && fault != Fault::kCoolantLost;
+  status_.coolant_on = command_.coolant && fault != Fault::kCoolantLost;
   status_.swivel = equipment_.swivel + (fault == Fault::kSwivelSlipped ? kSlip : 0);
 }
 
@@ -164,17 +170,17 @@ bool SimulatedDrive::touches(const Blank& blank) const {
 }
 
 void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
-  const bool home_is_new = drive_command_.home && !home_was_commanded_;
-  home_was_commanded_ = drive_command_.home;
+  const bool home_is_new = command_.home && !home_was_commanded_;
+  home_was_commanded_ = command_.home;
   if (home_is_new) status_.homed = false;
-  status_.homing = status_.enabled && drive_command_.home && (home_is_new || status_.homing);
+  status_.homing = status_.enabled && command_.home && (home_is_new || status_.homing);
   // Homing is reported in at least one reading, even over a very short distance.
   if (!status_.enabled || home_is_new) return;
   const double stuck = motor_[failing_axis];
   if (status_.homing) {
     home(dt);
-  } else if (!drive_command_.home) {
-    motor_ += (axes(sent_) + offset_ - motor_) * (dt / (time_constant_ + dt));
+  } else if (!command_.home) {
+    motor_ += (axes(command_.position) + offset_ - motor_) * (dt / (time_constant_ + dt));
   }
   if (fault == Fault::kStuckAxis) motor_[failing_axis] = stuck;
 }
@@ -194,14 +200,14 @@ void SimulatedDrive::home(double dt) {
   status_.homed = true;
 }
 
-void SimulatedDrive::write(const ros::Time&, const ros::Duration&) { sent_ = command_; }
+void SimulatedDrive::write(const DriveCycle&, const DriveCommand& command) { command_ = command; }
 
-ros::Duration SimulatedDrive::wait(const ros::Duration& period) {
-  if (equipment_.pace == 1) return AxesHW::wait(period);
+ros::Duration SimulatedDrive::wait(const ros::Duration& nominal) {
+  if (equipment_.pace == 1) return Drive::wait(nominal);
   // At its priority a loop that never rests would leave the host's other programs no core.
   const std::int64_t last_ns = std::exchange(processor_ns_, processorTime());
-  AxesHW::wait(std::max(period * (1 / equipment_.pace), ros::Duration().fromNSec(2 * (processor_ns_ - last_ns))));
-  return period;
+  Drive::wait(std::max(nominal * (1 / equipment_.pace), ros::Duration().fromNSec(2 * (processor_ns_ - last_ns))));
+  return nominal;
 }
 
 void SimulatedDrive::inject(Fault fault, int axis) {

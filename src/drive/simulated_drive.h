@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/InjectFault.h"
-#include "flute_grinder/drive/axes_hw.h"
+#include "flute_grinder/drive/drive.h"
 #include "flute_grinder/drive/parameters.h"
 
 #include <atomic>
@@ -20,7 +20,7 @@ namespace grinder {
 /// `absolute_encoders`, `spindle_run_up_time` [s]; `pace` if the simulated time is to run faster than the clock;
 /// `swivel` [rad] if the swivel has an encoder; and `blank/...` with the members of Blank if the probe is to find one,
 /// together with the machine's parameters geometry/probe and geometry/work_axis.
-class SimulatedDrive : public AxesHW {
+class SimulatedDrive : public Drive {
  public:
   /// Model of one axis.
   struct AxisModel {
@@ -83,10 +83,11 @@ class SimulatedDrive : public AxesHW {
     kHang  ///< read() does not return
   };
 
-  bool init(ros::NodeHandle& root_nh, ros::NodeHandle& robot_hw_nh) override;
-  void read(const ros::Time& time, const ros::Duration& period) override;
-  void write(const ros::Time& time, const ros::Duration& period) override;
-  ros::Duration wait(const ros::Duration& period) override;
+  void init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) override;
+  DriveCapabilities capabilities() const override;
+  void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
+  void write(const DriveCycle& cycle, const DriveCommand& command) override;
+  ros::Duration wait(const ros::Duration& nominal) override;
   bool powerOff() override { return power_off_ = true; }
 
   /// Initialises the drive without ROS.
@@ -123,7 +124,8 @@ class SimulatedDrive : public AxesHW {
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;       ///< fraction of full speed
   std::int64_t processor_ns_ = 0;  ///< time that the thread had used at the last wait()
-  Buffer sent_{};                  ///< commands at the last write()
+  DriveStatus status_;
+  DriveCommand command_;  ///< as last written
 };
 
 }  // namespace grinder

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <sstream>
 #include <thread>
 
 namespace grinder {
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::chrono::seconds kStopTimeout(10);
 constexpr std::chrono::seconds kGoalEndTimeout(2);
+constexpr double kRounding = 1e-9;  ///< of a period that is the inverse of a rate
 
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
@@ -44,7 +46,20 @@ void checkAbi(const std::string& parameter, const std::string& library) {
                        "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 
-flute_grinder::MachineInfo toMessage(const MachineInfo& info) {
+/// Refuses a drive that cannot hold the control period, or buffers more than the loop keeps.
+/// @param drive its type. @param rate the parameter's name.
+void checkCapabilities(const DriveCapabilities& can, const std::string& drive, const std::string& rate, double period) {
+  std::ostringstream text;
+  if (!(can.shortest_period <= period * (1 + kRounding))) {
+    text << "parameter " << rate << " = " << 1 / period << "; allowed: up to " << 1 / can.shortest_period
+         << ", which the drive " << drive << " can hold";
+  } else if (can.buffer > kMaxCommandsWaiting) {
+    text << "the drive " << drive << " buffers " << can.buffer << " commands; allowed: up to " << kMaxCommandsWaiting;
+  }
+  if (!text.str().empty()) throw ParameterError(text.str());
+}
+
+flute_grinder::MachineInfo toMessage(const MachineInfo& info, const DriveCapabilities& can) {
   const auto copy = [](const Axes& axes, auto& array) {
     std::copy(axes.data(), axes.data() + kAxisCount, array.begin());
   };
@@ -52,6 +67,12 @@ flute_grinder::MachineInfo toMessage(const MachineInfo& info) {
   message.name = info.name;
   message.version = info.version;
   message.drive = info.drive;
+  message.homing = can.homing;
+  message.spindle = can.spindle;
+  message.coolant = can.coolant;
+  message.probe = can.probe;
+  message.swivel = can.swivel;
+  message.buffer = can.buffer;
   message.period = info.period;
   copy(info.max_velocity, message.max_velocity);
   copy(info.max_acceleration, message.max_acceleration);
@@ -63,7 +84,7 @@ const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
 
 }  // namespace
 
-GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh)
+GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const EndSignals& signals)
     : nh_(nh), private_nh_(private_nh) {
   std::string urdf;
   if (!nh_.getParam("robot_description", urdf)) {
@@ -72,7 +93,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const ParameterReader parameters(private_nh_);
   const LoopConfig config = readMachineConfig(urdf, parameters);
   const std::string name = private_nh_.getNamespace();
-  loader_ = std::make_unique<pluginlib::ClassLoader<RobotHW>>("flute_grinder", "grinder::RobotHW");
+  loader_ = std::make_unique<pluginlib::ClassLoader<Drive>>("flute_grinder", "grinder::Drive");
   const NodeParameters own = readNodeParameters(parameters, name, join(loader_->getDeclaredClasses()));
   journal_ = std::make_unique<JournalWriter>(own.journal, name);
   offsets_ = std::make_unique<OffsetStore>(own.offsets, name);
@@ -82,16 +103,19 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
   history_ = std::make_unique<History>(own.history, own.history_limit);
   loadDrive(own.drive, parameters);
+  initDrive(own.drive, signals);
+  const DriveCapabilities can = drive_->capabilities();
+  checkCapabilities(can, own.drive, parameters.name("control_rate"), config.machine.period);
   const MachineInfo machine = machineInfo(config, own.drive);
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
-  machine_.publish(toMessage(machine));
-  loop_ = std::make_unique<ControlLoop>(*hw_, config, journal.on_disk.wheel);
+  machine_.publish(toMessage(machine, can));
+  loop_ = std::make_unique<ControlLoop>(*drive_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
                                            own.thresholds, urdf, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
-  watchdog_ = std::make_unique<LoopWatchdog>(*loop_, *hw_);
+  watchdog_ = std::make_unique<LoopWatchdog>(*loop_, *drive_);
   stopAxesOnCrash(*loop_);
   if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
   telemetry_->start(*watchdog_);
@@ -117,21 +141,23 @@ void GrinderNode::loadDrive(const std::string& type, const ParameterReader& para
   try {
     loader_->loadLibraryForClass(type);
     checkAbi(parameter, loader_->getClassLibraryPath(type));
-    hw_ = loader_->createUniqueInstance(type);
+    drive_ = loader_->createUniqueInstance(type);
   } catch (const pluginlib::PluginlibException& error) {
     throw ParameterError("parameter " + parameter + " cannot be loaded: " + error.what() +
                          " What it is: " + loader_->getClassDescription(type));
   }
+}
+
+void GrinderNode::initDrive(const std::string& type, const EndSignals& signals) {
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
-  bool ready = false;
+  const EndAtOnce guard(signals, "the drive " + type + " was being initialised");
   try {
-    ready = hw_->init(private_nh_, hardware_nh);
+    drive_->init(private_nh_, hardware_nh);
   } catch (const std::exception& error) {
     throw ParameterError("the drive " + type + ": " + error.what());
   } catch (...) {
     throw ParameterError("the drive " + type + ": init() has thrown what is no std::exception");
   }
-  if (!ready) throw ParameterError("the drive " + type + " could not be initialised");
 }
 
 bool GrinderNode::shutDown() {
@@ -144,8 +170,9 @@ bool GrinderNode::shutDown() {
   telemetry_->clearScene();
   planner_->end();
   loop_->requestEnd();
-  await(kGoalEndTimeout, [&] { return or_hangs(loop_->hasEnded()); });
-  if (!loop_->hasEnded()) return false;
+  const auto is_over = [&] { return loop_->hasEnded() && !loop_->isPreparing(); };
+  await(kGoalEndTimeout, [&] { return or_hangs(is_over()); });
+  if (!is_over()) return false;
   loop_->stopThread();
   return true;
 }

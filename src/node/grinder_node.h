@@ -3,6 +3,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/control/loop_watchdog.h"
 #include "flute_grinder/control/machine_config.h"
+#include "node/end_signals.h"
 #include "node/goal_server.h"
 #include "node/history.h"
 #include "node/job_gate.h"
@@ -32,8 +33,9 @@ class GrinderNode {
   /// Reads all parameters, loads and initialises the drive, and starts the control loop.
   /// @param nh the node's namespace, for robot_description and joint_states.
   /// @param private_nh the node's private namespace, for everything else.
+  /// @param signals one of which ends the process while the drive is initialised.
   /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of an atomic file.
-  GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh);
+  GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const EndSignals& signals);
   ~GrinderNode();
 
   /// Stops a running job on the path, lifts the wheel, ends the goal and switches the drive off. No job can start once
@@ -44,10 +46,11 @@ class GrinderNode {
  private:
   /// @param type the plugin's.
   void loadDrive(const std::string& type, const ParameterReader& parameters);
+  void initDrive(const std::string& type, const EndSignals& signals);
 
   ros::NodeHandle nh_, private_nh_;
-  std::unique_ptr<pluginlib::ClassLoader<RobotHW>> loader_;
-  pluginlib::UniquePtr<RobotHW> hw_;
+  std::unique_ptr<pluginlib::ClassLoader<Drive>> loader_;
+  pluginlib::UniquePtr<Drive> drive_;
   std::unique_ptr<JournalWriter> journal_;
   std::unique_ptr<OffsetStore> offsets_;
   std::unique_ptr<History> history_;

@@ -4,42 +4,38 @@
 #include "flute_grinder/network/master_watch.h"
 #include "flute_grinder/network/own_address.h"
 #include "flute_grinder/network/ros_api.h"
+#include "node/end_signals.h"
 #include "node/grinder_node.h"
 #include "node/output.h"
 
 #include <ros/ros.h>
 
 #include <atomic>
-#include <csignal>
+#include <chrono>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
 #include <string>
 #include <vector>
 
 namespace {
 
-/// Waits a tenth of a second for a signal that ends the program. @return whether there was one.
-bool isEnded(const sigset_t& signals) {
-  const timespec interval{0, 100'000'000};
-  return sigtimedwait(&signals, nullptr, &interval) > 0;
-}
+constexpr std::chrono::milliseconds kLook{100};
 
 /// Waits for the ROS master. roscpp would wait by itself when it is started, but with no way to end it by a signal.
 /// @return false if a signal has ended the wait.
-bool waitForMaster(const sigset_t& signals) {
+bool waitForMaster(const grinder::EndSignals& signals) {
   const std::atomic<bool> never{false};
   for (bool warned = false; !grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "getPid", {}, never);
        warned = true) {
     if (!warned) ROS_WARN_STREAM("no ROS master answers at " << ros::master::getURI() << "; waiting for one");
-    if (isEnded(signals)) return false;
+    if (signals.await(kLook)) return false;
   }
   return true;
 }
 
 /// Waits for a signal that ends the program, or until ROS is shut down by other means.
-void waitForEnd(const sigset_t& signals) {
-  while (ros::ok() && !isEnded(signals)) {
+void waitForEnd(const grinder::EndSignals& signals) {
+  while (ros::ok() && !signals.await(kLook)) {
   }
 }
 
@@ -57,11 +53,7 @@ std::vector<std::string> services() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Blocked in every thread, because the machine must come to rest before the process ends.
-  sigset_t signals;
-  sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  const grinder::EndSignals signals;
   grinder::dropBlockedOutput();
   grinder::boundThreadStacks();
 
@@ -75,13 +67,14 @@ int main(int argc, char** argv) {
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
   try {
-    grinder::GrinderNode node(nh, ros::NodeHandle("~"));
-    const grinder::MasterWatch master_watch(services());
-    ros::AsyncSpinner spinner(1);  // for the drive's callbacks; all others have their own threads
+    // For the drive's callbacks, for which its init() may wait; all others have their own threads.
+    ros::AsyncSpinner spinner(1);
     spinner.start();
+    grinder::GrinderNode node(nh, ros::NodeHandle("~"), signals);
+    const grinder::MasterWatch master_watch(services());
     waitForEnd(signals);
     if (!node.shutDown()) {
-      ROS_FATAL("the drive does not return to the control loop: the process ends without it");
+      ROS_FATAL("the drive does not return: the process ends without it");
       std::_Exit(1);
     }
     spinner.stop();

@@ -54,7 +54,7 @@ std::string ProbeServer::refusal(const flute_grinder::ProbeGoal& goal, const Loo
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: ready";
   }
   if (!loop_.config().geometry.probe) return "the machine has no parameter geometry/probe";
-  return status.has_probe ? "" : "the drive reads no probe";
+  return loop_.capabilities().probe ? "" : "the drive reads no probe";
 }
 
 bool ProbeServer::isBusy() const {

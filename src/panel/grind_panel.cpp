@@ -369,12 +369,15 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
   if (!(planned && for_a_goal) && (!after(state, event) || isDone(state, event))) return false;
   if (isStop(event)) return true;
   if (master_watch_->master() == Master::kMissing) return false;
+  const bool in_work = view.state->wheel_in_work != 0;
   switch (event) {
-    case MachineEvent::kHome: return !view.state->wheel_in_work;
-    case MachineEvent::kStart: return !view.state->wheel_in_work && !view.planned && job_->planned();
-    case MachineEvent::kLift: return view.state->wheel_in_work != 0;
-    case MachineEvent::kSpindleOn: return !view.state->wheel_in_work && !view.state->spindle_commanded;
-    case MachineEvent::kCoolantOn: return !view.state->wheel_in_work && !view.state->coolant_commanded;
+    case MachineEvent::kHome: return !in_work && view.machine && view.machine->homing;
+    case MachineEvent::kStart: return !in_work && !view.planned && job_->planned();
+    case MachineEvent::kLift: return in_work;
+    case MachineEvent::kSpindleOn:
+      return !in_work && !view.state->spindle_commanded && view.machine && view.machine->spindle;
+    case MachineEvent::kCoolantOn:
+      return !in_work && !view.state->coolant_commanded && view.machine && view.machine->coolant;
     case MachineEvent::kSpindleOff: return view.state->spindle_commanded != 0;
     case MachineEvent::kCoolantOff: return view.state->coolant_commanded != 0;
     default: return true;

@@ -51,6 +51,7 @@ GrinderLink::GrinderLink(const std::string& node, OnResult on_result, OnJogRefus
   ros::NodeHandle around(ros::names::parentNamespace(nh_.getNamespace()));
   around.setCallbackQueue(&queue_);
   const auto hints = ros::TransportHints().tcpNoDelay();
+  subscribers_.push_back(nh_.subscribe("machine", 1, &GrinderLink::onMachine, this, hints));
   subscribers_.push_back(nh_.subscribe("state", 10, &GrinderLink::onState, this, hints));
   subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderLink::onFeedback, this, hints));
   subscribers_.push_back(nh_.subscribe("job", 1, &GrinderLink::onJob, this, hints));
@@ -73,6 +74,7 @@ GrinderView GrinderLink::view() const {
   // Not before the connections of a goal and its result are there, or a short job might end unheard.
   if (isFresh(state_) && goals_.getNumSubscribers() > 0 && results_.getNumPublishers() > 0) {
     view.state = state_->message;
+    view.machine = machine_;
     view.offsets = offsets_;
     view.legend = legend_;
     if (feedback_) view.feedback = feedback_->message.feedback;
@@ -85,6 +87,11 @@ GrinderView GrinderLink::view() const {
   }
   if (isFresh(feedback_) && view.feedback && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
   return view;
+}
+
+void GrinderLink::onMachine(const flute_grinder::MachineInfo::ConstPtr& machine) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  machine_ = machine;
 }
 
 void GrinderLink::onState(const flute_grinder::GrinderState::ConstPtr& state) {

@@ -5,6 +5,7 @@
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Legend.h"
+#include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/job/axes.h"
@@ -39,6 +40,7 @@ struct GrinderView {
   /// The same in work coordinates; NaN of an axis whose work offset is unknown. Nothing without the state.
   std::optional<Axes> work_position;
   std::optional<flute_grinder::WorkOffsets> offsets;  ///< nothing without the state
+  flute_grinder::MachineInfo::ConstPtr machine;       ///< null without the state
   std::optional<flute_grinder::Legend>
       legend;  ///< of the job that rviz shows; nothing without one, and without the state
 };
@@ -117,6 +119,7 @@ class GrinderLink {
   };
 
   void sendStops();
+  void onMachine(const flute_grinder::MachineInfo::ConstPtr& machine);
   void onState(const flute_grinder::GrinderState::ConstPtr& state);
   void onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback);
   void onJob(const flute_grinder::GrindActionGoal::ConstPtr& job);
@@ -138,6 +141,7 @@ class GrinderLink {
   actionlib::GoalIDGenerator ids_;
 
   mutable std::mutex mutex_;  ///< guards what the callbacks write
+  flute_grinder::MachineInfo::ConstPtr machine_;
   std::optional<Received<flute_grinder::GrinderState>> state_;
   std::optional<Received<Axes>> position_;
   std::optional<flute_grinder::WorkOffsets> offsets_;

@@ -3,7 +3,7 @@
 #include "control/heap.h"
 #include "drive/simulated_drive.h"
 #include "flute_grinder/control/loop_config.h"
-#include "flute_grinder/drive/axes_hw.h"
+#include "flute_grinder/drive/drive.h"
 #include "flute_grinder/machine/machine_state.h"
 
 #include <gtest/gtest.h>
@@ -60,13 +60,17 @@ inline SimulatedDrive::Equipment equipment() { return {true, 0.0045}; }
 
 /// A drive whose axes, spindle and coolant reach every command at once, and with which a test can simulate any reading.
 /// It homes for as long as it is commanded to.
-class FakeDrive : public AxesHW {
+class FakeDrive : public Drive {
  public:
-  FakeDrive() { status.homed = true; }
+  FakeDrive() {
+    status.homed = true;
+    can.homing = can.spindle = can.coolant = can.probe = true;
+  }
 
-  bool init(ros::NodeHandle&, ros::NodeHandle&) override { return true; }
+  void init(ros::NodeHandle&, ros::NodeHandle&) override {}
+  DriveCapabilities capabilities() const override { return can; }
 
-  void read(const ros::Time&, const ros::Duration&) override {
+  void read(const DriveCycle&, DriveFeedback& feedback) override {
     if (written_drive.enable && status.enabled) position = written;
     status.enabled = written_drive.enable;
     status.homing = written_drive.enable && written_drive.home;
@@ -76,21 +80,26 @@ class FakeDrive : public AxesHW {
     call([this] {
       if (on_read) on_read(*this);
     });
+    feedback = {position, velocity, status};
   }
 
-  void write(const ros::Time&, const ros::Duration&) override {
+  void write(const DriveCycle&, const DriveCommand& command) override {
     ++writes;
     call([this] {
       if (on_write) on_write();
     });
-    written = command;
-    written_drive = drive_command;
+    written = command.position;
+    written_drive = command;
   }
 
-  ros::Duration wait(const ros::Duration& period) override {
-    if (!on_wait) return AxesHW::wait(period);
+  ros::Duration wait(const ros::Duration& nominal) override {
+    if (!on_wait) return Drive::wait(nominal);
     on_wait();
-    return sinceLastCycle(period);
+    return sinceLastCycle(nominal);
+  }
+
+  void prepare() override {
+    if (on_prepare) on_prepare();
   }
 
   bool powerOff() override {
@@ -100,20 +109,18 @@ class FakeDrive : public AxesHW {
 
   void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, position.begin()); }
 
-  // The buffers, for the tests.
-  DriveStatus& status = status_;
-  Buffer& position = position_;
-  Buffer& velocity = velocity_;
-  Buffer& effort = effort_;
-  Buffer& command = command_;
-  DriveCommand& drive_command = drive_command_;
+  DriveCapabilities can;
+  DriveStatus status;
+  AxisValues position{};
+  AxisValues velocity{};
   std::function<void(FakeDrive&)> on_read;  ///< has the last word on what is read
   std::function<void()> on_write;           ///< before what is written takes effect
-  std::function<void()> on_wait;            ///< in place of the wait
+  std::function<void()> on_prepare;
+  std::function<void()> on_wait;  ///< in place of the wait
 
   int writes = 0;
   std::atomic<bool> power_off{false};  ///< by powerOff()
-  Buffer written{};                    ///< as of the last write()
+  AxisValues written{};                ///< as of the last write()
   DriveCommand written_drive;
 
  private:

@@ -4,68 +4,11 @@
 
 #include <limits>
 
-// Construction, the loop without power, a whole job, and the samples.
+// The loop without power, a whole job, and the samples.
 namespace grinder::test_support {
 namespace test_control_loop {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Construction
-
-/// Offers only the interfaces that a test registers.
-class BareDrive : public RobotHW {
- public:
-  bool init(ros::NodeHandle&, ros::NodeHandle&) override { return true; }
-  void read(const ros::Time&, const ros::Duration&) override {}
-  void write(const ros::Time&, const ros::Duration&) override {}
-};
-
-std::string constructionError(RobotHW& hw) {
-  try {
-    std::make_unique<ControlLoop>(hw, machineConfig());
-  } catch (const HardwareInterfaceException& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(ControlLoopConstruction, NamesTheInterfaceTheDriveLacks) {
-  BareDrive drive;
-  EXPECT_CONTAINS(constructionError(drive), "JointStateInterface");
-  JointStateInterface states;
-  drive.registerInterface(&states);
-  EXPECT_CONTAINS(constructionError(drive), "PositionJointInterface");
-}
-
-TEST(ControlLoopConstruction, NamesTheJointTheDriveLacks) {
-  BareDrive drive;
-  double value = 0;
-  JointStateInterface states;
-  PositionJointInterface joints;
-  for (const char* name : {"axis_x", "axis_y", "axis_z"}) {
-    joints.registerHandle(JointHandle(JointStateHandle(name, &value, &value, &value), &value));
-  }
-  drive.registerInterface(&states);
-  drive.registerInterface(&joints);
-  EXPECT_CONTAINS(constructionError(drive), "axis_a");
-}
-
-TEST(ControlLoopConstruction, NamesTheDriveInterfaceAndHandleTheDriveLacks) {
-  BareDrive drive;
-  double value = 0;
-  JointStateInterface states;
-  PositionJointInterface joints;
-  for (const char* name : kJointNames) {
-    joints.registerHandle(JointHandle(JointStateHandle(name, &value, &value, &value), &value));
-  }
-  drive.registerInterface(&states);
-  drive.registerInterface(&joints);
-  EXPECT_CONTAINS(constructionError(drive), "DriveInterface");
-  DriveInterface signals;
-  drive.registerInterface(&signals);
-  EXPECT_CONTAINS(constructionError(drive), "'drive'");
-}
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Disabled

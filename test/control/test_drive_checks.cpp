@@ -60,6 +60,36 @@ TEST_F(DriveChecksTest, ALateCycleIsNoFaultWhileTheAxesStandOrPlayABuffer) {
   EXPECT_EQ(found(false), FaultKind::kNone);
 }
 
+/// Lets two seconds of cycles pass. @param period of each [control periods].
+void pass(DriveChecks& checks, CycleSample sample, double period) {
+  sample.period *= period;
+  for (double time = 0; time < 2; time += sample.period) checks.observe(sample);
+}
+
+TEST_F(DriveChecksTest, ALoopAtHalfItsRateIsAFaultWhateverTheAxesDo) {
+  pass(checks_, sample_, 2);
+  for (const bool moving : {true, false}) {
+    const auto fault = checks_.findFault(sample_, moving);
+    ASSERT_TRUE(fault);
+    EXPECT_EQ(fault->text(), "the control loop takes 0.002 s for a cycle on average, allowed 0.0016 s");
+  }
+  sample_.drive.enabled = false;
+  EXPECT_EQ(found(), FaultKind::kPowerLost) << "which may be why it was slow";
+  sample_.drive.enabled = true;
+  pass(checks_, sample_, 1);
+  EXPECT_EQ(found(), FaultKind::kNone);
+}
+
+TEST_F(DriveChecksTest, ALoopThatIsLateNowAndThenIsNotSlow) {
+  CycleSample stall = sample_;
+  stall.period = 0.5;
+  for (int i = 0; i < 3; ++i) {
+    checks_.observe(stall);
+    pass(checks_, sample_, 1.2);
+    EXPECT_EQ(found(false), FaultKind::kNone);
+  }
+}
+
 TEST_F(DriveChecksTest, UnderrunsCountFromThePowerOn) {
   sample_.drive.underruns += 3;
   const auto fault = checks_.findFault(sample_, false);

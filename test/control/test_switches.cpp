@@ -41,6 +41,18 @@ TEST_F(Switches, EachIsSwitchedByItself) {
   EXPECT_EQ(on(), "");
 }
 
+TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
+  Rig<FakeDrive> rig(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
+  rig.cycle();
+  rig.enable();
+  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the drive does not home the axes");
+  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the drive does not switch the spindle");
+  EXPECT_EQ(rig.ask(E::kCoolantOn).text, "coolant on refused: the drive does not switch the coolant");
+  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_FALSE(rig.drive.written_drive.home || rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
+  EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted) << "off is never refused";
+}
+
 TEST_F(Switches, NothingIsSwitchedOnWithoutPower) {
   for (const E event : {E::kSpindleOn, E::kCoolantOn}) {
     const RequestReply reply = rig.ask(event);

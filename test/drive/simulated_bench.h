@@ -3,29 +3,30 @@
 #include "control/fixtures.h"
 #include "drive/simulated_drive.h"
 
-#include <array>
-
 namespace grinder::test_support {
 
 using Fault = SimulatedDrive::Fault;
 
-/// Uses a drive through its handles alone, as the control loop does.
+/// Uses a drive as the control loop does.
 class Bench {
  public:
   explicit Bench(const SimulatedDrive::Model& model = driveModel(), double period = 0.001,
                  const SimulatedDrive::Equipment& equipment = {})
-      : period_(period) {
+      : cycle_{ros::Time(1), ros::Duration(period), ros::Duration(period)} {
     drive.init(model, equipment);
-    auto* joints = drive.get<PositionJointInterface>();
-    for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i] = joints->getHandle(kJointNames[i]);
-    drive_ = drive.get<DriveInterface>()->getHandle("drive");
+    read();
+    command_.position = feedback_.position;
   }
 
-  void command(int axis, double position) { joints_[static_cast<std::size_t>(axis)].setCommand(position); }
-  void set(const DriveCommand& command) { drive_.setCommand(command); }
+  void command(int axis, double position) { command_.position[static_cast<std::size_t>(axis)] = position; }
+  /// All but the positions.
+  void set(DriveCommand command) {
+    command.position = command_.position;
+    command_ = command;
+  }
   void set(bool enable, bool reset = false) { set(DriveCommand{enable, reset}); }
-  void read() { drive.read(ros::Time(1), ros::Duration(period_)); }
-  void write() { drive.write(ros::Time(1), ros::Duration(period_)); }
+  void read() { drive.read(cycle_, feedback_); }
+  void write() { drive.write(cycle_, command_); }
 
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) {
@@ -34,17 +35,17 @@ class Bench {
     }
   }
 
-  double position(int axis) const { return joints_[static_cast<std::size_t>(axis)].getPosition(); }
-  double velocity(int axis) const { return joints_[static_cast<std::size_t>(axis)].getVelocity(); }
+  double position(int axis) const { return feedback_.position[static_cast<std::size_t>(axis)]; }
+  double velocity(int axis) const { return feedback_.velocity[static_cast<std::size_t>(axis)]; }
   Axes positions() const { return {position(kX), position(kY), position(kZ), position(kA)}; }
-  const DriveStatus& status() const { return drive_.getStatus(); }
+  const DriveStatus& status() const { return feedback_.status; }
 
   SimulatedDrive drive;
 
  private:
-  double period_;
-  std::array<JointHandle, kAxisCount> joints_;
-  DriveHandle drive_;
+  DriveCycle cycle_;
+  DriveFeedback feedback_;
+  DriveCommand command_;
 };
 
 /// All axes at zero, with the same lag and a fine encoder.

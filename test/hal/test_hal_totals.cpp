@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -58,25 +59,24 @@ class Totals : public ::testing::Test {
  protected:
   Totals() {
     ros::NodeHandle root("~"), own("~hardware");
-    EXPECT_TRUE(drive_.init(root, own));
+    drive_.init(root, own);
   }
 
+  static DriveCycle now() { return {ros::Time::now(), kPeriod, kPeriod}; }
+
   DriveStatus read() {
-    drive_.read(ros::Time::now(), kPeriod);
-    return drive_.get<DriveInterface>()->getHandle("drive").getStatus();
+    drive_.read(now(), feedback_);
+    return feedback_.status;
   }
 
   /// As of the control loop; the drive passes a command on while there is power.
   void cycle(bool enable) {
     drive_.wait(kPeriod);
     const bool powered = read().enabled;
-    for (std::size_t i = 0; i < kAxisCount; ++i) {
-      drive_.get<PositionJointInterface>()->getHandle(kJointNames[i]).setCommand(command_[static_cast<int>(i)]);
-    }
     DriveCommand command;
     command.enable = enable;
-    drive_.get<DriveInterface>()->getHandle("drive").setCommand(command);
-    drive_.write(ros::Time::now(), kPeriod);
+    std::copy(command_.data(), command_.data() + kAxisCount, command.position.begin());
+    drive_.write(now(), command);
     if (powered && enable) written_.push_back(command_);
   }
 
@@ -118,6 +118,7 @@ class Totals : public ::testing::Test {
 
   Recorder recorder_;
   HalHardware drive_;
+  DriveFeedback feedback_;
   Axes command_ = Axes::Zero();
   std::vector<Axes> written_;  ///< since HAL was started
 };

@@ -174,6 +174,8 @@ const Row kRows[]{
      "the axes found no setpoint in 3 servo cycles, after setpoint 77"},
     {Kind::kLate, "Late", Unit::kSecond, 0.052, 0.01, nothing,
      "the control loop came 0.052 s after the cycle before, allowed 0.01 s"},
+    {Kind::kSlow, "Slow", Unit::kSecond, 0.002, 0.0016, nothing,
+     "the control loop takes 0.002 s for a cycle on average, allowed 0.0016 s"},
     {Kind::kHoming, "Homing", Unit::kSecond, 30.001, 30, nothing,
      "the drive has not found its reference after 30.001 s, allowed 30 s"},
     {Kind::kInterlock, "Interlock", Unit::kSecond, 10.5, 10, field("", "no coolant flows"),

@@ -223,7 +223,7 @@ class TestDriveHangs(gc.OwnNode):
         g.inject('hang')
         g.wait_state(GrinderState.FAULT)
         self.assertEqual(self.node.end(signal.SIGTERM), 1)
-        self.assertIn('does not return to the control loop: the process ends without it', self.node.output)
+        self.assertIn('the drive does not return: the process ends without it', self.node.output)
 
 
 class TestFaultIsLogged(gc.OwnNode):

@@ -52,7 +52,6 @@ class ProbingCycles : public ::testing::Test {
   /// Powers the machine. @param touches whether the probe touches, by the axes' positions.
   void start(const LoopConfig& config, std::function<bool(const FakeDrive&)> touches) {
     test_support::setUp(drive_, config);
-    drive_.status.has_probe = true;
     drive_.on_read = [touches = std::move(touches)](FakeDrive& drive) { drive.status.probe_contact = touches(drive); };
     loop_ = std::make_unique<ControlLoop>(drive_, config);
     loop_->startThread();

@@ -8,6 +8,7 @@
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/Legend.h"
+#include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/Plan.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetOffset.h"
@@ -31,6 +32,10 @@ namespace grinder {
 class Stage {
  public:
   Stage() : nh_("cell/stage") {
+    machine_ = nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
+    flute_grinder::MachineInfo able;
+    able.homing = able.spindle = able.coolant = 1;
+    publishMachine(able);
     state_topic_ = nh_.advertise<flute_grinder::GrinderState>("state", 10, true);
     feedback_ = nh_.advertise<flute_grinder::GrindActionFeedback>("grind/feedback", 10);
     openResults();
@@ -89,6 +94,7 @@ class Stage {
     message.result = result;
     results_.publish(message);
   }
+  void publishMachine(const flute_grinder::MachineInfo& machine) { machine_.publish(machine); }
   void publishOffsets(const flute_grinder::WorkOffsets& offsets) { offsets_.publish(offsets); }
   /// Reports which goal starts, and that the progress is its.
   void publishJob(const flute_grinder::GrindActionGoal& goal) {
@@ -222,7 +228,7 @@ class Stage {
 
   std::mutex mutex_;
   ros::NodeHandle nh_;
-  ros::Publisher state_topic_, feedback_, results_, joint_states_, offsets_, legend_, job_, jog_refusals_;
+  ros::Publisher machine_, state_topic_, feedback_, results_, joint_states_, offsets_, legend_, job_, jog_refusals_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;

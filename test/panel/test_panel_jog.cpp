@@ -245,6 +245,15 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
 }
 
+TEST_F(Jogging, WhatTheDriveCannotDoIsGrey) {
+  WAIT_FOR(panel.enabled("home") && panel.enabled("spindle_on") && panel.enabled("coolant_on"));
+  flute_grinder::MachineInfo machine;
+  machine.coolant = 1;
+  stage.publishMachine(machine);
+  WAIT_FOR(!panel.enabled("home") && !panel.enabled("spindle_on"));
+  EXPECT_TRUE(panel.enabled("coolant_on"));
+}
+
 TEST_F(Jogging, TheDistanceToGoIsShownWhileSomethingMoves) {
   WAIT_FOR(panel.enabled("jog_x_plus"));
   EXPECT_EQ(panel.label("to_go_x"), "");

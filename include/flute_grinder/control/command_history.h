@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/loop_status.h"
-#include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/drive/drive.h"
 #include "flute_grinder/job/axes.h"
 
 #include <algorithm>

@@ -3,13 +3,14 @@
 #include "flute_grinder/control/command_history.h"
 #include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/control/drive_checks.h"
+#include "flute_grinder/control/drive_preparation.h"
 #include "flute_grinder/control/jog.h"
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/control/request_box.h"
 #include "flute_grinder/control/seq_lock.h"
 #include "flute_grinder/control/wheel_watch.h"
-#include "flute_grinder/drive/robot_hw.h"
+#include "flute_grinder/drive/drive.h"
 #include "flute_grinder/motion/axis_move.h"
 #include "flute_grinder/motion/limit_check.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -21,6 +22,7 @@
 
 #include <array>
 #include <atomic>
+#include <optional>
 #include <thread>
 
 namespace grinder {
@@ -31,11 +33,10 @@ namespace grinder {
 /// that arrive in one cycle, stops are executed last.
 class ControlLoop : public RequestBox {
  public:
-  /// @param hw the drive, initialised; must outlive the loop.
+  /// @param drive initialised; must outlive the loop.
   /// @param wheel state of the wheel when the previous run of the program ended.
-  /// @throw HardwareInterfaceException if the drive lacks an interface or a joint.
   /// @throw std::invalid_argument unless the limits of every axis are finite and positive.
-  ControlLoop(RobotHW& hw, const LoopConfig& config, const Wheel& wheel = {});
+  ControlLoop(Drive& drive, const LoopConfig& config, const Wheel& wheel = {});
   ~ControlLoop();
 
   /// Starts the thread, with real-time scheduling and locked memory if the system grants them.
@@ -67,6 +68,11 @@ class ControlLoop : public RequestBox {
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
   const LoopConfig& config() const { return config_; }
+  /// Whether the drive's prepare() has not returned. Thread safe.
+  bool isPreparing() const noexcept {
+    return preparation_ && preparation_->state() == DrivePreparation::State::kPreparing;
+  }
+  const DriveCapabilities& capabilities() const { return capabilities_; }  ///< of the drive
 
  private:
   void run();
@@ -77,22 +83,24 @@ class ControlLoop : public RequestBox {
   /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails. @return time since the last one.
   ros::Duration awaitCycle() noexcept;
   /// Tells the drive to switch the power off, when no cycle follows.
-  void writeOff(const ros::Time& time) noexcept;
+  void writeOff(const DriveCycle& cycle) noexcept;
 
-  void readDrive();
+  void readDrive(const DriveCycle& cycle);
   void readSwivel();
   void trackMotion();
   void checkDrive();
-  void writeDrive(const ros::Time& time, const ros::Duration& period);
+  void writeDrive(const DriveCycle& cycle);
   void publish();
 
   void executeRequests();
   void executeRequest(MachineEvent event);
   Refusal execute(MachineEvent event);
+  bool driveCan(MachineEvent event) const;
   Refusal executeStop(MachineEvent event);
   Answer answerTo(MachineEvent event, Refusal refusal) const;
   Refusal enable();
   void awaitPower();
+  Refusal awaitPreparation();
   void answerEnable(Refusal refusal);
   void switchOff();
   Refusal reset();
@@ -137,10 +145,10 @@ class ControlLoop : public RequestBox {
   void fail(const LoopFault& fault);
   void apply(MachineEvent event);
 
-  RobotHW& hw_;
+  Drive& drive_;
+  const DriveCapabilities capabilities_;
   const LoopConfig config_;
-  std::array<JointHandle, kAxisCount> joints_;
-  DriveHandle drive_;
+  std::optional<DrivePreparation> preparation_;  ///< of a drive that prepares
 
   // Used only by the control thread.
   MachineState state_ = MachineState::kDisabled;
@@ -162,6 +170,7 @@ class ControlLoop : public RequestBox {
   FaultText thrown_;            ///< by the drive, since the last readDrive()
   bool has_thrown_ = false;     ///< the drive
   bool has_positions_ = false;  ///< all have been finite once
+  DriveFeedback feedback_;
   Axes command_ = Axes::Zero();
   CommandHistory history_;
   JobTrack written_;                ///< for the running job, or else the last one

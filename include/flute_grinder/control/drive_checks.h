@@ -20,8 +20,8 @@ class DriveChecks {
 
   /// The drive has been commanded to clear its fault.
   void reset() noexcept { was_reset_ = true; }
-  /// To be called in each cycle: a fault that comes after this one has cleared is a new one.
-  void observe(const DriveStatus& drive) noexcept { was_reset_ = was_reset_ && drive.fault; }
+  /// To be called in each cycle.
+  void observe(const CycleSample& sample) noexcept;
 
   /// Why the drive may not be powered; kNone if it may.
   Refusal powerRefusal(const CycleSample& sample) const noexcept;
@@ -37,6 +37,11 @@ class DriveChecks {
   const LoopConfig& config_;
   std::uint64_t underruns_at_power_on_ = 0;
   bool was_reset_ = false;  ///< since the drive reported its present fault
+  // Of the cycles in the present second.
+  double time_ = 0;          ///< [s]
+  double bounded_time_ = 0;  ///< in which a late cycle counts as two periods [s]
+  double cycles_ = 0;
+  double slow_ = 0;  ///< average time of a cycle in the second before, if that was too long; 0 if not [s]
 };
 
 /// The first open interlock; kNone if grinding is allowed. Real-time safe.

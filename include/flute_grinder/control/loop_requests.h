@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/job/fault_text.h"
 #include "flute_grinder/machine/loop_fault.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/machine/swivel.h"
@@ -21,10 +22,13 @@ struct RequestReply {
 enum class Refusal : std::uint8_t {
   kNone,
   kState,
+  kNotOffered,  ///< by the drive
   kEmergencyStop,
   kDriveFault,
   kDriveFaultStays,  ///< the drive was commanded to clear its fault, and still reports it
   kInterlock,
+  kPreparing,    ///< the drive's prepare() has not returned
+  kNotPrepared,  ///< the drive's prepare() has failed
   kNoPower,
   kMoved,
   kFeedback,
@@ -59,6 +63,7 @@ struct Answer {
   double limit = 0;                        ///< what is allowed
   Swivel swivel;                           ///< for kSwivel and kSwivelMeasured
   double job_swivel = 0;                   ///< for kSwivel and kSwivelInUse [rad]
+  FaultText drive_text;                    ///< for kNotPrepared
 
   RequestReply reply() const;
 };

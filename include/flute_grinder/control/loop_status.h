@@ -59,7 +59,6 @@ struct LoopStatus {
   bool position_valid = false;                ///< all of them are finite and fresh
   double feed_override = 1;                   ///< fraction
   Swivel swivel;                              ///< where it stands, as far as is known
-  bool has_probe = false;                     ///< the drive reads a measuring probe
   bool probe_contact = false;                 ///< the measuring probe touches something
   ProbeContact contact;                       ///< of the present jog, or else the last one
   bool client_lost = false;                   ///< so the present jog, or else the last one, was stopped

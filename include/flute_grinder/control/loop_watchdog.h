@@ -20,8 +20,8 @@ class LoopWatchdog {
   static constexpr std::chrono::milliseconds kLook{10};
   static constexpr int kMostLooks = 25;
 
-  /// @param loop whose thread has been started. @param hw its drive. Both must outlive this object.
-  LoopWatchdog(const ControlLoop& loop, RobotHW& hw);
+  /// @param loop whose thread has been started. @param drive its own. Both must outlive this object.
+  LoopWatchdog(const ControlLoop& loop, Drive& drive);
   ~LoopWatchdog();
 
   /// What is known of the loop. Thread safe.
@@ -33,7 +33,7 @@ class LoopWatchdog {
   void run();
 
   const ControlLoop& loop_;
-  RobotHW& hw_;
+  Drive& drive_;
   std::atomic<Finding> finding_{Finding::kRuns};
   std::mutex mutex_;
   std::condition_variable end_;

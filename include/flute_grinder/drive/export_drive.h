@@ -10,17 +10,17 @@
 namespace grinder {
 
 /// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
-/// flute_grinder/job/axes.h and fault_text.h declare, and the order of RobotHW's virtual functions. To be increased
+/// flute_grinder/job/axes.h and fault_text.h declare, and the order of Drive's virtual functions. To be increased
 /// whenever one of them changes. The node refuses plugins that were built against another version.
-constexpr std::uint32_t kDriveAbi = 3;
+constexpr std::uint32_t kDriveAbi = 4;
 
 }  // namespace grinder
 
-/// Exports a drive, a class derived from flute_grinder::RobotHW, as a plugin for the node. To be used in place of
+/// Exports a drive, a class derived from grinder::Drive, as a plugin for the node. To be used in place of
 /// PLUGINLIB_EXPORT_CLASS, outside of namespaces; in a library with several drives, once for each.
-#define FLUTE_GRINDER_EXPORT_DRIVE(Drive)                                                          \
+#define FLUTE_GRINDER_EXPORT_DRIVE(Class)                                                          \
   extern "C" {                                                                                     \
   extern const std::uint32_t flute_grinder_drive_abi __attribute__((weak, visibility("default"))); \
   const std::uint32_t flute_grinder_drive_abi = grinder::kDriveAbi;                                \
   }                                                                                                \
-  PLUGINLIB_EXPORT_CLASS(Drive, grinder::RobotHW)
+  PLUGINLIB_EXPORT_CLASS(Class, grinder::Drive)

@@ -61,6 +61,7 @@ enum class ReasonKind : std::uint8_t {
   kUndercut,     ///< a relief takes `value` of the edge's radius, allowed `limit`; at `x` of `tooth`
   kNextEdge,     ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
   kHeel,         ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
+  kSlow,         ///< the control loop's cycles take `value` on average, allowed `limit`
 };
 
 /// The name is that of the message's constant, in small letters.
@@ -114,15 +115,14 @@ inline constexpr ReasonRow kReasonKinds[]{
      "change the height or the swivel of the relief's set-up"},
     {{ReasonKind::kUndercut, "undercut"},
      "the relief takes {value} of the edge of tooth {tooth} at X = {x}; allowed: up to {limit}; grind the flutes with "
-     "an "
-     "edge nearer to the asked helix"},
+     "an edge nearer to the asked helix"},
     {{ReasonKind::kNextEdge, "next_edge"},
      "the relief's wheel reaches {value} into the tooth behind tooth {tooth} at X = {x}; change the height of the "
      "relief's set-up, or take a narrower wheel"},
     {{ReasonKind::kHeel, "heel"},
      "the relief of tooth {tooth} ends on the land at X = {x}; change the height of the relief's set-up, or take a "
-     "wider "
-     "wheel"},
+     "wider wheel"},
+    {{ReasonKind::kSlow, "slow"}, "the control loop takes {value} for a cycle on average, allowed {limit}"},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();

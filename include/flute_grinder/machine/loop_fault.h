@@ -42,6 +42,7 @@ enum class FaultKind : std::uint8_t {
   kFollowingError,
   kUnderrun,   ///< a drive that buffers commands had none left for the axes
   kLate,       ///< the loop was late, and the axes had no buffered commands to follow
+  kSlow,       ///< the loop's cycles take much longer than the control period
   kLimit,      ///< a setpoint exceeds a limit of an axis
   kHoming,     ///< the drive did not find its reference
   kInterlock,  ///< a job could not begin; the machine stays ready
@@ -67,6 +68,7 @@ inline constexpr FaultRow kFaultKinds[]{
     {FaultKind::kFollowingError, ReasonKind::kFollowingError, Unit::kMetre, FaultClass::kTolerance},
     {FaultKind::kUnderrun, ReasonKind::kUnderrun, Unit::kNone, FaultClass::kHardware},
     {FaultKind::kLate, ReasonKind::kLate, Unit::kSecond, FaultClass::kHardware},
+    {FaultKind::kSlow, ReasonKind::kSlow, Unit::kSecond, FaultClass::kHardware},
     {FaultKind::kLimit, ReasonKind::kNone, Unit::kNone, FaultClass::kLimit},
     {FaultKind::kHoming, ReasonKind::kHoming, Unit::kSecond, FaultClass::kHardware},
     {FaultKind::kInterlock, ReasonKind::kInterlock, Unit::kSecond, FaultClass::kNotReady},

@@ -3,7 +3,6 @@
 
 #include <flute_grinder/GrinderState.h>
 #include <flute_grinder/curve/log_curve.h>
-#include <flute_grinder/drive/robot_hw.h>
 #include <flute_grinder/job/grind_job.h>
 #include <flute_grinder/job/job_file.h>
 #include <flute_grinder/motion/setpoint_stream.h>
@@ -24,9 +23,7 @@ int main(int argc, char** argv) {
   }
   std::cout << state->state_name;
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const double rest = 0;
-    const JointStateHandle joint("axis_" + std::to_string(axis), &state->position[axis], &rest, &rest);
-    std::cout << "; " << joint.getName() << ' ' << joint.getPosition();
+    std::cout << "; axis_" << axis << ' ' << state->position[axis];
   }
   std::cout << "; A(1 m) = " << LogCurve(0, 2).a(1) << " rad";
 

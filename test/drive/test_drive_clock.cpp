@@ -1,5 +1,4 @@
 #include "drive/simulated_bench.h"
-#include "flute_grinder/drive/robot_hw.h"
 
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
@@ -8,7 +7,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <ctime>
-#include <string>
 #include <vector>
 
 // Replaces the C library's clock by one that stands still unless a test moves it: nothing here waits, and nothing
@@ -53,100 +51,13 @@ int clock_nanosleep(clockid_t id, int flags, const timespec* until, timespec* le
 namespace grinder::test_support {
 namespace {
 
-template <typename Work>
-std::string errorOf(const Work& work) {
-  try {
-    work();
-  } catch (const HardwareInterfaceException& error) {
-    return error.what();
-  }
-  return "";
-}
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Handles
-
-class Handles : public testing::Test {
- protected:
-  double position_ = 1, velocity_ = 2, effort_ = 3, command_ = 4;
-  JointStateHandle state_{"axis_x", &position_, &velocity_, &effort_};
-};
-
-TEST_F(Handles, JointWritesThroughItsPointer) {
-  JointHandle joint(state_, &command_);
-  joint.setCommand(7.5);
-  EXPECT_EQ(command_, 7.5);
-  command_ = 8.5;
-  EXPECT_EQ(joint.getCommand(), 8.5);
-}
-
-TEST_F(Handles, EveryNullPointerOfAStateIsRefusedByName) {
-  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", nullptr, &velocity_, &effort_); }), "'axis_q'"));
-  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", &position_, nullptr, &effort_); }), "'axis_q'"));
-  EXPECT_TRUE(contains(errorOf([&] { JointStateHandle("axis_q", &position_, &velocity_, nullptr); }), "'axis_q'"));
-}
-
-TEST_F(Handles, ANullCommandIsRefusedByName) {
-  EXPECT_TRUE(contains(errorOf([&] { JointHandle(state_, nullptr); }), "'axis_x'"));
-}
-
-TEST(DriveHandle, NullPointersAreRefusedByName) {
-  DriveStatus status;
-  DriveCommand command;
-  EXPECT_TRUE(contains(errorOf([&] { DriveHandle("main_drive", nullptr, &command); }), "'main_drive'"));
-  EXPECT_TRUE(contains(errorOf([&] { DriveHandle("main_drive", &status, nullptr); }), "'main_drive'"));
-}
-
-TEST(DriveStatus, SaysNothingGoodUntilReported) {
-  const DriveStatus status;
-  EXPECT_FALSE(status.enabled);
-  EXPECT_FALSE(status.homed);
-}
-
-TEST(DriveCommand, IsWithoutPowerUntilCommanded) {
-  const DriveCommand command;
-  EXPECT_FALSE(command.enable);
-  EXPECT_FALSE(command.reset);
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Interfaces
-
-TEST_F(Handles, OfAnUnknownNameAreRefusedByName) {
-  PositionJointInterface interface;
-  interface.registerHandle(JointHandle(state_, &command_));
-  EXPECT_TRUE(contains(errorOf([&] { interface.getHandle("axis_b"); }), "'axis_b'"));
-}
-
-TEST_F(Handles, OfTheSameNameReplaceOneAnother) {
-  double other = 9;
-  JointStateInterface interface;
-  interface.registerHandle(state_);
-  interface.registerHandle(JointStateHandle("axis_x", &other, &other, &other));
-  EXPECT_EQ(interface.getHandle("axis_x").getPosition(), 9);
-  EXPECT_EQ(interface.getNames(), std::vector<std::string>{"axis_x"});
-}
-
-class EmptyDrive : public RobotHW {
+class EmptyDrive : public Drive {
  public:
-  bool init(ros::NodeHandle&, ros::NodeHandle&) override { return true; }
-  void read(const ros::Time&, const ros::Duration&) override {}
-  void write(const ros::Time&, const ros::Duration&) override {}
+  void init(ros::NodeHandle&, ros::NodeHandle&) override {}
+  DriveCapabilities capabilities() const override { return {}; }
+  void read(const DriveCycle&, DriveFeedback&) override {}
+  void write(const DriveCycle&, const DriveCommand&) override {}
 };
-
-TEST(RobotHW, GivesNullForATypeThatIsNotRegistered) {
-  EmptyDrive drive;
-  EXPECT_EQ(drive.get<JointStateInterface>(), nullptr);
-  PositionJointInterface joints;
-  drive.registerInterface(&joints);
-  EXPECT_EQ(drive.get<JointStateInterface>(), nullptr);
-  EXPECT_EQ(drive.get<DriveInterface>(), nullptr);
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Pacing
 
 constexpr std::int64_t kMillisecond = 1000000, kMicrosecond = 1000;
 constexpr std::int64_t kStart = 5000 * 1000 * kMillisecond + 999 * kMillisecond;  ///< just before a full second
@@ -262,7 +173,7 @@ TEST_F(Pacing, AFastSimulationTakesHalfACore) {
 
 // With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them
 // returns at once.
-TEST(RobotHW, WaitsOnTheMonotonicClock) {
+TEST(Drive, WaitsOnTheMonotonicClock) {
   const auto now_ns = [] {
     timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);

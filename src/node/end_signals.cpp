@@ -1,0 +1,45 @@
+#include "node/end_signals.h"
+
+#include <pthread.h>
+#include <ros/ros.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+constexpr std::chrono::milliseconds kLook{10};
+
+}  // namespace
+
+EndSignals::EndSignals() {
+  sigemptyset(&signals_);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals_, signal);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+}
+
+bool EndSignals::await(std::chrono::milliseconds timeout) const {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(timeout);
+  const timespec time{seconds.count(), std::chrono::nanoseconds(timeout - seconds).count()};
+  return sigtimedwait(&signals_, nullptr, &time) > 0;
+}
+
+EndAtOnce::EndAtOnce(const EndSignals& signals, std::string during)
+    : thread_([this, &signals, during = std::move(during)] {
+        while (!over_) {
+          if (!signals.await(kLook)) continue;
+          ROS_WARN_STREAM("ended by a signal while " << during);
+          ros::shutdown();
+          std::_Exit(0);
+        }
+      }) {}
+
+EndAtOnce::~EndAtOnce() {
+  over_ = true;
+  thread_.join();
+}
+
+}  // namespace grinder

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+namespace grinder {
+
+/// The signals that end the program: blocked in every thread, because the machine must come to rest before the process
+/// ends, and waited for.
+class EndSignals {
+ public:
+  /// Blocks them in this thread and in those that it starts from now on.
+  EndSignals();
+
+  /// Waits for one. @return whether there was one.
+  bool await(std::chrono::milliseconds timeout) const;
+
+ private:
+  sigset_t signals_{};
+};
+
+/// While it exists, such a signal ends the process at once: for what may block for ever, with the power off.
+class EndAtOnce {
+ public:
+  /// @param signals must outlive this object. @param during what is being done then, for the log.
+  EndAtOnce(const EndSignals& signals, std::string during);
+  ~EndAtOnce();
+
+ private:
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+}  // namespace grinder

@@ -1,0 +1,136 @@
+#include "control/rig.h"
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
+// A drive that is to be made ready before the power, by what may block.
+namespace grinder::test_support {
+namespace test_drive_preparation {
+
+/// Of prepare(), which a test opens.
+class Gate {
+ public:
+  void pass() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    ++waiting_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return open_; });
+    --waiting_;
+  }
+  void open() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+  void awaitVisitor() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return waiting_ > 0; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool open_ = false;
+  int waiting_ = 0;
+};
+
+class Preparation : public testing::Test {
+ protected:
+  ~Preparation() override { gate.open(); }
+
+  /// @param timeout of an enable [s].
+  void make(double timeout, std::function<void()> on_prepare, bool prepares = true) {
+    LoopConfig config = machineConfig();
+    config.enable_timeout = timeout;
+    made_.emplace(config, [&](FakeDrive& drive) {
+      drive.can.prepares = prepares;
+      drive.on_prepare = std::move(on_prepare);
+    });
+  }
+  Rig<FakeDrive>& rig() { return *made_; }
+  bool isPowerOn() { return rig().drive.written_drive.enable; }
+
+  void post(E event) { ASSERT_TRUE(rig().loop->post(event)); }
+  /// Runs cycles until the request is answered.
+  std::string answer() {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (std::chrono::steady_clock::now() < deadline) {
+      rig().runUnseen(1);
+      if (const auto reply = rig().loop->reply()) return reply->accepted ? "accepted" : reply->text;
+    }
+    return "no answer";
+  }
+  std::string enable() {
+    post(E::kEnable);
+    return answer();
+  }
+
+  Gate gate;
+
+ private:
+  std::optional<Rig<FakeDrive>> made_;
+};
+
+constexpr double kForEver = 1e9;
+
+TEST_F(Preparation, ComesBeforeThePowerAndOutsideTheLoop) {
+  make(kForEver, [this] { gate.pass(); });
+  post(E::kEnable);
+  rig().runUnseen(1);
+  gate.awaitVisitor();
+  rig().runUnseen(100);
+  EXPECT_FALSE(isPowerOn());
+  EXPECT_TRUE(rig().loop->isPreparing());
+  gate.open();
+  EXPECT_EQ(answer(), "accepted");
+  EXPECT_TRUE(isPowerOn());
+  EXPECT_FALSE(rig().loop->isPreparing());
+}
+
+TEST_F(Preparation, ThatFailsSaysWhyAndLeavesThePowerOff) {
+  std::atomic<int> failures{1};
+  make(kForEver, [&] {
+    if (failures-- > 0) throw std::runtime_error("the brake does not open");
+  });
+  EXPECT_EQ(enable(), "enable refused: the drive is not ready: the brake does not open");
+  rig().runUnseen(100);
+  EXPECT_FALSE(isPowerOn());
+  EXPECT_EQ(enable(), "accepted");
+}
+
+TEST_F(Preparation, ThatHangsIsRefusedInTimeAndUntilItReturns) {
+  make(0.1, [this] { gate.pass(); });
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(enable(), "enable refused: the drive has not become ready in time; wait, then try again");
+  }
+  EXPECT_FALSE(isPowerOn());
+}
+
+TEST_F(Preparation, IsWithdrawnByADisable) {
+  make(kForEver, [this] { gate.pass(); });
+  post(E::kEnable);
+  rig().runUnseen(1);
+  gate.awaitVisitor();
+  rig().loop->postStop(E::kDisable);
+  EXPECT_EQ(answer(), "enable refused: disable came before the power");
+  gate.open();
+  while (rig().loop->isPreparing()) rig().runUnseen(1);
+  rig().runUnseen(100);
+  EXPECT_FALSE(isPowerOn());
+  EXPECT_EQ(enable(), "accepted");
+}
+
+TEST_F(Preparation, IsNotAskedOfADriveThatNeedsNone) {
+  std::atomic<int> calls{0};
+  make(
+      0.1, [&] { ++calls; }, false);
+  EXPECT_EQ(enable(), "accepted");
+  EXPECT_EQ(calls, 0);
+}
+
+}  // namespace test_drive_preparation
+}  // namespace grinder::test_support

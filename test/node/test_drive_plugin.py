@@ -1,0 +1,129 @@
+#!/usr/bin/env python3
+"""Shows what the node does with drive plugins from a package of their own: those of another version of the drive interface it
+refuses before it makes the drive, those that cannot do what the machine needs before they get power, and it waits for slow ones."""
+
+import os
+import re
+import shutil
+import signal
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from std_msgs.msg import Empty
+from std_srvs.srv import Trigger
+
+from flute_grinder.msg import GrinderState
+
+import grinder_client as gc
+
+PACKAGE = """<package format="2">
+  <name>drives</name>
+  <version>0.1.0</version>
+  <description>Drives of tests.</description>
+  <maintainer email="me@example.org">Me</maintainer>
+  <license>BSD-3-Clause</license>
+  <depend>flute_grinder</depend>
+  <export>
+    <flute_grinder plugin="${prefix}/plugins.xml"/>
+  </export>
+</package>
+"""
+PLUGINS = """<library path="lib/libflute_grinder_%s">
+  <class name="drives/Drive" type="%s" base_class_type="grinder::Drive">
+    <description>A drive.</description>
+  </class>
+</library>
+"""
+
+
+class TestDrivePlugin(unittest.TestCase):
+    started = 0
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def start(self, library, plugin, **hardware):
+        for name, text in (('package.xml', PACKAGE), ('plugins.xml', PLUGINS % (library, plugin))):
+            with open(os.path.join(self.folder, name), 'w') as file:
+                file.write(text)
+        parameters = gc.machine()
+        parameters['hardware'] = dict(hardware, type='drives/Drive')
+        TestDrivePlugin.started += 1
+        node = gc.NodeProcess('doubtful%d' % self.started, parameters, environment={
+            'ROS_PACKAGE_PATH': self.folder + ':' + os.environ['ROS_PACKAGE_PATH']})
+        self.addCleanup(node.close)
+        return node
+
+    def refusal(self, *plugin, **hardware):
+        """What the node says of a plugin, and ends."""
+        node = self.start(*plugin, **hardware)
+        self.assertEqual(node.end(), 1, node.output)
+        return node.output
+
+    def test_other_version(self):
+        text = self.refusal('drive_of_other_version', 'RefusedDrive')
+        pattern = (r'parameter /doubtful\d+/hardware/type = drives/Drive was built against version (\d+) of the drive interface; '
+                   r'allowed: version (\d+)\. Build it again: \S+/libflute_grinder_drive_of_other_version\.so')
+        self.assertRegex(text, pattern)
+        built, allowed = re.search(pattern, text).groups()
+        self.assertEqual(int(built), int(allowed) + 41)
+
+    def test_no_version(self):
+        """Though the libraries that it is linked with, and the node itself, may have one."""
+        self.assertRegex(self.refusal('drive_of_no_version', 'RefusedDrive'),
+                         r'parameter /doubtful\d+/hardware/type = drives/Drive states no version of the drive interface; '
+                         r'allowed: version \d+\. Build it again: \S+/libflute_grinder_drive_of_no_version\.so')
+
+    def awkward(self, how):
+        return self.start('awkward_drive', 'AwkwardDrive', awkward=how)
+
+    def test_period(self):
+        """One that the drive cannot hold."""
+        self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward='slow bus'),
+                         r'parameter /doubtful\d+/control_rate = 1000; allowed: up to 500, which the drive drives/Drive can hold')
+
+    def test_buffer(self):
+        self.assertIn('the drive drives/Drive buffers 5000 commands; allowed: up to 4095',
+                      self.refusal('awkward_drive', 'AwkwardDrive', awkward='long buffer'))
+
+    def test_callbacks_during_init(self):
+        """One that waits for a message in init() gets it."""
+        node = self.awkward('waits')
+        go = rospy.Publisher('/%s/hardware/go' % node.name, Empty, queue_size=1)
+        gc.poll(lambda: go.get_num_connections() > 0, 'init() to listen')
+        go.publish()
+        grinder = node.client()
+        self.addCleanup(grinder.close)
+        grinder.wait_state(GrinderState.DISABLED)
+        self.assertEqual(node.end(signal.SIGTERM), 0, node.output)
+
+    def test_signal_during_init(self):
+        """It ends a drive that waits for ever, and leaves nothing at the master."""
+        for with_signal in signal.SIGINT, signal.SIGTERM:
+            node = self.awkward('waits')
+            go = rospy.Publisher('/%s/hardware/go' % node.name, Empty, queue_size=1)
+            gc.poll(lambda: go.get_num_connections() > 0, 'init() to listen')
+            self.assertEqual(node.end(with_signal), 0, node.output)
+            self.assertIn('ended by a signal while the drive drives/Drive was being initialised', node.output)
+            go.unregister()
+            self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
+
+    def test_signal_during_prepare(self):
+        """A prepare() that hangs delays the end, and does not prevent it."""
+        node = self.awkward('hangs in prepare')
+        grinder = node.client()
+        self.addCleanup(grinder.close)
+        grinder.wait_state(GrinderState.DISABLED)
+        self.assertIn('the drive has not become ready in time',
+                      rospy.ServiceProxy('/%s/enable' % node.name, Trigger)().message)
+        self.assertEqual(node.end(signal.SIGTERM), 1, node.output)
+        self.assertIn('the drive does not return: the process ends without it', node.output)
+
+
+if __name__ == '__main__':
+    rospy.init_node('test_drive_plugin')
+    rostest.rosrun('flute_grinder', 'drive_plugin', '__main__')

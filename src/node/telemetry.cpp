@@ -70,6 +70,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
                    }),
       diagnostic_updater_(nh, private_nh),
+      robot_status_(nh),
       frames_(urdf, first_view),
       scene_(private_nh, first_view),
       recorder_(private_nh.getNamespace(), machine, history),
@@ -301,6 +302,7 @@ void Telemetry::publishState() {
   flute_grinder::GrinderState message = stateMessage();
   message.header.stamp = ros::Time(sample_.time);
   state_.publish(message);
+  robot_status_.publish(sample_);
 }
 
 /// Without a stamp.

@@ -11,6 +11,7 @@
 #include "node/job_recorder.h"
 #include "node/journal_writer.h"
 #include "node/offset_store.h"
+#include "node/robot_status.h"
 #include "node/served_queue.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -112,6 +113,7 @@ class Telemetry {
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
   ros::Publisher joint_states_, state_, setpoints_;
+  RobotStatus robot_status_;
   Frames frames_;
   Scene scene_;
 

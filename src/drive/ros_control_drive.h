@@ -1,0 +1,86 @@
+#pragma once
+
+#include "drive/mode_switch.h"
+#include "drive/remote_signals.h"
+#include "drive/ros_control_parameters.h"
+#include "flute_grinder/drive/drive.h"
+
+#include <hardware_interface/joint_command_interface.h>
+#include <hardware_interface/joint_state_interface.h>
+#include <hardware_interface/posvel_command_interface.h>
+#include <hardware_interface/robot_hw.h>
+#include <ros/ros.h>
+#include <pluginlib/class_loader.hpp>
+
+#include <array>
+#include <atomic>
+#include <list>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace grinder {
+
+/// Hardware that ros_control drives: any class derived from hardware_interface::RobotHW, unchanged, with a joint for
+/// each axis that takes positions, or positions and velocities. What a RobotHW has not, such as the emergency stop, is
+/// stated by parameters, or comes from and goes to other programs; docs/ros-control.md lists them.
+class RosControlDrive : public Drive {
+ public:
+  void init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) override;
+  DriveCapabilities capabilities() const override;
+  void prepare() override;
+  void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
+  void write(const DriveCycle& cycle, const DriveCommand& command) override;
+  /// By the monotonic clock, unless the RobotHW's read() is the clock: then at once.
+  ros::Duration wait(const ros::Duration& nominal) override;
+  bool powerOff() override;
+
+ private:
+  friend ModeSwitch;
+
+  struct Joint {
+    hardware_interface::JointStateHandle state;
+    hardware_interface::JointHandle position;  ///< unless there is the next one
+    std::optional<hardware_interface::PosVelJointHandle> with_velocity;
+    void command(double position, double velocity);
+    double commanded() const;
+  };
+  struct Signals {
+    std::optional<SignalInput> emergency_stop, homed, spindle_at_speed, coolant_on, enabled, fault, probe_free,
+        probe_contact;
+  };
+  struct Commands {
+    std::optional<CommandOutput> power, home, spindle, coolant, reset;
+  };
+
+  void doSwitch(bool on);
+  ModeSwitch::Result switchResult() const;
+  void loadRobotHw(const std::string& type, ros::NodeHandle& drive_nh);
+  void takeJoints(const std::array<std::string, kAxisCount>& names);
+  void connect(const RosControlParameters& parameters);
+  void listen(std::optional<SignalInput>& input, const std::string& source, bool safe, double timeout);
+  void readStatus(DriveStatus& status);
+  void readFault(DriveStatus& status);
+  void passOn(const DriveCommand& command);
+  void commandJoints(const DriveCycle& cycle, const DriveCommand& command);
+
+  // The class loader must outlive what it has loaded.
+  std::unique_ptr<pluginlib::ClassLoader<hardware_interface::RobotHW>> loader_;
+  pluginlib::UniquePtr<hardware_interface::RobotHW> robot_hw_;
+  std::array<Joint, kAxisCount> joints_;
+  std::list<hardware_interface::ControllerInfo> controller_;  ///< the grinder, as a RobotHW sees it
+  const std::list<hardware_interface::ControllerInfo> none_;
+
+  ros::NodeHandle nh_;
+  std::list<ros::Subscriber> subscribers_;
+  Signals signals_;
+  Commands commands_;
+  bool read_is_clock_ = false;
+
+  ModeSwitch mode_;
+  DriveCommand sent_;
+  int changed_axis_ = kAxisCount;       ///< whose command the RobotHW has changed
+  std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false
+};
+
+}  // namespace grinder

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "flute_grinder/control/cycle_sample.h"
+
+#include <ros/ros.h>
+
+namespace grinder {
+
+/// Publishes the machine's status on `robot_status` as industrial_msgs/RobotStatus, as other drivers do; nothing where
+/// that package is not installed.
+class RobotStatus {
+ public:
+  /// @param nh the node's namespace.
+  explicit RobotStatus(ros::NodeHandle nh);
+  void publish(const CycleSample& sample);
+
+ private:
+  ros::Publisher publisher_;
+};
+
+}  // namespace grinder

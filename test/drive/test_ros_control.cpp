@@ -1,0 +1,318 @@
+#include "drive/mode_switch.h"
+#include "drive/remote_signals.h"
+#include "drive/ros_control_parameters.h"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <string>
+#include <vector>
+
+// What the drive for ros_control's RobotHW does without a RobotHW: signals, commands to other programs, switching over.
+namespace grinder::test_support {
+namespace test_ros_control {
+
+using Clock = SignalInput::Clock;
+using std::chrono::milliseconds;
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Signals
+
+const Clock::time_point kNow = Clock::time_point(std::chrono::hours(100));
+
+TEST(SignalInput, IsWhatWasStated) {
+  for (const bool safe : {true, false}) {
+    EXPECT_TRUE(SignalInput("always", safe, 1).at(kNow));
+    EXPECT_FALSE(SignalInput("never", safe, 1).at(kNow));
+    EXPECT_EQ(SignalInput("always", safe, 1).topic(), "");
+  }
+}
+
+TEST(SignalInput, IsSafeUntilAMessageComesAndWhenNoneComesAnyMore) {
+  for (const bool safe : {true, false}) {
+    SignalInput signal("/cell/emergency_stop", safe, 0.5);
+    EXPECT_EQ(signal.topic(), "/cell/emergency_stop");
+    EXPECT_EQ(signal.at(kNow), safe);
+    signal.receive(!safe, kNow);
+    EXPECT_EQ(signal.at(kNow + milliseconds(500)), !safe);
+    EXPECT_EQ(signal.at(kNow + milliseconds(501)), safe);
+    signal.receive(!safe, kNow + milliseconds(900));
+    EXPECT_EQ(signal.at(kNow + milliseconds(901)), !safe);
+  }
+}
+
+TEST(SignalInput, WithoutATimeoutALastMessageStays) {
+  SignalInput signal("/homed", false, 0);
+  EXPECT_FALSE(signal.at(kNow));
+  signal.receive(true, kNow);
+  EXPECT_TRUE(signal.at(kNow + std::chrono::hours(1000)));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Commands
+
+/// Another program: it takes what it is sent, refuses it, or hangs.
+class Receiver {
+ public:
+  bool operator()(bool on) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    ++visits_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !hangs_; });
+    got_ += on ? '1' : '0';
+    changed_.notify_all();
+    return !refuses_;
+  }
+  template <typename Change>
+  void change(Change how) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    how(*this);
+    changed_.notify_all();
+  }
+  /// Waits until the end of what it has got is that.
+  ::testing::AssertionResult gets(const std::string& end) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    const bool has = changed_.wait_for(lock, std::chrono::seconds(60), [&] {
+      return got_.size() >= end.size() && got_.compare(got_.size() - end.size(), end.size(), end) == 0;
+    });
+    return (has ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << "got " << got_;
+  }
+  void awaitVisit() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return visits_ > 0; });
+  }
+  bool hangs_ = false, refuses_ = false;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::string got_;
+  int visits_ = 0;
+};
+
+/// Waits for a condition.
+template <typename Condition>
+bool soon(const Condition& condition) {
+  const auto deadline = Clock::now() + std::chrono::seconds(60);
+  while (!condition() && Clock::now() < deadline) std::this_thread::sleep_for(milliseconds(1));
+  return condition();
+}
+
+class Command : public testing::Test {
+ protected:
+  ~Command() override {
+    receiver->change([](Receiver& r) { r.hangs_ = false; });
+  }
+
+  std::shared_ptr<Receiver> receiver = std::make_shared<Receiver>();
+  CommandOutput output{[r = receiver](bool on) { return (*r)(on); }};
+};
+
+TEST_F(Command, IsOffAtFirstAndSendsNothing) {
+  EXPECT_TRUE(output.isOff());
+  EXPECT_FALSE(output.isOn() || output.hasFailed());
+  output.set(false);
+  EXPECT_TRUE(output.isOff());
+}
+
+TEST_F(Command, IsOnOnceItHasBeenTaken) {
+  receiver->change([](Receiver& r) { r.hangs_ = true; });
+  output.set(true);
+  EXPECT_FALSE(output.isOn() || output.isOff());
+  receiver->change([](Receiver& r) { r.hangs_ = false; });
+  EXPECT_TRUE(soon([&] { return output.isOn(); }));
+  EXPECT_TRUE(receiver->gets("1"));
+}
+
+TEST_F(Command, LeavesNoChangeOut) {
+  receiver->change([](Receiver& r) { r.hangs_ = true; });
+  for (const bool on : {true, true, false, true, false, false}) output.set(on);
+  receiver->change([](Receiver& r) { r.hangs_ = false; });
+  EXPECT_TRUE(receiver->gets("1010"));
+  EXPECT_TRUE(soon([&] { return output.isOff(); }));
+}
+
+TEST_F(Command, IsTriedAgainUntilItIsTaken) {
+  receiver->change([](Receiver& r) { r.refuses_ = true; });
+  output.set(true);
+  EXPECT_TRUE(soon([&] { return output.hasFailed(); }));
+  EXPECT_TRUE(receiver->gets("11"));
+  EXPECT_FALSE(output.isOn());
+  receiver->change([](Receiver& r) { r.refuses_ = false; });
+  EXPECT_TRUE(soon([&] { return output.isOn() && !output.hasFailed(); }));
+}
+
+TEST_F(Command, ThatIsRefusedDoesNotBlockItsContrary) {
+  receiver->change([](Receiver& r) { r.refuses_ = true; });
+  output.set(true);
+  EXPECT_TRUE(soon([&] { return output.hasFailed(); }));
+  output.set(false);
+  EXPECT_TRUE(receiver->gets("0"));
+}
+
+TEST(CommandOutput, IsPassedOnBeforeTheEnd) {
+  const auto receiver = std::make_shared<Receiver>();
+  {
+    CommandOutput output([receiver](bool on) { return (*receiver)(on); });
+    output.set(true);
+    output.set(false);
+  }
+  EXPECT_TRUE(receiver->gets("10"));
+}
+
+TEST(CommandOutput, ThatHangsDoesNotKeepTheProgramFromItsEnd) {
+  const auto receiver = std::make_shared<Receiver>();
+  receiver->change([](Receiver& r) { r.hangs_ = true; });
+  {
+    CommandOutput output([receiver](bool on) { return (*receiver)(on); });
+    output.set(true);
+    receiver->awaitVisit();
+  }
+  receiver->change([](Receiver& r) { r.hangs_ = false; });
+  EXPECT_TRUE(receiver->gets("1"));
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Switching
+
+struct Hardware {
+  std::string calls;
+  ModeSwitch::Result result = ModeSwitch::Result::kDone;
+  void doSwitch(bool on) { calls += on ? "on " : "off "; }
+  ModeSwitch::Result switchResult() {
+    calls += "result ";
+    return result;
+  }
+};
+
+TEST(ModeSwitch, SwitchesOnceForEveryChange) {
+  Hardware hardware;
+  ModeSwitch mode;
+  mode.update(false, hardware);
+  EXPECT_EQ(hardware.calls, "");
+  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
+  EXPECT_TRUE(mode.isOn());
+  for (int i = 0; i < 3; ++i) mode.update(false, hardware);
+  EXPECT_FALSE(mode.isOn());
+  EXPECT_EQ(hardware.calls, "on result off ");
+}
+
+TEST(ModeSwitch, WaitsForAResultThatComesLate) {
+  Hardware hardware;
+  ModeSwitch mode;
+  hardware.result = ModeSwitch::Result::kOngoing;
+  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
+  EXPECT_FALSE(mode.isOn() || mode.isRefused());
+  hardware.result = ModeSwitch::Result::kDone;
+  mode.update(true, hardware);
+  EXPECT_TRUE(mode.isOn());
+  EXPECT_EQ(hardware.calls, "on result result result result ");
+}
+
+TEST(ModeSwitch, ThatIsGivenUpMeanwhileIsTakenBack) {
+  Hardware hardware;
+  ModeSwitch mode;
+  hardware.result = ModeSwitch::Result::kOngoing;
+  mode.update(true, hardware);
+  mode.update(false, hardware);
+  EXPECT_EQ(hardware.calls, "on result off ");
+}
+
+TEST(ModeSwitch, ThatFailsIsNotTriedAgainUntilItWasTakenBack) {
+  Hardware hardware;
+  ModeSwitch mode;
+  hardware.result = ModeSwitch::Result::kError;
+  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
+  EXPECT_TRUE(mode.isRefused());
+  EXPECT_FALSE(mode.isOn());
+  mode.update(false, hardware);
+  EXPECT_FALSE(mode.isRefused());
+  hardware.result = ModeSwitch::Result::kDone;
+  mode.update(true, hardware);
+  EXPECT_TRUE(mode.isOn());
+  EXPECT_EQ(hardware.calls, "on result off on result ");
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Parameters
+
+class Parameters : public testing::Test {
+ protected:
+  Parameters() {
+    all["robot_hw"]["type"] = "maker/Machine";
+    all["clock"] = "monotonic";
+    all["signal_timeout"] = 0.5;
+    for (const char* signal : {"emergency_stop", "homed", "spindle_at_speed", "coolant_on"}) {
+      all["signals"][signal] = "never";
+    }
+  }
+  RosControlParameters read() const { return readRosControlParameters(ParameterReader(all, "/grinder/hardware")); }
+  std::string refusal() const {
+    try {
+      read();
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  /// Without one of them.
+  void remove(const std::string& group, const std::string& name) {
+    XmlRpc::XmlRpcValue kept;
+    for (auto& [key, value] : all[group]) {
+      if (key != name) kept[key] = value;
+    }
+    all[group] = kept;
+  }
+
+  XmlRpc::XmlRpcValue all;
+};
+
+TEST_F(Parameters, HaveJointsOfTheAxesNamesAndNothingElseUnlessStated) {
+  const RosControlParameters p = read();
+  EXPECT_EQ(p.robot_hw, "maker/Machine");
+  EXPECT_EQ(p.joints, (std::array<std::string, 4>{"axis_x", "axis_y", "axis_z", "axis_a"}));
+  EXPECT_EQ(p.signals.enabled, "always");
+  EXPECT_EQ(p.signals.fault, "never");
+  EXPECT_EQ(p.signals.probe_free, "always");
+  EXPECT_EQ(p.signals.probe_contact, "never");
+  EXPECT_FALSE(p.commands.power || p.commands.home || p.commands.spindle || p.commands.coolant || p.commands.reset);
+  EXPECT_FALSE(p.read_is_clock);
+}
+
+TEST_F(Parameters, TakeWhatIsStated) {
+  all["joints"]["axis_a"] = "work_head";
+  all["clock"] = "read";
+  all["signals"]["fault"] = "/plc/fault";
+  all["commands"]["spindle"]["topic"] = "/plc/spindle";
+  all["commands"]["power"]["service"] = "/plc/power";
+  const RosControlParameters p = read();
+  EXPECT_EQ(p.joints, (std::array<std::string, 4>{"axis_x", "axis_y", "axis_z", "work_head"}));
+  EXPECT_TRUE(p.read_is_clock);
+  EXPECT_EQ(p.signals.fault, "/plc/fault");
+  EXPECT_EQ(p.commands.spindle.topic, "/plc/spindle");
+  EXPECT_EQ(p.commands.power.service, "/plc/power");
+}
+
+TEST_F(Parameters, MustStateWhatNoRobotHwHas) {
+  for (const std::string signal : {"emergency_stop", "homed", "spindle_at_speed", "coolant_on"}) {
+    const XmlRpc::XmlRpcValue before = all;
+    remove("signals", signal);
+    EXPECT_EQ(refusal(), "parameter /grinder/hardware/signals/" + signal +
+                             " is missing; allowed: always, never, or a topic of std_msgs/Bool");
+    all = before;
+  }
+}
+
+TEST_F(Parameters, AreRefusedByName) {
+  all["clock"] = "write";
+  EXPECT_EQ(refusal(), "parameter /grinder/hardware/clock = write; allowed: monotonic or read");
+  all["clock"] = "read";
+  all["commands"]["home"]["topic"] = "/plc/home";
+  EXPECT_EQ(refusal(), "parameter /grinder/hardware/commands/home/topic; allowed: a service of std_srvs/Trigger");
+  all["commands"]["home"]["service"] = "/plc/home";
+  EXPECT_EQ(refusal(), "parameter /grinder/hardware/commands/home; allowed: either a service or a topic");
+}
+
+}  // namespace test_ros_control
+}  // namespace grinder::test_support

@@ -1,6 +1,7 @@
 #include "control/fixtures.h"
 #include "control/heap.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/drive/parameters.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -44,7 +45,12 @@ TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
       {"new of what is over-aligned", [] { delete static_cast<Wide*>(kept = new Wide); }, 1},
       {"the core library: the moves of a program", [&] { GrindProgram(job, config.machine, config.machine.park); }, 1},
       {"the drive library: a long text", [&] { fault.text(); }, 1},
-      {"the simulated drive: its handles", [] { SimulatedDrive().init(driveModel(), equipment()); }, 1}};
+      {"the simulated drive: a refusal of its parameters",
+       [] {
+         const ParameterReader none({}, "");
+         EXPECT_THROW(SimulatedDrive::readSimulation(none, none), ParameterError);
+       },
+       1}};
   for (const Row& row : rows) {
     const HeapUse use = heapUse(row.work);
     EXPECT_GE(use.allocations, row.allocations) << row.name;

@@ -22,7 +22,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
 
-PERIOD = 0.001
+PERIOD = 0.005  # of the machine, so that a bag is short
 OPERATIONS = ('flute', 'primary', 'secondary')
 
 
@@ -85,10 +85,11 @@ class TestToolOfBag(unittest.TestCase):
             text = text.replace(slow, fast)
         with open(cls.job, 'w', encoding='utf-8') as file:
             file.write(text)
+        cls.machine = gc.machine_file(os.path.join(cls.folder, 'machine.yaml'), control_rate=1 / PERIOD)
         cls.rows = {}
         for operation in OPERATIONS:
             path = os.path.join(cls.folder, operation + '.csv')
-            planned = gc.grind('plan', cls.job, '--operation', operation, '--csv', path)
+            planned = gc.grind('plan', cls.job, '--operation', operation, '--machine', cls.machine, '--csv', path)
             assert planned.returncode == 0, planned.stderr
             with open(path, encoding='utf-8') as file:
                 cls.rows[operation] = list(csv.DictReader(file))

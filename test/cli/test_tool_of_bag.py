@@ -120,7 +120,7 @@ class TestToolOfBag(unittest.TestCase):
         self.assertIn('job 3 of 3, what is ahead of it by job 1, 2', data['tool']['source'])
         with open(page, encoding='utf-8') as file:
             printed = file.read()
-        for text in (data['tool']['source'], '10 ± 0.5 deg, 0.3 mm wide, then 22 deg'):
+        for text in (data['tool']['source'], '<figure id="section-1"', '<figure id="rake"', '10 ± 0.5 deg, 0.3 mm wide, then 22 deg'):
             self.assertIn(text, printed)
         measured = {criterion['name']: criterion['measured'] for criterion in data['criteria']}
         self.assertAlmostEqual(measured['clearance'], 10, delta=0.02)

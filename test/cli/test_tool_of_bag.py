@@ -22,7 +22,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
 
-PERIOD = 0.001
+PERIOD = 0.005  # of the machine, so that a bag is short
 OPERATIONS = ('flute', 'primary', 'secondary')
 
 
@@ -85,10 +85,11 @@ class TestToolOfBag(unittest.TestCase):
             text = text.replace(slow, fast)
         with open(cls.job, 'w', encoding='utf-8') as file:
             file.write(text)
+        cls.machine = gc.machine_file(os.path.join(cls.folder, 'machine.yaml'), control_rate=1 / PERIOD)
         cls.rows = {}
         for operation in OPERATIONS:
             path = os.path.join(cls.folder, operation + '.csv')
-            planned = gc.grind('plan', cls.job, '--operation', operation, '--csv', path)
+            planned = gc.grind('plan', cls.job, '--operation', operation, '--machine', cls.machine, '--csv', path)
             assert planned.returncode == 0, planned.stderr
             with open(path, encoding='utf-8') as file:
                 cls.rows[operation] = list(csv.DictReader(file))
@@ -119,7 +120,7 @@ class TestToolOfBag(unittest.TestCase):
         self.assertIn('job 3 of 3, what is ahead of it by job 1, 2', data['tool']['source'])
         with open(page, encoding='utf-8') as file:
             printed = file.read()
-        for text in (data['tool']['source'], '10 ± 0.5 deg, 0.3 mm wide, then 22 deg'):
+        for text in (data['tool']['source'], '<figure id="section-1"', '<figure id="rake"', '10 ± 0.5 deg, 0.3 mm wide, then 22 deg'):
             self.assertIn(text, printed)
         measured = {criterion['name']: criterion['measured'] for criterion in data['criteria']}
         self.assertAlmostEqual(measured['clearance'], 10, delta=0.02)

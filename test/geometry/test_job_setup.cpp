@@ -153,14 +153,15 @@ TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
 }
 
 TEST(JobSetup, WhatAPlanRefusesSaysSo) {
-  GrindJob job = paper();
-  job.tooth_angles = {0, units::kPi};
-  job.spiral_angles = {27 * kDegree, 33 * kDegree};  // the set-up is for their middle
-  job.cutter.spiral_angle = job.spiral_angles[0];
-  const std::string text = planRefusal(solved(job));
-  expectContains(text, "a plan would refuse this tool: cutter.rake_angle_deg = 8 deg");
+  JobSetup setup;
+  setup.job = paper();
+  setup.check = checkGroundCutter(ValidJob(setup.job), groundCutterOf(ValidJob(setup.job)));
+  EXPECT_EQ(planRefusal(setup), "");
+  setup.job.cutter.rake_angle = 9 * kDegree;
+  setup.check = checkGroundCutter(ValidJob(setup.job), groundCutterOf(ValidJob(setup.job)));
+  const std::string text = planRefusal(setup);
+  expectContains(text, "a plan would refuse this tool: cutter.rake_angle_deg = 9 deg");
   expectContains(text, ", or set process.z_law: constant_rake\n");
-  EXPECT_EQ(planRefusal(solved(paper())), "");
 }
 
 bool hasReason(const GrindJob& job, ReasonKind kind) {
@@ -241,38 +242,15 @@ TEST(JobSetup, WhatIsKeptIsNotWritten) {
 }
 
 TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
-  GrindJob job = paper();
-  std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
-  expectContains(text, "a swivel of 3");
+  GrindJob job = shipped("roughing_d10_t4");
+  const std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
+  expectContains(text, "takes a swivel of 43.");
   expectContains(text, "-20 to 30 deg; change cutter.spiral_angle_deg");
   job.process.setup_swivel = 70 * kDegree;
   expectContains(refused(job, kMachine, SetupFigure::kSwivel), "process.setup.swivel_deg = 70 deg");
-  job.process.setup_height = 9 * kMillimetre;
-  expectContains(refused(job, kMachine, SetupFigure::kHeight), "cutter.core_diameter_mm = ");
-  job = paper();
-  job.tooth_angles.clear();
-  for (int i = 0; i < 8; ++i) job.tooth_angles.push_back(i * 45 * kDegree);
-  text = refused(job);
-  expectContains(text, "no land is left");
-  expectContains(text, "change process.wheel.width_mm");
-  job = paper();
+  job = shipped("roughing_d10_t4");
   job.process.finish_infeed = 3 * kMillimetre;
   expectContains(refused(job), "process.finish_infeed_mm = 3 mm");
-}
-
-TEST(JobSetup, EdgeAndCoresThatCannotBeHadAreRefusedWithHowNearTheyCome) {
-  GrindJob job = shipped("left_hand_d8_t3");
-  job.cutter.core_diameter = 5.6 * kMillimetre;
-  job.cutter.core_diameter_end = 7 * kMillimetre;
-  job.cutter.core_tolerance = 0.02 * kMillimetre;
-  job.cutter.spiral_tolerance = 0.3 * kDegree;
-  const std::string text = refused(job);
-  for (const char* part :
-       {"within its tolerance; the nearest one gives for", "It would be set up with ",
-        "cutter.rake_angle_deg = 6 deg within 0.5 deg: ", "cutter.spiral_angle_deg = -30 deg within 0.3 deg: -",
-        "cutter.core_diameter_mm = 5.6 mm", "cutter.core_diameter_end_mm = 7 mm within 0.02 mm: "}) {
-    expectContains(text, part);
-  }
 }
 
 /// The number behind a text.
@@ -290,23 +268,29 @@ TEST(JobSetup, TheWidthThatARefusalNamesLeavesALand) {
   job.cutter.core_tolerance = 0.05 * kMillimetre;
   job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
   const std::string text = refused(job);
-  EXPECT_NE(text.find("no land is left"), std::string::npos) << text;
+  expectContains(text, "no land is left");
+  expectContains(text, "change process.wheel.width_mm");
   const double width = numberBehind(text, "process.wheel.width_mm") * kMillimetre;
   ASSERT_GT(width, 0.5e-3) << text;
   job.process.wheel_width = width;
   EXPECT_TRUE(solved(job).check.reasons.empty());
 }
 
-TEST(JobSetup, WhatARefusalNamesMendsIt) {
+TEST(JobSetup, WhatCannotBeHadIsRefusedWithHowNearItComesAndWhatMendsIt) {
   GrindJob job = shipped("left_hand_d8_t3");
+  job.cutter.core_diameter = 5.6 * kMillimetre;
   job.cutter.core_diameter_end = 7 * kMillimetre;
-  std::string text = refused(job);
-  if (text.find("set up with process.wheel") != std::string::npos) {
-    job.process.wheel_diameter = numberBehind(text, "process.wheel.diameter_mm") * kMillimetre;
-  } else {
-    job.cutter.core_diameter = numberBehind(text, "cutter.core_diameter_mm") * kMillimetre;
-    job.cutter.core_diameter_end = numberBehind(text, "cutter.core_diameter_end_mm") * kMillimetre;
+  job.cutter.core_tolerance = 0.02 * kMillimetre;
+  job.cutter.spiral_tolerance = 0.3 * kDegree;
+  const std::string text = refused(job);
+  for (const char* part :
+       {"within its tolerance; the nearest one gives for", "It would be set up with ",
+        "cutter.rake_angle_deg = 6 deg within 0.5 deg: ", "cutter.spiral_angle_deg = -30 deg within 0.3 deg: -",
+        "cutter.core_diameter_mm = 5.6 mm", "cutter.core_diameter_end_mm = 7 mm within 0.02 mm: "}) {
+    expectContains(text, part);
   }
+  job.cutter.core_diameter = numberBehind(text, "cutter.core_diameter_mm") * kMillimetre;
+  job.cutter.core_diameter_end = numberBehind(text, "cutter.core_diameter_end_mm") * kMillimetre;
   EXPECT_TRUE(solved(job).check.reasons.empty()) << text;
 }
 
@@ -323,25 +307,20 @@ TEST(JobSetup, ACylindersCoreMayDifferByItsTolerance) {
   }
 }
 
+// Found at random: their figures were near the ends of their tolerances.
 TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
   struct Case {
     double diameter, cone, spiral, rake, length, core, core_end, wheel, width;
   };
-  int set_up = 0;
-  for (const Case& c : {Case{2.516, 9.49, 7.3, 4.1, 4.158, 1.806, 2.664, 125, 0.25},
-                        Case{4.272, 2.09, 20.1, 11.4706, 9.89, 3.158, 3.64, 125, 0.37},
+  for (const Case& c : {Case{4.272, 2.09, 20.1, 11.4706, 9.89, 3.158, 3.64, 125, 0.37},
                         Case{1.143, 10.5, 10.1, 2.3, 2.336, 0.695, 1.205, 100, 0.2}}) {
     GrindJob job = steep(c.diameter, c.cone, c.spiral, c.rake, c.length, c.core, c.wheel, c.width);
     job.cutter.core_diameter_end = c.core_end * kMillimetre;
     job.cutter.core_tolerance = 0.05 * kMillimetre;
     job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
-    const auto result = solveJobSetup(job, kMachine, std::nullopt);
-    const auto* setup = std::get_if<JobSetup>(&result);
-    if (!setup) continue;
-    ++set_up;
-    EXPECT_TRUE(setup->check.reasons.empty()) << text(setup->check.reasons);
+    const JobSetup setup = solved(job);
+    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
   }
-  EXPECT_GT(set_up, 0);
 }
 
 TEST(SetupSheet, ReportsHowHighTheWheelStands) {

@@ -195,9 +195,12 @@ TEST(Mirror, TheLawOfConstantRakeIsMirrored) {
 }
 
 TEST(Mirror, TheSetUpIsMirrored) {
-  for (const char* name : {"paper", "taper_d6_t6", "unequal_d12_t4", "left_hand_d8_t3", "mould_cone_d2_t2"}) {
-    SCOPED_TRACE(name);
-    const GrindJob job = jobOf(name);
+  GrindJob angled = jobOf("taper_d6_t6");
+  angled.process.wheel_profile = WheelShape::kAngled;
+  angled.process.wheel_angle = 5 * kDegree;
+  angled.process.wheel_corner_radius_lower = 0.1 * kMillimetre;
+  angled.process.wheel_corner_radius_upper = 0.2 * kMillimetre;
+  for (const GrindJob& job : {jobOf("paper"), angled, jobOf("left_hand_d8_t3")}) {
     const Range swivel{-60 * kDegree, 60 * kDegree};
     const auto solved = [&](const GrindJob& j) {
       const auto result = solveJobSetup(j, swivel, std::nullopt);

@@ -6,6 +6,7 @@
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/reason.h"
 #include "jobs.h"
+#include "random_cases.h"
 
 #include <gtest/gtest.h>
 
@@ -195,8 +196,8 @@ class RandomJobs {
 };
 
 TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
-  for (const double angle : {0.0, 1.0, -2.5}) {
-    for (const double diameter : {0.2, 0.8, 1.5}) {
+  for (const double angle : {0.0, -2.5}) {
+    for (const double diameter : {0.2, 1.5}) {
       for (const double from_axis : {4.2, 4.5}) {
         const Ball ball{10 * kMillimetre, from_axis * kMillimetre, angle, diameter * kMillimetre};
         // The upper face stands by 2 mm above the wheel's middle, the lower one by 2 mm below.
@@ -211,7 +212,8 @@ TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
 TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
   RandomJobs random;
   int touched = 0, of_hand[2] = {0, 0};
-  for (int i = 0; i < 60; ++i) {
+  const int cases = test_support::randomCases(60);
+  for (int i = 0; i < cases; ++i) {
     SCOPED_TRACE(i);
     const ValidJob job(random.job());
     const Ball ball = random.ball(*job);
@@ -222,8 +224,8 @@ TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
       continue;  // the ball lies badly
     }
   }
-  EXPECT_GT(touched, 30);
-  EXPECT_GT(std::min(of_hand[0], of_hand[1]), 10);
+  EXPECT_GT(touched, cases / 2);
+  EXPECT_GT(std::min(of_hand[0], of_hand[1]), cases / 6);
 }
 
 TEST(RakeTouch, EveryShippedJobHasARakeFaceToTouch) {
@@ -255,9 +257,9 @@ TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFace
   asked.process.wheel_wear_per_pass = 0;
   const ValidJob job(asked);
   int touched = 0, refused = 0;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 8; ++i) {
     SCOPED_TRACE(i);
-    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.0005 * i) * kMillimetre, 0, 0.8 * kMillimetre};
+    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.00125 * i) * kMillimetre, 0, 0.8 * kMillimetre};
     if (refusal(job, ball)) {
       ++refused;
       EXPECT_EQ(touched, 0);
@@ -266,8 +268,8 @@ TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFace
       expectTouch(job, ball, touch(job, ball), 48);
     }
   }
-  EXPECT_GT(touched, 5);
-  EXPECT_GT(refused, 5);
+  EXPECT_GT(touched, 1);
+  EXPECT_GT(refused, 1);
 }
 
 TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWouldNot) {

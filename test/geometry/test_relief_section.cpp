@@ -54,7 +54,7 @@ struct Stroke {
 
   /// The radius that is left along a ray.
   double left(double x, double angle) const {
-    constexpr int kPoses = 1500;
+    constexpr int kPoses = 400;
     const double low = std::max(from, x - 20e-3), step = (std::min(to, x + 20e-3) - low) / kPoses;
     const auto at = [&](double i) { return ray(x, angle, low + i * step); };
     int best = 0;

@@ -139,23 +139,17 @@ TEST(SetupSolver, ThePapersCutterGetsTheAskedEdgeAndCore) {
   EXPECT_LT(errors.core, 0.005);
 }
 
-TEST(SetupSolver, ConesOfBothHandsGetTheAskedEdgeAndCore) {
+TEST(SetupSolver, ConesGetTheAskedEdgeAndCore) {
   for (const Shop& shop :
        {Shop{8, 3, 25, 10, 20, 1, 80, 2}, Shop{12, 6, 20, 6, 20, 1.2, 75, 2}, Shop{6, 4, 20, 12, 20, 0.8, 80, 1.5}}) {
-    for (const bool left : {false, true}) {
-      SetupRequest request = requestForAll(shop);
-      if (left) {
-        request.cutter.cut = CutDirection::kLeftHand;
-        request.cutter.spiral_angle = -request.cutter.spiral_angle;
-      }
-      const SolvedSetup s = solved(request);
-      SCOPED_TRACE(testing::Message() << shop.cone << " deg, " << (left ? "left" : "right"));
-      EXPECT_NE(s.setup.lead, 0);
-      const ErrorsOverFlute errors = errorsOf(request, s);
-      EXPECT_LT(errors.rake, 0.1);
-      EXPECT_LT(errors.edge, 0.06);
-      EXPECT_LT(errors.core, 0.005);
-    }
+    const SetupRequest request = requestForAll(shop);
+    const SolvedSetup s = solved(request);
+    SCOPED_TRACE(testing::Message() << shop.cone << " deg");
+    EXPECT_NE(s.setup.lead, 0);
+    const ErrorsOverFlute errors = errorsOf(request, s);
+    EXPECT_LT(errors.rake, 0.1);
+    EXPECT_LT(errors.edge, 0.06);
+    EXPECT_LT(errors.core, 0.005);
   }
 }
 
@@ -449,22 +443,6 @@ TEST(SetupSolver, ABackTaperAndEveryProfileAreSet) {
     EXPECT_NEAR(rakeAt(g, 0), 8, 0.02);
     EXPECT_NEAR(rakeAt(g, 30), 8, 0.02);
   }
-}
-
-TEST(SetupSolver, TheMirroredToolHasTheMirroredSetUp) {
-  SetupRequest request = requestFor({});
-  request.wheel = WheelProfile::angled(0.1, 0.004, 20 * kDegree, {1e-4, 2e-4});
-  request.core_diameter = 7.4 * kMillimetre;
-  SetupRequest mirrored = request;
-  mirrored.cutter.cut = CutDirection::kLeftHand;
-  mirrored.cutter.spiral_angle = -request.cutter.spiral_angle;
-  mirrored.wheel = WheelProfile::angled(0.1, 0.004, -20 * kDegree, {2e-4, 1e-4});
-  const SolvedSetup right = solved(request), left = solved(mirrored);
-  EXPECT_NEAR(left.setup.swivel, -right.setup.swivel, 1e-9);
-  EXPECT_NEAR(left.setup.height, -right.setup.height, 1e-9);
-  EXPECT_NEAR(left.depth, right.depth, 1e-9);
-  EXPECT_NEAR(left.land, right.land, 1e-9);
-  EXPECT_NEAR(rakeAt(ground(mirrored, left), 10), rakeAt(ground(request, right), 10), 1e-6);
 }
 
 TEST(SetupSolver, WithItsOvertravelTheFluteIsCompleteAndWithLessItIsNot) {

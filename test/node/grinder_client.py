@@ -571,10 +571,10 @@ def machine(pace=1):
     return parameters
 
 
-def machine_file(path):
-    """Writes machine() for the launch file's `config`."""
+def machine_file(path, **changes):
+    """Writes machine(), with some other values, for the launch file's `config`."""
     with open(path, 'w') as file:
-        yaml.safe_dump(machine(), file)
+        yaml.safe_dump(dict(machine(), **changes), file)
     return path
 
 

@@ -73,14 +73,14 @@ TEST_F(JournalFileTest, KeepsAnyName) {
   }
 }
 
-TEST_F(JournalFileTest, EveryFlippedBitIsRefused) {
+TEST_F(JournalFileTest, AFlippedBitOfAnyByteIsRefused) {
   const std::string good = written();
   ASSERT_GT(good.size(), 300U);
-  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+  for (std::size_t byte = 0; byte < good.size(); ++byte) {
     std::string bad = good;
-    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
+    bad[byte] = static_cast<char>(bad[byte] ^ (1 << byte % 8));
     const std::string refusal = refusalOf(bad);
-    ASSERT_EQ(refusal.rfind("journal " + path_ + ": its checksum is ", 0), 0U) << "bit " << bit << ": " << refusal;
+    ASSERT_EQ(refusal.rfind("journal " + path_ + ": its checksum is ", 0), 0U) << "byte " << byte << ": " << refusal;
   }
 }
 

@@ -2,8 +2,6 @@
 """Shows what the exporter makes of records, states and diagnostics, without ROS: its counters are sums of the records, and do not
 fall when records are removed; and that its metrics are those of docs/shop.md, and all that the alerts ask for."""
 
-import importlib.machinery
-import importlib.util
 import json
 import math
 import os
@@ -23,14 +21,10 @@ from flute_grinder import job
 from flute_grinder.msg import GrindActionFeedback, GrinderState, Reason
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / 'test/node'))
+sys.path[:0] = [str(ROOT / 'test/node'), str(ROOT / 'src/exporter')]
 
+import exporter  # noqa: E402
 import grinder_client as gc  # noqa: E402
-
-PROGRAM = importlib.machinery.SourceFileLoader('exporter', str(ROOT / 'src/exporter/exporter'))
-exporter = importlib.util.module_from_spec(importlib.util.spec_from_loader('exporter', PROGRAM))
-sys.dont_write_bytecode = True
-PROGRAM.exec_module(exporter)
 
 NAME = '20261122T17%02d00.000Z.json'
 

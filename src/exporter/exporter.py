@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!@PYTHON_EXECUTABLE@
 """Shows one grinder to Prometheus; see docs/shop.md. It reads topics and files, and has no way to ask the grinder for anything.
 
 It is no ROS node. One of rospy has two services of its log and an XML-RPC server, with disable_rosout too, and hears nothing more

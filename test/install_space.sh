@@ -13,7 +13,8 @@ cd "$space"
 unset CMAKE_PREFIX_PATH ROS_PACKAGE_PATH PYTHONPATH LD_LIBRARY_PATH
 use_space "$space"
 [ "$(rospack find flute_grinder)" = "$space/share/flute_grinder" ]
-for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml; do
+for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugins.xml rviz_plugins.xml \
+  monitoring/prometheus.yml monitoring/alerts.yml; do
   [ -f "share/flute_grinder/$file" ]
 done
 
@@ -37,6 +38,7 @@ rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$folder/table.c
 # A client in Python, which has the goal from the program beside it.
 /usr/bin/python3 -c 'import sys; from flute_grinder import job; print(job.goal(sys.argv[1]).job_name, job.__file__)' "$job" |
   grep -q "^paper.yaml $space/lib/"
+rosrun flute_grinder exporter --help | grep -q -e '--listen ADDRESS:PORT'
 rosrun flute_grinder grind report "$folder/table.csv" -o "$folder/table.html"
 grep -q '3\.9785e-05 rad' "$folder/table.html"
 await_grinder env

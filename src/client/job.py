@@ -5,8 +5,8 @@ import subprocess
 
 from flute_grinder.msg import GrindGoal
 
-# In lib/flute_grinder of the space that has this module in lib/python3/dist-packages/flute_grinder.
-_GRIND = pathlib.Path(__file__).absolute().parents[3] / 'flute_grinder' / 'grind'
+# The program, in lib/flute_grinder of the space that has this module in lib/python3/dist-packages/flute_grinder.
+GRIND = pathlib.Path(__file__).absolute().parents[3] / 'flute_grinder' / 'grind'
 
 
 def goal(path, operation=None):
@@ -14,7 +14,7 @@ def goal(path, operation=None):
 
     Raises ValueError, with what `grind` says, if the file cannot be read or is refused."""
     which = ['--operation', str(operation)] if operation else []
-    done = subprocess.run([str(_GRIND), 'goal', *which, '--', str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    done = subprocess.run([str(GRIND), 'goal', *which, '--', str(path)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE)
     if done.returncode == 2:
         raise ValueError(done.stderr.decode(errors='replace').strip())

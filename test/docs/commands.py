@@ -42,6 +42,7 @@ NOT_RUN = {
     'kill -KILL': 'lacks the number of a process; test/hal/test_hal_stops.py does it',
     'rostopic echo /joint_states': 'prints until it is ended',
     'halcmd show sig enabled': 'is read beside a machine; test/hal/test_hal_stops.py reads the signal',
+    'rosrun flute_grinder exporter --listen 192.168.1.5:9840': 'answers until it is ended; test/node/test_exporter.py asks it',
     'rosbag reindex FILE.bag.active': 'lacks a bag that was not closed',
     'halcmd getp streamer.0.underruns': 'is read beside a machine; test/hal reads the pin',
     'halcmd start': 'starts the thread of a HAL that has been stopped',

@@ -1,0 +1,232 @@
+#!/usr/bin/env python3
+"""Shows what the exporter makes of records, states and diagnostics, without ROS: its counters are sums of the records, and do not
+fall when records are removed; and that its metrics are those of docs/shop.md, and all that the alerts ask for."""
+
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import prometheus_client
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from flute_grinder import job
+from flute_grinder.msg import GrindActionFeedback, GrinderState, Reason
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / 'test/node'), str(ROOT / 'src/exporter')]
+
+import exporter  # noqa: E402
+import grinder_client as gc  # noqa: E402
+
+NAME = '20261122T17%02d00.000Z.json'
+
+
+def wheel_of(process):
+    """A wheel as records have it."""
+    if 'file' not in process['wheel']:
+        return process['wheel']
+    with open(gc.package_file('jobs/' + process['wheel']['file'])) as text:
+        wheel = yaml.safe_load(text)
+    return dict({key: wheel[key] for key in wheel if key not in ('flange_mm', 'measured')}, wear_mm=0)
+
+
+def job_of(path, operation=None):
+    """A job file, or one of its operations, as records have it."""
+    with open(gc.package_file(path)) as text:
+        file = yaml.safe_load(text)
+    for process in file.get('operations', [file.get('process')]):
+        process['wheel'] = wheel_of(process)
+    if operation is not None:
+        file['process'] = file['operations'][operation]
+        file['operation'] = file['process'].get('relief', file['process']['kind'])
+    return file
+
+
+class Folder(unittest.TestCase):
+    """A folder of records, and the exporter's program on it."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.start()
+
+    def start(self):
+        self.grinder = exporter.Grinder(exporter.Records(self.folder))
+        self.registry = prometheus_client.CollectorRegistry()
+        self.registry.register(self.grinder)
+
+    def value(self, name, **labels):
+        return self.registry.get_sample_value('flute_grinder_' + name, labels)
+
+    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None):
+        """A record of a job that started at a minute."""
+        file = file or job_of('test/jobs/paper.yaml')
+        file['process']['wheel']['wear_mm'] = wear
+        stroke = {'tooth': 1, 'pass': 1, 'depth_mm': 1, 'started_s': 0, 'duration_s': 1, 'feed_min_mm_min': 600,
+                  'feed_max_mm_min': 600, 'feed_min_x_mm': 0, 'deviation_um': 0, 'deviation_x_mm': 0,
+                  'following_error': {'x_um': 0, 'y_um': 0, 'z_um': 0, 'a_mdeg': 0}}
+        record = {'record': 1, 'machine': {'period_ms': 1}, 'job': {'name': 'job', 'digest': '', 'file': file},
+                  'started': '2026-11-22T17:%02d:00.000Z' % minute, 'ended': '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds),
+                  'outcome': outcome, 'reason': '', 'first': {'tooth': 1, 'pass': 1}, 'planned': {'feed_limits': []},
+                  'setpoints': {'written': setpoints, 'lost': 0}, 'late_cycles': {'count': 0, 'longest_ms': 1},
+                  'strokes': [dict(stroke, complete=i < complete) for i in range(complete + broken_off)],
+                  'holds': [], 'overrides': []}
+        with open(os.path.join(self.folder, NAME % minute), 'w') as text:
+            json.dump(record, text)
+
+    def remove(self, minute):
+        os.remove(os.path.join(self.folder, NAME % minute))
+
+
+class TestRecords(Folder):
+    def write_three(self):
+        self.write(1, setpoints=1009, complete=3, seconds=2.5, wear=0.25)
+        self.write(2, 'canceled', setpoints=2003, complete=2, broken_off=1, seconds=4)
+        self.write(3, 'fault', setpoints=4001, complete=0, broken_off=1, seconds=8, wear=0.5)
+
+    def check_three(self, done=1):
+        self.assertEqual([self.value('jobs_total', outcome=o) for o in ('done', 'canceled', 'fault')], [done, 1, 1])
+        self.assertEqual(sum(self.value('verdicts_total', verdict=v) for v in ('passed', 'incomplete', 'failed')), done + 2)
+        self.assertEqual((self.value('setpoints_total'), self.value('strokes_total'), self.value('tools_total')),
+                         (7012 + done, 4 + done, done))
+        self.assertEqual(self.value('job_duration_seconds_total'), 13.5 + done)
+
+    def test_are_added_up(self):
+        self.write_three()
+        self.write(0, setpoints=1)
+        self.check_three(2)
+        # A job that was broken off has failed; a record says nothing of the ground tool, so that none has passed.
+        self.assertGreaterEqual(self.value('verdicts_total', verdict='failed'), 2)
+        self.assertEqual(self.value('verdicts_total', verdict='passed'), 0)
+        self.assertEqual(self.value('wheel_wear_meters'), 0.5e-3)
+
+    def test_still_count_when_they_are_removed(self):
+        self.write_three()
+        self.write(0, setpoints=1)
+        self.check_three(2)
+        for restart in (False, True):
+            self.remove(0 if restart else 2)
+            if restart:
+                self.start()
+            self.check_three(2)
+        self.write(4, setpoints=1)
+        self.check_three(3)
+        self.start()
+        self.check_three(3)
+
+    def test_of_a_clock_that_was_set_back_count(self):
+        self.write(9, setpoints=5)
+        self.assertEqual(self.value('setpoints_total'), 5)
+        self.write(8, setpoints=7)
+        self.assertEqual(self.value('setpoints_total'), 12)
+
+    def test_that_are_none_do_not_count(self):
+        self.write(1, setpoints=5)
+        for name, text in ((NAME % 2, '{"record": 1'), (NAME % 3, '[]'), (NAME % 4 + '.new', ''), ('notes.json', 'mine')):
+            (pathlib.Path(self.folder) / name).write_text(text)
+        self.assertEqual((self.value('setpoints_total'), self.value('jobs_total', outcome='done')), (5, 1))
+        self.write(5, setpoints=7)
+        self.assertEqual(self.value('setpoints_total'), 12)
+
+    def test_are_counted_anew_if_the_sums_are_damaged(self):
+        self.write(1, setpoints=5)
+        self.assertEqual(self.value('setpoints_total'), 5)
+        (pathlib.Path(self.folder) / 'exporter.json').write_text('{"sums": {"setpo')
+        self.start()
+        self.assertEqual(self.value('setpoints_total'), 5)
+
+    def test_of_no_folder_are_none(self):
+        os.rmdir(self.folder)
+        self.assertEqual((self.value('jobs_total', outcome='done'), self.value('records_free_bytes')), (0, None))
+        os.mkdir(self.folder)
+        self.write(1)
+        self.assertEqual(self.value('jobs_total', outcome='done'), 1)
+
+    def test_a_tool_is_done_with_its_last_operation(self):
+        reamer = 'jobs/taper_reamer_d6_t6.yaml'
+        for operation, tools in enumerate((0, 0, 1)):
+            self.write(operation, file=job_of(reamer, operation))
+            self.assertEqual((self.value('jobs_total', outcome='done'), self.value('tools_total')), (operation + 1, tools))
+        self.write(5, 'canceled', file=job_of(reamer, 2))
+        self.assertEqual(self.value('tools_total'), 1)
+
+    def test_have_the_tool_that_a_state_has(self):
+        self.write(1, file=job_of('jobs/unequal_d12_t4.yaml'))
+        entry, = json.loads(gc.grind('history', '--folder', self.folder, '--json').stdout)
+        self.assertEqual(exporter.tool_text(job.goal(gc.package_file('jobs/unequal_d12_t4.yaml')).cutter), entry['tool'])
+
+
+class TestMessages(Folder):
+    def report(self, level=0, **figures):
+        """A report of a status, of which figures are `late`, `cycles` or axes."""
+        values = {'late': ('Control loop', 'Late cycles'), 'cycles': ('Control loop', 'Cycles'),
+                  'x': ('Following error', 'axis_x max [m]')}
+        self.grinder.hear_diagnostics(DiagnosticArray(status=[
+            DiagnosticStatus(name='left/grinder: ' + values[name][0], level=level, values=[KeyValue(values[name][1], str(value))])
+            for name, value in figures.items()]))
+
+    def test_the_worst_of_a_minute_is_shown_and_late_cycles_are_added_up(self):
+        self.report(x=1e-6, cycles=1000, late=3)
+        self.report(level=1, x=4e-6, cycles=1000, late=2)
+        self.report(x=2e-6, cycles=1000, late=0)
+        self.assertEqual(self.value('following_error_max_meters', axis='x'), 4e-6)
+        self.assertEqual(self.value('diagnostics_level', status='following_error'), 1)
+        self.assertEqual((self.value('cycles_total'), self.value('late_cycles_total')), (3000, 5))
+        self.report(x='nan')
+        self.assertTrue(math.isnan(self.value('following_error_max_meters', axis='x')))
+
+    def test_a_fault_counts_once_and_by_its_reason(self):
+        reason = Reason(kind=Reason.FOLLOWING_ERROR)
+        fault, ready = GrinderState(state=GrinderState.FAULT, fault_reason=reason), GrinderState(state=GrinderState.READY)
+        # One that was there before the exporter heard of the grinder is not counted again.
+        for message in (None, fault, fault, ready, fault, fault, None, fault, ready, fault):
+            self.grinder.hear_state(message)
+        self.assertEqual(self.value('faults_total', reason='following_error'), 2)
+        self.assertEqual(self.value('faults_total', reason='late'), 0)
+
+    def test_a_state_is_shown_until_the_connection_ends(self):
+        state = GrinderState(state=GrinderState.HELD, feed=0.01, override=0.75, spindle_commanded=True)
+        state.progress.job_digest, state.progress.job_name, state.progress.operation = '0', 'mill.yaml', 'primary relief'
+        self.grinder.hear_state(state)
+        self.assertEqual([self.value('state', state=name) for name in ('held', 'ready', 'jogging_retracted')], [1, 0, 0])
+        self.assertEqual([self.value(name) for name in ('up', 'feed_meters_per_second', 'feed_override_ratio', 'spindle_commanded',
+                                                        'spindle_at_speed')], [1, 0.01, 0.75, 1, 0])
+        self.assertEqual(self.value('job_info', job='mill.yaml', operation='primary relief',
+                                    tool=exporter.tool_text(state.progress.cutter)), 1)
+        self.grinder.hear_state(None)
+        self.assertEqual((self.value('up'), self.value('state', state='held')), (0, None))
+
+    def say_all(self):
+        """All that is shown at any time."""
+        state = GrinderState()
+        state.progress.job_digest = '0'
+        self.grinder.hear_state(state)
+        self.grinder.hear_feedback(GrindActionFeedback())
+        self.report(x=0, late=0)
+        self.write(1)
+        return prometheus_client.generate_latest(self.registry).decode()
+
+    def test_metrics_are_those_of_the_page_and_all_that_alerts_ask_for(self):
+        shown = set(re.findall(r'(?m)^(flute_grinder_\w+)', self.say_all()))
+        page = (ROOT / 'docs/shop.md').read_text()
+        self.assertEqual(set(re.findall(r'(?m)^\| `(flute_grinder_\w+)', page)), shown)
+        asked = set(re.findall(r'flute_grinder_\w+', ''.join(re.findall(r'expr: (.*)', (ROOT / 'monitoring/alerts.yml').read_text()))))
+        self.assertEqual(asked - shown - {'flute_grinder'}, set())
+
+    @unittest.skipUnless(shutil.which('promtool'), 'promtool is not installed')
+    def test_promtool_has_nothing_against_the_names(self):
+        checked = subprocess.run(['promtool', 'check', 'metrics'], input=self.say_all().encode(), stdout=subprocess.PIPE,
+                                 stderr=subprocess.STDOUT)
+        self.assertEqual((checked.returncode, checked.stdout), (0, b''))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'exporter_counts', '__main__')

@@ -1,0 +1,224 @@
+#include "ride_job.h"
+
+#include "flute_grinder/motion/setpoint_stream.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+namespace grinder::test_support {
+
+namespace {
+
+constexpr double kMostCycles = 20000;  ///< of an undisturbed job
+
+Machine randomMachine(Random& random) {
+  Machine m;
+  m.limits.min_position << -1, -1, -1, -1e5;
+  m.limits.max_position << 1, 1, 1, 1e5;
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const bool rotary = axis == kA;
+    m.limits.max_velocity[axis] = acrossDecades(random, rotary ? 10 : 0.1, rotary ? 60 : 0.5);
+    m.limits.max_acceleration[axis] = acrossDecades(random, rotary ? 50 : 0.5, rotary ? 1000 : 10);
+    m.limits.max_jerk[axis] = acrossDecades(random, rotary ? 1000 : 10, rotary ? 1e5 : 1000);
+  }
+  m.period = 1 / between(random, 500, 2000);
+  return m;
+}
+
+CutterGeometry randomCutter(Random& random) {
+  CutterGeometry c;
+  c.end_diameter = acrossDecades(random, 2e-3, 25e-3);
+  c.cone_angle = flip(random, 0.2) ? 0 : between(random, -0.05, 0.3);
+  c.spiral_angle = flip(random, 0.1) ? 0 : between(random, -0.8, 0.8);
+  c.rake_angle = between(random, -0.2, 0.4);
+  c.cut = flip(random, 0.5) ? CutDirection::kRightHand : CutDirection::kLeftHand;
+  c.flute_length = acrossDecades(random, 0.5e-3, 10e-3);
+  c.rake_tolerance = c.spiral_tolerance = c.chordal_rake_tolerance = 0.01;
+  c.core_tolerance = 0.1e-3;
+  c.shank_diameter = c.end_diameter + 2 * c.flute_length * std::max(0.0, std::tan(c.cone_angle));
+  c.core_diameter = c.core_diameter_end = c.end_diameter / 2;
+  return c;
+}
+
+GrindProcess randomProcess(Random& random, const CutterGeometry& cutter) {
+  GrindProcess p;
+  p.feed = acrossDecades(random, 2e-3, 60e-3);
+  p.depth = cutter.end_diameter / 2 * between(random, 0.05, 0.3);
+  p.depth_end = flip(random, 0.5) ? 0 : p.depth * between(random, 0.7, 1.2);
+  p.infeed = p.deepest() / between(random, 0.9, 3);
+  p.spark_out = flip(random, 0.3) ? 1 : 0;
+  if (flip(random, 0.2)) p.finish_infeed = p.infeed / 10;
+  p.clearance = between(random, 0.1e-3, 2e-3);
+  p.overtravel_end = between(random, 0, 1e-3);
+  p.overtravel_shank = between(random, 0, 1e-3);
+  p.order = flip(random, 0.5) ? GrindOrder::kToothMajor : GrindOrder::kPassMajor;
+  p.direction = flip(random, 0.5) ? StrokeDirection::kFromEnd : StrokeDirection::kToEnd;
+  p.wheel_diameter = 100e-3;
+  p.wheel_width = 8e-3;
+  p.wheel_wear = flip(random, 0.5) ? 0 : between(random, 0, 1e-3);
+  p.wheel_wear_per_pass = flip(random, 0.5) ? 0 : between(random, 0, 2e-6);
+  p.setup_lead = flip(random, 0.5) ? 0 : between(random, -1e-3, 1e-3);
+  return p;
+}
+
+GrindJob randomFlutes(Random& random) {
+  GrindJob job;
+  job.cutter = randomCutter(random);
+  const int teeth = 1 + static_cast<int>(fraction(random) * 3);
+  for (int i = 0; i < teeth; ++i) {
+    job.tooth_angles.push_back(i == 0 ? 0 : job.tooth_angles.back() + between(random, 0.3, 2));
+  }
+  if (teeth > 1 && flip(random, 0.3)) {
+    for (int i = 0; i < teeth; ++i)
+      job.spiral_angles.push_back(job.cutter.spiral_angle * (i == 0 ? 1 : between(random, 0.8, 1)));
+  }
+  job.process = randomProcess(random, job.cutter);
+  if (flip(random, 0.2)) job.process.z_law = ZLaw::kConstantRake;
+  job.interpolation.even_step = std::array{EvenStepRule::kPublished, EvenStepRule::kThirdOrder,
+                                           EvenStepRule::kExact}[static_cast<std::size_t>(fraction(random) * 3)];
+  job.interpolation.tolerance = acrossDecades(random, 0.2e-6, 20e-6);
+  job.interpolation.rotary_scale = acrossDecades(random, 0.1e-3, 10e-3);
+  return job;
+}
+
+/// Of a cutter's flutes, those or a relief behind them.
+ValidJob withRelief(Random& random, GrindJob job) {
+  CutterGeometry& c = job.cutter;
+  c.clearance = between(random, 0.1, 0.25);
+  c.clearance_tolerance = 0.02;
+  const bool secondary = flip(random, 0.4);
+  if (secondary) {
+    c.land = between(random, 0.1e-3, 0.4e-3);
+    c.second_clearance = c.clearance + between(random, 0.1, 0.25);
+  }
+  job.operations.push_back({job.process, {}});
+  for (int i = 0; i < (secondary ? 2 : 1); ++i) {
+    GrindProcess relief = job.process;
+    relief.kind = i == 0 ? OperationKind::kPrimaryRelief : OperationKind::kSecondaryRelief;
+    relief.depth = relief.depth_end = relief.overtravel_end = relief.overtravel_shank = relief.setup_lead = 0;
+    relief.z_law = ZLaw::kPublished;
+    relief.finish_infeed = 0;
+    relief.infeed = between(random, 0.1e-3, 0.5e-3);
+    relief.behind = 0;
+    relief.setup_swivel = between(random, -0.2, 0.2);
+    const double clearance = i == 0 ? c.clearance : c.second_clearance;
+    relief.setup_height = ReliefPath::heightFor(
+        ConicalCutter(c), {clearance, 1, 0}, {relief.wheel_diameter / 2, 0, relief.wheel_width, relief.setup_swivel, 0},
+        between(random, -3e-3, 3e-3));
+    job.operations.push_back({relief, {}});
+  }
+  const ValidJob flutes(job.ofOperation(0));
+  const int index = flip(random, 0.5) || !secondary ? 1 : 2;
+  std::vector<double> edges;
+  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) edges.push_back(between(random, -0.01, 0.01));
+  return ValidJob(job.ofOperation(index)).withEdges(flutes, edges);
+}
+
+ValidJob withCorrections(Random& random, const ValidJob& job) {
+  const StrokeLaw& law = job.strokeLaw(0);
+  std::vector<ZCorrection> corrections;
+  ZCorrection c;
+  c.from = std::min(law.from, law.to);
+  c.pieces = 1 + static_cast<int>(fraction(random) * 6);
+  c.piece = std::abs(law.to - law.from) / c.pieces;
+  for (int i = 0; i < c.coefficientCount(); ++i) {
+    c.coefficients[static_cast<std::size_t>(i)] = std::abs(law.to - law.from) * between(random, -1e-3, 1e-3);
+  }
+  // Teeth with the same spiral angle have the same.
+  corrections.assign(static_cast<std::size_t>(job.teeth()), c);
+  return job.withZCorrections(corrections);
+}
+
+second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine) {
+  second_opinion::Asked asked;
+  using second_opinion::Real;
+  for (int i = 0; i < job.teeth(); ++i) {
+    const StrokeLaw& law = job.strokeLaw(i);
+    const CutterGeometry& c = law.cutter;
+    second_opinion::Tooth tooth;
+    tooth.growth = std::tan(Real(c.cone_angle));
+    tooth.b = 2 * tooth.growth / Real(c.end_diameter);
+    tooth.k = 2 * std::tan(Real(c.spiral_angle)) / Real(c.end_diameter);
+    tooth.lead = law.lead;
+    tooth.a = law.a;
+    tooth.z_per_y = (c.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(Real(c.rake_angle));
+    const ZCorrection& z = job.zCorrectionOf(i);
+    tooth.from = z.from;
+    tooth.piece = z.pieces == 0 ? 1 : z.piece;
+    tooth.coefficients.assign(z.coefficients.begin(), z.coefficients.begin() + z.coefficientCount());
+    asked.teeth.push_back(tooth);
+  }
+  for (const JobPass& pass : job.passes()) {
+    const DepthLaw law = job.depthLaw(pass.place.tooth, pass.depth, pass.wear);
+    asked.passes.push_back({pass.place.tooth, pass.place.pass, law.at_end, law.taper});
+  }
+  asked.from = job.strokeLaw(0).from;
+  asked.to = job.strokeLaw(0).to;
+  asked.clearance = job->process.clearance;
+  asked.deviation = job->interpolation.tolerance;
+  asked.radius = Real(job->cutter.end_diameter) / 2;
+  asked.period = machine.period;
+  for (int i = 0; i < kAxisCount; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    asked.velocity[axis] = machine.limits.max_velocity[i];
+    asked.acceleration[axis] = machine.limits.max_acceleration[i];
+    asked.jerk[axis] = machine.limits.max_jerk[i];
+  }
+  return asked;
+}
+
+/// Whether a plan accepts it: no point off the curve by more than its tolerance; and it is short enough for a ride.
+bool isRideable(const RideJob& ride) {
+  SetpointStream stream(GrindProgram(ride.job, ride.machine, RunStart(ride.machine.park, {}, ride.offset)));
+  const second_opinion::Watch watch(ride.asked);
+  Setpoint p;
+  for (double cycles = 0; stream.next(p); ++cycles) {
+    if (cycles > kMostCycles) return false;
+    if (p.step == StepKind::kNone) continue;
+    const auto& tooth = ride.asked.teeth[p.tooth];
+    const auto x = static_cast<second_opinion::Real>(p.position[kX]);
+    const auto radius = ride.asked.radius + (x - tooth.lead) * tooth.growth;
+    if (!(std::abs(p.position[kA] - watch.curve(tooth, x)) * radius <= ride.asked.deviation)) return false;
+  }
+  return stream.finished();
+}
+
+std::optional<RideJob> draw(Random& random) {
+  GrindJob flutes = randomFlutes(random);
+  ValidJob job = flip(random, 0.3) ? withRelief(random, flutes) : ValidJob(flutes);
+  if (job->process.z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
+  Machine machine = randomMachine(random);
+  const double growth = std::tan(job->cutter.cone_angle);
+  const StrokeLaw& law = job.strokeLaw(0);
+  const double clear = std::max(law.from * growth, law.to * growth) + job->process.clearance;
+  Axes offset = Axes::Zero();
+  if (flip(random, 0.5))
+    offset << between(random, -0.05, 0.05), between(random, -0.01, 0.01), 1e-3, between(random, -3, 3);
+  machine.park << between(random, -0.02, 0.02), clear + offset[kY] + between(random, 0, 5e-3), 0, 0;
+  RideJob ride{job, machine, offset, askedOf(job, machine)};
+  if (!isRideable(ride)) return std::nullopt;
+  return ride;
+}
+
+}  // namespace
+
+double fraction(Random& random) { return static_cast<double>(random() >> 11) / 9007199254740992.0; }
+double between(Random& random, double low, double high) { return low + (high - low) * fraction(random); }
+double acrossDecades(Random& random, double low, double high) {
+  return std::exp(between(random, std::log(low), std::log(high)));
+}
+bool flip(Random& random, double chance) { return fraction(random) < chance; }
+
+RideJob randomJob(Random& random) {
+  for (int i = 0; i < 1000; ++i) {
+    try {
+      if (const std::optional<RideJob> ride = draw(random)) return *ride;
+    } catch (const std::invalid_argument&) {  // what the product refuses is not ridden
+    }
+  }
+  throw std::runtime_error("no job within 1000 draws");
+}
+
+}  // namespace grinder::test_support

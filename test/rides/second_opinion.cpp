@@ -1,0 +1,177 @@
+#include "second_opinion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace second_opinion {
+
+namespace {
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+
+std::string text(const char* what, int axis, Real value, Real allowed) {
+  std::ostringstream out;
+  out.precision(17);
+  out << what << " of axis "
+      << "XYZA"[axis] << " = " << static_cast<double>(value) << ", allowed " << static_cast<double>(allowed);
+  return out.str();
+}
+
+/// The B-spline of degree 5 with knots 0, 1, ... 6, by truncated powers.
+Real spline(Real t) {
+  if (!(t > 0 && t < 6)) return 0;
+  if (t > 3) t = 6 - t;
+  constexpr int choose[]{1, 6, 15};
+  Real sum = 0;
+  for (int j = 0; j < 3 && t > j; ++j) sum += (j % 2 == 0 ? choose[j] : -choose[j]) * std::pow(t - j, Real(5));
+  return sum / 120;
+}
+
+}  // namespace
+
+Watch::Watch(Asked asked) : asked_(std::move(asked)) {
+  for (const Tooth& t : asked_.teeth) {
+    // A is a difference of turns, and X in it is rounded.
+    for (const Real x : {Real(0), asked_.from, asked_.to}) {
+      const Real slope = t.k / (1 + t.b * (x - t.lead));
+      turn_ = std::max({turn_, std::abs(t.a), std::abs(curve(t, x) - t.a), std::abs(slope * x)});
+    }
+  }
+}
+
+/// What the rounding of a place and of what it is computed from comes to.
+Real Watch::noiseOf(const Point& p, int axis) const {
+  return 64 * kEps * (std::abs(p[static_cast<std::size_t>(axis)]) + (axis == 3 ? turn_ : 0) + 1e-3L);
+}
+
+Real Watch::curve(const Tooth& t, Real x) const {
+  const Real way = x - t.lead;
+  return t.a + (t.b == 0 ? t.k * way : t.k / t.b * std::log1p(t.b * way));
+}
+
+Real Watch::z(const Tooth& t, Real x) const {
+  Real z = x * t.growth * t.z_per_y;
+  for (std::size_t i = 0; i < t.coefficients.size(); ++i) {
+    z += t.coefficients[i] * spline((x - t.from) / t.piece - static_cast<Real>(i) + 5);
+  }
+  return z;
+}
+
+void Watch::start(std::size_t first_pass) {
+  if (first_pass != ground_) throw Violation("the run begins with pass " + std::to_string(first_pass));
+}
+
+void Watch::see(const Row& row) {
+  if (has_last_ && !row.free && !last_.free) {
+    checkMotion(row);
+  } else {
+    ends_.fill(row.at);
+  }
+  if (row.of_job) {
+    checkPlace(row);
+    if (row.in_stroke) checkStroke(row);
+  }
+  last_ = row;
+  has_last_ = true;
+}
+
+void Watch::checkMotion(const Row& row) {
+  if (!row.moves) {
+    if (row.at != last_.at) throw Violation("the command moves without a setpoint");
+    return;
+  }
+  if (row.cycle == 0) ends_.fill(row.at);
+  if (row.late) broken_ = 4;
+  const Real t = asked_.period;
+  for (int i = 0; i < 4; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const Real noise = noiseOf(row.at, i);
+    const Real velocity = (Real(row.at[axis]) - last_.at[axis]) / t;
+    if (!(std::abs(velocity) <= asked_.velocity[axis] * (1 + 1e-9L) + noise / t)) {
+      throw Violation(text("velocity", i, velocity, asked_.velocity[axis]));
+    }
+    if (row.cycle % 2 != 0 || broken_ > 0) continue;
+    // The odd and even steps within a pair differ from the path's.
+    const Real pair = 2 * t;
+    const Real acceleration = (Real(row.at[axis]) - 2 * Real(ends_[0][axis]) + ends_[1][axis]) / (pair * pair);
+    const Real jerk = (Real(row.at[axis]) - 3 * Real(ends_[0][axis]) + 3 * Real(ends_[1][axis]) - ends_[2][axis]) /
+                      (pair * pair * pair);
+    if (!(std::abs(acceleration) <= asked_.acceleration[axis] * (1 + 1e-9L) + 4 * noise / (pair * pair))) {
+      throw Violation(text("acceleration", i, acceleration, asked_.acceleration[axis]));
+    }
+    if (!(std::abs(jerk) <= asked_.jerk[axis] * (1 + 1e-9L) + 8 * noise / (pair * pair * pair))) {
+      throw Violation(text("jerk", i, jerk, asked_.jerk[axis]));
+    }
+  }
+  if (row.cycle % 2 != 0) return;
+  ends_ = {row.at, ends_[0], ends_[1]};
+  if (broken_ > 0) --broken_;
+}
+
+/// The lowest Y that any pass so far has, or that the one in progress is to have.
+Real Watch::lowest(Real x) const {
+  Real y = std::numeric_limits<Real>::infinity();
+  for (std::size_t i = 0; i <= std::min(ground_, asked_.passes.size() - 1); ++i) {
+    const Pass& pass = asked_.passes[i];
+    y = std::min(y, x * asked_.teeth[static_cast<std::size_t>(pass.tooth)].growth - pass.at_end + x * pass.taper);
+  }
+  return y;
+}
+
+void Watch::checkPlace(const Row& row) {
+  if (row.lifts) {
+    // A run begins wherever the axes are.
+    const auto stays = [&](std::size_t axis) { return row.work[axis] == last_.work[axis]; };
+    const bool begins = row.cycle == 0 || !last_.of_job;
+    if (begins || (stays(0) && stays(2) && stays(3) && row.work[1] >= last_.work[1] - noiseOf(row.work, 1))) return;
+    throw Violation("a lift moves another axis, or down");
+  }
+  const Real x = row.work[0], y = row.work[1];
+  const Tooth& tooth = asked_.teeth[static_cast<std::size_t>(row.tooth)];
+  const Real surface = x * tooth.growth;
+  const Real noise = noiseOf(row.work, 1);
+  if (y >= surface + asked_.clearance - noise) return;
+  const auto [low, high] = std::minmax(asked_.from, asked_.to);
+  if (y >= std::max(low * tooth.growth, high * tooth.growth) + asked_.clearance - noise) return;
+  if (!(x >= low - noise && x <= high + noise)) throw Violation(text("in the work, place", 0, x, x < low ? low : high));
+  if (!(y >= lowest(x) - noise)) throw Violation(text("depth: place", 1, y, lowest(x)));
+  // Wherever the wheel is near the work, it is on the path of the tooth.
+  const Real off = (row.work[3] - curve(tooth, x)) * (asked_.radius + (x - tooth.lead) * tooth.growth);
+  const Real a_noise = noiseOf(row.work, 3) * (asked_.radius + std::abs(x)) + 1e-15L;
+  if (!(std::abs(off) <= asked_.deviation * (1 + 1e-9L) + a_noise)) {
+    throw Violation(text("off the curve: deviation", 3, off, asked_.deviation));
+  }
+  if (!(std::abs(row.work[2] - z(tooth, x)) <= noiseOf(row.work, 2))) {
+    throw Violation(text("off the law of Z: place", 2, row.work[2], z(tooth, x)));
+  }
+  const auto goes = [&](int axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    return !(std::abs(row.work[i] - last_.work[i]) <= noiseOf(row.work, axis));
+  };
+  // A stroke ends off the curve by what the deviation allows.
+  const bool across = last_.of_job && (goes(0) || goes(2));
+  if (across && !row.in_stroke) throw Violation("the wheel goes across in the work without a stroke");
+}
+
+void Watch::checkStroke(const Row& row) {
+  const auto is = [&](std::size_t i) {
+    return i < asked_.passes.size() && asked_.passes[i].tooth == row.tooth && asked_.passes[i].pass == row.pass;
+  };
+  // A wheel that was lifted at the very end of a stroke enters that stroke again.
+  const bool next = is(ground_);
+  const bool again = ground_ > 0 && is(ground_ - 1);
+  if (!next && !again) {
+    throw Violation("a stroke of tooth " + std::to_string(row.tooth) + ", pass " + std::to_string(row.pass) +
+                    " after " + std::to_string(ground_) + " passes");
+  }
+  const Pass& own = asked_.passes[next ? ground_ : ground_ - 1];
+  const Real x = row.work[0];
+  const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
+  if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(row.work, 1)))
+    throw Violation(text("stroke: place", 1, row.work[1], y));
+  if (next && std::abs(x - asked_.to) <= noiseOf(row.work, 0)) ++ground_;
+}
+
+}  // namespace second_opinion

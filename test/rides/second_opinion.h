@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+// What every setpoint of a job must keep to, computed anew from the job's figures: curve, depth, limits, order. Knows
+// nothing of the product's code.
+namespace second_opinion {
+
+using Real = long double;
+using Point = std::array<double, 4>;  ///< X, Y, Z [m], A [rad]
+
+/// The path of a tooth's strokes.
+struct Tooth {
+  Real b = 0, k = 0, lead = 0, a = 0;  ///< A = a + k/b ln(1 + b (X - lead))
+  Real growth = 0;                     ///< of the surface, dY/dX
+  Real z_per_y = 0;
+  /// B-spline of degree 5 added to Z, with knots every `piece` from `from`; empty for none.
+  Real from = 0, piece = 1;
+  std::vector<double> coefficients;
+};
+
+/// A pass in the order of grinding: Y = X growth - at_end + X taper.
+struct Pass {
+  int tooth = 0, pass = 0;
+  Real at_end = 0, taper = 0;
+};
+
+struct Asked {
+  std::vector<Tooth> teeth;
+  std::vector<Pass> passes;
+  Real from = 0, to = 0;  ///< X of a stroke's ends
+  Real clearance = 0;     ///< above the surface, at which only strokes go across
+  Real deviation = 0;     ///< of A at the surface [m]
+  Real radius = 0;        ///< of the surface at X = lead
+  Real period = 0;        ///< [s]
+  std::array<double, 4> velocity{}, acceleration{}, jerk{};
+};
+
+/// What a cycle commanded.
+struct Row {
+  Point at{};           ///< of the machine
+  Point work{};         ///< the same in work coordinates, of a job's setpoint
+  bool moves = false;   ///< it has a setpoint
+  bool of_job = false;  ///< the setpoint
+  bool late = false;    ///< the axes stood still before it, since the computer did
+  bool free = false;    ///< without power, or homing: the command follows the positions
+  std::uint64_t cycle = 0;
+  bool in_stroke = false;
+  bool lifts = false;  ///< a move of Y alone, up
+  int tooth = 0, pass = 0;
+};
+
+struct Violation : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Watches a job from its start to its end, through whatever comes between.
+class Watch {
+ public:
+  explicit Watch(Asked asked);
+
+  /// @throw Violation
+  void see(const Row& row);
+  /// A job has started, with a pass as its first. @throw Violation if that leaves one out.
+  void start(std::size_t first_pass);
+  /// How many passes have been ground to their end.
+  std::size_t ground() const { return ground_; }
+
+  Real curve(const Tooth& tooth, Real x) const;
+  Real z(const Tooth& tooth, Real x) const;
+
+ private:
+  void checkMotion(const Row& row);
+  void checkPlace(const Row& row);
+  void checkStroke(const Row& row);
+  Real lowest(Real x) const;
+  Real noiseOf(const Point& p, int axis) const;
+
+  Asked asked_;
+  std::size_t ground_ = 0;
+  Real turn_ = 0;  ///< the largest of A's terms [rad]
+  Row last_;
+  bool has_last_ = false;
+  std::array<Point, 3> ends_{};  ///< of the last pairs, newest first
+  int broken_ = 0;               ///< pairs over which acceleration and jerk mean nothing, since the axes stood still
+};
+
+}  // namespace second_opinion

@@ -32,7 +32,8 @@ constexpr double kRounding = 1e-9;
 template <typename Service>
 class ServiceCaller {
  public:
-  ServiceCaller(const ros::NodeHandle& nh, const std::string& name) : nh_(nh), name_(name) {}
+  /// @throw ros::InvalidNameException
+  ServiceCaller(const ros::NodeHandle& nh, const std::string& name) : nh_(nh), name_(nh.resolveName(name)) {}
 
   /// @return whether it was done; if not, the log says why.
   bool call(Service service) {

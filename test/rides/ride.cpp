@@ -204,7 +204,7 @@ class Ride {
   /// What an operator does to go on.
   void recover() {
     const LoopStatus status = loop_->status();
-    if (status.feed_override < 0.05) setOverride(1);
+    if (status.feed_override < 0.05 || result_.events >= kMostEvents) setOverride(1);
     switch (status.state) {
       case S::kFault: return post(E::kReset);
       case S::kDisabled: return post(E::kEnable);
